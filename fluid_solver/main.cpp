@@ -11,7 +11,8 @@ int main(int argc, char** argv) {
   couplet::fluid::FluidParameters parameters;
   const couplet::Program program{
       .name = "fluid_solver",
-      .description = "incompressible flow on a moving mesh, second order in space and time",
+      .description =
+          "incompressible or weakly compressible flow on a moving mesh, second order in space and time",
       .declare = [&](couplet::config::Section& section) { couplet::fluid::declare(section, parameters); },
       .make =
           [&](const couplet::ParticipantContext& context) {

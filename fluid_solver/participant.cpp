@@ -289,7 +289,7 @@ StepReport FluidParticipant<D>::accept_step() {
 template <int D>
 void FluidParticipant<D>::save(CheckpointWriter& file) const {
   write_numbering(file, mesh_);
-  write_state(file, fluid_->state());
+  write_state(file, fluid_->state(), fluid_->parameters().is_compressible());
   fluid_->solvers().save(file);
   if (statistics_) statistics_->save(file);
   file.write_scalar("slowest-contraction", renewal_.slowest());
@@ -299,7 +299,8 @@ void FluidParticipant<D>::save(CheckpointWriter& file) const {
 template <int D>
 void FluidParticipant<D>::load(CheckpointReader& file) {
   check_numbering(file, mesh_);
-  fluid_->restore(read_state<D>(file, mesh_, fluid_->moving() ? nullptr : fluid_->state().placement));
+  fluid_->restore(read_state<D>(file, mesh_, fluid_->moving() ? nullptr : fluid_->state().placement,
+                                fluid_->parameters().is_compressible()));
   fluid_->solvers().load(file);
   if (statistics_) statistics_->load(file);
   renewal_.restore(file.read_scalar("slowest-contraction"));

@@ -108,7 +108,7 @@ std::vector<EffectVerdict> FluidParticipant<D>::audit() const {
     evidence.blocked_cells = blocked / double(mesh_.cells.n_global());
   }
   add_motion(evidence);
-  if (const EnergyLedger& ledger = fluid_->state().ledger; ledger.reference > 0)
+  if (const EnergyLedger& ledger = fluid_->state().ledger; ledger.is_judged())
     evidence.energy_excess = ledger.excess / ledger.reference;
   const FluidScene scene{fluid_->parameters(), fluid_->moving(), step_.scheme != Scheme::standalone};
   return couplet::audit(fluid_effect_cards(), scene, evidence);

@@ -62,6 +62,44 @@ Boundary<D>::Boundary(const Mesh& mesh, const FluidParameters& parameters) : com
   interface_.assign(kind_.size(), 0);
   convective_ = free_backflow_ = interface_;
   for (const Patch& patch : mesh.patches) add_patch(mesh, patch, parameters.boundaries.at(patch.name));
+  add_openings(mesh, parameters);
+}
+
+/// What a compressible fluid makes of inlets and outlets.
+template <int D>
+void Boundary<D>::add_openings(const Mesh& mesh, const FluidParameters& parameters) {
+  const bool compressible = parameters.is_compressible();
+  const bool has_volume = compressible && parameters.compressibility->upstream_volume > 0;
+  for (const Patch& patch : mesh.patches) {
+    const BoundaryParameters& b = parameters.boundaries.at(patch.name);
+    const FaceRange faces{patch.first - mesh.n_interior, patch.count};
+    const bool inlet = b.type == BoundaryType::inlet;
+    if (b.absorbing) {
+      if (!compressible)
+        throw Error(
+            "boundaries.{}.absorbing: an incompressible fluid has no pressure waves to let out; add 'compressibility', or "
+            "remove the key.",
+            patch.name);
+      if (inlet && has_volume)
+        throw Error(
+            "boundaries.{}.absorbing: behind this inlet lies the 'upstream-volume', which answers to the waves; remove one "
+            "of the two.",
+            patch.name);
+      absorbing_patches_.push_back({faces, inlet});
+    }
+    if (compressible && b.type == BoundaryType::convective_outlet)
+      throw Error(
+          "boundaries.{}: a convective outlet sets no pressure level, which a compressible fluid needs; use 'type: outlet' "
+          "with 'absorbing: true'.",
+          patch.name);
+    if (!has_volume || !inlet) continue;
+    std::fill_n(kind_.begin() + faces.first, faces.count, FaceKind::pressure);
+    upstream_patches_.push_back(faces);
+    closed_ = false;
+  }
+  if (has_volume && upstream_patches_.empty())
+    throw Error(
+        "compressibility.upstream-volume: this fluid has no inlet that it could lie behind; remove the key.");
 }
 
 template <int D>

@@ -20,6 +20,16 @@ enum class FaceKind : unsigned char {
   pressure,  ///< p given, velocity from inside
 };
 
+/// Consecutive boundary faces of one patch; on ranks without any `count` is 0.
+struct FaceRange {
+  Index first = 0, count = 0;
+};
+/// A patch that lets pressure waves out.
+struct AbsorbingPatch {
+  FaceRange faces;
+  bool inlet = false;  ///< given velocity; else given pressure
+};
+
 template <int D>
 class Boundary {
  public:
@@ -67,6 +77,11 @@ class Boundary {
     return convective_patches_.empty() ? is_interface(boundary_face) : convective_[boundary_face] != 0;
   }
   bool has_convective_outlet() const { return !convective_patches_.empty(); }
+  /// The same patches in the same order on all ranks.
+  const std::vector<AbsorbingPatch>& absorbing_patches() const { return absorbing_patches_; }
+  /// Inlets of a compressible fluid behind which a volume lies: faces of given pressure, that of the volume, whose given
+  /// velocity is what flows into the volume.
+  const std::vector<FaceRange>& upstream_patches() const { return upstream_patches_; }
   bool is_convective(Index boundary_face) const { return convective_[boundary_face] != 0; }
   /// Part of the cell's velocity that convection sees at a face of given pressure where fluid comes in: 1/2
   /// makes the face's share of the kinetic energy vanish, phi (u_b - u_P/2).u_P = 0.
@@ -74,6 +89,7 @@ class Boundary {
 
  private:
   void add_patch(const Mesh& mesh, const Patch& patch, const BoundaryParameters& b);
+  void add_openings(const Mesh& mesh, const FluidParameters& parameters);
   struct Given {
     Index first = 0, count = 0;  // boundary faces
     BoundaryParameters parameters;
@@ -94,6 +110,8 @@ class Boundary {
   std::vector<Given> velocity_patches_, pressure_patches_;
   std::vector<std::pair<Index, Index>> convective_patches_;  // first boundary face, count; also empty ones
   bool closed_ = true, yields_ = false, asks_for_mass_ = false, turns_ = false;
+  std::vector<AbsorbingPatch> absorbing_patches_;
+  std::vector<FaceRange> upstream_patches_;
   std::vector<double> wall_mass_;
   std::vector<char> asked_;  // by boundary face: its mass is the structure's word
 };

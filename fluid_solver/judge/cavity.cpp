@@ -50,6 +50,9 @@ void check_cavity(const Fluid<D>& fluid, Scheme scheme) {
   if (fluid.parameters().volume_level == VolumeLevelBy::structure) {
     if (scheme == Scheme::standalone)
       throw Error("volume-level: structure: this fluid runs alone, without a structure; remove the key.");
+    if (fluid.parameters().is_compressible())
+      throw Error(
+          "volume-level: structure: a compressible fluid has a pressure level of its own; remove the key.");
     if (boundary.yields())
       throw Error(
           "volume-level: structure: walls with a surface-density get their level from the pressure "
@@ -63,7 +66,8 @@ void check_cavity(const Fluid<D>& fluid, Scheme scheme) {
                                             : "has bodies that move as prescribed");
     return;
   }
-  if (scheme == Scheme::standalone || !closed || boundary.interface_patches().empty() || boundary.yields())
+  if (scheme == Scheme::standalone || !closed || boundary.interface_patches().empty() || boundary.yields() ||
+      fluid.parameters().is_compressible())
     return;
   const auto [share, area] = open_share(fluid);
   if (share <= largest_open_share) return;

@@ -36,6 +36,7 @@ class FluidErrorEstimate {
   double size(const Vectors<D>& values) const;
   double recovered_difference() const;
   double net_outflow() const;
+  void add_compression(std::vector<double>& net) const;
 
   const Fluid<D>& fluid_;
   Vectors<D> u_, rate_, rate_change_;  // u of the last accepted step, first and second differences in time

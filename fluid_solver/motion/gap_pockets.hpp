@@ -19,8 +19,8 @@ class GapPockets {
   /// To be called when other cells are blocked than before. `gap`: per local cell, below 0: free. Collective.
   void find(const std::vector<int>& gap);
   /// Throws SchemeFailure, naming the inlets and a place, if the velocities `w` of the boundary faces let a pocket
-  /// have more in than out, or if they lead into blocked cells. Collective.
-  void check(const Placement<D>& at, const Vectors<D>& w, double time) const;
+  /// have more in than out, which a `compressible` fluid can take up, or if they lead into blocked cells. Collective.
+  void check(const Placement<D>& at, const Vectors<D>& w, double time, bool compressible) const;
 
   /// Why a flow may have diverged: a pocket whose walls move; empty: there is none. Collective.
   std::string cause(const Placement<D>& at) const;

@@ -39,6 +39,7 @@ struct StepWork {
   const Boundary<D>& boundary;
   const FluidParameters& parameters;
   double rho, nu;             ///< [kg/m^3], [m^2/s]
+  double sound = 0;           ///< [m/s]; 0: incompressible
   bool oblique = false;       ///< the non-orthogonal parts are needed
   bool very_oblique = false;  ///< an implicit predictor needs them converged
   double degrees = 0;         ///< largest angle between a face's normal and the line of its cells

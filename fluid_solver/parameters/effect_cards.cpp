@@ -68,13 +68,15 @@ V judge_compressibility(const S& s, const E& e) {
 // du/dt, whatever the Mach number; the density follows by dp/(rho c^2).
 EffectVerdict judge_density(const S& s, const E& e, const Sound& sound) {
   const double change = e.pressure_range / (s.parameters.density * sound.speed * sound.speed);
-  return {
-      .effect = "",
-      .number = change,
-      .threshold = 0.05,
-      .sentence = fmt::format("pressure range {:.3g} Pa: density change of {} = {:.2g}", e.pressure_range,
-                              sound.of, change),
-      .recommendation = "the flow changes faster than pressure waves would allow: use a compressible solver"};
+  return {.effect = "",
+          .number = change,
+          .threshold = 0.05,
+          .sentence = fmt::format("pressure range {:.3g} Pa: density change of {} = {:.2g}", e.pressure_range,
+                                  sound.of, change),
+          .recommendation =
+              s.parameters.is_compressible()
+                  ? "'compressibility' holds for small changes of density only: use a compressible solver"
+                  : "the flow changes faster than pressure waves would allow: add 'compressibility'"};
 }
 
 // What the walls displace goes partly into compression, V dp / (rho c^2) = V dp / (gamma p) of a gas: of the volume of their
@@ -88,8 +90,8 @@ EffectVerdict judge_compliance(const S& s, const E& e, const Sound& sound) {
       .threshold = 0.1,
       .sentence = fmt::format("compression of {} / volume displaced by the walls = {:.2g}", sound.of, share),
       .recommendation =
-          "the compliance of the fluid may change frequencies and stability of the coupled motion: use a "
-          "compressible solver"};
+          "the compliance of the fluid may change frequencies and stability of the coupled motion: add "
+          "'compressibility'"};
 }
 
 // A column of length L answers a motion of rate omega as tan(omega L/c) / (omega L/c): 3 % more than without waves at 0.3.
@@ -101,7 +103,14 @@ EffectVerdict judge_wave_time(const S&, const E& e, const Sound& sound) {
           .sentence =
               fmt::format("sound crosses {} in {:.2g} s = {:.2g} of 1/omega = {:.2g} s of the wall motion",
                           sound.of, e.size / sound.speed, phase, 1 / e.wall_rate),
-          .recommendation = "pressure waves return while the walls move: use a compressible solver"};
+          .recommendation = "pressure waves return while the walls move: add 'compressibility'"};
+}
+
+// Linear acoustics: what it leaves out goes with the change of density.
+V judge_small_changes(const S& s, const E& e) {
+  const auto sound = sound_in(s);
+  if (!sound || std::isnan(e.pressure_range)) return {};
+  return judge_density(s, e, *sound);
 }
 
 /// The worst of the three, by its limit.
@@ -187,12 +196,20 @@ const std::array cards{
               judge_compressibility},
     FluidCard{
         "waves of pressure",
-        "not available here",
-        [](const S&) { return std::string(); },
-        {},
+        "`compressibility`",
+        [](const S& s) { return when(s.parameters.is_compressible(), "compressibility"); },
+        {"three pressures per cell in the right side of the pressure equation, whose matrix changes with the step",
+         0, 0},
         "density change by the pressure range, 0.05; for moving walls: compressed over displaced volume, "
         "0.1, and travel time of sound across the fluid over 1/omega of the wall motion, 0.3",
         judge_waves},
+    FluidCard{"small changes of density",
+              "`compressibility`",
+              [](const S& s) { return when(s.parameters.is_compressible(), "compressibility"); },
+              {},
+              "with `compressibility`: density change by the pressure range, 0.05",
+              judge_small_changes,
+              true},
     FluidCard{
         "mesh motion",
         "a mesh mover in `coupling.mesh`, or `motion`",

@@ -48,6 +48,13 @@ void declare_table_and_rotation(config::Section& s, BoundaryParameters& b) {
       "omega x (r - centre) added to the other velocity: a rotating inlet or wall; absent: none");
 }
 
+void declare_absorbing(config::Section& s, BoundaryParameters& b) {
+  s.value("absorbing", b.absorbing)
+      .doc(
+          "with `compressibility`: lets pressure waves out (characteristic); what is prescribed then holds for the mean "
+          "over its mean-time");
+}
+
 void declare_inlet(config::Section& s, BoundaryParameters& b) {
   s.value("velocity", b.velocity)
       .unit("m/s")
@@ -61,6 +68,7 @@ void declare_inlet(config::Section& s, BoundaryParameters& b) {
       .doc("for mean-speed; parabolic: zero at the rim of the patch, a straight line in 2-D, a disc in 3-D");
   declare_ramp(s, b);
   declare_table_and_rotation(s, b);
+  declare_absorbing(s, b);
   s.check(
       [&b] {
         const int given = !b.velocity.empty() + b.mean_speed.has_value() + b.table.has_value();
@@ -94,6 +102,7 @@ void declare_outlet(config::Section& s, BoundaryParameters& b) {
   s.value("pressure", b.pressure).unit("Pa").plausible(1e-9, 1e11).doc("expression of x, y, z [m] and t [s]");
   s.value("backflow-stabilisation", b.backflow_stabilisation)
       .doc("inflow here carries no kinetic energy; without it strong backflow may grow");
+  declare_absorbing(s, b);
 }
 
 void declare_boundary(config::Section& s, BoundaryParameters& b) {
@@ -237,7 +246,10 @@ void declare(config::Section& s, FluidParameters& p) {
   s.value("initial-pressure", p.initial_pressure)
       .unit("Pa")
       .plausible(1e-9, 1e11)
-      .doc("expression of x, y, z [m]; an initial guess only");
+      .doc(
+          "expression of x, y, z [m]; an initial guess only, but with `compressibility` the state to start from, beside an "
+          "initial velocity that is then taken as it is. Absent: zero, in a moving compressible fluid that of an "
+          "incompressible one");
   s.value("body-force", p.body_force)
       .unit("m/s^2")
       .plausible(1e-4, 1e6)
@@ -320,8 +332,8 @@ void declare(config::Section& s, FluidParameters& p) {
   s.optional_section<CompressibilityParameters>(
       "compressibility", p.compressibility,
       [](config::Section& c, CompressibilityParameters& known) { declare(c, known); },
-      "compressibility of the fluid, for the judgement whether neglecting it is justified; absent: the "
-      "speed of sound of a gas at 1 atm or of a liquid, by density and viscosity");
+      "weakly compressible fluid: pressure waves travel at the speed of sound, closed parts compress; absent: "
+      "incompressible, judged by the speed of sound of a gas at 1 atm or of a liquid, by density and viscosity");
   s.section(
       "output",
       [&p](config::Section& o) {

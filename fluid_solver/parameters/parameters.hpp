@@ -66,6 +66,7 @@ struct BoundaryParameters {
   std::optional<double> ramp;                        // [s], inlet and moving wall
   config::ExpressionText pressure;                   // [Pa], outlet
   bool backflow_stabilisation = true;                // outlet
+  bool absorbing = false;                            // inlet and outlet: lets waves out
   std::string partner;                               // periodic
   std::optional<double> surface_density;             // [kg/m^2], interface: of the structure behind it
   Impedance impedance = Impedance::given;            // interface
@@ -142,9 +143,9 @@ struct FluidParameters {
   std::optional<double>
       implicit_stretch;  // largest implicit sub-step over the explicit limit; empty: no such bound
   double pressure_tolerance = 1e-6;
-  std::vector<config::ExpressionText> initial_velocity;  // [m/s]; empty: at rest
-  config::ExpressionText initial_pressure;               // [Pa]
-  std::vector<config::ExpressionText> body_force;        // [m/s^2]; empty: none
+  std::vector<config::ExpressionText> initial_velocity;    // [m/s]; empty: at rest
+  std::optional<config::ExpressionText> initial_pressure;  // [Pa]
+  std::vector<config::ExpressionText> body_force;          // [m/s^2]; empty: none
   std::optional<TurbulenceParameters> turbulence;
   std::optional<StatisticsParameters> statistics;
   FluidOutputParameters output;
@@ -155,8 +156,11 @@ struct FluidParameters {
   ExplicitScheme scheme = ExplicitScheme::adams_bashforth;
   Projection projection = Projection::flux_memory;
   VolumeLevelBy volume_level = VolumeLevelBy::nobody;
-  std::optional<CompressibilityParameters> compressibility;  // by what it is judged; absent: by the density
+  std::optional<CompressibilityParameters> compressibility;  // absent: none, judged by the density
   std::map<std::string, ProbeParameters> probes;
+  /// [m/s]; 0: the fluid is computed as incompressible.
+  double sound_speed() const { return solved_sound(compressibility, density, viscosity); }
+  bool is_compressible() const { return compressibility && compressibility->is_solved(); }
 };
 
 /// Pairs of periodic patches. Throws Error if two patches do not name each other.

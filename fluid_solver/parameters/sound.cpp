@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/base/error.hpp"
 #include "common/base/text.hpp"
 
 namespace couplet::fluid {
@@ -77,6 +78,21 @@ std::vector<std::string> substances() {
 }
 
 void declare(config::Section& s, CompressibilityParameters& p) {
+  s.choice("scheme", p.scheme,
+           {{"none", WaveScheme::none},
+            {"three-level", WaveScheme::three_level},
+            {"trapezoidal", WaveScheme::trapezoidal}})
+      .doc(
+          "time scheme of the pressure of a weakly compressible fluid (small changes of density, any acoustic Courant "
+          "number); three-level: damps what a step does not resolve; trapezoidal: a fifth of its error, damps nothing; "
+          "none: incompressible, and judged by the other keys");
+  s.value("mean-time", p.mean_time)
+      .unit("s")
+      .plausible(1e-9, 1e6)
+      .positive()
+      .doc(
+          "time over which the mean flow and pressure at `absorbing` boundaries are taken; waves of the angular frequency "
+          "w are reflected by 1/(2 w mean-time); absent: ten times the travel time of sound across the mesh");
   s.value("speed-of-sound", p.speed_of_sound)
       .unit("m/s")
       .plausible(10, 2e4)
@@ -105,8 +121,8 @@ void declare(config::Section& s, CompressibilityParameters& p) {
       .plausible(1e-15, 1e6)
       .not_negative()
       .doc(
-          "fluid volume upstream of the inlets that is not meshed (a plenum, a cylinder); the pressure at "
-          "the inlets compresses it. In 2-D per metre of depth");
+          "fluid volume upstream of the inlets that is not meshed (a plenum, a cylinder), into which flows what the "
+          "inlets prescribe; the pressure at the inlets compresses it. In 2-D per metre of depth");
   s.check(
       [&p]() -> std::string {
         if (p.substance.empty()) return p.temperature ? "'temperature' requires a 'substance'" : "";
@@ -140,6 +156,17 @@ std::optional<Sound> sound_of(const std::optional<CompressibilityParameters>& gi
   if (density > 900 && density < 1100) return Sound{1482, "water"};
   if (density > 500) return Sound{1200, "a liquid"};
   return {};
+}
+
+double solved_sound(const std::optional<CompressibilityParameters>& p, double density, double viscosity) {
+  if (!p || !p->is_solved()) return 0;
+  const auto sound = sound_of(p, density, viscosity);
+  if (!sound)
+    throw Error(
+        "compressibility: a fluid of {:g} kg/m^3 and {:g} Pa s is no known gas or liquid: give its 'speed-of-sound', or "
+        "'scheme: none'.",
+        density, viscosity);
+  return sound->speed;
 }
 
 }  // namespace couplet::fluid

@@ -9,15 +9,20 @@
 
 namespace couplet::fluid {
 
-/// What is known of the compressibility of a fluid that is computed as incompressible: by it a run judges whether that was
-/// right.
+/// How the pressure follows from the divergence where the fluid is computed as weakly compressible.
+enum class WaveScheme { none, three_level, trapezoidal };
+
+/// The compressibility of a fluid: how it is computed, or, with `none`, by what a run judges whether to neglect it was right.
 struct CompressibilityParameters {
+  WaveScheme scheme = WaveScheme::three_level;
+  std::optional<double> mean_time;       // [s], of the means at absorbing boundaries
   std::optional<double> speed_of_sound;  // [m/s]
   std::string substance;                 // one of substances(); empty: not given
   std::optional<double> temperature;     // [K], of the substance
   std::optional<double> pressure;        // [Pa], absolute; with the density: c^2 = gamma p / rho
   std::optional<double> heat_capacity_ratio;
   double upstream_volume = 0;  // [m^3], before the inlets, not in the mesh
+  bool is_solved() const { return scheme != WaveScheme::none; }
 };
 void declare(config::Section& section, CompressibilityParameters& parameters);
 
@@ -32,5 +37,9 @@ struct Sound {
 /// model fluid, such as one of 1 kg/m^3 and 1 Pa s: nothing is known of its sound.
 std::optional<Sound> sound_of(const std::optional<CompressibilityParameters>& parameters, double density,
                               double viscosity);
+
+/// Of a fluid that is computed as weakly compressible [m/s]; 0: it is not. Throws Error where nothing is known of its sound.
+double solved_sound(const std::optional<CompressibilityParameters>& parameters, double density,
+                    double viscosity);
 
 }  // namespace couplet::fluid

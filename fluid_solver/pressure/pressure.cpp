@@ -42,8 +42,8 @@ void PressureEquation<D>::make_pattern() {
 }
 
 template <int D>
-std::vector<double> PressureEquation<D>::diagonal(const Placement<D>& at,
-                                                  std::span<const double> admittance) const {
+std::vector<double> PressureEquation<D>::diagonal(const Placement<D>& at, std::span<const double> admittance,
+                                                  std::span<const double> storage) const {
   const Index owned = mesh_.cells.n_owned();
   std::vector<double> sum(owned, 0.0);
   for (Index f = 0; f < mesh_.n_interior; ++f)
@@ -54,6 +54,7 @@ std::vector<double> PressureEquation<D>::diagonal(const Placement<D>& at,
       sum[mesh_.owner[f]] += at.conductance[f];
   for (std::size_t b = 0; b < admittance.size(); ++b)
     sum[mesh_.owner[mesh_.n_interior + static_cast<Index>(b)]] += admittance[b];
+  for (std::size_t c = 0; c < storage.size(); ++c) sum[c] += storage[c];
   for (double& value : sum)
     if (value == 0) value = 1;  // inside a body: p = 0 there
   if (singular() && owned > 0 && mesh_.cells.first() == 0) sum[0] *= 2;
@@ -76,7 +77,7 @@ void PressureEquation<D>::make_fixed(const Placement<D>& at) {
   const auto set = [&](Index from, Index to, double value) {
     if (from < owned) matrix_->set(mesh_.cells.global(from), mesh_.cells.global(to), value);
   };
-  const std::vector<double> middle = diagonal(at, {});
+  const std::vector<double> middle = diagonal(at, {}, {});
   for (Index c = 0; c < owned; ++c) set(c, c, middle[c]);
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     set(mesh_.owner[f], mesh_.neighbour[f], -at.conductance[f]);
@@ -140,14 +141,15 @@ void PressureEquation<D>::load(CheckpointReader& file) {
 }
 
 template <int D>
-void PressureEquation<D>::set(const Placement<D>& at, bool yields, std::span<const double> admittance) {
-  yields_ = yields;
+void PressureEquation<D>::set(const Placement<D>& at, bool regular, std::span<const double> admittance,
+                              std::span<const double> storage) {
+  regular_ = regular;
   if (fixed_) {
     solver_.reset();
     make_fixed(at);
   } else {
     if (!matrix_) make_pattern();
-    const std::vector<double> middle = diagonal(at, admittance);
+    const std::vector<double> middle = diagonal(at, admittance, storage);
     std::size_t next = std::copy(middle.begin(), middle.end(), values_.begin()) - values_.begin();
     for (Index f = 0; f < mesh_.n_interior; ++f)
       for (const Index cell : {mesh_.owner[f], mesh_.neighbour[f]})
@@ -187,7 +189,7 @@ SolveStatistics PressureEquation<D>::solve_or_tell(const Placement<D>& at, std::
 template <int D>
 SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::vector<double>& b,
                                            std::vector<double>& p, double relative, double absolute,
-                                           double answer) {
+                                           double answer, double size) {
   const Index owned = mesh_.cells.n_owned();
   if (singular()) {
     remove_mean(b);
@@ -198,9 +200,12 @@ SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::vector<d
     for (Index c = 0; c < owned; ++c) p[c] -= pin;
   }
   if (answer > 0) {
-    const double enough = relative * solver_->norm(b);
+    const double enough = relative * (size < 0 ? solver_->norm(b) : size);
     const double left = answer * solver_->true_residual(b, std::span<const double>(p).first(owned));
     absolute = std::max({absolute, least_answer * enough, std::min(enough, left)});
+    relative = 0;
+  } else if (size >= 0) {
+    absolute = std::max(absolute, relative * size);
     relative = 0;
   }
   const int made = solver_->preconditioners_built();

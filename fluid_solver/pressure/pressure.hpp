@@ -20,8 +20,10 @@ class PressureEquation {
  public:
   /// `fixed`: the mesh rests; nothing is kept for a second set().
   PressureEquation(const Mesh& mesh, const Boundary<D>& boundary, bool fixed);
-  /// `yields`: walls answer to the pressure with `admittance`, per boundary face [m]. Collective.
-  void set(const Placement<D>& at, bool yields = false, std::span<const double> admittance = {});
+  /// `regular`: walls or openings answer to the pressure with `admittance`, per boundary face [m], or cells with `storage`,
+  /// per owned cell [m], so that a closed domain has a level. Collective.
+  void set(const Placement<D>& at, bool regular = false, std::span<const double> admittance = {},
+           std::span<const double> storage = {});
   /// The preconditioner lags behind a matrix that moves: what it was made from, to make it again. A fixed matrix needs
   /// none of this.
   void save(CheckpointWriter& file) const;
@@ -36,23 +38,25 @@ class PressureEquation {
   /// `b`: per owned cell, made compatible here when the domain is closed; `p`: per local cell, guess on
   /// entry, mean zero in a closed domain (at its convective outlets, if there are any), ghosts current on
   /// exit. Stops at max(relative |b|, absolute). With `answer`, the residual of the guess falls to this share, too, down to
-  /// least_answer relative |b|: a partner that changes b sees p change by what it has changed. Collective.
+  /// least_answer relative |b|: a partner that changes b sees p change by what it has changed. `size`: in the
+  /// place of |b|, below 0: |b| itself. Collective.
   SolveStatistics solve(const Placement<D>& at, std::vector<double>& b, std::vector<double>& p,
-                        double relative, double absolute, double answer = 0);
+                        double relative, double absolute, double answer = 0, double size = -1);
   static constexpr double least_answer = 1e-4;
 
  private:
   void make_pattern();
   void make_fixed(const Placement<D>& at);
   /// The pressure is known up to a constant only.
-  bool singular() const { return boundary_.closed() && !yields_; }
-  std::vector<double> diagonal(const Placement<D>& at, std::span<const double> admittance) const;
+  bool singular() const { return boundary_.closed() && !regular_; }
+  std::vector<double> diagonal(const Placement<D>& at, std::span<const double> admittance,
+                               std::span<const double> storage) const;
   void remove_mean(std::vector<double>& b) const;
   SolveStatistics solve_or_tell(const Placement<D>& at, std::span<const double> b, std::span<double> p,
                                 double relative, double absolute);
   const Mesh& mesh_;
   const Boundary<D>& boundary_;
-  bool fixed_, yields_ = false;
+  bool fixed_, regular_ = false;
   bool direct_;  // small 2-D meshes: kept Cholesky factors
   std::unique_ptr<SparseMatrix> matrix_;
   std::unique_ptr<LinearSolver> solver_;

@@ -36,17 +36,22 @@ template <int D>
 PressureProjection<D>::PressureProjection(StepWork<D>& work, bool moving)
     : k_(work),
       pressure_(work.mesh, work.boundary,
-                !moving && work.parameters.bodies.empty() && !work.boundary.yields()) {}
+                !moving && work.parameters.bodies.empty() && !work.boundary.yields() && work.sound == 0) {
+  if (work.sound > 0) make_waves();
+}
 
 template <int D>
 void PressureProjection<D>::assemble() {
   const bool same = k_.assembled && (k_.assembled == k_.step.to ||
                                      (k_.step.to->shape && k_.assembled->shape == k_.step.to->shape));
-  if (same && assembled_yielding_ == k_.step.yields) return;
+  const std::array<double, 3> rule = matrix_rule();
+  if (same && assembled_yielding_ == k_.step.yields && assembled_rule_ == rule) return;
   if (k_.oblique) set_obliqueness(*k_.step.to);
-  pressure_.set(k_.pressure_placement(), k_.step.yields, admittance());
+  pressure_.set(k_.pressure_placement(), k_.step.yields || stores(), admittance(), storage());
   k_.assembled = k_.step.to;
   assembled_yielding_ = k_.step.yields;
+  assembled_rule_ = rule;
+  if (upstream_) upstream_->respond(pressure_);
 }
 
 template <int D>
@@ -95,7 +100,7 @@ void PressureProjection<D>::set_boundary_flux(const Vectors<D>& w) {
     const Index f = k_.mesh.n_interior + static_cast<Index>(b);
     k_.phi_p[f] = k_.w[b].dot(k_.step.to->area[f]);
   }
-  if (k_.boundary.closed() && !k_.step.yields) balance_closed_domain();
+  if (k_.boundary.closed() && !k_.step.yields && !stores()) balance_closed_domain();
 }
 
 // An incompressible fluid without an outlet needs boundary fluxes that add up to nothing. What a moving wall
@@ -217,6 +222,8 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
   for (std::size_t b = 0; k_.frame && b < w.size(); ++b)
     if (k_.boundary.kind()[b] == FaceKind::pressure)
       k_.p_boundary[b] -= k_.rho * k_.frame->potential(k_.by.time + k_.step.dt / 2, now.boundary_centre[b]);
+  if (absorbing_) absorbing_->foresee(from);
+  if (upstream_) upstream_->foresee();
   b_.assign(k_.mesh.cells.n_local(), 0.0);
   double size = 0;
   for (Index f = 0; f < k_.mesh.n_interior; ++f) {
@@ -237,12 +244,14 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
     clear_bodies(k_.p);
   }
   b_.resize(k_.mesh.cells.n_owned());
+  const double changed = compression_ ? add_waves() : -1;
   const double floor = flux_floor * factor * std::sqrt(sum(k_.mesh.comm, size));
-  const SolveStatistics solved =
-      pressure_.solve(now, b_, k_.p, tolerance, std::max(floor, std::numeric_limits<double>::min()), answer);
+  const SolveStatistics solved = pressure_.solve(
+      now, b_, k_.p, tolerance, std::max(floor, std::numeric_limits<double>::min()), answer, changed);
   k_.statistics.pressure_iterations += solved.iterations;
   if (k_.bodies) fill_pressure_in_bodies();
   if (k_.step.yields) let_walls_yield();
+  if (absorbing_) absorbing_->follow();
   set_boundary_pressure(from, w);
 }
 
@@ -305,6 +314,8 @@ std::shared_ptr<PressureLevel<D>> PressureProjection<D>::pressure_level() const 
   level->p = k_.p;
   level->boundary = k_.p_boundary;
   set_gradient(*k_.step.to, *level);
+  if (compression_) compression_->complete(*level);
+  if (upstream_) upstream_->complete(*level);
   return level;
 }
 

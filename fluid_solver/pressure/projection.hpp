@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
 #include "fluid_solver/motion/step_work.hpp"
+#include "fluid_solver/pressure/absorbing.hpp"
+#include "fluid_solver/pressure/compression.hpp"
 #include "fluid_solver/pressure/pressure.hpp"
+#include "fluid_solver/pressure/upstream_volume.hpp"
 
 namespace couplet::fluid {
 
@@ -19,6 +23,25 @@ class PressureProjection {
 
   /// p~, the guess of the solve, and the gradient that its non-orthogonal part starts with.
   void extrapolate_pressure();
+  /// What pressure waves of a compressible fluid need of the work's step; nothing without. Collective.
+  void prepare_waves(const State<D>& from) {
+    if (compression_) set_waves(from);
+  }
+  /// Of the level that becomes n+1, and of one that no step made. Collective.
+  void commit_waves(State<D>& state) const {
+    if (absorbing_) absorbing_->commit(state);
+  }
+  void start_level(const Placement<D>& at, PressureLevel<D>& level) const {
+    set_gradient(at, level);
+    if (upstream_) upstream_->start(at, level);
+  }
+  void start_waves(State<D>& state) const {
+    if (absorbing_) absorbing_->start(state);
+  }
+  /// What the solves depend on beside the level they start from, as of the last accept(). load(): collective.
+  void accept();
+  void save(CheckpointWriter& file) const;
+  void load(CheckpointReader& file);
   /// The matrix of the work's step, if that of another placement is there. Collective.
   void assemble();
   /// p and p_b for the given velocities w at t^{n+1}. Collective.
@@ -38,10 +61,15 @@ class PressureProjection {
   void mark_gaps();
   void block_gaps(std::vector<double>& phi) const;
   PressureEquation<D>& equation() { return pressure_; }
-  const PressureEquation<D>& equation() const { return pressure_; }
 
  private:
   void balance_closed_domain();
+  void make_waves();
+  void set_waves(const State<D>& from);
+  std::span<const double> storage() const;
+  bool stores() const { return compression_ && compression_->active(); }
+  std::array<double, 3> matrix_rule() const;
+  double add_waves();
   std::vector<double> admittance() const;
   void foresee_walls(const State<D>& from);
   void let_walls_yield();
@@ -60,7 +88,11 @@ class PressureProjection {
   PressureEquation<D> pressure_;
   std::vector<double> b_;
   bool assembled_yielding_ = false;
-  Vectors<D> gradient_before_;  // very oblique meshes only
+  std::unique_ptr<Compression<D>> compression_;        // null: incompressible; what follows then, too
+  std::unique_ptr<AbsorbingBoundaries<D>> absorbing_;  // null: none
+  std::unique_ptr<UpstreamVolume<D>> upstream_;        // null: none
+  std::array<double, 3> assembled_rule_{};             // matrix_rule()
+  Vectors<D> gradient_before_;                         // very oblique meshes only
 };
 
 }  // namespace couplet::fluid

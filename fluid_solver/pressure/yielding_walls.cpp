@@ -11,14 +11,15 @@ namespace couplet::fluid {
 
 template <int D>
 std::vector<double> PressureProjection<D>::admittance() const {
-  if (!k_.step.yields) return {};
+  if (!k_.step.yields && !absorbing_) return {};
   const Placement<D>& at = *k_.step.to;
-  std::vector<double> values(k_.boundary.wall_mass().size(), 0.);
-  for (std::size_t b = 0; b < values.size(); ++b) {
+  std::vector<double> values(k_.w.size(), 0.);
+  if (absorbing_) absorbing_->add_admittance(values);
+  for (std::size_t b = 0; k_.step.yields && b < k_.boundary.wall_mass().size(); ++b) {
     const Index f = k_.mesh.n_interior + static_cast<Index>(b);
     const double area = at.area[f].norm();
     if (k_.boundary.wall_mass()[b] > 0)
-      values[b] = k_.rho * area / (k_.boundary.wall_mass()[b] + k_.rho * area / at.conductance[f]);
+      values[b] += k_.rho * area / (k_.boundary.wall_mass()[b] + k_.rho * area / at.conductance[f]);
   }
   return values;
 }

@@ -26,6 +26,16 @@ struct PressureLevel {
   std::vector<double> boundary;  ///< p_b per boundary face [Pa]
   Vectors<D> gradient;  ///< (1/V) sum p_f S per local cell [Pa/m]; the latest level only, on oblique meshes
                         ///< the latest two
+  // Of a compressible fluid.
+  double upstream = 0;  ///< of the volume behind the inlets [Pa]
+  std::vector<double>
+      end;  ///< trapezoidal rule only: p at the end of the step, per local cell; last: `upstream` there [Pa]
+};
+
+/// At the absorbing boundaries, per boundary face: what leaves beyond what is given, phi/S of outlets and (w - given).n of
+/// inlets [m/s], at t^n and t^{n-1}; per absorbing patch the mean of that, or of an inlet's pressure [Pa].
+struct OpeningsState {
+  std::vector<double> now, old, mean;
 };
 
 /// A fluid at rest is set going by the impulse of its first step, whose pressure says nothing of what comes.
@@ -49,6 +59,8 @@ struct EnergyLedger {
   double excess = 0;     ///< [J]
   double reference = 0;  ///< by which the excess is measured: of late [J]
   double level = 0;      ///< pressure about which the boundaries' work is counted [Pa]
+  /// Below a share of the largest energy so far there is only round-off.
+  bool is_judged() const { return energy > 1e-10 * largest && reference > 0; }
 };
 
 /// Everything that the next step needs: level n and the history of the multi-step schemes.
@@ -66,6 +78,8 @@ struct State : History<D> {
   std::vector<double> phi;  ///< absolute volume flux per flux face at t^n [m^3/s]
   std::vector<double> memory,
       memory_old;  ///< delta^n per interior face [m^3/s] (incremental: what is left of delta^0)
+
+  OpeningsState openings;  ///< empty: no absorbing boundaries
 
   std::shared_ptr<const std::vector<char>> blocked;  ///< per local cell, in a closed gap; null: none
 

@@ -12,10 +12,37 @@ void read_vectors(CheckpointReader& file, const std::string& name, Vectors<D>& v
   file.read(name, flat<D>(values));
 }
 
+template <int D>
+void write_waves(CheckpointWriter& file, const State<D>& s, int levels) {
+  for (int k = 0; k < levels; ++k) {
+    const std::string name = "pressure-" + std::to_string(k);
+    file.write_scalar(name + "-upstream", s.pressure[k]->upstream);
+    file.write(name + "-end", s.pressure[k]->end);
+  }
+  file.write("openings", s.openings.now);
+  file.write("openings-old", s.openings.old);
+  file.write("openings-mean", s.openings.mean);
+}
+
+template <int D>
+void read_waves(CheckpointReader& file, const Mesh& mesh, State<D>& s, int levels) {
+  const std::size_t cells = mesh.cells.n_local(), faces = mesh.boundary.n_owned();
+  for (int k = 0; k < levels; ++k) {
+    const std::string name = "pressure-" + std::to_string(k);
+    auto level = std::make_shared<PressureLevel<D>>(*s.pressure[k]);
+    level->upstream = file.read_scalar(name + "-upstream");
+    level->end = file.read_or_none(name + "-end", cells + 1);
+    s.pressure[k] = level;
+  }
+  s.openings.now = file.read_or_none("openings", faces);
+  s.openings.old = file.read_or_none("openings-old", faces);
+  s.openings.mean = file.read("openings-mean");
+}
+
 }  // namespace
 
 template <int D>
-void write_state(CheckpointWriter& file, const State<D>& s) {
+void write_state(CheckpointWriter& file, const State<D>& s, bool compressible) {
   int levels = 0;
   while (levels < 3 && s.pressure[levels]) ++levels;
   file.write_scalar("time", s.time);
@@ -57,10 +84,12 @@ void write_state(CheckpointWriter& file, const State<D>& s) {
     file.write("points", {s.points.empty() ? nullptr : s.points.front().data(), 3 * s.points.size()});
     file.write("mesh-flux", s.mesh_flux);
   }
+  if (compressible) write_waves(file, s, levels);
 }
 
 template <int D>
-State<D> read_state(CheckpointReader& file, const Mesh& mesh, std::shared_ptr<const Placement<D>> at_rest) {
+State<D> read_state(CheckpointReader& file, const Mesh& mesh, std::shared_ptr<const Placement<D>> at_rest,
+                    bool compressible) {
   const bool moving = !at_rest;
   State<D> s;
   const std::size_t cells = mesh.cells.n_local(), faces = mesh.boundary.n_owned();
@@ -111,12 +140,13 @@ State<D> read_state(CheckpointReader& file, const Mesh& mesh, std::shared_ptr<co
     file.read("mesh-flux", s.mesh_flux);
   }
   s.placement = moving ? make_placement<D>(mesh, s.points) : std::move(at_rest);
+  if (compressible) read_waves(file, mesh, s, levels);
   return s;
 }
 
-template void write_state<2>(CheckpointWriter&, const State<2>&);
-template void write_state<3>(CheckpointWriter&, const State<3>&);
-template State<2> read_state<2>(CheckpointReader&, const Mesh&, std::shared_ptr<const Placement<2>>);
-template State<3> read_state<3>(CheckpointReader&, const Mesh&, std::shared_ptr<const Placement<3>>);
+template void write_state<2>(CheckpointWriter&, const State<2>&, bool);
+template void write_state<3>(CheckpointWriter&, const State<3>&, bool);
+template State<2> read_state<2>(CheckpointReader&, const Mesh&, std::shared_ptr<const Placement<2>>, bool);
+template State<3> read_state<3>(CheckpointReader&, const Mesh&, std::shared_ptr<const Placement<3>>, bool);
 
 }  // namespace couplet::fluid

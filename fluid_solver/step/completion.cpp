@@ -54,6 +54,7 @@ void FractionalStep<D>::commit(State<D>& s) {
   speed_scale_ = std::max(speed_scale_, judgement_.speed);
   s.ledger = judgement_.energy.ledger;
   static_cast<History<D>&>(s) = k_.by;
+  projection_.commit_waves(s);
   s.phi.swap(k_.phi_p);
   s.u_old.swap(s.u);
   s.u.swap(k_.right_side);
@@ -61,7 +62,8 @@ void FractionalStep<D>::commit(State<D>& s) {
   s.pressure = {std::move(level_), s.pressure[0], s.pressure[1]};
   const std::size_t with_gradient = k_.oblique ? 2 : 1;
   if (auto& last = s.pressure[with_gradient]; last && !last->gradient.empty())
-    last = std::make_shared<PressureLevel<D>>(PressureLevel<D>{last->time, last->p, last->boundary, {}});
+    last = std::make_shared<PressureLevel<D>>(
+        PressureLevel<D>{last->time, last->p, last->boundary, {}, last->upstream, {}});
   s.u_boundary_old.swap(s.u_boundary);
   s.w = k_.w;
   k_.boundary.close(k_.mesh, *k_.step.to, s.u, s.w, s.u_boundary);
@@ -92,7 +94,7 @@ void FractionalStep<D>::set_eddy_viscosity(State<D>& state) {
 template <int D>
 EnergyStep<D> FractionalStep<D>::energy_step(const State<D>& from) const {
   return {from,     *k_.step.to,   k_.step.dt,    k_.right_side, k_.w,
-          k_.phi_p, k_.p_boundary, k_.step.swept, k_.force};
+          k_.phi_p, k_.p_boundary, k_.step.swept, k_.force,      *level_};
 }
 
 template <int D>

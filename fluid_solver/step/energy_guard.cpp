@@ -19,8 +19,6 @@ constexpr double boundary_share = 0.25;
 constexpr double level_share = 1e-4;
 // Excess, in kinetic energies, that is called a blow-up.
 constexpr double largest_excess = 0.5;
-// Of the largest energy so far: below it there is only round-off.
-constexpr double least_energy = 1e-10;
 // omega h^2/nu from which friction no longer holds what a turning frame makes (docs/theory.md, frame that turns).
 constexpr double fast_frame = 4;
 // What a sub-step leaves of the energy that an excess is measured by: a flow that turns back is at rest for
@@ -34,6 +32,39 @@ double EnergyGuard<D>::kinetic(const Placement<D>& at, const Vectors<D>& u) cons
   double sum = 0;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) sum += at.volume[c] * u[c].squaredNorm();
   return 0.5 * rho_ * sum;
+}
+
+template <int D>
+double EnergyGuard<D>::elastic(const Placement<D>& at, const std::array<const PressureLevel<D>*, 3>& pressure,
+                               double level) const {
+  if (bulk_ == 0 || !pressure[0]) return 0;
+  double sum = 0;
+  if (const std::vector<double>& end = pressure[0]->end; !end.empty()) {
+    for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
+      sum += at.volume[c] * (end[c] - level) * (end[c] - level);
+    return 0.5 / bulk_ * sum;
+  }
+  const std::vector<double>& now = pressure[0]->p;
+  const std::vector<double>& one = pressure[1] ? pressure[1]->p : now;
+  const std::vector<double>& two = pressure[2] ? pressure[2]->p : one;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    const double p0 = now[c] - level, p1 = one[c] - level, p2 = two[c] - level;
+    sum += at.volume[c] * (3 * p0 * p0 + 2 * p1 * p1 + p2 * p2 - 2 * p0 * p2 - 2 * p1 * p2);
+  }
+  return 0.25 / bulk_ * sum;
+}
+
+/// About which the work of the pressure is counted. Collective.
+template <int D>
+double EnergyGuard<D>::level_of(const EnergyStep<D>& s) const {
+  if (s.from.ledger.energy >= 0) return s.from.ledger.level;
+  if (bulk_ == 0) return mean_pressure(s);
+  double sums[2] = {};
+  const std::vector<double>& p = s.from.pressure[0] ? s.from.pressure[0]->p : s.level.p;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
+    sums[0] += s.to.volume[c] * p[c], sums[1] += s.to.volume[c];
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  return sums[0] / sums[1];
 }
 
 /// About which the work of the pressure is counted when no step before says it. Collective.
@@ -103,9 +134,13 @@ EnergyJudgement EnergyGuard<D>::judge(const EnergyStep<D>& s) const {
   const EnergyLedger& before = s.from.ledger;
   enum { work, passed, weighted, fluxes, energy, old_energy };
   double sums[6] = {};
-  add_boundary(s, before.energy < 0 ? mean_pressure(s) : before.level, sums);
-  sums[energy] = kinetic(s.to, s.u);
-  if (before.energy < 0) sums[old_energy] = kinetic(*s.from.placement, s.from.u);
+  const double level = level_of(s);
+  add_boundary(s, level, sums);
+  const auto& past = s.from.pressure;
+  sums[energy] = kinetic(s.to, s.u) + elastic(s.to, {&s.level, past[0].get(), past[1].get()}, level);
+  if (before.energy < 0)
+    sums[old_energy] = kinetic(*s.from.placement, s.from.u) +
+                       elastic(*s.from.placement, {past[0].get(), past[1].get(), past[2].get()}, level);
   if (!s.force.empty())
     for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
       const double done = 0.5 * s.dt * rho_ * s.to.volume[c] * s.force[c].dot(s.from.u[c] + s.u[c]);
@@ -118,13 +153,13 @@ EnergyJudgement EnergyGuard<D>::judge(const EnergyStep<D>& s) const {
   j.work = sums[work];
   j.ledger.energy = sums[energy];
   j.ledger.largest = std::max({before.largest, sums[energy], before.energy < 0 ? sums[old_energy] : 0});
-  j.ledger.level = sums[fluxes] > 0 ? sums[weighted] / sums[fluxes] : 0;
+  j.ledger.level = bulk_ > 0 ? level : sums[fluxes] > 0 ? sums[weighted] / sums[fluxes] : 0;
   const double unsure =
       boundary_share * sums[passed] + level_share * std::abs(j.ledger.level) * sums[fluxes] * s.dt;
   j.ledger.reference = std::max(sums[energy], remembered * before.reference);
   j.ledger.excess = std::max(0.0, before.excess + j.gain - std::max(0.0, j.work) - unsure);
-  j.out_of_bounds = j.gain > 0 && j.ledger.excess > largest_excess * j.ledger.reference &&
-                    sums[energy] > least_energy * j.ledger.largest;
+  j.out_of_bounds =
+      j.gain > 0 && j.ledger.excess > largest_excess * j.ledger.reference && j.ledger.is_judged();
   if (j.out_of_bounds) j.out_of_bounds = sums[energy] > energy_at_rest(s);  // the same on all ranks, and rare
   return j;
 }

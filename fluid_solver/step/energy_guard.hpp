@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <string>
+#include <vector>
+
 #include "fluid_solver/boundary/boundary.hpp"
 #include "fluid_solver/state/state.hpp"
 
@@ -18,6 +22,7 @@ struct EnergyStep {
   const std::vector<double>& p;      ///< at t^{n+1/2} per boundary face [Pa]
   const std::vector<double>& swept;  ///< dV_f per flux face [m^3]; empty: the mesh rests
   const Vectors<D>& force;           ///< body force at t^{n+1/2} per local cell [m/s^2]; empty: none
+  const PressureLevel<D>& level;     ///< at t^{n+1/2}
 };
 
 /// What a sub-step did to the kinetic energy.
@@ -28,7 +33,7 @@ struct EnergyJudgement {
   bool out_of_bounds = false;  ///< more was gained than any work and the scheme's error explain
 };
 
-/// Closes the kinetic energy of each sub-step against the work that boundaries and forces can have done:
+/// Closes the kinetic energy (of a compressible fluid with the elastic one, see elastic()) of each sub-step against the work that boundaries and forces can have done:
 ///   E^{n+1} - E^n <= dt sum_b [ -(p_b - p_ref) phi - phi' (s u_b.u_P - |u_P|^2/2) rho
 ///                               + mu g |u_b| |u_b - u_P| ] + dt sum rho V f.u,
 /// phi' relative to the mesh, s the backflow's share.
@@ -40,26 +45,33 @@ struct EnergyJudgement {
 template <int D>
 class EnergyGuard {
  public:
-  /// `pressure_tolerance`: of the pressure's solver, relative.
+  /// `pressure_tolerance`: of the pressure's solver, relative; `sound`: speed [m/s], 0: incompressible.
   EnergyGuard(const Mesh& mesh, const Boundary<D>& boundary, double density, double viscosity,
-              double pressure_tolerance)
+              double pressure_tolerance, double sound = 0)
       : mesh_(mesh),
         boundary_(boundary),
         rho_(density),
         mu_(viscosity),
-        pressure_tolerance_(pressure_tolerance) {}
+        pressure_tolerance_(pressure_tolerance),
+        bulk_(density * sound * sound) {}
   /// Collective.
   EnergyJudgement judge(const EnergyStep<D>& step) const;
   /// Sum of rho V |u|^2 / 2 [J] over the cells of this rank.
   double kinetic(const Placement<D>& at, const Vectors<D>& u) const;
+  /// Elastic energy V p^2/(2 rho c^2) [J] at the end of the step of pressure[0], pressures about `level`; 0 of an
+  /// incompressible fluid. Of the three-level rule with equal steps V (3 p_0^2 + 2 p_1^2 + p_2^2 - 2 p_0 p_2 - 2 p_1 p_2) /
+  /// (4 rho c^2), which with the kinetic energy loses V (p_0 - p_1 - p_2 + p_3)^2/(4 rho c^2) a step, whatever its size.
+  double elastic(const Placement<D>& at, const std::array<const PressureLevel<D>*, 3>& pressure,
+                 double level) const;
 
  private:
   double mean_pressure(const EnergyStep<D>& step) const;
+  double level_of(const EnergyStep<D>& step) const;
   double energy_at_rest(const EnergyStep<D>& step) const;
   void add_boundary(const EnergyStep<D>& step, double level, double* sums) const;
   const Mesh& mesh_;
   const Boundary<D>& boundary_;
-  double rho_, mu_, pressure_tolerance_;
+  double rho_, mu_, pressure_tolerance_, bulk_;
 };
 
 /// Why a step may have gone wrong in one cell, as a sentence; local. `cell`: owned. `frame_rate`: |2 omega| of a frame

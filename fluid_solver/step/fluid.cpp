@@ -114,8 +114,11 @@ void Fluid<D>::start(double time) {
   for (std::size_t b = 0; b < s.w.size(); ++b)
     if (boundary_.kind()[b] == FaceKind::pressure) s.u_boundary[b] = s.u[mesh_.owner[mesh_.n_interior + b]];
   step_.project_initial(s);
-  const Expression initial_pressure(parameters_.initial_pressure, "initial-pressure");
-  if (!initial_pressure.is_zero()) {
+  const Expression initial_pressure(parameters_.initial_pressure.value_or(config::ExpressionText{}),
+                                    "initial-pressure");
+  const bool is_state =
+      parameters_.is_compressible() && (parameters_.initial_pressure || s.start == Start::at_rest);
+  if (is_state || !initial_pressure.is_zero()) {
     auto level = std::make_shared<PressureLevel<D>>();
     level->time = time;
     level->p.resize(mesh_.cells.n_local());
@@ -123,9 +126,10 @@ void Fluid<D>::start(double time) {
     initial_pressure.evaluate(mesh_.reference.cell_centre, time, level->p);
     initial_pressure.evaluate(at.boundary_centre, time, level->boundary);
     if (step_.frame()) add_centrifugal(*step_.frame(), at, -parameters_.density, *level);
-    step_.set_gradient(at, *level);
+    step_.start_level(at, *level);
     s.pressure[0] = level;
   }
+  step_.start_waves(s);
   s.implicit = parameters_.viscous == ViscousTreatment::implicit;
   step_.set_eddy_viscosity(s);
   step_.keep();
@@ -276,8 +280,9 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
     const double end = last ? dt_ : done + dt;
     SubStep<D> sub_step = make_sub_step(dt, end, points);
     last_w_ = wall_velocity_at(end, wall_velocity, sub_step);
-    if (history_.start == Start::after_impulse) {
-      history_.pressure = {};
+    if (history_.start ==
+        Start::after_impulse) {  // the pressure of a compressible fluid is no impulse, but its state
+      if (!parameters_.is_compressible()) history_.pressure = {};
       history_.start = Start::flowing;
     }
     const bool needs_pressure =

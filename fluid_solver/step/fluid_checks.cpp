@@ -37,6 +37,17 @@ void check_frame(const Mesh& mesh, const Boundary<D>& boundary, const FluidParam
     refuse("the centrifugal force differs between periodic patches that are not shifted along the axis.");
 }
 
+void check_waves(const FluidParameters& parameters) {
+  const auto refuse = [](const char* with, const char* remove) {
+    throw Error("compressibility: not supported together with {}; remove {}, or set 'scheme: none'.", with,
+                remove);
+  };
+  if (!parameters.bodies.empty()) refuse("immersed bodies", "'bodies'");
+  if (parameters.rotating_frame) refuse("a rotating frame", "'rotating-frame'");
+  if (parameters.scheme == ExplicitScheme::runge_kutta)
+    refuse("the stages of runge-kutta", "'scheme: runge-kutta'");
+}
+
 void check_axes(const FluidParameters& parameters, int dim) {
   if (parameters.rotating_frame) check_axis(parameters.rotating_frame->axis, dim, "rotating-frame.axis");
   for (const auto& [name, b] : parameters.boundaries)
@@ -63,7 +74,8 @@ void check_together(const Mesh& mesh, const Boundary<D>& boundary, FluidParamete
       throw Error("viscous: implicit is not possible with immersed bodies, which act on the explicit step.");
     parameters.viscous = ViscousTreatment::explicit_;
   }
-  if (!parameters.gaps.empty() && boundary.closed())
+  if (parameters.is_compressible()) check_waves(parameters);
+  if (!parameters.gaps.empty() && boundary.closed() && !parameters.is_compressible())
     throw Error(
         "gaps: a fluid with closing gaps needs an outlet, because its blocked cells retain their "
         "fluid.");

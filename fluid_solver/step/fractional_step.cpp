@@ -11,12 +11,18 @@ namespace couplet::fluid {
 template <int D>
 FractionalStep<D>::FractionalStep(const Mesh& mesh, const Boundary<D>& boundary,
                                   const FluidParameters& parameters, bool moving)
-    : k_{mesh, boundary, parameters, parameters.density, parameters.viscosity / parameters.density},
+    : k_{mesh,
+         boundary,
+         parameters,
+         parameters.density,
+         parameters.viscosity / parameters.density,
+         parameters.sound_speed()},
       predictor_(k_),
       flux_(k_),
       projection_(k_, moving),
       loads_(k_),
-      energy_guard_(mesh, boundary, parameters.density, parameters.viscosity, parameters.pressure_tolerance) {
+      energy_guard_(mesh, boundary, parameters.density, parameters.viscosity, parameters.pressure_tolerance,
+                    k_.sound) {
   if (parameters.rotating_frame) k_.frame.emplace(*parameters.rotating_frame);
   if (!parameters.bodies.empty()) k_.bodies = std::make_unique<ImmersedBodies<D>>(mesh, parameters);
   if (parameters.gaps.empty()) return;
@@ -42,7 +48,7 @@ void FractionalStep<D>::predict(const State<D>& from, const History<D>& by, SubS
   if (k_.gaps && moving) projection_.mark_gaps();
   k_.gap_changed = k_.gaps && k_.gaps->differs(from.blocked.get());
   if (k_.gap_closed()) {
-    k_.pockets->check(*k_.step.to, k_.w, k_.by.time + k_.step.dt);
+    k_.pockets->check(*k_.step.to, k_.w, k_.by.time + k_.step.dt, k_.sound > 0);
     k_.gaps->follow(*from.placement, *k_.step.to, k_.step.dt);
   }
   predictor_.predict(from);
@@ -51,6 +57,7 @@ void FractionalStep<D>::predict(const State<D>& from, const History<D>& by, SubS
   if (k_.bodies) k_.bodies->force(*k_.step.to, k_.u_p);
   if (k_.gap_closed()) k_.gaps->hold(k_.u_p);
   projection_.extrapolate_pressure();
+  projection_.prepare_waves(from);
   flux_.predict(from);
   if (k_.gap_closed()) projection_.block_gaps(k_.phi_orthogonal);
   projection_.assemble();
@@ -115,6 +122,7 @@ void FractionalStep<D>::project_initial(State<D>& s) {
   k_.p_boundary.assign(s.w.size(), 0.0);
   projection_.equation().set(k_.pressure_placement());
   k_.assembled = s.placement;
+  if (k_.sound > 0 && k_.parameters.initial_pressure) return keep_initial(s);
   const Vectors<D> jump_from = s.u_boundary;
   projection_.set_boundary_flux(s.w);
   projection_.solve_initial(at);
@@ -130,6 +138,21 @@ void FractionalStep<D>::project_initial(State<D>& s) {
   s.u_old.clear();
   s.pressure = {};
   k_.boundary.close(k_.mesh, at, s.u, s.w, s.u_boundary);
+  flux_.remember(s);
+}
+
+/// A compressible fluid may start from any velocity.
+template <int D>
+void FractionalStep<D>::keep_initial(State<D>& s) {
+  for (std::size_t b = 0; b < s.w.size(); ++b) {
+    const Index f = k_.mesh.n_interior + static_cast<Index>(b);
+    if (k_.boundary.kind()[b] != FaceKind::pressure) k_.phi_p[f] = s.w[b].dot(s.placement->area[f]);
+  }
+  s.phi.swap(k_.phi_p);
+  k_.phi_p.assign(s.phi.size(), 0.0);
+  projection_.solve_initial(*s.placement);  // of nothing: the solver is there, as after any other start
+  s.pressure = {};
+  k_.boundary.close(k_.mesh, *s.placement, s.u, s.w, s.u_boundary);
   flux_.remember(s);
 }
 

@@ -44,6 +44,8 @@ class FractionalStep {
   /// Makes the initial velocity divergence-free: state.u, w and u_boundary (u at the faces) are given, phi is
   /// filled.
   void project_initial(State<D>& state);
+  /// What a compressible fluid keeps of its openings, of a state that no step made. Collective.
+  void start_waves(State<D>& state) const { projection_.start_waves(state); }
 
   /// state.blocked, of a level that no step made: the first, or one from a checkpoint. Collective.
   void mark_level(State<D>& state);
@@ -51,9 +53,9 @@ class FractionalStep {
   const Gaps<D>* gaps() const { return k_.gaps.get(); }
   /// The result of the last project() as a level of history. Collective.
   std::shared_ptr<PressureLevel<D>> pressure_level() const { return projection_.pressure_level(); }
-  /// Fills level.gradient from p and boundary. Collective.
-  void set_gradient(const Placement<D>& at, PressureLevel<D>& level) const {
-    projection_.set_gradient(at, level);
+  /// Fills what follows from p and boundary in a level that no step made. Collective.
+  void start_level(const Placement<D>& at, PressureLevel<D>& level) const {
+    projection_.start_level(at, level);
   }
   /// Of the last project(), acting on what is outside the fluid [N]: Loads.
   const Vectors<D>& pressure_force() const { return loads_.pressure_force(); }
@@ -71,10 +73,10 @@ class FractionalStep {
   /// Of the last project(), per boundary face [Pa].
   const std::vector<double>& boundary_pressure() const { return k_.p_boundary; }
   /// What the next solves depend on beside the level they start from, as of the last keep(). load(): collective.
-  void keep() { projection_.equation().accept(); }
-  void save(CheckpointWriter& file) const { projection_.equation().save(file); }
+  void keep() { projection_.accept(); }
+  void save(CheckpointWriter& file) const { projection_.save(file); }
   void load(CheckpointReader& file) {
-    projection_.equation().load(file);
+    projection_.load(file);
     k_.assembled = nullptr;
   }
   const StepStatistics& statistics() const { return k_.statistics; }
@@ -99,6 +101,7 @@ class FractionalStep {
   Judgement judge(const State<D>& from) const;
   bool too_fast() const;
   void check(const State<D>& from);
+  void keep_initial(State<D>& state);
 
   StepWork<D> k_;
   Predictor<D> predictor_;

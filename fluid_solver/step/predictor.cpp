@@ -19,7 +19,9 @@ constexpr int most_passes = 60;
 
 template <int D>
 Predictor<D>::Predictor(StepWork<D>& work)
-    : k_(work), rate_operator_(work.mesh, work.boundary, work.nu), viscous_solver_(work.mesh, work.boundary) {
+    : k_(work),
+      rate_operator_(work.mesh, work.boundary, work.nu, work.sound > 0),
+      viscous_solver_(work.mesh, work.boundary) {
   if (!work.parameters.body_force.empty())
     body_force_ = make_expressions(work.parameters.body_force, D, "body-force");
 }

@@ -110,11 +110,22 @@ void RateOperator<D>::add_eddies(const State<D>& s, const std::vector<Tensor<D>>
 }
 
 template <int D>
+void RateOperator<D>::add_dilatation(const State<D>& s, Vectors<D>& rate) {
+  dilatation_.assign(mesh_.cells.n_local(), 0.0);
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    dilatation_[mesh_.owner[f]] += s.phi[f];
+    if (f < mesh_.n_interior) dilatation_[mesh_.neighbour[f]] -= s.phi[f];
+  }
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) rate[c] += 0.5 * dilatation_[c] * s.u[c];
+}
+
+template <int D>
 void RateOperator<D>::apply(const State<D>& state, bool split, bool correct_oblique, Rates<D>& rates,
                             const std::vector<Tensor<D>>* gradient) {
   rates.rate.assign(mesh_.cells.n_local(), Vec<D>::Zero());
   rates.viscous.assign(split ? mesh_.cells.n_local() : 0, Vec<D>::Zero());
   split ? face_loop<true>(state, rates) : face_loop<false>(state, rates);
+  if (compressible_) add_dilatation(state, rates.rate);
   if (!correct_oblique && state.eddy.empty()) return;
   if (!gradient) {
     velocity_gradient<D>(mesh_, *state.placement, state.u, state.u_boundary, gradient_);

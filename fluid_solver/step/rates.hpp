@@ -37,8 +37,11 @@ Vec<D> eddy_stress(const Placement<D>& at, const State<D>& s, const std::vector<
 template <int D>
 class RateOperator {
  public:
-  RateOperator(const Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity)
-      : mesh_(mesh), boundary_(boundary), nu_(kinematic_viscosity) {}
+  /// `compressible`: phi is not free of divergence, and half of u div u is put back, so that convection still gives no
+  /// energy.
+  RateOperator(const Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity,
+               bool compressible = false)
+      : mesh_(mesh), boundary_(boundary), nu_(kinematic_viscosity), compressible_(compressible) {}
   /// `gradient`: that of the state's velocity, if it is at hand.
   void apply(const State<D>& state, bool split, bool correct_oblique, Rates<D>& rates,
              const std::vector<Tensor<D>>* gradient = nullptr);
@@ -54,9 +57,12 @@ class RateOperator {
   void add_oblique(const Placement<D>& at, const std::vector<Tensor<D>>& gradient, Vectors<D>& rate) const;
   template <bool Split>
   void face_loop(const State<D>& state, Rates<D>& rates) const;
+  void add_dilatation(const State<D>& state, Vectors<D>& rate);
   const Mesh& mesh_;
   const Boundary<D>& boundary_;
   double nu_;
+  bool compressible_;
+  std::vector<double> dilatation_;
   std::vector<Tensor<D>> gradient_;
 };
 

@@ -43,7 +43,7 @@ FluidParameters couette() {
   p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"y", "0"});
   p.boundaries["xmax"] = boundary(BoundaryType::outlet, {}, "0.7");
   p.boundaries["ymax"] = boundary(BoundaryType::moving_wall, {"1", "0"});
-  p.initial_pressure = {"0.7"};
+  p.initial_pressure = config::ExpressionText{"0.7"};
   CoefficientParameters c;
   c.patches = {"ymin"};
   c.speed = 3;
@@ -205,7 +205,7 @@ TEST(Fluxes, of_a_plane_channel_balance_and_its_walls_carry_the_pressure_drop) {
 TEST(FluidSurfaces, pressure_coefficient_is_one_where_the_flow_stagnates) {
   FluidParameters p = channel();
   p.initial_velocity = {{"x"}, {"-y"}};
-  p.initial_pressure = {"-0.65*(x*x + y*y)"};
+  p.initial_pressure = config::ExpressionText{"-0.65*(x*x + y*y)"};
   p.boundaries["xmin"] = boundary(BoundaryType::symmetry);
   p.boundaries["ymin"] = boundary(BoundaryType::moving_wall, {"x", "0"});
   p.boundaries["ymax"] = boundary(BoundaryType::inlet, {"x", "-y"});

@@ -27,7 +27,7 @@ FluidParameters parameters(const Variant& variant, double rtol) {
   p.viscous = variant.viscous;
   p.pressure_tolerance = rtol;
   p.initial_velocity = {{"sin(x)*cos(y)"}, {"-cos(x)*sin(y)"}};
-  p.initial_pressure.text = "0.5*(cos(2*x)+cos(2*y))";
+  p.initial_pressure = config::ExpressionText{"0.5*(cos(2*x)+cos(2*y))"};
   all_sides(p, 2, boundary(BoundaryType::slip));
   return p;
 }

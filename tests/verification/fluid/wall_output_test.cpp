@@ -29,7 +29,7 @@ FluidParameters couette() {
   p.boundaries["xmax"] = boundary(BoundaryType::outlet, {}, "0.7");
   p.boundaries["ymin"] = boundary(BoundaryType::no_slip);
   p.boundaries["ymax"] = boundary(BoundaryType::moving_wall, {"1", "0"});
-  p.initial_pressure = {"0.7"};
+  p.initial_pressure = config::ExpressionText{"0.7"};
   p.output.walls = true;
   return p;
 }

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/pressure/upstream_volume.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "common/parallel/collective.hpp"
+#include "fluid_solver/pressure/compression.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+// Of y: what it misses is lost to the volume's balance.
+constexpr double response_tolerance = 1e-10;
+// Of the faces' conductance: cells that follow the volume's pressure by all but this do not say what it is.
+constexpr double least_answer = 1e-9;
+
+}  // namespace
+
+template <int D>
+UpstreamVolume<D>::UpstreamVolume(StepWork<D>& work)
+    : k_(work),
+      trapezoidal_(work.parameters.compressibility->scheme == WaveScheme::trapezoidal),
+      stiffness_(work.rho * work.sound * work.sound / work.parameters.compressibility->upstream_volume) {}
+
+template <int D>
+void UpstreamVolume<D>::respond(PressureEquation<D>& equation) {
+  const Placement<D>& at = k_.pressure_placement();
+  std::vector<double> side(k_.mesh.cells.n_owned(), 0.0);
+  double sums[2] = {};
+  for (const auto& [first, count] : k_.boundary.upstream_patches())
+    for (Index f = k_.mesh.n_interior + first; f < k_.mesh.n_interior + first + count; ++f) {
+      side[k_.mesh.owner[f]] += at.conductance[f];
+      sums[0] += at.conductance[f];
+    }
+  response_.resize(k_.mesh.cells.n_local(), 0.0);
+  equation.solve(at, side, response_, response_tolerance, std::numeric_limits<double>::min());
+  for (std::size_t c = 0; c < side.size(); ++c) sums[1] += response_[c] * side[c];
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, k_.mesh.comm);
+  faces_ = sums[0];
+  answer_ = sums[1];
+}
+
+template <int D>
+double UpstreamVolume<D>::begin() const {
+  const PressureLevel<D>& level = *k_.by.pressure[0];
+  return level.end.empty() ? level.upstream : level.end.back();
+}
+
+template <int D>
+void UpstreamVolume<D>::prepare(const State<D>& from, double rate) {
+  rate_ = rate;
+  past_ = pressure_ = 0;
+  if (!(rate > 0)) return;
+  pressure_ = k_.by.pressure[0]->upstream;
+  if (!trapezoidal_) {
+    const WaveRule rule = wave_rule(k_);
+    for (std::size_t k = 0; k < rule.past.size(); ++k)
+      if (rule.past[k] != 0) past_ += rule.past[k] * k_.by.pressure[k]->upstream;
+    return;
+  }
+  double flux = 0;
+  for (const auto& [first, count] : k_.boundary.upstream_patches())
+    for (Index b = first; b < first + count; ++b) {
+      const Index f = k_.mesh.n_interior + b;
+      flux += from.phi[f] - from.w[b].dot(from.placement->area[f]);
+    }
+  past_ = -rate_ * begin() - stiffness_ * sum(k_.mesh.comm, flux);
+}
+
+template <int D>
+void UpstreamVolume<D>::foresee() {
+  for (const auto& [first, count] : k_.boundary.upstream_patches())
+    std::fill_n(k_.p_boundary.begin() + first, count, 0.0);
+}
+
+template <int D>
+void UpstreamVolume<D>::add_to(std::vector<double>& b_side) {
+  const Placement<D>& at = *k_.step.to;
+  const double factor = k_.step.dt / k_.rho;
+  double flux = 0;  // into the volume, but for what its pressure drives
+  for (const auto& [first, count] : k_.boundary.upstream_patches())
+    for (Index b = first; b < first + count; ++b) {
+      const Index f = k_.mesh.n_interior + b;
+      flux += k_.phi_p[f] - k_.w[b].dot(at.area[f]);
+    }
+  for (std::size_t c = 0; c < b_side.size(); ++c) flux += factor * response_[c] * b_side[c];
+  flux = sum(k_.mesh.comm, flux);
+  const double open = faces_ - answer_;
+  if (rate_ > 0 || open > least_answer * faces_)
+    pressure_ = (stiffness_ * flux - past_) / (rate_ + stiffness_ * factor * open);
+  for (const auto& [first, count] : k_.boundary.upstream_patches())
+    for (Index b = first; b < first + count; ++b) {
+      const Index f = k_.mesh.n_interior + b;
+      k_.p_boundary[b] = pressure_;
+      b_side[k_.mesh.owner[f]] += at.conductance[f] * pressure_;
+    }
+}
+
+template <int D>
+void UpstreamVolume<D>::start(const Placement<D>& at, PressureLevel<D>& level) const {
+  double sums[2] = {};
+  for (const auto& [first, count] : k_.boundary.upstream_patches())
+    for (Index b = first; b < first + count; ++b) {
+      const double area = at.area[k_.mesh.n_interior + b].norm();
+      sums[0] += area * level.boundary[b], sums[1] += area;
+    }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, k_.mesh.comm);
+  level.upstream = sums[0] / sums[1];
+}
+
+template <int D>
+void UpstreamVolume<D>::complete(PressureLevel<D>& level) const {
+  level.upstream = pressure_;
+  if (trapezoidal_) level.end.back() = k_.by.pressure[0] ? 2 * pressure_ - begin() : pressure_;
+}
+
+template <int D>
+void UpstreamVolume<D>::load(CheckpointReader& file) {
+  response_ = file.read_or_none("upstream-response", k_.mesh.cells.n_local());
+  accepted_ = response_;
+}
+
+template class UpstreamVolume<2>;
+template class UpstreamVolume<3>;
+
+}  // namespace couplet::fluid

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+// Weak compressibility: pulses, standing waves, openings, closed cylinders and the way back to the incompressible fluid.
+#include <gmock/gmock.h>
+
+#include <numeric>
+
+#include "common/base/error.hpp"
+#include "fluid_case.hpp"
+#include "fluid_solver/state/state_io.hpp"
+
+namespace couplet::fluid::test {
+namespace {
+
+constexpr double c = 340, rho = 1.2, width = 0.2e-3;  // [m/s], [kg/m^3]; half width of a pulse [s]
+
+FluidParameters air(WaveScheme scheme = WaveScheme::three_level) {
+  FluidParameters p;
+  p.density = rho;
+  p.viscosity = 0;
+  p.pressure_tolerance = 1e-10;
+  p.compressibility.emplace();
+  p.compressibility->speed_of_sound = c;
+  p.compressibility->scheme = scheme;
+  for (const char* side : {"xmin", "xmax", "ymin", "ymax"}) p.boundaries[side] = boundary(BoundaryType::slip);
+  return p;
+}
+
+BoundaryParameters absorbing(BoundaryParameters b) {
+  b.absorbing = true;
+  return b;
+}
+
+/// A duct of length 1 m in x, one cell high.
+RawMesh duct(int cells) {
+  return make_box(BoxCells::quadrilaterals, {cells, 1, 1}, Vec3::Zero(), Vec3(1, 0.02, 1));
+}
+
+/// Of the cells' pressures, by weight: p and p x; the largest |p|.
+struct Pressures {
+  double mean = 0, largest = 0, centre = 0;
+};
+Pressures pressures(const FluidCase<2>& d) {
+  MPI_Comm comm = d.mesh().comm;
+  const State<2>& s = d.state();
+  double sums[4] = {};
+  for (Index i = 0; i < d.mesh().cells.n_owned(); ++i) {
+    const double p = s.pressure[0]->p[i], v = s.placement->volume[i];
+    sums[0] += v, sums[1] += v * p, sums[2] += v * p * p, sums[3] += v * p * p * s.placement->centre[i][0];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, comm);
+  double largest = 0;
+  for (Index i = 0; i < d.mesh().cells.n_owned(); ++i)
+    largest = std::max(largest, std::abs(s.pressure[0]->p[i]));
+  return {sums[1] / sums[0], max(comm, largest), sums[3] / sums[2]};
+}
+
+/// A pulse of 1 Pa that goes to the right from x = 0.25 m.
+FluidParameters pulse(WaveScheme scheme) {
+  FluidParameters p = air(scheme);
+  const std::string shape = fmt::format("exp(-((x - 0.25)/{})^2)", c * width);
+  p.initial_pressure = config::ExpressionText{shape};
+  p.initial_velocity = {{fmt::format("{}/{}", shape, rho * c)}, {"0"}};
+  p.boundaries["xmax"] = absorbing(boundary(BoundaryType::outlet));
+  p.compressibility->mean_time = 1;
+  return p;
+}
+
+class Pulse : public testing::TestWithParam<WaveScheme> {};
+
+TEST_P(Pulse, travels_at_the_speed_of_sound_and_leaves) {
+  const bool three = GetParam() == WaveScheme::three_level;
+  double before = 0;
+  for (const double dt : {10e-6, 5e-6}) {
+    FluidCase<2> d(MPI_COMM_WORLD, duct(400), pulse(GetParam()));
+    d.run(0.1e-3, int(std::lround(0.1e-3 / dt)));
+    const double from = pressures(d).centre;
+    d.run(1.1e-3, int(std::lround(1e-3 / dt)));
+    const double error = std::abs((pressures(d).centre - from) / (c * 1e-3) - 1);
+    RecordProperty(fmt::format("speed_error_{:g}us", 1e6 * dt), fmt::format("{}", error));
+    EXPECT_LT(error, dt > 7e-6 ? 4e-3 : 2e-3);
+    EXPECT_NEAR(pressures(d).largest, 1, three ? 0.02 : 5e-3);
+    if (before > 0 && three) {
+      EXPECT_GT(std::log2(before / error), 1.7);
+    }
+    before = error;
+    d.run(3.2e-3, int(std::lround(2.1e-3 / dt)));
+    RecordProperty(fmt::format("reflection_{:g}us", 1e6 * dt), fmt::format("{}", pressures(d).largest));
+    EXPECT_LT(pressures(d).largest, dt > 7e-6 ? 2e-3 : 1e-3);
+  }
+}
+
+TEST_P(Pulse, in_a_closed_duct_stays_bounded_at_any_courant_number) {
+  for (const double courant : {1., 10., 100.}) {
+    FluidParameters p = pulse(GetParam());
+    p.boundaries["xmax"] = boundary(BoundaryType::slip);
+    FluidCase<2> d(MPI_COMM_WORLD, duct(100), p);
+    const double dt = courant * 0.01 / c;
+    double largest = 0, first = 0;
+    for (int i = 0; i < 600; ++i) {
+      d.step(dt);
+      largest = std::max(largest, pressures(d).largest);
+      if (i == 0) first = d.state().ledger.energy;
+    }
+    EXPECT_LT(largest, 2.2) << courant;
+    EXPECT_LE(d.state().ledger.energy, first * 1.02) << courant;
+    EXPECT_FALSE(d.state().ledger.is_judged() && d.state().ledger.excess > 0.01 * d.state().ledger.reference)
+        << courant;
+    EXPECT_NEAR(pressures(d).mean, 0.068 * std::sqrt(std::acos(-1.)), 2e-3) << "the mean is conserved";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sound, Pulse, testing::Values(WaveScheme::three_level, WaveScheme::trapezoidal),
+                         [](const auto& i) {
+                           return i.param == WaveScheme::three_level ? "three_level" : "trapezoidal";
+                         });
+
+TEST(Sound, a_uniform_flow_on_a_moving_mesh_stays_so) {
+  FluidParameters p = air();
+  p.viscosity = 0.01;
+  p.boundaries["xmin"] = absorbing(boundary(BoundaryType::inlet, {"3", "0"}));
+  p.boundaries["xmax"] = absorbing(boundary(BoundaryType::outlet));
+  p.initial_velocity = {{"3"}, {"0"}};
+  const double pi = std::acos(-1.);
+  FluidCase<2> d(MPI_COMM_WORLD, make_box(BoxCells::triangles, {12, 6, 1}, Vec3::Zero(), Vec3(1, 0.5, 1)), p,
+                 [pi](const Vec3& x, GlobalIndex, double t) {
+                   const double bump = std::sin(pi * x[0]) * std::sin(2 * pi * x[1]) * std::sin(300 * t);
+                   return Vec3(x[0] + 0.03 * bump, x[1] + 0.02 * bump, 0);
+                 });
+  for (int i = 1; i <= 40; ++i) d.step(i % 3 == 0 ? 1e-4 : 2e-4);
+  EXPECT_LT(d.largest_velocity_error([](const Vec3&) { return Vec3(3, 0, 0); }), 3e-12);
+  EXPECT_LT(pressures(d).largest, 3e-12 * rho * c * 3);
+}
+
+/// The right wall comes in to 0.8 of the length within 40 ms, and stays.
+double stroke(double t) {
+  const double pi = std::acos(-1.);
+  return t > 0.04 ? 0.2 : 0.1 * (1 - std::cos(pi * t / 0.04));
+}
+
+TEST(Sound, a_piston_compresses_a_closed_cylinder) {
+  FluidParameters p = air();
+  p.boundaries["xmax"] = boundary(BoundaryType::interface);
+  FluidCase<2> d(MPI_COMM_WORLD, duct(20), p,
+                 [](const Vec3& x, GlobalIndex, double t) { return Vec3(x[0] * (1 - stroke(t)), x[1], 0); });
+  const double dt = 1e-4;
+  double worst = 0;
+  for (int i = 0; i < 600; ++i) {
+    d.step(dt, [&](const Vec3&, double t) { return Vec3((stroke(t - 1e-7) - stroke(t)) / 1e-7, 0, 0); });
+    const double t = d.state().pressure[0]->time, exact = -rho * c * c * std::log(1 - stroke(t));
+    if (t > 0.01) worst = std::max(worst, std::abs(pressures(d).mean / exact - 1));
+  }
+  RecordProperty("piston_error", fmt::format("{}", worst));
+  EXPECT_LT(worst, 2e-3);
+}
+
+/// Pressures and velocities of all cells in a row.
+std::vector<double> numbers(const State<2>& s) {
+  std::vector<double> all(s.pressure[0]->p);
+  all.insert(all.end(), s.phi.begin(), s.phi.end());
+  for (const auto& u : s.u) all.insert(all.end(), u.data(), u.data() + 2);
+  all.insert(all.end(), s.openings.mean.begin(), s.openings.mean.end());
+  all.push_back(s.pressure[0]->upstream);
+  return all;
+}
+
+TEST_P(Pulse, goes_on_bit_for_bit_from_a_checkpoint) {
+  for (const bool volume : {false, true}) {
+    FluidParameters p = pulse(GetParam());
+    p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"0.01*sin(3000*t)", "0"});
+    p.boundaries["xmin"].absorbing = !volume;
+    if (volume) p.compressibility->upstream_volume = 0.003;
+    FluidCase<2> d(MPI_COMM_WORLD, duct(50), p);
+    d.run(6e-4, 30);
+    StateInMemory memory;
+    {
+      CheckpointWriter writer(memory);
+      write_state(writer, d.state(), true);
+      d.fluid().solvers().save(writer);
+      writer.close();
+    }
+    Fluid<2> other(d.mesh(), d.fluid().parameters(), false);
+    CheckpointReader reader(memory);
+    other.restore(read_state<2>(reader, d.mesh(), other.state().placement, true));
+    other.solvers().load(reader);
+    for (int i = 0; i < 4; ++i)
+      for (Fluid<2>* fluid : {&d.fluid(), &other}) {
+        fluid->begin_step(fluid->state().time, 2e-5);
+        fluid->solve({}, {});
+        fluid->accept();
+      }
+    EXPECT_EQ(numbers(d.state()), numbers(other.state())) << volume;
+  }
+}
+
+TEST_P(Pulse, is_the_same_on_any_number_of_ranks) {
+  FluidParameters p = pulse(GetParam());
+  p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"0.01*sin(3000*t)", "0"});
+  p.compressibility->upstream_volume = 0.003;
+  FluidCase<2> all(MPI_COMM_WORLD, duct(50), p), alone(MPI_COMM_SELF, duct(50), p);
+  all.run(6e-4, 20);
+  alone.run(6e-4, 20);
+  EXPECT_NEAR(pressures(all).centre, pressures(alone).centre, 1e-8);
+  EXPECT_NEAR(pressures(all).largest, pressures(alone).largest, 1e-8);
+  EXPECT_NEAR(all.state().pressure[0]->upstream, alone.state().pressure[0]->upstream, 1e-8);
+  EXPECT_NEAR(all.state().openings.mean[0], alone.state().openings.mean[0], 1e-11);
+  EXPECT_NEAR(all.state().ledger.energy / alone.state().ledger.energy, 1, 1e-8);
+}
+
+/// A Helmholtz resonator: a volume, and a duct that is open at the other end.
+TEST_P(Pulse, a_volume_upstream_swings_with_the_duct_as_a_resonator) {
+  FluidParameters p = air(GetParam());
+  p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"0", "0"});
+  p.boundaries["xmax"] = boundary(BoundaryType::outlet);
+  p.compressibility->upstream_volume = 0.05;
+  // p = A sin(k (1 - x)), at x = 0: dp_v/dt = -rho c^2 u S/V_0 with rho du/dt = -dp/dx: tan(k) k V_0 / S = 1
+  double k = 0.6;
+  for (int i = 0; i < 200; ++i)
+    k -= (std::tan(k) * k * 0.05 / 0.02 - 1) / ((std::tan(k) + k / std::pow(std::cos(k), 2)) * 2.5);
+  const std::string shape = fmt::format("sin({}*(1 - x))", k);
+  p.initial_pressure = config::ExpressionText{shape};
+  const double period = 2 * std::acos(-1.) / (k * c);
+  FluidCase<2> d(MPI_COMM_WORLD, duct(50), p);
+  const int steps = 400;
+  double last = 0, crossing = 0;
+  std::vector<double> crossings;
+  for (int i = 0; i < 5 * steps; ++i) {
+    d.step(period / steps);
+    const double now = d.state().pressure[0]->upstream, t = d.state().pressure[0]->time;
+    if (last * now < 0) {
+      crossing = t - now / (now - last) * period / steps;
+      crossings.push_back(crossing);
+    }
+    last = now;
+  }
+  ASSERT_GE(crossings.size(), 9u);
+  const double got = 2 * (crossings[8] - crossings[0]) / 8;
+  RecordProperty("period_error", fmt::format("{}", got / period - 1));
+  EXPECT_NEAR(got, period, 2e-3 * period);
+}
+
+TEST(Sound, what_does_not_go_with_it_is_refused) {
+  const auto told = [](FluidParameters p) -> std::string {
+    try {
+      FluidCase<2> d(MPI_COMM_WORLD, duct(4), p);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  };
+  FluidParameters p = air();
+  EXPECT_EQ(told(p), "");
+  p.boundaries["xmax"] = absorbing(boundary(BoundaryType::outlet));
+  p.compressibility.reset();
+  EXPECT_THAT(told(p), testing::HasSubstr("has no pressure waves to let out"));
+  p = air();
+  p.boundaries["xmax"] = boundary(BoundaryType::convective_outlet);
+  EXPECT_THAT(told(p), testing::HasSubstr("sets no pressure level"));
+  p = air();
+  p.compressibility->upstream_volume = 1;
+  EXPECT_THAT(told(p), testing::HasSubstr("no inlet that it could lie behind"));
+  p.boundaries["xmin"] = absorbing(boundary(BoundaryType::inlet, {"1", "0"}));
+  EXPECT_THAT(told(p), testing::HasSubstr("remove one of the two"));
+  p = air();
+  p.scheme = ExplicitScheme::runge_kutta;
+  EXPECT_THAT(told(p), testing::HasSubstr("runge-kutta"));
+  p = air();
+  p.compressibility->speed_of_sound.reset();
+  p.density = 100;
+  EXPECT_THAT(told(p), testing::HasSubstr("no known gas or liquid"));
+}
+
+}  // namespace
+}  // namespace couplet::fluid::test
