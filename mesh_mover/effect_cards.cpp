@@ -49,8 +49,10 @@ const std::array cards{
          [](const P& p) { return when(p.method == Method::rotations, "method: rotations"); },
          {"a second Laplacian solve; none where everything moves as one rigid body", 0, 0.04}},
     Card{"mesh motion by a barrier",
-         "`method: barrier`",
-         [](const P& p) { return when(p.method == Method::barrier, "method: barrier"); },
+         "`method: barrier`, or `auto` where it is chosen",
+         [](const P& p) {
+           return when(p.method == Method::barrier || p.method == Method::automatic, "method");
+         },
          {"Newton's method on the distortion of the cells: a matrix and its factors in each step", 3000, 29}},
     Card{"incremental mesh motion",
          "`form: incremental`",

@@ -72,6 +72,7 @@ Mover::Mover(const Parameters& parameters, const ParticipantContext& context)
       interface_patches(parameters).empty())
     log::warn("participant '{}': no patch moves (type: moving, or interface in a coupled job).", name_);
   make_method();
+  if (parameters.method == Method::automatic) choose_method(context.simulation.end_time);
   if (parameters.form == Form::automatic && comm_rank(mesh_.comm) == 0)
     log::info(
         "mesh motion: displacements from the reference mesh (form: total), so the mesh depends only on the "
@@ -118,6 +119,7 @@ void Mover::make_method() {
                                            : mesh_.reference.volume;
   switch (parameters_.method) {
     case Method::laplacian:
+    case Method::automatic:
       method_ = std::make_unique<Laplacian>(*on, parameters_, volumes);
       break;
     case Method::pseudo_solid:
@@ -207,6 +209,7 @@ Exchange Mover::solve(const Exchange& in) {
   placed_ = false;
   try {
     displacement_ = method_->solve(prescribed(in));
+    if (parameters_.method == Method::automatic) leave_laplacian(in);
     if (incremental())
       for (std::size_t i = 0; i < displacement_.size(); ++i) displacement_[i] += accepted_[i];
     curved_.put_back(displacement_);
@@ -243,12 +246,15 @@ MeshState Mover::state() {
 void Mover::save(CheckpointWriter& file) const {
   write_numbering(file, mesh_);
   file.write("displacement", accepted_);
+  file.write_scalar("barrier-in-force", parameters_.method == Method::barrier ? 1 : 0);
   if (!incremental()) method_->save(file);  // else it starts from nothing in each step
 }
 
 void Mover::load(CheckpointReader& file) {
   check_numbering(file, mesh_);
   file.read("displacement", accepted_);
+  if (file.read_scalar("barrier-in-force") > 0 && parameters_.method == Method::automatic)
+    use_barrier("it was in force when the checkpoint was written");
   displacement_ = accepted_;
   placed_ = false;
   if (incremental())

@@ -52,6 +52,9 @@ class Mover final : public Participant {
   bool incremental() const { return parameters_.form == Form::incremental; }
   void set_up_moving();
   void make_method();
+  void use_barrier(const std::string& reason);
+  void choose_method(double end);
+  void leave_laplacian(const Exchange& in);
   std::vector<double> prescribed(const Exchange& in) const;
   /// Of the points of patches that move by themselves, zero elsewhere; empty without such patches.
   std::vector<double> body_velocities() const;

@@ -55,12 +55,14 @@ void declare_method(config::Section& s, Parameters& p) {
            {{"laplacian", Method::laplacian},
             {"pseudo-solid", Method::pseudo_solid},
             {"rotations", Method::rotations},
-            {"barrier", Method::barrier}})
+            {"barrier", Method::barrier},
+            {"auto", Method::automatic}})
       .doc(
           "laplacian: each component separately, cheapest; pseudo-solid: an elastic body, tolerates bending "
           "and rotation; rotations: rotation and displacement of the surface are propagated into the mesh, "
           "tolerates the largest rotations; barrier: least distortion of the cells, which grows without "
-          "bound as a cell flattens: cannot fold, costs several linear solves per motion");
+          "bound as a cell flattens: cannot fold, costs several linear solves per motion; auto: laplacian, or barrier if the "
+          "prescribed motions would invert a cell, or from the first motion of an interface that does (total form)");
   s.choice("form", p.form,
            {{"auto", Form::automatic}, {"total", Form::total}, {"incremental", Form::incremental}})
       .doc(
@@ -74,6 +76,13 @@ void declare_method(config::Section& s, Parameters& p) {
            {{"reference", StiffeningVolumes::reference}, {"current", StiffeningVolumes::current}})
       .doc("reference volumes of the stiffening; current: those of the last step, for form: incremental");
   s.value("poisson-ratio", p.poisson_ratio).range(-0.9, 0.45).doc("Poisson's ratio of the pseudo-solid");
+  s.check(
+      [&p] {
+        return p.method == Method::automatic && p.form == Form::incremental
+                   ? "auto requires the total form: remove 'form: incremental'"
+                   : "";
+      },
+      "method");
   s.check(
       [&p] {
         if (p.stiffening_volumes == StiffeningVolumes::current && p.form != Form::incremental)

@@ -36,6 +36,7 @@ enum class Method {
   pseudo_solid,  ///< thesis (4.10)
   rotations,     ///< Laplacian of the rotations of the surface and of what is left
   barrier,       ///< least distortion, infinite for a flat cell
+  automatic,     ///< Laplacian, as long as it gives a valid mesh; barrier where it would not
 };
 /// What the displacement is relative to.
 enum class Form {

@@ -16,7 +16,7 @@ constexpr double least_kept = 0.1;
 // Of a Newton step, -g . d over the energy and the weights: nearly the square of the mean change of the deformation
 // gradient. Below the first the mesh is at rest; below the second if it comes to rest slowly, as cells do that are
 // pressed to the verge of buckling; below the third the boundary moves on.
-constexpr double at_rest = 1e-8, slowly_at_rest = 1e-6, nearly_at_rest = 1e-2, slow = 0.1;
+constexpr double at_rest = 1e-6, slowly_at_rest = 1e-5, nearly_at_rest = 1e-2, slow = 0.1;
 // Factor by which the energy may grow as the boundary moves, beside the sum of the weights.
 constexpr double most_growth = 2;
 constexpr double linear_tolerance = 1e-3;
@@ -90,6 +90,11 @@ bool BarrierMotion::find_direction(const std::vector<double>& u, const std::vect
     const SolveStatistics s = solver_->solve(residual_, {direction_.data(), owned});
     last_.iterations += s.iterations;
     last_.seconds += s.seconds;
+    if (solver_->preconditioners_built() > built_) {
+      built_ = solver_->preconditioners_built();
+      factored_at_ = u;
+      factored_ = hessian;
+    }
   } catch (const SolveFailure&) {
     if (hessian == BarrierSystem::Hessian::projected) throw;
     solver_->refresh();
@@ -99,6 +104,28 @@ bool BarrierMotion::find_direction(const std::vector<double>& u, const std::vect
   for (std::size_t i = 0; i < owned; ++i) slope_ -= residual_[i] * direction_[i];
   slope_ = sum(mesh_.comm, slope_);
   return slope_ <= 0;
+}
+
+void BarrierMotion::save(CheckpointWriter& file) const {
+  const PreconditionerMemory memory = solver_->memory();
+  file.write("barrier", displacement_);
+  file.write("barrier-factors", factored_at_);
+  file.write_scalar("barrier-factors-exact", factored_ == BarrierSystem::Hessian::exact ? 1 : 0);
+  file.write_scalar("barrier-factors-due", memory.is_due || factored_at_.empty() ? 1 : 0);
+  file.write_scalar("barrier-factors-most", memory.most_iterations);
+}
+
+void BarrierMotion::load(CheckpointReader& file) {
+  file.read("barrier", displacement_);
+  factored_at_ = file.read("barrier-factors");
+  const bool exact = file.read_scalar("barrier-factors-exact") > 0;
+  factored_ = exact ? BarrierSystem::Hessian::exact : BarrierSystem::Hessian::projected;
+  PreconditionerMemory memory;
+  memory.is_due = file.read_scalar("barrier-factors-due") > 0;
+  memory.most_iterations = int(file.read_scalar("barrier-factors-most"));
+  if (!memory.is_due)
+    system_.assemble(factored_at_, std::vector<double>(displacement_.size(), 0.0), residual_, factored_);
+  solver_->restore(memory);
 }
 
 double BarrierMotion::advance(std::vector<double>& u, const std::vector<double>& way, bool moves) {
@@ -113,7 +140,6 @@ double BarrierMotion::advance(std::vector<double>& u, const std::vector<double>&
 
 std::vector<double> BarrierMotion::solve(std::span<const double> prescribed) {
   last_ = {};
-  solver_->refresh();  // so that a run that was stopped goes on with the same preconditioner
   std::vector<double> u = displacement_, way(u.size(), 0.0);
   const std::vector<double> none(u.size(), 0.0);
   direction_.assign(u.size(), 0.0);

@@ -26,8 +26,8 @@ class BarrierMotion final : public MotionMethod {
 
   std::vector<double> solve(std::span<const double> prescribed) override;
   SolveStatistics last() const override { return last_; }
-  void save(CheckpointWriter& file) const override { file.write("barrier", displacement_); }
-  void load(CheckpointReader& file) override { file.read("barrier", displacement_); }
+  void save(CheckpointWriter& file) const override;
+  void load(CheckpointReader& file) override;
 
  private:
   /// The remaining way of held directions; its largest component over all ranks. Collective.
@@ -50,6 +50,9 @@ class BarrierMotion final : public MotionMethod {
   std::vector<double> displacement_;  // dim per local point: of the last solve, which the next starts from
   std::vector<double> residual_, direction_, trial_;
   double slope_ = 0, energy_ = 0;
+  int built_ = 0;                    // preconditioners so far
+  std::vector<double> factored_at_;  // displacement whose Hessian the preconditioner is of
+  BarrierSystem::Hessian factored_ = BarrierSystem::Hessian::exact;
   SolveStatistics last_;
 };
 

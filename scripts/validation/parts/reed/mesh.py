@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bars of mesh motion around thin bodies: the barrier to the end of the way, its neighbours refused on it, and the price of each."""
+import re
+import resource
+
+import couplet
+from validation.job import Bar
+
+LAST = "least scaled Jacobian [1]"
+LIFT = '"0.0039*t*(x/0.06)^2*(3-x/0.06)/2"'  # a cantilever's, 3.9 mm at the tip
+
+
+def walls(kind, *names):
+    return ", ".join(f"{name}: {{type: {kind}}}" for name in names)
+
+
+def moving(patch, motion):
+    return f"{patch}: {{type: moving, motion: {{{motion}}}}}"
+
+
+def frame(kind):
+    sides = ("xmin", "xmax", "ymin", "ymax") + (("zmin", "zmax") if kind == 2 else ())
+    z = ', "0"' if kind == 2 else ""
+    return ("tests/verification/mover/frame.geo", 3 if kind == 2 else 2, f"{{kind: {kind}, n: {3 if kind == 2 else 6}}}", 1, 20,
+            f'{walls("slip", *sides)}, {moving("block", f"""translation: ["0.475*t", "0.475*t"{z}]""")}')
+
+
+# Mesh, dimension, its parameters, end [s], steps, boundaries.
+SCENES = {
+    "block in a frame closed to 5 %, triangles": frame(0),
+    "block in a frame closed to 5 %, quadrilaterals": frame(1),
+    "block in a frame closed to 5 %, tetrahedra": frame(2),
+    "plate turned by 180 degrees": ("configs/moving-mesh/square.geo", 2, "{n: 50}", 1, 50,
+                                    f'{walls("slip", "floor", "right", "lid", "left")}, {moving("plate", "angle: pi*t")}'),
+    "reed's tip lifted to 3.9 mm, slice one cell deep": (
+        "tests/verification/mover/reed_slice.geo", 3, "{}", 1, 20,
+        f'{walls("fixed", "inlet", "outlet", "walls", "seat")}, sides: {{type: slip}}, {moving("plate", f"""displacement: ["0", "0", {LIFT}]""")}'),
+    "reed's tip lifted to 3.9 mm, tetrahedra": (
+        "tests/verification/mover/reed.geo", 3, "{}", 1, 20,
+        f'{walls("fixed", "far", "lid", "seat")}, {walls("slip", "side", "clamp", "middle")}, {moving("plate", f"""displacement: ["0", "0", {LIFT}]""")}'),
+    "two cylinders past each other at a gap of 10 %": (
+        "configs/passing-cylinders/pair.geo", 2, "{gap: 0.1}", 8, 160,
+        f'{walls("slip", "ends", "sides")}, {moving("upper", """translation: ["sin(pi*t/4)^3", 0]""")}, '
+        f'{moving("lower", """translation: ["-sin(pi*t/4)^3", 0]""")}'),
+}
+
+
+def run(job, scene, method, share=1.0, again=0):
+    """Rows of quality.csv, whether it came to the end, its message, cpu seconds of the whole run."""
+    def make():
+        mesh, dimension, parameters, end, steps, boundaries = SCENES[scene]
+        folder = job.scratch / f"reed-{list(SCENES).index(scene)}-{method}-{share}-{again}"
+        folder.mkdir()
+        (folder / "case.yaml").write_text(f"""simulation: {{end-time: {end * share}, time-step: {end / steps}, max-step-halvings: 0, output: {{folder: out, interval: {end}}}, checkpoint: {{interval: 0}}}}
+participants:
+  mover:
+    program: mesh_mover
+    mesh: {job.root / mesh}
+    mesh-parameters: {parameters}
+    dimension: {dimension}
+    method: {method}
+    boundaries: {{{boundaries}}}
+""")
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        done = job.run([job.build / "bin" / "mesh_mover", folder / "case.yaml"], 1200)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        file = folder / "out" / "mover" / "quality.csv"
+        if not file.exists():
+            raise RuntimeError((done.stderr or done.stdout)[-400:])
+        said = re.search(r"(inverts cell|makes cell|no valid mesh)", done.stderr + done.stdout)
+        return (couplet.read_csv(file), done.returncode == 0, said[1] if said else "",
+                after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+    return job.once(("reed mesh", scene, method, share, again), make)
+
+
+def end_of(scene, rows):
+    return f"{100 * rows['time [s]'][-1] / SCENES[scene][3]:.0f} %"
+
+
+def reaches(scene):
+    def measure(job):
+        rows, valid, said, _ = run(job, scene, "barrier")
+        least = min(rows[LAST])
+        text = f"all cells valid, least scaled Jacobian {least:.4f}" if valid else f"refused at {end_of(scene, rows)} of the way ({said})"
+        beside = []
+        for method in ("laplacian", "pseudo-solid"):
+            other, came, said, _ = run(job, scene, method)
+            beside.append(f"{method} " + ("comes through too" if came else f"refused at {end_of(scene, other)} ({said})"))
+        return f"{text}; {', '.join(beside)}", valid and least > 0
+    return measure
+
+
+def price(scene):
+    """Over the way that the Laplacian stands, in the same steps; the least of three runs each."""
+    def measure(job):
+        rows = run(job, scene, "laplacian")[0]
+        share = round(float(rows["time [s]"][-1]) / SCENES[scene][3], 6)
+        cost = {m: min(run(job, scene, m, share, i)[3] for i in (1, 2, 3)) for m in ("laplacian", "pseudo-solid", "barrier")}
+        whole = min(run(job, scene, "barrier", 1.0, i)[3] for i in (1, 2))
+        ratio = cost["barrier"] / cost["laplacian"]
+        return (f"{ratio:.1f} times over the {100 * share:.0f} % of the way that the laplacian stands ({cost['barrier']:.2f}, {cost['laplacian']:.2f} s; "
+                f"pseudo-solid {cost['pseudo-solid'] / cost['laplacian']:.1f} times); barrier over the whole way {whole:.2f} s"), ratio <= 6
+    return measure
+
+
+MESH = [
+    *(Bar(scene, "all cells valid; laplacian and pseudo-solid beside it", reaches(scene)) for scene in SCENES),
+    *(Bar(f"price of the barrier, {scene}", "at most 6 times the laplacian (cpu of whole runs, start included)", price(scene)) for scene in SCENES),
+]

@@ -1,0 +1,9 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bars of the reed valve: mesh motion around thin bodies."""
+from validation.parts.reed.mesh import MESH
+
+SOURCES = ("common/base", "common/parallel", "common/linalg", "common/mesh", "common/fv", "mesh_mover", "configs/passing-cylinders",
+           "configs/moving-mesh", "tests/verification/mover")
+BARS = [
+    *MESH,
+]
