@@ -147,6 +147,42 @@ TEST(Gaps, a_checkpoint_of_a_closed_valve_goes_on_bit_for_bit) {
   EXPECT_LE(max(MPI_COMM_WORLD, apart), comm_size(MPI_COMM_WORLD) == 1 ? 0 : 1e-9);
 }
 
+/// Of the free cells left of the slot: mean pressure [Pa], volume [m^3].
+std::array<double, 2> upstream(const Valve& v) {
+  const State<2>& s = v.c.state();
+  double sums[2] = {};
+  for (Index i = 0; i < v.c.mesh().cells.n_owned(); ++i) {
+    if ((s.blocked && (*s.blocked)[i]) || s.placement->centre[i][0] > 3) continue;
+    sums[0] += s.placement->volume[i];
+    sums[1] += s.placement->volume[i] * s.pressure[0]->p[i];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, v.c.mesh().comm);
+  return {sums[1] / sums[0], sums[0]};
+}
+
+TEST(Gaps, the_pressure_before_a_closed_valve_rises_with_what_flows_in) {
+  for (const double c : {30., 340.}) {
+    FluidParameters p = valve(true);
+    p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"0.1", "0"});
+    p.compressibility.emplace();
+    p.compressibility->speed_of_sound = c;
+    Valve v(p);
+    v.run(1.08);
+    ASSERT_TRUE(v.c.state().blocked);
+    const auto [from, volume] = upstream(v);
+    const double begin = v.c.state().pressure[0]->time;
+    v.run(1.44);
+    const auto [to, same] = upstream(v);
+    EXPECT_NEAR(same, volume, 1e-12);
+    const double rise = (to - from) / (v.c.state().pressure[0]->time - begin),
+                 wanted = c * c * 0.1 * height / volume;
+    RecordProperty(fmt::format("rise_error_{:g}", c), fmt::format("{}", rise / wanted - 1));
+    EXPECT_NEAR(rise / wanted, 1, 0.01);
+    v.run(2.6);
+    EXPECT_FALSE(v.c.state().blocked) << "it opens again under that pressure";
+  }
+}
+
 /// The left end lets fluid in, the slot closes: what flows in then has nowhere to go.
 TEST(Gaps, that_cut_an_inlet_off_are_refused_with_the_cause) {
   FluidParameters p = valve(true);
