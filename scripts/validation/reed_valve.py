@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of the reed valve: mesh motion around thin bodies."""
+"""Bars of the reed valve: mesh motion around thin bodies, the weakly compressible fluid."""
 from validation.parts.reed.mesh import MESH
+from validation.parts.reed.sound import SOUND_BARS
 
 SOURCES = ("common/base", "common/parallel", "common/linalg", "common/mesh", "common/fv", "mesh_mover", "configs/passing-cylinders",
            "configs/moving-mesh", "tests/verification/mover")
 BARS = [
     *MESH,
+    *SOUND_BARS,
 ]
