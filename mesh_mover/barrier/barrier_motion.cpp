@@ -16,10 +16,10 @@ constexpr double least_kept = 0.1;
 // Of a Newton step, -g . d over the energy and the weights: nearly the square of the mean change of the deformation
 // gradient. Below the first the mesh is at rest; below the second if it comes to rest slowly, as cells do that are
 // pressed to the verge of buckling; below the third the boundary moves on.
-constexpr double at_rest = 1e-6, slowly_at_rest = 1e-5, nearly_at_rest = 1e-2, slow = 0.1;
+constexpr double at_rest = 1e-5, slowly_at_rest = 1e-4, nearly_at_rest = 1e-2, slow = 0.1;
 // Factor by which the energy may grow as the boundary moves, beside the sum of the weights.
 constexpr double most_growth = 2;
-constexpr double linear_tolerance = 1e-3;
+constexpr double linear_tolerance = 3e-3;
 constexpr int most_steps = 200;
 // Energy over the sum of the weights from which on no valid mesh is expected: cells of a thousandth of their width.
 constexpr double most_energy = 1e6;

@@ -46,7 +46,7 @@ SCENES = {
 
 
 def run(job, scene, method, share=1.0, again=0):
-    """Rows of quality.csv, whether it came to the end, its message, cpu seconds of the whole run."""
+    """Rows of quality.csv, whether it came to the end, its message, cpu seconds of the whole run, seconds of its steps."""
     def make():
         mesh, dimension, parameters, end, steps, boundaries = SCENES[scene]
         folder = job.scratch / f"reed-{list(SCENES).index(scene)}-{method}-{share}-{again}"
@@ -64,12 +64,13 @@ participants:
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         done = job.run([job.build / "bin" / "mesh_mover", folder / "case.yaml"], 1200)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        total = re.search(r"^total +([\d.]+) +100", done.stdout + done.stderr, re.M)
         file = folder / "out" / "mover" / "quality.csv"
         if not file.exists():
             raise RuntimeError((done.stderr or done.stdout)[-400:])
         said = re.search(r"(inverts cell|makes cell|no valid mesh)", done.stderr + done.stdout)
         return (couplet.read_csv(file), done.returncode == 0, said[1] if said else "",
-                after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+                after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, float(total[1]) if total else float("nan"))
     return job.once(("reed mesh", scene, method, share, again), make)
 
 
@@ -79,12 +80,12 @@ def end_of(scene, rows):
 
 def reaches(scene):
     def measure(job):
-        rows, valid, said, _ = run(job, scene, "barrier")
+        rows, valid, said, *_ = run(job, scene, "barrier")
         least = min(rows[LAST])
         text = f"all cells valid, least scaled Jacobian {least:.4f}" if valid else f"refused at {end_of(scene, rows)} of the way ({said})"
         beside = []
         for method in ("laplacian", "pseudo-solid"):
-            other, came, said, _ = run(job, scene, method)
+            other, came, said, *_ = run(job, scene, method)
             beside.append(f"{method} " + ("comes through too" if came else f"refused at {end_of(scene, other)} ({said})"))
         return f"{text}; {', '.join(beside)}", valid and least > 0
     return measure
@@ -95,15 +96,17 @@ def price(scene):
     def measure(job):
         rows = run(job, scene, "laplacian")[0]
         share = round(float(rows["time [s]"][-1]) / SCENES[scene][3], 6)
-        cost = {m: min(run(job, scene, m, share, i)[3] for i in (1, 2, 3)) for m in ("laplacian", "pseudo-solid", "barrier")}
-        whole = min(run(job, scene, "barrier", 1.0, i)[3] for i in (1, 2))
-        ratio = cost["barrier"] / cost["laplacian"]
-        return (f"{ratio:.1f} times over the {100 * share:.0f} % of the way that the laplacian stands ({cost['barrier']:.2f}, {cost['laplacian']:.2f} s; "
-                f"pseudo-solid {cost['pseudo-solid'] / cost['laplacian']:.1f} times); barrier over the whole way {whole:.2f} s"), ratio <= 6
+        runs = {m: [run(job, scene, m, share, i) for i in (1, 2, 3)] for m in ("laplacian", "pseudo-solid", "barrier")}
+        steps, whole = ({m: min(r[k] for r in of) for m, of in runs.items()} for k in (4, 3))
+        all_of_it = min(run(job, scene, "barrier", 1.0, i)[4] for i in (1, 2))
+        against = lambda cost, m: f"{cost[m] / cost['laplacian']:.1f}"
+        return (f"steps {against(steps, 'barrier')} times ({steps['barrier']:.3f}, {steps['laplacian']:.3f} s; pseudo-solid {against(steps, 'pseudo-solid')} times), "
+                f"whole runs {against(whole, 'barrier')} times in cpu, over the {100 * share:.0f} % of the way that the laplacian stands; barrier over the whole "
+                f"way {all_of_it:.2f} s"), steps["barrier"] <= 6 * steps["laplacian"]
     return measure
 
 
 MESH = [
     *(Bar(scene, "all cells valid; laplacian and pseudo-solid beside it", reaches(scene)) for scene in SCENES),
-    *(Bar(f"price of the barrier, {scene}", "at most 6 times the laplacian (cpu of whole runs, start included)", price(scene)) for scene in SCENES),
+    *(Bar(f"price of the barrier, {scene}", "at most 6 times the laplacian (all that a step does: motion, geometry, guard, quality.csv)", price(scene)) for scene in SCENES),
 ]
