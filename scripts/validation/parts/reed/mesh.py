@@ -35,6 +35,9 @@ SCENES = {
     "reed's tip lifted to 3.9 mm, slice one cell deep": (
         "tests/verification/mover/reed_slice.geo", 3, "{}", 1, 20,
         f'{walls("fixed", "inlet", "outlet", "walls", "seat")}, sides: {{type: slip}}, {moving("plate", f"""displacement: ["0", "0", {LIFT}]""")}'),
+    "reed's tip lifted to 3.9 mm, slice in two dimensions": (
+        "tests/verification/mover/reed_plane.geo", 2, "{}", 1, 20,
+        f'{walls("fixed", "inlet", "outlet", "walls", "seat")}, {moving("plate", f"""displacement: ["0", {LIFT}]""")}'),
     "reed's tip lifted to 3.9 mm, tetrahedra": (
         "tests/verification/mover/reed.geo", 3, "{}", 1, 20,
         f'{walls("fixed", "far", "lid", "seat")}, {walls("slip", "side", "clamp", "middle")}, {moving("plate", f"""displacement: ["0", "0", {LIFT}]""")}'),
