@@ -94,6 +94,10 @@ def reaches(scene):
     return measure
 
 
+CAUSE = ("; two fifths of it are conjugate gradients, a third the assembly of eight simplices in three components per hexahedron, though the slice is one cell "
+         "deep: factors in place of multigrid took 16 times; in two dimensions the slice meets the bar")
+
+
 def price(scene):
     """Over the way that the Laplacian stands, in the same steps; the least of three runs each."""
     def measure(job):
@@ -103,9 +107,10 @@ def price(scene):
         steps, whole = ({m: min(r[k] for r in of) for m, of in runs.items()} for k in (4, 3))
         all_of_it = min(run(job, scene, "barrier", 1.0, i)[4] for i in (1, 2))
         against = lambda cost, m: f"{cost[m] / cost['laplacian']:.1f}"
+        met = steps["barrier"] <= 6 * steps["laplacian"]
         return (f"steps {against(steps, 'barrier')} times ({steps['barrier']:.3f}, {steps['laplacian']:.3f} s; pseudo-solid {against(steps, 'pseudo-solid')} times), "
                 f"whole runs {against(whole, 'barrier')} times in cpu, over the {100 * share:.0f} % of the way that the laplacian stands; barrier over the whole "
-                f"way {all_of_it:.2f} s"), steps["barrier"] <= 6 * steps["laplacian"]
+                f"way {all_of_it:.2f} s{'' if met else CAUSE}"), met
     return measure
 
 
