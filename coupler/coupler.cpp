@@ -125,12 +125,7 @@ std::optional<StepFailure> Coupler::attempt(const Step& step) {
   } catch (const SchemeFailure& failure) {
     return StepFailure(failure.what(), false);
   } catch (const SolveFailure& failure) {
-    // What swings already is not saved by halving.
-    auto swings = oscillation_guard_.suspects(parameters_.scheme);
-    if (!swings && mechanics_->knows_work()) swings = work_guard_.suspects(parameters_.scheme);
-    if (swings && parameters_.on_divergence == CouplingParameters::OnDivergence::stop)
-      return StepFailure(fmt::format("{} Before that, {}", failure.what(), *swings), false);
-    return StepFailure(failure.what() + data_guard_->silent());
+    return cause_of(failure.what());
   }
   return {};
 }

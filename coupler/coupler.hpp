@@ -76,6 +76,8 @@ class Coupler {
   void load();
   void save(const std::filesystem::path& folder);
   std::optional<StepFailure> attempt(const Step& step);
+  /// Why a step failed: what the coupling itself does comes before what a participant reports.
+  StepFailure cause_of(const std::string& reported) const;
   void solve(const Step& step);
   /// One pass from x, the explicit scheme's step.
   void pass_once(const Step& step, const FixedPointMap& map);

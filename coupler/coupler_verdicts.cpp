@@ -104,4 +104,26 @@ void Coupler::tell_errors(std::vector<NamedErrors> participants) const {
   if (!schedule_.iterates) log::info("{}", lag_ ? lag_->sentence(participants) : LagEstimate::not_possible());
 }
 
+StepFailure Coupler::cause_of(const std::string& reported) const {
+  // Without the advice that goes with it: a smaller step or another mesh would not help.
+  const std::string met = reported.substr(0, reported.find(". Try ") + 1);
+  const auto then = [&](const std::string& cause) {
+    return cause + " Thereupon " + (met.empty() ? reported : met);
+  };
+  const AccelerationParameters& by = parameters_.acceleration;
+  const bool constant = by.type == AccelerationParameters::Type::constant;
+  if (schedule_.iterates) {
+    if (const auto grew = iteration_guard_.suspects(constant ? by.initial_relaxation : 0))
+      return {then(*grew), !constant};
+  } else if (const auto returns = audit_->suspects(parameters_)) {
+    return {then(*returns), false};
+  }
+  // What swings already is not saved by halving.
+  auto swings = oscillation_guard_.suspects(parameters_.scheme);
+  if (!swings && mechanics_->knows_work()) swings = work_guard_.suspects(parameters_.scheme);
+  if (swings && parameters_.on_divergence == CouplingParameters::OnDivergence::stop)
+    return {then(*swings), false};
+  return StepFailure(reported + data_guard_->silent());
+}
+
 }  // namespace couplet

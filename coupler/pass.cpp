@@ -133,11 +133,19 @@ void Coupler::pass_once(const Step& step, const FixedPointMap& map) {
   last_.iterations = 1;
   // Not where sub-steps see a line through what was given: each pass would bend it.
   if (step.scheme != Scheme::explicit_ || !schedule_.sub_steps.empty() ||
-      !CouplingAudit::looks_at(step.number))
+      !CouplingAudit::looks_for_causes_at(step.number))
     return;
-  const Iterate again = map(last_.image);
-  audit_->returned(last_.residual, worst(unknown_->measure(last_.image, again)));
-  if (half_) lag_->looked({last_.x, last_.image, again}, *half_, step.dt);
+  const bool at_start = !CouplingAudit::looks_at(step.number);
+  try {
+    const Iterate again = map(last_.image);
+    const Residual returned = worst(unknown_->measure(last_.image, again));
+    if (at_start)
+      audit_->returned_at_start(last_.residual, returned);
+    else
+      audit_->returned(last_.residual, returned);
+    if (half_) lag_->looked({last_.x, last_.image, again}, *half_, step.dt);
+  } catch (const SolveFailure&) {  // the step has its answer without this look
+  }
   last_.image = map(last_.x);  // the step is what it is without this look
   iterations_ -= 2;            // nor are these its passes
 }

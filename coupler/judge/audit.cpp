@@ -35,10 +35,32 @@ bool CouplingAudit::looks_at(GlobalIndex step) {
   return n >= 4 && std::has_single_bit(n) && std::countr_zero(n) % 2 == 0;
 }
 
+namespace {
+
+// Participants solve to about 1e-8 of their values: less than that would be a ratio of their noise.
+double ratio(const Residual& first, const Residual& second) {
+  if (!(first.relative > 1e-6) || !std::isfinite(second.absolute)) return CouplingEvidence::unknown;
+  return second.absolute / first.absolute;
+}
+
+}  // namespace
+
 void CouplingAudit::returned(const Residual& first, const Residual& second) {
-  // Participants solve to about 1e-8 of their values: less than that would be a ratio of their noise.
-  if (!(first.relative > 1e-6) || !std::isfinite(second.absolute)) return;
-  evidence_.returned = std::fmax(evidence_.returned, second.absolute / first.absolute);
+  evidence_.returned = std::fmax(evidence_.returned, ratio(first, second));
+}
+
+void CouplingAudit::returned_at_start(const Residual& first, const Residual& second) {
+  at_start_ = ratio(first, second);
+}
+
+std::optional<std::string> CouplingAudit::suspects(const CouplingParameters& parameters) const {
+  const double returned = std::fmax(at_start_, evidence_.returned), limit = limit_of_one_pass(parameters);
+  if (!(returned > limit)) return {};
+  return fmt::format(
+      "the explicit coupling is unstable: {:.3g} of a change of the motion returns through the load in the "
+      "next pass, and one pass per step diverges from {:.2g}, whatever the step. Use `scheme: "
+      "semi-implicit`, which iterates the added mass.",
+      returned, limit);
 }
 
 void CouplingAudit::loads(const std::vector<Exchange>& given) {

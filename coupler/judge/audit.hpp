@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,13 @@ class CouplingAudit {
   /// gives is that of the first pass, as without.
   /// Whether this step is looked at: 4, 16, 64, 256, ... (log4 n of n steps, two passes each).
   static bool looks_at(GlobalIndex step);
+  /// The second step is looked at, too, for one question only: why a step failed. At a start the ratio is that of an
+  /// impulse, which is no evidence about the run.
+  static bool looks_for_causes_at(GlobalIndex step) { return step == 1 || looks_at(step); }
+  void returned_at_start(const Residual& first, const Residual& second);
+  /// Why one pass a step cannot hold, if more of a change returns than it bears: no smaller step helps (the ratio of
+  /// the masses does not depend on the step).
+  std::optional<std::string> suspects(const CouplingParameters& parameters) const;
   /// Residuals of x and of H(x). Nothing is learnt where the guess was so good that their difference is round-off.
   void returned(const Residual& first, const Residual& second);
 
@@ -47,6 +55,7 @@ class CouplingAudit {
   MPI_Comm comm_;
   std::vector<Force> forces_;  // of sides of which one is not taken
   CouplingEvidence evidence_;
+  double at_start_ = CouplingEvidence::unknown;
   AuditTrail trail_;
 };
 

@@ -38,6 +38,20 @@ const char* cure_of_oscillation(Scheme scheme) {
 
 }  // namespace
 
+namespace {
+
+// |1 - omega (1 + r)| = factor for the heaviest mode
+std::string too_much_added_mass(double factor, int passes, double omega) {
+  const double r = (factor + 1) / omega - 1;
+  return fmt::format(
+      "the coupling diverges: the residual grew by {:.3g} per pass over {}. With constant relaxation "
+      "{:g} this implies an added mass of about {:.3g} times the structure's; only relaxations below {:.3g} "
+      "converge, at any step. Use `acceleration.type: aitken` or `iqn-ils`, which adapt it.",
+      factor, passes == 1 ? "a pass" : fmt::format("{} passes", passes), omega, r, 2 / (1 + r));
+}
+
+}  // namespace
+
 void IterationGuard::pass(double residual, double omega, bool constant) {
   ++passes_;
   if (passes_ == 1) first_ = residual;
@@ -48,23 +62,28 @@ void IterationGuard::pass(double residual, double omega, bool constant) {
     growing_ = 0;
   }
   last_ = residual;
-  if (growing_ == 0 || !(residual > 2 * at_turn_)) return;
+  if (!grows()) return;
   const bool ran_away = residual > too_far * first_;
   if (growing_ < patience && !ran_away) return;
-  const double factor = std::pow(residual / at_turn_, 1. / growing_);
-  if (!constant)
-    throw SolveFailure(
-        "the coupling diverges: the residual grew by {:.3g} per pass over {} passes, by {:.3g} in the last "
-        "one. If smaller steps do not help, `acceleration.type: iqn-ils` handles several modes at once; the "
-        "participants' own tolerances may be too loose for it.",
-        factor, growing_, omega);
-  // |1 - omega (1 + r)| = factor for the heaviest mode
-  const double r = (factor + 1) / omega - 1;
-  throw SchemeFailure(
-      "the coupling diverges: the residual grew by {:.3g} per pass over {} passes. With constant relaxation "
-      "{:g} this implies an added mass of about {:.3g} times the structure's; only relaxations below {:.3g} "
-      "converge, at any step. Use `acceleration.type: aitken` or `iqn-ils`, which adapt it.",
-      factor, growing_, omega, r, 2 / (1 + r));
+  if (constant) throw SchemeFailure(too_much_added_mass(factor(), growing_, omega));
+  throw SolveFailure(
+      "the coupling diverges: the residual grew by {:.3g} per pass over {} passes, by {:.3g} in the last "
+      "one. If smaller steps do not help, `acceleration.type: iqn-ils` handles several modes at once; the "
+      "participants' own tolerances may be too loose for it.",
+      factor(), growing_, omega);
+}
+
+bool IterationGuard::grows() const { return growing_ > 0 && last_ > 2 * at_turn_; }
+
+double IterationGuard::factor() const { return std::pow(last_ / at_turn_, 1. / growing_); }
+
+std::optional<std::string> IterationGuard::suspects(double relaxation) const {
+  if (!grows()) return {};
+  if (relaxation > 0) return too_much_added_mass(factor(), growing_, relaxation);
+  return fmt::format(
+      "the coupling diverges: the residual grew by {:.3g} per pass before a participant failed. Use a lower "
+      "`acceleration.initial-relaxation`, or `predictor.order: 0` for the first steps.",
+      factor());
 }
 
 namespace {

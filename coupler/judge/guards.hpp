@@ -25,10 +25,17 @@ class IterationGuard {
   /// accelerated residual has grown over `patience` passes or by `too_far` in all.
   void pass(double residual, double omega, bool constant);
 
+  /// After a pass that a participant could not answer: a reason if the residual was growing before, else nothing. A motion
+  /// that runs away folds a mesh long before `patience` passes are over. `relaxation`: the constant one; 0: adapted.
+  std::optional<std::string> suspects(double relaxation) const;
+
   static constexpr int patience = 5;
   static constexpr double too_far = 1e6;
 
  private:
+  bool grows() const;
+  double factor() const;  // a pass
+
   double first_ = 0, last_ = 0;
   int passes_ = 0, growing_ = 0;
   double at_turn_ = 0;  // residual at which the growth began

@@ -28,7 +28,7 @@ bool is_quasi_newton(const P& p) {
 // lambda^2 + r (2 lambda - 1) = 0, which reaches -1 at r = 1/3. The error goes with r: half the limit is asked for.
 std::optional<EffectVerdict> judge_one_pass(const P& p, const CouplingEvidence& e) {
   if (p.scheme != Scheme::explicit_ || std::isnan(e.returned)) return {};
-  const double limit = predictor_order_of(p) >= 2 ? 1.0 / 3 : 1.0;
+  const double limit = limit_of_one_pass(p);
   return EffectVerdict{
       "", e.returned, limit / 2,
       fmt::format(
@@ -139,6 +139,8 @@ const std::array cards{
 };
 
 }  // namespace
+
+double limit_of_one_pass(const P& p) { return predictor_order_of(p) >= 2 ? 1.0 / 3 : 1.0; }
 
 std::span<const CouplingCard> coupling_effect_cards() { return cards; }
 

@@ -18,6 +18,8 @@ struct CouplingEvidence {
   double lost_load =
       unknown;  ///< forces at faces that nobody takes, over those taken (norms over the faces, largest of all steps)
 };
+/// Share of a change of the motion that one pass a step bears to have returned by the next pass.
+double limit_of_one_pass(const CouplingParameters& parameters);
 using CouplingCard = EffectCard<CouplingParameters, CouplingEvidence>;
 /// All that a coupling can have beside one pass a step over matching surfaces, in the order in which it is told.
 std::span<const CouplingCard> coupling_effect_cards();
