@@ -7,10 +7,11 @@ import sys
 
 from validation.job import Bar
 from validation.parts.prediction import rows as prediction
+from validation.parts.trust.runs import tests
 
 NOTE = ("Built so far: other programs on a case by one command, pictures that can be read, and `--for-error`. The bars of the budget with the model in it, "
         "of periodic flow and of the atlas have no rows yet.")
-SOURCES = ("client/python/couplet/peers", "client/python/couplet/study", "configs/elliptic-plate", "configs/le1", "configs/cook", "configs/cavity", "configs/cylinder")
+SOURCES = ("client/python/couplet/peers", "client/python/couplet/study", "configs/elliptic-plate", "configs/le1", "configs/cook", "configs/cavity", "configs/cylinder", "coupler")
 FOAM = "solidDisplacementFoam"
 # What of a study is run (--only: the sizes that a busy machine allows), its quantity, and the error that each program's best run has at most.
 PEERS = {
@@ -68,3 +69,5 @@ BARS = [
     Bar("pictures of studies: at most eight series in a panel, no word cut, processor seconds, other programs in the front", "all pass", checks("pictures.py")),
 ]
 BARS += prediction.BARS
+BARS.append(Bar("cause named first, a soft leaflet in water: explicit on five meshes, relaxation 1 with two schemes; a stable coupling whose mesh folds beside them",
+                "7 of 7, and the neighbour's is the mesh", tests("^coupling_causes_long$")))
