@@ -57,7 +57,7 @@ std::optional<std::string> CouplingAudit::suspects(const CouplingParameters& par
   const double returned = std::fmax(at_start_, evidence_.returned), limit = limit_of_one_pass(parameters);
   if (!(returned > limit)) return {};
   return fmt::format(
-      "the explicit coupling is unstable: {:.3g} of a change of the motion returns through the load in the "
+      "the added-mass instability of explicit coupling: {:.3g} of a change of the motion returns through the load in the "
       "next pass, and one pass per step diverges from {:.2g}, whatever the step. Use `scheme: "
       "semi-implicit`, which iterates the added mass.",
       returned, limit);
