@@ -60,7 +60,7 @@ extern "C" void stopped(int signal) {
       "Usage: relay PARTICIPANT [--listen unix | tcp:INTERFACE[:PORT]] [--address FILE] [--wait SECONDS]\n"
       "Stands in a job for a participant that is launched separately with COUPLET_JOIN=FILE in its environment.\n"
       "  --listen   how it is reached: a socket on this machine (unix, the default), or on one network interface\n"
-      "  --address  the file that says where and holds the token; default: PARTICIPANT.relay\n"
+      "  --address  the file with its place and the token; default: PARTICIPANT.relay\n"
       "  --wait     seconds until the participant must have come; default: 600\n");
   std::exit(problem.empty() ? 0 : 2);
 }
