@@ -53,7 +53,8 @@ const std::array cards{
          [](const P& p) {
            return when(p.method == Method::barrier || p.method == Method::automatic, "method");
          },
-         {"Newton's method on the distortion of the cells: a matrix and its factors where they have aged", 2900, 11.6}},
+         {"Newton's method on the distortion of the cells: a matrix and its factors where they have aged",
+          2900, 11.6}},
     Card{"incremental mesh motion",
          "`form: incremental`",
          [](const P& p) { return when(p.form == Form::incremental, "form: incremental"); },

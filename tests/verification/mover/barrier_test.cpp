@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <filesystem>
 #include <numbers>
 
 #include "common/base/error.hpp"
@@ -12,6 +13,7 @@
 #include "mesh_mover/barrier/distortion.hpp"
 #include "mesh_mover/barrier/feasible_step.hpp"
 #include "plate_case.hpp"
+#include "tests/support/saved_state.hpp"
 
 namespace couplet::mesh_mover::test {
 namespace {
@@ -162,6 +164,89 @@ TEST(Barrier, turns_a_plate_by_half_a_turn_and_back_where_the_laplacian_folds) {
     EXPECT_LT(largest_difference(MPI_COMM_WORLD, mover.displacement(),
                                  std::vector<double>(mover.displacement().size())),
               1e-2 / 16);  // of the edges
+  }
+}
+
+Parameters reed(bool deep, Method method) {
+  Parameters p;
+  p.mesh = deep ? "reed_slice.geo" : "reed_plane.geo";
+  p.dimension = deep ? 3 : 2;
+  p.method = method;
+  for (const char* wall : {"inlet", "outlet", "walls", "seat"})
+    p.boundaries[wall].motion = BoundaryMotion::fixed;
+  if (deep) p.boundaries["sides"].motion = BoundaryMotion::slip;
+  p.boundaries["plate"].motion = BoundaryMotion::moving;
+  const char* lift = "0.0039*t*(x/0.06)^2*(3-x/0.06)/2";
+  p.boundaries["plate"].prescribed.displacement = {{"0"}};
+  if (deep) p.boundaries["plate"].prescribed.displacement.push_back({"0"});
+  p.boundaries["plate"].prescribed.displacement.push_back({lift});
+  return p;
+}
+
+TEST(Barrier, lifts_the_tip_of_a_reed_by_ten_times_its_thickness_where_the_laplacian_folds) {
+  for (const bool deep : {false, true}) {
+    Mover mover(reed(deep, Method::barrier), in_test_data());
+    mover.initialise();
+    run(mover, 0, 1, 10);
+    EXPECT_GT(mover.state().worst[MeshState::scaled_jacobian].value, 0.15);
+    Mover laplacian(reed(deep, Method::laplacian), in_test_data());
+    laplacian.initialise();
+    EXPECT_THROW(run(laplacian, 0, 1, 10), SolveFailure);
+  }
+}
+
+/// In three dimensions the steps are solved by multigrid, whose preconditioner a checkpoint makes again.
+TEST(Barrier, in_three_dimensions_goes_on_from_a_checkpoint_and_hardly_depends_on_the_ranks) {
+  const Parameters p = reed(true, Method::barrier);
+  Mover mover(p, in_test_data());
+  mover.initialise();
+  run(mover, 0, 0.4, 4);
+  const support::SavedState checkpoint(mover);
+  run(mover, 0.4, 0.6, 2);
+  const std::vector<double> end = mover.displacement();
+  checkpoint.load_into(mover);
+  run(mover, 0.4, 0.6, 2);
+  EXPECT_EQ(mover.displacement(), end);
+
+  ParticipantContext alone = in_test_data();
+  alone.comm = MPI_COMM_SELF;
+  alone.output_folder = support::own_folder() / ("alone-" + std::to_string(comm_rank(MPI_COMM_WORLD)));
+  std::filesystem::create_directories(alone.output_folder);
+  Mover reference(p, alone);
+  reference.initialise();
+  run(reference, 0, 0.6, 6);
+  std::vector<double> by_id(reference.displacement().size());
+  for (Index v = 0; v < reference.mesh().points.n_local(); ++v)
+    for (int c = 0; c < 3; ++c)
+      by_id[3 * reference.mesh().point_id[v] + c] = reference.displacement()[3 * v + c];
+  double worst = 0;
+  for (Index v = 0; v < mover.mesh().points.n_local(); ++v)
+    for (int c = 0; c < 3; ++c)
+      worst = std::max(worst, std::abs(by_id[3 * mover.mesh().point_id[v] + c] - end[3 * v + c]));
+  EXPECT_LT(max(MPI_COMM_WORLD, worst), 1e-4 * 0.0039);
+}
+
+TEST(Barrier, follows_two_cylinders_that_pass_each_other_where_the_laplacian_folds) {
+  for (const Method method : {Method::barrier, Method::laplacian}) {
+    Parameters p;
+    p.mesh = "pair.geo";
+    p.mesh_parameters = {{"gap", 0.1}};
+    p.dimension = 2;
+    p.method = method;
+    for (const char* wall : {"ends", "sides"}) p.boundaries[wall].motion = BoundaryMotion::slip;
+    for (const char* body : {"upper", "lower"}) p.boundaries[body].motion = BoundaryMotion::moving;
+    p.boundaries["upper"].prescribed.translation = {{"sin(2*pi*t)"}, {"0"}};
+    p.boundaries["lower"].prescribed.translation = {{"-sin(2*pi*t)"}, {"0"}};
+    ParticipantContext c = context();
+    c.case_folder = COUPLET_CONFIGS "/passing-cylinders";
+    Mover mover(p, c);
+    mover.initialise();
+    if (method == Method::laplacian) {
+      EXPECT_THROW(run(mover, 0, 0.25, 12), SolveFailure);
+      continue;
+    }
+    run(mover, 0, 0.75, 36);
+    EXPECT_GT(mover.state().worst[MeshState::scaled_jacobian].value, 0.002);
   }
 }
 
