@@ -281,6 +281,7 @@ StepReport FluidParticipant<D>::accept_step() {
   tell_sub_steps();
   see_given_step();
   see_motion();
+  see_ringing();
   if (statistics_ && fluid_->state().time > fluid_->parameters().statistics->start)
     statistics_->add(fluid_->state(), fluid_->pressure().get(), step_.dt);
   return {.dt = step_.dt, .iterations = effort() - before, .energy = fluid_->state().ledger.energy};

@@ -13,6 +13,7 @@
 #include "fluid_solver/boundary/openings.hpp"
 #include "fluid_solver/judge/compliance.hpp"
 #include "fluid_solver/judge/error_estimate.hpp"
+#include "fluid_solver/judge/ringing.hpp"
 #include "fluid_solver/output/output.hpp"
 #include "fluid_solver/step/fluid.hpp"
 #include "fluid_solver/step/renewal.hpp"
@@ -81,6 +82,7 @@ class FluidParticipant final : public Participant, public EstimatesError {
   void see_given_step();
   std::vector<Index> moving_faces() const;
   void see_motion();
+  void see_ringing();
   void add_motion(FluidEvidence& evidence) const;
   void doubt_given_step(double size);
 
@@ -103,6 +105,7 @@ class FluidParticipant final : public Participant, public EstimatesError {
   // Of the interface on a mesh that stands still: largest displacement over the height of the cell there.
   double displacement_ = 0, trial_displacement_ = 0;
   ComplianceWatch compliance_;
+  RingingWatch ringing_;
   std::vector<Vec3> at_start_;  // centres of moving_faces()
   long steps_ = 0, renewed_steps_ = 0;
   int told_sub_steps_ = 1;     // in the log

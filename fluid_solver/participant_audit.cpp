@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/output/derived.hpp"
 #include "fluid_solver/parameters/effect_cards.hpp"
@@ -70,6 +71,24 @@ void FluidParticipant<D>::see_motion() {
   compliance_.add(step_.dt, swept, {sums[0], sums[1]});
 }
 
+/// Of the trapezoidal rule.
+template <int D>
+void FluidParticipant<D>::see_ringing() {
+  const auto& known = fluid_->parameters().compressibility;
+  if (!known || known->scheme != WaveScheme::trapezoidal) return;
+  const double share = RingingWatch::share(mesh_, fluid_->state());
+  if (!ringing_.add(share)) return;
+  log::finding(comm_rank(mesh_.comm),
+               {.id = "ringing-pressure",
+                .number = share,
+                .limit = RingingWatch::limit,
+                .sentence = fmt::format(
+                    "t = {:.6g} s: the pressure rings: {:.2g} of it (limit {:g}) are waves of less than "
+                    "four steps a period, which the trapezoidal rule does not damp",
+                    step_.time + step_.dt, share, RingingWatch::limit),
+                .advice = "use 'scheme: three-level' in 'compressibility', or a shorter step"});
+}
+
 template <int D>
 void FluidParticipant<D>::add_motion(FluidEvidence& evidence) const {
   const ComplianceWatch::Walls mine = compliance_.walls();
@@ -116,10 +135,12 @@ std::vector<EffectVerdict> FluidParticipant<D>::audit() const {
 
 template std::vector<Index> FluidParticipant<2>::moving_faces() const;
 template void FluidParticipant<2>::see_motion();
+template void FluidParticipant<2>::see_ringing();
 template void FluidParticipant<2>::add_motion(FluidEvidence&) const;
 template std::vector<EffectVerdict> FluidParticipant<2>::audit() const;
 template std::vector<Index> FluidParticipant<3>::moving_faces() const;
 template void FluidParticipant<3>::see_motion();
+template void FluidParticipant<3>::see_ringing();
 template void FluidParticipant<3>::add_motion(FluidEvidence&) const;
 template std::vector<EffectVerdict> FluidParticipant<3>::audit() const;
 

@@ -36,6 +36,7 @@ constexpr std::array ids{
     FindingId{answer, "resolved-walls", "a turbulence model on walls that the mesh does not resolve"},
     FindingId{answer, "walls-that-move-along-themselves", "fluid crosses a moving wall on a mesh at rest"},
     FindingId{answer, "gaps-that-close", "gaps block most of the cells"},
+    FindingId{answer, "ringing-pressure", "waves that no step resolves ring in a trapezoidal rule"},
     FindingId{answer, "small-changes-of-density", "a weakly compressible fluid changes its density too much"},
     FindingId{neglected, "turbulence-model", "the mesh does not resolve layers of this Reynolds number"},
     FindingId{neglected, "compressibility", "the Mach number is high"},

@@ -97,6 +97,7 @@ std::vector<EffectChoice> choose_effects(const FluidParameters& p, const MeshFac
            mesh.dim == 2 ? "the mesh has two-dimensional cells only" : "the mesh has volumes", false},
           turbulence(p, mesh, speed),
           viscous(p, mesh, speed),
+          choose_waves(p, mesh, scene),
           mesh_motion(p, scene)};
 }
 

@@ -71,6 +71,26 @@ TEST(AutoFluid, scene_5_honey_on_small_cells_is_implicit) {
 TEST(AutoFluid, scene_6_fast_air_is_explicit) {
   EXPECT_EQ(fluid_choice(flow(10, 1.5e-5), box(2, flat, 0.01), "viscous"), "explicit");
 }
+TEST(AutoFluid, pressure_waves_by_their_time_and_by_parts_that_are_shut) {
+  auto air = flow(1, 1.8e-5);
+  air.density = 1.2;
+  EXPECT_EQ(fluid_choice(air, box(2, flat, 0.01), "compressibility"), "none, incompressible");
+  air.boundaries["inlet"].velocity[0] = {"1 + 0.1*sin(2*pi*100*t)"};
+  const ChoiceScene fine{.end_time = 1, .time_step = 5e-4};
+  EXPECT_EQ(fluid_choice(air, box(2, flat, 0.01), "compressibility", fine), "three-level");
+  EXPECT_EQ(fluid_choice(air, box(2, 0.1 * flat, 0.01), "compressibility", fine), "none, incompressible");
+  auto valve = flow(1, 1.8e-5);
+  valve.density = 1.2;
+  valve.gaps["seat"] = {{"lid", "floor"}, 0.01};
+  EXPECT_EQ(fluid_choice(valve, box(2, flat, 0.01), "compressibility"), "three-level");
+  EXPECT_EQ(fluid_choice(flow(1, 1), box(2, flat, 0.01), "compressibility"), "none, incompressible");
+  auto cavity = air;
+  cavity.boundaries.clear();
+  cavity.boundaries["lid"].type = fluid::BoundaryType::interface;
+  EXPECT_EQ(fluid_choice(cavity, box(2, flat, 0.01), "compressibility",
+                         {.end_time = 1, .time_step = 0.1, .coupled = true}),
+            "three-level");
+}
 TEST(AutoFluid, scene_7_a_flap_with_a_mover_has_a_moving_mesh) {
   auto p = flow(10, 1);
   p.boundaries["flap"].type = fluid::BoundaryType::interface;

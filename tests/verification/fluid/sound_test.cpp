@@ -6,6 +6,7 @@
 
 #include "common/base/error.hpp"
 #include "fluid_case.hpp"
+#include "fluid_solver/judge/ringing.hpp"
 #include "fluid_solver/state/state_io.hpp"
 
 namespace couplet::fluid::test {
@@ -111,6 +112,25 @@ void stays_bounded(WaveScheme scheme, int steps) {
 
 TEST_P(Pulse, in_a_closed_duct_stays_bounded_at_any_courant_number) { stays_bounded(GetParam(), 600); }
 TEST_P(Pulse, in_a_closed_duct_stays_bounded_over_ten_thousand_steps) { stays_bounded(GetParam(), 10000); }
+
+/// What a step does not resolve rings with the trapezoidal rule, and with no other.
+TEST(Sound, ringing_is_seen) {
+  const auto rings = [](WaveScheme scheme, double courant) {
+    FluidParameters p = pulse(scheme);
+    p.boundaries["xmax"] = boundary(BoundaryType::slip);
+    FluidCase<2> d(MPI_COMM_WORLD, duct(100), p);
+    RingingWatch watch;
+    bool seen = false;
+    for (int i = 0; i < 60; ++i) {
+      d.step(courant * 0.01 / c);
+      seen = watch.add(RingingWatch::share(d.mesh(), d.state())) || seen;
+    }
+    return seen;
+  };
+  EXPECT_TRUE(rings(WaveScheme::trapezoidal, 100));
+  EXPECT_FALSE(rings(WaveScheme::trapezoidal, 1));
+  EXPECT_FALSE(rings(WaveScheme::three_level, 100));
+}
 
 /// Error of the speed over 1 ms with fine cells.
 TEST(Sound, a_pulse_has_order_two_in_time) {
