@@ -84,7 +84,7 @@ void FluidParticipant<D>::see_ringing() {
                 .limit = RingingWatch::limit,
                 .sentence = fmt::format(
                     "t = {:.6g} s: the pressure rings: {:.2g} of it (limit {:g}) are waves of less than "
-                    "four steps a period, which the trapezoidal rule does not damp",
+                    "four steps per period, which the trapezoidal rule does not damp",
                     step_.time + step_.dt, share, RingingWatch::limit),
                 .advice = "use 'scheme: three-level' in 'compressibility', or a shorter step"});
 }

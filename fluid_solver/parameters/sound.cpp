@@ -85,7 +85,7 @@ void declare(config::Section& s, CompressibilityParameters& p) {
       .doc(
           "time scheme of the pressure of a weakly compressible fluid (small changes of density, any acoustic Courant "
           "number); three-level: damps what a step does not resolve; trapezoidal: a fifth of its error, damps nothing "
-          "(a finding says when it rings); "
+          "(a finding reports when it rings); "
           "none: incompressible, and judged by the other keys");
   s.value("mean-time", p.mean_time)
       .unit("s")

@@ -8,7 +8,7 @@ SOUND, GAPS = "verification_fluid_sound", "verification_fluid_gaps"
 
 
 def at_most(limit, test, key, program=SOUND, unit="%", what=""):
-    """The largest of the recorded errors against a limit, both as numbers; said in percent or as they are."""
+    """The largest of the recorded errors against a limit, both as numbers; shown in percent or as they are."""
     def measure(job):
         values, passed = job.recorded(program, test, key)
         worst = max(abs(v) for v in values)
