@@ -9,6 +9,7 @@
 #include "common/base/text.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
+#include "coupler/exchange/foreign_structure.hpp"
 #include "coupler/exchange/role_checks.hpp"
 #include "coupler/judge/places.hpp"
 #include "coupler/judge/surfaces.hpp"
@@ -46,6 +47,9 @@ Coupler::Coupler(MPI_Comm comm, const CouplingParameters& parameters, const Simu
     Partner& partner = partners_.emplace_back();
     partner.channel = std::move(*found);
     partner.sub_steps = schedule_.sub_steps_of(name);
+    if (const auto& structure = parameters.structure;
+        structure && structure->participant == name && structure->foreign())
+      partner.channel = std::make_unique<ForeignStructure>(std::move(partner.channel), *structure);
   }
   for (const std::string& name : schedule_.group) group_.push_back(index_of(name));
   given_.resize(partners_.size());
@@ -56,7 +60,8 @@ namespace {
 
 CouplingParameters with_roles(CouplingParameters p, const CouplerChannels& c) {
   p.fluid = {c.fluid->name()};
-  p.structure = {c.structure->name()};
+  if (!p.structure) p.structure.emplace();
+  p.structure->participant = c.structure->name();
   if (c.mesh) p.mesh = {c.mesh->name()};
   return p;
 }
@@ -90,6 +95,9 @@ std::vector<Partner*> Coupler::everyone() {
 void Coupler::initialise() {
   enter_(Phase::initialise, {});
   std::vector<Interface> interfaces = initialise_all(everyone());
+  for (std::size_t i = 0; i < partners_.size(); ++i)
+    if (auto* foreign = dynamic_cast<ForeignStructure*>(partners_[i].channel.get()))
+      foreign->adapt(interfaces[i], partners_[i].surfaces, interfaces);
   for (std::size_t i = 0; i < partners_.size(); ++i)
     sides_.emplace_back(comm_, partners_[i].name(), std::move(interfaces[i])).surfaces =
         std::move(partners_[i].surfaces);

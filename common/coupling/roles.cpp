@@ -19,12 +19,15 @@ bool meets(const Demand& demand, const Datum& datum) {
   // A vector may be announced by the number of its components, too; whether it is the right one the links know.
   const bool fits = demand.any_size || datum.components != 1;
   return fits && (demand.name.empty() || demand.name == datum.name) &&
-         std::ranges::find(demand.units, datum.unit) != demand.units.end() && demand.place == datum.place;
+         std::ranges::find(demand.units, datum.unit) != demand.units.end() &&
+         (demand.any_place || demand.place == datum.place);
 }
 
 std::string text(const Demand& demand) {
   return fmt::format("{} [{}] at {}", demand.what, join(demand.units, " or "),
-                     demand.place == Place::vertices ? "vertices" : "faces");
+                     demand.any_place                  ? "faces or vertices"
+                     : demand.place == Place::vertices ? "vertices"
+                                                       : "faces");
 }
 
 std::string text(const std::vector<Demand>& demands) {
@@ -53,7 +56,7 @@ const Demand* unmet(const std::vector<Demand>& demands, const std::vector<Datum>
 const std::vector<RoleContract>& role_contracts() {
   static const std::vector<RoleContract> contracts{
       {"fluid", {displacement}, {{"load", "", {"N"}, Place::faces}}},
-      {"structure", {{"load", "", {"N", "Pa"}, Place::faces, true}}, {displacement, velocity}},
+      {"structure", {{"load", "", {"N", "Pa"}, Place::faces, true, true}}, {displacement, velocity}},
       {"mesh", {displacement}, {}, true}};
   return contracts;
 }

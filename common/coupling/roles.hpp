@@ -14,7 +14,8 @@ struct Demand {
   std::string name;  ///< empty: any datum of one of the units
   std::vector<std::string> units;
   Interface::Place place;
-  bool any_size = false;  ///< else a vector, a value for each dimension
+  bool any_size = false;   ///< else a vector, a value for each dimension
+  bool any_place = false;  ///< at vertices, too
 };
 
 /// What a role of a coupling asks of whoever plays it: what it takes from the coupler and what it gives to it.

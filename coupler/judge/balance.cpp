@@ -10,7 +10,10 @@
 namespace couplet {
 
 Balancing::Balancing(MPI_Comm comm, const Side& side)
-    : comm_(comm), dim_(side.interface.dim), centres_(side.interface.face_centres) {
+    : comm_(comm),
+      dim_(side.interface.dim),
+      centres_(side.interface.face_centres),
+      vertices_(side.interface.vertices) {
   const Interface& i = side.interface;
   knows_work_ = sum(comm, GlobalIndex(i.face_vertices.size())) > 0;
   if (!knows_work_) return;
@@ -28,17 +31,18 @@ Balance Balancing::operator()(const Exchange& data, const std::vector<Interface:
   if (knows_work_) moved = to_faces_.apply(increment, dim_);
   for (const auto& datum : of) {
     const auto found = data.find(datum.name);
-    if (found == data.end() || datum.place != Interface::Place::faces || datum.unit != "N" ||
-        datum.size(dim_) != dim_)
-      continue;
-    for (std::size_t f = 0; f < centres_.size(); ++f) {
+    if (found == data.end() || datum.unit != "N" || datum.size(dim_) != dim_) continue;
+    const bool at_faces = datum.place == Interface::Place::faces;
+    const std::vector<Vec3>& places = at_faces ? centres_ : vertices_;
+    const std::vector<double>& way = at_faces ? moved : increment;
+    for (std::size_t f = 0; f < places.size(); ++f) {
       Vec3 force = Vec3::Zero();
       for (int c = 0; c < dim_; ++c) {
         force[c] = found->second[f * std::size_t(dim_) + std::size_t(c)];
-        if (!moved.empty()) b.work += force[c] * moved[f * std::size_t(dim_) + std::size_t(c)];
+        if (!way.empty()) b.work += force[c] * way[f * std::size_t(dim_) + std::size_t(c)];
       }
       b.force += force;
-      b.moment += centres_[f].cross(force);
+      b.moment += places[f].cross(force);
     }
   }
   double sums[7] = {b.force.x(), b.force.y(), b.force.z(), b.moment.x(), b.moment.y(), b.moment.z(), b.work};

@@ -13,13 +13,13 @@ struct Balance {
   double work = 0;             ///< over the step [J]
 };
 
-/// Sums the forces (data in N at faces) of one side and the work they do along the way of the faces, which is
-/// the mean of their vertices'.
+/// Sums the forces (data in N at faces or vertices) of one side and the work they do along the way of the vertices, or
+/// of the faces, which is the mean of their vertices'.
 class Balancing {
  public:
   /// Throws Error if a face names a vertex that there is not. Collective.
   Balancing(MPI_Comm comm, const Side& side);
-  /// False if the side does not say which vertices its faces have: there is no work then.
+  /// False if the side does not say which vertices its faces have: there is no work of forces at faces then.
   bool knows_work() const { return knows_work_; }
   /// `data`: this rank's values of `of`; `increment`: dim values at each of its vertices, the way of the step
   /// [m]. The same on all ranks. Collective.
@@ -29,7 +29,7 @@ class Balancing {
  private:
   MPI_Comm comm_;
   int dim_;
-  std::vector<Vec3> centres_;
+  std::vector<Vec3> centres_, vertices_;
   bool knows_work_ = false;
   Transfer to_faces_;  // means over the faces
 };

@@ -15,10 +15,11 @@ Mechanics::Mechanics(MPI_Comm comm, const std::vector<Side>& sides, const Links&
     std::vector<Interface::Datum> loads;
     bool gives = false;
     for (const auto& link : links.all()) {
-      const Interface::Datum& d = link.datum;
+      Interface::Datum d = link.datum;
       if (d.unit != "N" || d.place != Interface::Place::faces || (link.giver != s && link.taker != s))
         continue;
       gives = link.giver == s;
+      if (!gives) d.place = link.to;
       if (std::ranges::find(loads, d.name, &Interface::Datum::name) == loads.end()) loads.push_back(d);
     }
     const Interface& interface = sides[s].interface;
@@ -26,7 +27,9 @@ Mechanics::Mechanics(MPI_Comm comm, const std::vector<Side>& sides, const Links&
     members_.push_back({s, gives, Balancing(comm, sides[s]), loads});
     walls_.emplace_back(interface.vertices.size() * std::size_t(interface.dim), 0.);
     dim_ = interface.dim;
-    knows_work_ = knows_work_ && members_.back().balancing.knows_work();
+    const bool by_vertex =
+        std::ranges::all_of(loads, [](const auto& d) { return d.place == Interface::Place::vertices; });
+    knows_work_ = knows_work_ && (by_vertex || members_.back().balancing.knows_work());
   }
 }
 

@@ -133,6 +133,7 @@ Surroundings::Surroundings(MPI_Comm comm, const Interface& part) : comm_(comm), 
   };
   vertex_starts_ = cut(part.vertices.size()), face_starts_ = cut(part.face_centres.size());
   has_corners_ =
+      face_starts_.back() > 0 &&
       !any(comm, part.face_offset.size() != part.face_centres.size() + 1 && !part.face_centres.empty());
 }
 

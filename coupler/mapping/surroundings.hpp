@@ -34,7 +34,7 @@ class Surroundings {
  public:
   /// `part`: this rank's part, corners by position in the list of vertices. It must outlive this.
   Surroundings(MPI_Comm comm, const Interface& part);
-  bool has_corners() const { return has_corners_; }  ///< on all ranks
+  bool has_corners() const { return has_corners_; }  ///< on all ranks; false where there are no faces
   PointSet vertices() const;                         ///< this rank's
   PointSet faces() const;
   /// These faces (positions, ascending) with the vertices that they need.

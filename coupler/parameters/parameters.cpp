@@ -201,8 +201,18 @@ void declare(config::Section& section, CouplingParameters& p) {
           "pressure and structure iterated; implicit: everything iterated");
   declare_role(section, "fluid", p.fluid,
                "participant that receives the interface motion and gives the load");
-  declare_role(
-      section, "structure", p.structure,
+  section.optional_section<CouplingParameters::Structure>(
+      "structure", p.structure,
+      [](config::Section& s, CouplingParameters::Structure& r) {
+        s.value("participant", r.participant).required().doc("its name under `participants`");
+        s.value("displacement", r.displacement)
+            .doc(
+                "what its program calls its displacement (m, or without a unit) at vertices; a velocity that it does "
+                "not give follows by differences of second order");
+        s.value("load", r.load)
+            .doc(
+                "what its program calls its load (N): the sum of all forces; absent: each force by its own name");
+      },
       "participant that receives the load and gives the interface motion; absent with `mesh`: bodies move as the "
       "mesh mover's boundaries prescribe (type: moving), nothing is iterated");
   declare_role(section, "mesh", p.mesh,

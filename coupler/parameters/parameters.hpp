@@ -50,7 +50,13 @@ struct CouplingParameters {
   struct Role {
     std::string participant;
   };
-  std::optional<Role> fluid, structure, mesh;
+  struct Structure : Role {
+    std::string displacement = "displacement",
+                load;  // as its program calls them; load: the sum of all forces
+    bool foreign() const { return displacement != "displacement" || !load.empty(); }
+  };
+  std::optional<Role> fluid, mesh;
+  std::optional<Structure> structure;
   using Exchange = ExchangeParameters;
   std::optional<Exchange> exchange;
   AccelerationParameters acceleration;

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of programs on preCICE's interface: own ones by the tests, those of others as they were fetched (parts/precice/programs.py)."""
+"""Bars of programs on preCICE's interface: own ones by the tests, those of others as they were fetched (parts/precice)."""
 from validation.job import Bar
-from validation.parts.precice import programs
+from validation.parts.precice import adapters, programs
 from validation.parts.trust.runs import tests
 
 OWN = [
@@ -17,5 +17,5 @@ OWN = [
     Bar("wrong calls, an error that nobody catches, a program that leaves early", "each named; the job ends", tests("^precice_wrong$")),
     Bar("couplet import: a good configuration and bad ones", "a valid case; each bad one refused with its line", tests("^precice_import$")),
 ]
-BARS = [*OWN, *programs.BARS]
+BARS = [*OWN, *programs.BARS, *adapters.BARS]
 SOURCES = ("client", "coupler", "common/coupling", "tests/coupling/precice", "scripts/validation/parts/precice")

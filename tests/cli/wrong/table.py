@@ -324,7 +324,7 @@ case.yaml:35:1: coupling.structure: 'structure' is missing; a coupling has 'flui
 case.yaml:26:3: participants.mover: this participant has no role in `coupling` (fluid, structure, mesh or exchange): assign one, or remove the participant.
 """, ("  mesh: {participant: mover}\n", "")),
     coupler("one participant in two roles", """
-case.yaml:38:15: coupling.structure.participant: 'fluid' is run by fluid_solver, which cannot be the structure: the role 'structure' takes a load [N or Pa] at faces and gives 'displacement' [m] at vertices and 'velocity' [m/s] at vertices; it takes no load [N or Pa] at faces (it takes 'displacement' [m] at vertices, 'velocity' [m/s] at vertices and gives 'pressure-force' [N] at faces, 'viscous-force' [N] at faces). In this case 'solid' (solid_solver) can.
+case.yaml:38:15: coupling.structure.participant: 'fluid' is run by fluid_solver, which cannot be the structure: the role 'structure' takes a load [N or Pa] at faces or vertices and gives 'displacement' [m] at vertices and 'velocity' [m/s] at vertices; it takes no load [N or Pa] at faces or vertices (it takes 'displacement' [m] at vertices, 'velocity' [m/s] at vertices and gives 'pressure-force' [N] at faces, 'viscous-force' [N] at faces). In this case 'solid' (solid_solver) can.
 case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure, mesh or exchange): assign one, or remove the participant.
 case.yaml:38:3: coupling.structure: fluid and structure must be two different participants.
 """, ("structure: {participant: solid}", "structure: {participant: fluid}")),

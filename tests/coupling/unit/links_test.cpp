@@ -147,7 +147,7 @@ TEST(Roles, a_structure_that_does_not_move_and_other_dimensions_are_refused) {
       message([&] {
         check_roles(p, {side("fluid", fluid()), side("solid", s)});
       }),
-      "'solid' cannot be the structure (`coupling.structure`): the role 'structure' takes a load [N or Pa] at faces "
+      "'solid' cannot be the structure (`coupling.structure`): the role 'structure' takes a load [N or Pa] at faces or vertices "
       "and gives 'displacement' [m] at vertices and 'velocity' [m/s] at vertices; it gives no 'velocity' [m/s] at "
       "vertices (it takes 'pressure-force' [N] at faces, 'viscous-force' [N] at faces and gives 'displacement' [m] at "
       "vertices).");

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/coupling/channel.hpp"
+#include "coupler/parameters/parameters.hpp"
+
+namespace couplet {
+
+/// The channel to a structure that calls its data otherwise, and gives no velocity: a program on preCICE's
+/// interface. Its displacement [m] goes on by the coupler's name, its load is the sum of all forces [N] of the
+/// others, and its velocity [m/s] is the difference of second order through the displacements at t^{n+1}, t^n and
+/// t^{n-1} (of first order in the first step; before it the structure is at rest).
+class ForeignStructure final : public Channel {
+ public:
+  ForeignStructure(std::unique_ptr<Channel> channel, CouplingParameters::Structure names)
+      : channel_(std::move(channel)), names_(std::move(names)) {}
+
+  /// Brings the announced surface into the coupler's words. `all`: of every participant, for the forces that
+  /// they give. Throws Error where a name is not announced, or not in metres at vertices or in newtons.
+  void adapt(Interface& own, Surfaces& surfaces, const std::vector<Interface>& all);
+
+  const std::string& name() const override { return channel_->name(); }
+  /// Throws Error on load: earlier displacements are not kept over a restart.
+  void send(const Command& command) override;
+  Reply receive() override;
+  double waiting_seconds() const override { return channel_->waiting_seconds(); }
+
+ private:
+  void adapt_displacement(Interface& own, Surfaces& surfaces);
+  void adapt_load(Interface& own, Surfaces& surfaces, const std::vector<Interface>& all);
+  std::vector<double> velocity() const;
+
+  std::unique_ptr<Channel> channel_;
+  CouplingParameters::Structure names_;
+  std::vector<std::string> forces_;         // whose sum is the load
+  std::vector<double> next_, now_, older_;  // displacements [m]; empty: not known, as before the start
+  double dt_ = 0, old_dt_ = 0;              // of the step under way and the one before [s]
+};
+
+}  // namespace couplet

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// A structure with vertices alone, names of its own and no velocity, as a program on preCICE's interface.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "common/base/error.hpp"
+#include "common/log/log.hpp"
+#include "coupler/coupler.hpp"
+#include "coupler/judge/balance.hpp"
+
+namespace couplet {
+namespace {
+
+namespace fs = std::filesystem;
+using Place = Interface::Place;
+
+class Quiet : public Participant {
+ public:
+  void begin_step(const Step& step) override { step_ = step; }
+  StepReport accept_step() override { return {.dt = step_.dt}; }
+  void save(CheckpointWriter&) const override {}
+  void load(CheckpointReader&) override {}
+  void write_output(double, int) override {}
+  void write_monitors(double) override {}
+
+ protected:
+  Step step_;
+};
+
+/// Moves by 3 t^2 whatever its load, which it remembers.
+class Shaker final : public Quiet {
+ public:
+  Interface initialise() override {
+    Interface line{2, {}, {}, {}, {{"Push", "N", Place::vertices}}, {{"Way", unit, Place::vertices}}};
+    for (int i = 0; i < 12; ++i) line.vertices.emplace_back(i / 11., 0, 0);
+    return line;
+  }
+  Exchange solve(const Exchange& in) override {
+    if (in.contains("Push")) load = in.at("Push");
+    EXPECT_FALSE(in.contains("pressure-force") || in.contains("viscous-force"));
+    const double t = step_.time + step_.dt;
+    std::vector<double> way(24, 0.);
+    for (int i = 0; i < 12; ++i) way[std::size_t(2 * i + 1)] = 3 * t * t;
+    return {{"Way", way}};
+  }
+  std::vector<double> load;
+  std::string unit = "1";
+};
+
+class Wind final : public Quiet {
+ public:
+  Interface initialise() override {
+    Interface line{2,
+                   {},
+                   {},
+                   {},
+                   {{"displacement", "m", Place::vertices}, {"velocity", "m/s", Place::vertices}},
+                   {{"pressure-force", "N", Place::faces}, {"viscous-force", "N", Place::faces}}};
+    for (int i = 0; i < 6; ++i) {
+      line.vertices.emplace_back(i / 5., 0, 0);
+      line.face_offset.push_back(2 * i);
+      if (i == 0) continue;
+      line.face_centres.emplace_back((i - 0.5) / 5, 0, 0);
+      line.face_areas.emplace_back(0, 0.2, 0);
+      line.face_vertices.insert(line.face_vertices.end(), {Index(i - 1), Index(i)});
+    }
+    return line;
+  }
+  Exchange solve(const Exchange&) override {
+    return {{"pressure-force", {0, 1, 0, 2, 0, 3, 0, 4, 0, 5}},
+            {"viscous-force", std::vector<double>(10, 0.5)}};
+  }
+};
+
+struct Shaken {
+  CouplingParameters coupling;
+  SimulationParameters simulation;
+  Shaker shaker;
+  Wind wind;
+  fs::path folder = fs::temp_directory_path() / ("couplet-foreign-" + std::to_string(::getpid()));
+  std::vector<double> way, velocity;
+
+  Shaken() {
+    spdlog::set_level(spdlog::level::off);
+    coupling.scheme = Scheme::implicit;
+    coupling.mapping.type = MappingParameters::Type::rbf;
+    coupling.structure.emplace();
+    coupling.structure->displacement = "Way", coupling.structure->load = "Push";
+    simulation.end_time = 0.97;
+    simulation.time_step = 0.05;
+  }
+  ~Shaken() { fs::remove_all(folder); }
+  std::string operator()() {
+    fs::create_directories(folder);
+    Coupler coupler(coupling, simulation,
+                    {std::make_unique<LocalChannel>("fluid", wind),
+                     std::make_unique<LocalChannel>("solid", shaker), nullptr},
+                    {folder, folder / "checkpoints", {}});
+    std::string problem = coupler.run();
+    way = coupler.given_by("solid").at("displacement"), velocity = coupler.given_by("solid").at("velocity");
+    return problem;
+  }
+  std::string error() {
+    try {
+      (*this)();
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  }
+};
+
+TEST(ForeignStructure, its_displacement_goes_on_with_a_velocity_of_second_order_in_steps_of_any_length) {
+  Shaken run;
+  EXPECT_EQ(run(), "");
+  for (std::size_t i = 1; i < 24; i += 2) {
+    EXPECT_NEAR(run.way[i], 3 * 0.97 * 0.97, 1e-12);
+    EXPECT_NEAR(run.velocity[i], 6 * 0.97, 1e-10);  // a parabola exactly, after a last step of 0.02 s
+  }
+  run.simulation.end_time = 0.05;
+  EXPECT_EQ(run(), "");
+  EXPECT_NEAR(run.velocity[1], 3 * 0.05, 1e-12);  // of first order in the first step
+}
+
+TEST(ForeignStructure, takes_the_sum_of_all_forces_at_its_vertices_with_its_moment) {
+  Shaken run;
+  EXPECT_EQ(run(), "");
+  double along = 0, across = 0, moment = 0;
+  for (std::size_t i = 0; i < 12; ++i) {
+    along += run.shaker.load[2 * i], across += run.shaker.load[2 * i + 1];
+    moment += double(i) / 11 * run.shaker.load[2 * i + 1];
+  }
+  EXPECT_NEAR(along, 2.5, 1e-12);
+  EXPECT_NEAR(across, 15 + 2.5, 1e-12);
+  EXPECT_NEAR(moment, 0.1 * (1.5 + 3 * 2.5 + 5 * 3.5 + 7 * 4.5 + 9 * 5.5), 1e-12);
+}
+
+TEST(ForeignStructure, data_that_it_does_not_announce_are_named) {
+  Shaken run;
+  run.coupling.structure->displacement = "Weg";
+  EXPECT_EQ(
+      run.error(),
+      "coupling.structure.displacement: 'solid' gives no vector 'Weg' [m, or without a unit] at vertices. It gives: "
+      "'Way' [1] at vertices.");
+  run.coupling.structure->displacement = "Way", run.coupling.structure->load = "Pull";
+  EXPECT_EQ(run.error(),
+            "coupling.structure.load: 'solid' takes no force 'Pull' [N]. It takes: 'Push' [N] at vertices.");
+  run.coupling.structure->load = "Push", run.shaker.unit = "mm";
+  EXPECT_THAT(run.error(), testing::HasSubstr("'Way' [mm] at vertices"));
+}
+
+TEST(Balancing, forces_at_vertices_have_a_sum_a_moment_and_work) {
+  const Side side(MPI_COMM_SELF, "solid", {2, {{1, 0, 0}, {3, 0, 0}}, {}, {}, {}, {}});
+  const Balance b = Balancing(MPI_COMM_SELF, side)({{"Push", {0, 2, 1, 5}}}, {{"Push", "N", Place::vertices}},
+                                                   {0.5, 0.1, 0.2, 0.3});
+  EXPECT_EQ(b.force, Vec3(1, 7, 0));
+  EXPECT_EQ(b.moment, Vec3(0, 0, 17));
+  EXPECT_DOUBLE_EQ(b.work, 0.2 + 0.2 + 1.5);
+}
+
+}  // namespace
+}  // namespace couplet
