@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Adapters of preCICE in solvers of others, unchanged, beside programs of this project. COUPLET_PRECICE_CALCULIX names ccx_preCICE, which was built
-from the adapter and CalculiX against build/precice; COUPLET_PRECICE_TUTORIALS the tutorials. Without them the rows report that."""
+from the adapter and CalculiX against build/precice; COUPLET_PRECICE_TUTORIALS the tutorials; COUPLET_PRECICE_NUTILS
+the folders of nutils 7, treelog and stringly for PYTHONPATH. Without them the rows report that."""
 import os
 import pathlib
 import re
 import shutil
 
+import numpy as np
+
 from validation.job import Bar
-from validation.parts.precice.programs import NOTE, commit_of, folder
+from validation.parts.precice.programs import NOTE, commit_of, coupled, folder, passes
 
 PUBLISHED = {"first": (0.198, 0.74), "second": (0.184, 2.36)}  # OpenFOAM and CalculiX: tip of the flap [m] at [s], read off the tutorial's plot to 0.002 m
 TIP = 489  # the node at (0, 1) in solid-calculix/all.msh
@@ -74,7 +77,32 @@ def calculix(job):
     return f"{text}: {100 * off:.1f} % off; {len(rows)} steps, {passes:.2f} passes per step{commit_of(source, job)}", len(rows) == 250 and off < 0.02
 
 
+def values(vtk, name):
+    """A scalar field of a binary VTK file."""
+    data = vtk.read_bytes()
+    count = int(re.search(rb"POINT_DATA (\d+)", data)[1])
+    kind = re.search(rb"SCALARS " + name + rb" (\w+) 1\nLOOKUP_TABLE default\n", data)
+    return np.frombuffer(data, {b"double": ">f8", b"float": ">f4"}[kind[1]], count, kind.end())
+
+
+def heat(job):
+    source, libraries = folder("COUPLET_PRECICE_TUTORIALS"), os.environ.get("COUPLET_PRECICE_NUTILS")
+    if source is None or not libraries:
+        return NOTE.format("COUPLET_PRECICE_TUTORIALS" if source is None else "COUPLET_PRECICE_NUTILS"), None
+    where = job.scratch / "heat"
+    shutil.copytree(source / "partitioned-heat-conduction", where)
+    sides = "Dirichlet", "Neumann"
+    words = [f"cd {where}/{side.lower()}-nutils && PYTHONPATH=$PYTHONPATH:{libraries} NUTILS_RICHOUTPUT=no exec /usr/bin/python3 heat.py > {where}/{side}.txt" for side in sides]
+    said = coupled(job, where, where / "precice-config.xml", words)
+    errors = []
+    for side in sides:
+        last = max((where / f"{side.lower()}-nutils").glob(f"{side}-*.vtk"), key=lambda f: f.stat().st_mtime_ns)
+        errors.append(float(np.abs(values(last, b"Temperature") - values(last, b"reference")).max()))
+    return f"largest errors {errors[0]:.2e} and {errors[1]:.2e} of 2.2 to 9.2, {passes(said):.1f} passes per step (nutils 7; the tutorial's FEniCS 2019 is not in Debian, DOLFINx 0.5 is)", None
+
+
 BARS = [
+    Bar("partitioned-heat-conduction of the tutorials, nutils on both sides, unchanged: temperature at 1 s against the exact one", "reported", heat, long=True),
     Bar("perpendicular-flap of the tutorials: CalculiX 2.20 with preCICE's adapter, unchanged, on our fluid: maxima of the tip",
         "0.198 m at 0.74 s, 0.184 m at 2.36 s (OpenFOAM and CalculiX, plot read to 0.002 m) within 2 %", calculix, long=True),
 ]
