@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What pressure waves change in the pressure equation.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "common/parallel/collective.hpp"
@@ -54,8 +55,9 @@ std::array<double, 3> PressureProjection<D>::matrix_rule() const {
 template <int D>
 double PressureProjection<D>::add_waves() {
   if (absorbing_) absorbing_->add_to(b_);
-  const double changed = compression_->add_to(b_);
-  if (upstream_) upstream_->add_to(b_);
+  double changed = compression_->add_to(b_);
+  // Of a fluid at rest the volume's pressure may be all that there is.
+  if (upstream_) changed = std::hypot(changed, upstream_->add_to(b_));
   return stores() ? changed : -1;
 }
 

@@ -2,6 +2,7 @@
 #include "fluid_solver/pressure/upstream_volume.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "common/parallel/collective.hpp"
@@ -75,7 +76,7 @@ void UpstreamVolume<D>::foresee() {
 }
 
 template <int D>
-void UpstreamVolume<D>::add_to(std::vector<double>& b_side) {
+double UpstreamVolume<D>::add_to(std::vector<double>& b_side) {
   const Placement<D>& at = *k_.step.to;
   const double factor = k_.step.dt / k_.rho;
   double flux = 0;  // into the volume, but for what its pressure drives
@@ -89,12 +90,16 @@ void UpstreamVolume<D>::add_to(std::vector<double>& b_side) {
   const double open = faces_ - answer_;
   if (rate_ > 0 || open > least_answer * faces_)
     pressure_ = (stiffness_ * flux - past_) / (rate_ + stiffness_ * factor * open);
+  const double change = pressure_ - (k_.by.pressure[0] ? k_.by.pressure[0]->upstream : 0);
+  double square = 0;
   for (const auto& [first, count] : k_.boundary.upstream_patches())
     for (Index b = first; b < first + count; ++b) {
       const Index f = k_.mesh.n_interior + b;
       k_.p_boundary[b] = pressure_;
       b_side[k_.mesh.owner[f]] += at.conductance[f] * pressure_;
+      square += std::pow(at.conductance[f] * change, 2);
     }
+  return std::sqrt(sum(k_.mesh.comm, square));
 }
 
 template <int D>

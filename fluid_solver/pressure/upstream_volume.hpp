@@ -23,8 +23,9 @@ class UpstreamVolume {
   void prepare(const State<D>& from, double rate);
   /// No pressure at its faces as long as it is not known.
   void foresee();
-  /// Its pressure, onto its faces and into b, per owned cell, which lacks them. Collective.
-  void add_to(std::vector<double>& b);
+  /// Its pressure, onto its faces and into b, per owned cell, which lacks them. Gives the size of what its change
+  /// puts into b. Collective.
+  double add_to(std::vector<double>& b);
   /// At the pressure of its faces. Collective.
   void start(const Placement<D>& at, PressureLevel<D>& level) const;
   void complete(PressureLevel<D>& level) const;
