@@ -180,7 +180,7 @@ def noise(number, place, token):
     for _ in range(number):
         data = bytearray(good)
         for _ in range(generator.randrange(1, 6)):
-            kind, at = generator.randrange(4), generator.randrange(13, len(data) - 1)
+            kind, at = generator.randrange(4), generator.randrange(min(13, len(data) - 1), len(data))
             if kind == 0:
                 data[at] ^= 1 << generator.randrange(8)
             elif kind == 1:
