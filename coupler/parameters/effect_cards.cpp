@@ -61,7 +61,7 @@ const std::array cards{
         [](const P& p) { return when(p.scheme == Scheme::semi_implicit, "scheme: semi-implicit"); },
         {"a pressure solve and a structure step per pass; mesh motion and predictor once per step", 0, 0},
         "explicit: share of a change of the motion that the next pass returns, 0.5 (predictor of order 2: "
-        "0.17); two additional passes in steps 4, 16, 64, ...",
+        "0.17); two additional passes in the second step and in steps 4, 16, 64, ...",
         judge_one_pass},
     CouplingCard{"friction of the current wall velocity",
                  "`scheme: semi-implicit`, implicit viscous term",

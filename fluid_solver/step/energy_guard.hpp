@@ -33,7 +33,8 @@ struct EnergyJudgement {
   bool out_of_bounds = false;  ///< more was gained than any work and the scheme's error explain
 };
 
-/// Closes the kinetic energy (of a compressible fluid with the elastic one, see elastic()) of each sub-step against the work that boundaries and forces can have done:
+/// Closes the kinetic energy of each sub-step (of a compressible fluid with the elastic one, see elastic()) against
+/// the work that boundaries and forces can have done:
 ///   E^{n+1} - E^n <= dt sum_b [ -(p_b - p_ref) phi - phi' (s u_b.u_P - |u_P|^2/2) rho
 ///                               + mu g |u_b| |u_b - u_P| ] + dt sum rho V f.u,
 /// phi' relative to the mesh, s the backflow's share.

@@ -280,8 +280,8 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
     const double end = last ? dt_ : done + dt;
     SubStep<D> sub_step = make_sub_step(dt, end, points);
     last_w_ = wall_velocity_at(end, wall_velocity, sub_step);
-    if (history_.start ==
-        Start::after_impulse) {  // the pressure of a compressible fluid is no impulse, but its state
+    if (history_.start == Start::after_impulse) {
+      // The pressure of a compressible fluid is no impulse, but its state.
       if (!parameters_.is_compressible()) history_.pressure = {};
       history_.start = Start::flowing;
     }

@@ -13,7 +13,7 @@ from couplet.atlas import atlas  # noqa: E402
 from couplet.atlas.main import MAPS  # noqa: E402
 
 
-class Stub(atlas.Runner):
+class Recorder(atlas.Runner):
     """Starts nothing; what it would start is looked at."""
     started = 0
 
@@ -29,7 +29,7 @@ class Stub(atlas.Runner):
 with tempfile.TemporaryDirectory(prefix="couplet-atlas-") as scratch:
     for one in MAPS:
         for panel in one.panels:
-            runner = Stub(ROOT / "build", scratch + "/" + one.name + str(one.panels.index(panel)))
+            runner = Recorder(ROOT / "build", scratch + "/" + one.name + str(one.panels.index(panel)))
             try:
                 one.run(panel, one.x.values[0], one.y.values[0], runner)
                 problem = ""

@@ -120,36 +120,33 @@ def same():
                 check("the address is taken away", not (pathlib.Path(folder) / "body.relay").exists())
 
 
+def killed(body, who):
+    """After the first step the job or its participant is killed: exit code of the other, what it said, and how long it took [s]."""
+    with tempfile.TemporaryDirectory() as folder:
+        processes = {"job": job(folder, relay(), "simulation.end-time=100"), "participant": participant(folder, body)}
+        while len(steps(folder)) < 1 and processes["participant"].poll() is None:
+            time.sleep(0.02)
+        victim = processes.pop(who)
+        os.killpg(victim.pid, signal.SIGKILL)
+        begin = time.monotonic()
+        code, said = end(*processes.values(), 30)
+        took = time.monotonic() - begin
+        victim.communicate()
+        return code, said, took
+
+
 def lost():
-    long = ["simulation.end-time=100"]
     for language, body in bodies.items():
-        with tempfile.TemporaryDirectory() as folder:
-            whole, guest = job(folder, relay(), *long), participant(folder, body)
-            while len(steps(folder)) < 1 and guest.poll() is None:
-                time.sleep(0.02)
-            os.killpg(guest.pid, signal.SIGKILL)
-            begin = time.monotonic()
-            code, said = end(whole, 30)
-            took = time.monotonic() - begin
-            check(f"{language} killed: the job ends within 5 s", code not in (0, None) and took < 5 * slower, f"{code}, {took:.1f} s")
-            check("and names who is lost", "relay of 'body': the participant is lost" in said, said[-300:])
-        with tempfile.TemporaryDirectory() as folder:
-            whole, guest = job(folder, relay(), *long), participant(folder, body)
-            while len(steps(folder)) < 1 and guest.poll() is None:
-                time.sleep(0.02)
-            os.killpg(whole.pid, signal.SIGKILL)
-            begin = time.monotonic()
-            code, said = end(guest, 30)
-            took = time.monotonic() - begin
-            check(f"job killed: the {language} participant ends within 5 s", code not in (0, None) and took < 5 * slower, f"{code}, {took:.1f} s")
-            check("and says why", "the connection was closed" in said or "sending failed" in said, said[-300:])
-            whole.communicate()
+        for who, reasons in (("participant", ["relay of 'body': the participant is lost"]), ("job", ["the connection was closed", "sending failed"])):
+            code, said, took = killed(body, who)
+            check(f"{language}, {who} killed: the other side ends within 5 s", code not in (0, None) and took < 5 * slower, f"{code}, {took:.1f} s")
+            check("and reports why", any(reason in said for reason in reasons), said[-300:])
     if "python" in bodies:
         with tempfile.TemporaryDirectory() as folder:
             broken = pathlib.Path(folder) / "broken.py"
             text = bodies["python"][1].read_text()
             broken.write_text(text.replace('if event == "solve":', 'if event == "solve":\n            1 / 0', 1))
-            whole, guest = job(folder, relay(), *long), participant(folder, ["/usr/bin/python3", broken])
+            whole, guest = job(folder, relay(), "simulation.end-time=100"), participant(folder, ["/usr/bin/python3", broken])
             (code, _), (job_code, said) = end(guest), end(whole, 30)
             check("a participant that fails takes the job along", code != 0 and job_code not in (0, None), f"{code} {job_code}")
             check("with its reason", "participant 'body' ended before the job was over" in said, said[-300:])

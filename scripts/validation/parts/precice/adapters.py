@@ -104,5 +104,6 @@ def heat(job):
 BARS = [
     Bar("partitioned-heat-conduction of the tutorials, nutils on both sides, unchanged: temperature at 1 s against the exact one", "reported", heat, long=True),
     Bar("perpendicular-flap of the tutorials: CalculiX 2.20 with preCICE's adapter, unchanged, on our fluid: maxima of the tip",
-        "0.198 m at 0.74 s, 0.184 m at 2.36 s (OpenFOAM and CalculiX, plot read to 0.002 m) within 2 %", calculix, long=True),
+        "0.198 m at 0.74 s, 0.184 m at 2.36 s (OpenFOAM and CalculiX, plot read to 0.002 m) within 2 %", calculix, long=True,
+        but="2.5 s of the tutorial's 5; the fluid's side is our own case: its mesh, semi-implicit scheme, limit 1e-4 and mapping rbf; the sizes of the maxima are judged, not their times"),
 ]
