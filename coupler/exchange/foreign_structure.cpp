@@ -47,7 +47,8 @@ void ForeignStructure::adapt_displacement(Interface& own, Surfaces& surfaces) {
            fmt::format("vector '{}' [m, or without a unit] at vertices", names_.displacement), own.gives);
   datum->name = "displacement", datum->unit = "m";
   rename(surfaces.gives, names_.displacement, "displacement");
-  if (named(own.gives, "velocity") != own.gives.end()) return;
+  derives_velocity_ = named(own.gives, "velocity") == own.gives.end();
+  if (!derives_velocity_) return;
   own.gives.push_back({"velocity", "m/s", Interface::Place::vertices});
   if (const auto surface = surfaces.gives.find("displacement"); surface != surfaces.gives.end())
     surfaces.gives["velocity"] = surface->second;
@@ -72,7 +73,7 @@ void ForeignStructure::adapt_load(Interface& own, Surfaces& surfaces, const std:
 }
 
 void ForeignStructure::send(const Command& command) {
-  if (command.op == Op::load)
+  if (command.op == Op::load && derives_velocity_)
     throw Error(
         "'{}' gives no velocity, which is found from earlier displacements: it cannot continue from a checkpoint.",
         name());
@@ -114,7 +115,7 @@ Reply ForeignStructure::receive() {
     reply.data.insert(std::move(node));
     const bool before_the_start = dt_ == 0;
     if (before_the_start) now_ = next_;
-    if (!reply.data.contains("velocity"))
+    if (derives_velocity_)
       reply.data["velocity"] = before_the_start ? std::vector<double>(next_.size()) : velocity();
   }
   return reply;

@@ -24,7 +24,7 @@ class ForeignStructure final : public Channel {
   void adapt(Interface& own, Surfaces& surfaces, const std::vector<Interface>& all);
 
   const std::string& name() const override { return channel_->name(); }
-  /// Throws Error on load: earlier displacements are not kept over a restart.
+  /// Throws Error on load where the velocity is derived: earlier displacements are not kept over a restart.
   void send(const Command& command) override;
   Reply receive() override;
   double waiting_seconds() const override { return channel_->waiting_seconds(); }
@@ -36,6 +36,7 @@ class ForeignStructure final : public Channel {
 
   std::unique_ptr<Channel> channel_;
   CouplingParameters::Structure names_;
+  bool derives_velocity_ = false;           // none is given
   std::vector<std::string> forces_;         // whose sum is the load
   std::vector<double> next_, now_, older_;  // displacements [m]; empty: not known, as before the start
   double dt_ = 0, old_dt_ = 0;              // of the step under way and the one before [s]

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 
+#include "common/app/loop/step_loop.hpp"
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
@@ -35,6 +36,7 @@ class Shaker final : public Quiet {
  public:
   Interface initialise() override {
     Interface line{2, {}, {}, {}, {{"Push", "N", Place::vertices}}, {{"Way", unit, Place::vertices}}};
+    if (gives_velocity) line.gives.push_back({"velocity", "m/s", Place::vertices});
     for (int i = 0; i < 12; ++i) line.vertices.emplace_back(i / 11., 0, 0);
     return line;
   }
@@ -42,12 +44,15 @@ class Shaker final : public Quiet {
     if (in.contains("Push")) load = in.at("Push");
     EXPECT_FALSE(in.contains("pressure-force") || in.contains("viscous-force"));
     const double t = step_.time + step_.dt;
-    std::vector<double> way(24, 0.);
-    for (int i = 0; i < 12; ++i) way[std::size_t(2 * i + 1)] = 3 * t * t;
+    std::vector<double> way(24, 0.), velocity(24, 0.);
+    for (int i = 0; i < 12; ++i)
+      way[std::size_t(2 * i + 1)] = 3 * t * t, velocity[std::size_t(2 * i + 1)] = 6 * t;
+    if (gives_velocity) return {{"Way", way}, {"velocity", velocity}};
     return {{"Way", way}};
   }
   std::vector<double> load;
   std::string unit = "1";
+  bool gives_velocity = false;
 };
 
 class Wind final : public Quiet {
@@ -80,7 +85,7 @@ struct Shaken {
   SimulationParameters simulation;
   Shaker shaker;
   Wind wind;
-  fs::path folder = fs::temp_directory_path() / ("couplet-foreign-" + std::to_string(::getpid()));
+  fs::path folder = fs::temp_directory_path() / ("couplet-foreign-" + std::to_string(::getpid())), restart;
   std::vector<double> way, velocity;
 
   Shaken() {
@@ -98,7 +103,7 @@ struct Shaken {
     Coupler coupler(coupling, simulation,
                     {std::make_unique<LocalChannel>("fluid", wind),
                      std::make_unique<LocalChannel>("solid", shaker), nullptr},
-                    {folder, folder / "checkpoints", {}});
+                    {folder, folder / "checkpoints", restart});
     std::string problem = coupler.run();
     way = coupler.given_by("solid").at("displacement"), velocity = coupler.given_by("solid").at("velocity");
     return problem;
@@ -150,6 +155,28 @@ TEST(ForeignStructure, data_that_it_does_not_announce_are_named) {
             "coupling.structure.load: 'solid' takes no force 'Pull' [N]. It takes: 'Push' [N] at vertices.");
   run.coupling.structure->load = "Push", run.shaker.unit = "mm";
   EXPECT_THAT(run.error(), testing::HasSubstr("'Way' [mm] at vertices"));
+}
+
+TEST(ForeignStructure, continues_from_a_checkpoint_only_where_it_gives_its_velocity) {
+  for (const bool gives : {false, true}) {
+    Shaken run;
+    run.shaker.gives_velocity = gives;
+    run.simulation.end_time = 0.5;
+    EXPECT_EQ(run(), "");
+    EXPECT_NEAR(run.velocity[1], 6 * 0.5, 1e-10);
+    run.restart = find_checkpoint(run.folder / "checkpoints");
+    run.simulation.end_time = 0.9;
+    const std::string error = run.error();
+    if (gives) {
+      EXPECT_EQ(error, "");
+      EXPECT_NEAR(run.velocity[1], 6 * 0.9, 1e-10);
+    } else {
+      EXPECT_EQ(
+          error,
+          "'solid' gives no velocity, which is found from earlier displacements: it cannot continue from a "
+          "checkpoint.");
+    }
+  }
 }
 
 TEST(Balancing, forces_at_vertices_have_a_sum_a_moment_and_work) {

@@ -1,0 +1,48 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The first steps of configs/reed-slice: from rest, where the volume upstream is all that acts, no step fails; the same on other ranks,
+and bit for bit after a restart. Usage: run.py PROJECT BIN MPIRUN..."""
+import csv
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+project, programs, mpirun = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3:]
+failed = []
+
+
+def check(claim, holds, detail=""):
+    print(f"{'ok' if holds else 'not ok'}  {claim}  {detail}", flush=True)
+    if not holds:
+        failed.append(claim)
+
+
+def run(top, name, end, ranks=(1, 1, 1, 1), restart=None):
+    """Times and tip heights of a run."""
+    words = ["case.yaml", f"--set=simulation.output.folder={name}", f"--set=simulation.end-time={end}", "--set=simulation.checkpoint.interval=2e-4",
+             *(["--restart", restart] if restart else [])]
+    line = list(mpirun)
+    for n, program in zip(ranks, ("coupler", "fluid_solver", "plate_modal", "mesh_mover")):
+        line += [*([":"] if len(line) > len(mpirun) else []), "-n", str(n), str(programs / program), *words]
+    done = subprocess.run(line, cwd=top, capture_output=True, text=True, timeout=100)
+    check(f"{name}: exit code 0, no step failed", done.returncode == 0 and " failed:" not in done.stdout + done.stderr, (done.stdout + done.stderr)[-400:] if done.returncode else "")
+    with open(top / name / "reed/probes.csv", newline="") as rows:
+        return [(float(r["time [s]"]), float(r["tip z [m]"])) for r in csv.DictReader(rows)]
+
+
+with tempfile.TemporaryDirectory() as folder:
+    top = pathlib.Path(folder)
+    for file in ("case.yaml", "fluid.geo", "plate.geo"):
+        shutil.copy(project / "configs/reed-slice" / file, top)
+    whole = run(top, "whole", 4e-4)
+    check("the reed lifts", len(whole) == 8 and all(b[1] > a[1] for a, b in zip(whole, whole[1:])) and whole[-1][1] > 1e-10, str(whole[-1:]))
+    ranks = run(top, "ranks", 4e-4, (2, 3, 2, 3))
+    off = max(abs(a[1] - b[1]) for a, b in zip(whole, ranks)) / whole[-1][1]
+    check("on 3 ranks of the fluid and of the mover: the same", len(ranks) == len(whole) and off < 1e-6, f"{off:.1e}")
+    run(top, "half", 2e-4)
+    rest = run(top, "rest", 4e-4, restart="half/checkpoints")
+    check("restarted bit for bit", len(rest) == 4 and rest == whole[4:], str(rest[-1:]))
+print(f"{len(failed)} checks failed" if failed else "all checks passed")
+sys.exit(1 if failed else 0)
