@@ -40,7 +40,7 @@ BARS = [
     Bar("100 strikes on the flap through couplet run", "no process left after 5 s, results bit for bit",
         script("tests/cli/signals/strikes.py", "{bin}", "{root}/configs/perpendicular-flap", 100, "--couplet"), long=True),
     Bar("bad cases and commands", "exit code 2, what is wrong and what to do, no page of the launcher", tests("^command_wrong$")),
-    Bar("terminal of 80 x 24: flap, fluid, solid, tank", "start <= 12 lines, one status line, end <= 20 lines", tests("^command_terminal_command$")),
+    Bar("terminal of 80 x 24: flap, fluid, solid, tank", "start <= 12 lines, one status line, end <= 20 lines", tests("^command_terminal_command$"), but="a pseudo-terminal of the test, whose screen it keeps, in place of tmux"),
     Bar("terminal of 80 x 24: solid, fluid, tank, plate started by themselves; solid and flap by mpirun; in a file, marked by mpirun, with --verbose", "the same; lines as they were in files, marked or with --verbose",
         tests("^command_terminal_program$")),
     Bar("watch --web during a run, in a headless browser", "values change, no error, nothing beyond loopback, a wrong token refused", tests("^command_watch_web$")),
