@@ -33,8 +33,8 @@ template <int D>
 std::vector<Index> FluidParticipant<D>::moving_faces() const {
   std::vector<Index> faces;
   for (const Patch& patch : mesh_.patches) {
-    const BoundaryType type = fluid_->parameters().boundaries.at(patch.name).type;
-    if (type != BoundaryType::interface && type != BoundaryType::body) continue;
+    const GivenBy by = condition_of(fluid_->parameters().boundaries.at(patch.name)).velocity;
+    if (by != GivenBy::structure && by != GivenBy::motion) continue;
     for (Index f = patch.first; f < patch.first + patch.count; ++f) faces.push_back(f);
   }
   return faces;
@@ -60,7 +60,7 @@ void FluidParticipant<D>::see_motion() {
   }
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) sums[1] += latest->p[c] * now.volume[c];
   for (const Patch& patch : mesh_.patches)
-    if (p.boundaries.at(patch.name).type == BoundaryType::inlet)
+    if (condition_of(p.boundaries.at(patch.name)).passage == Passage::in)
       for (Index f = patch.first; f < patch.first + patch.count; ++f) {
         sums[2] += latest->p[mesh_.owner[f]] * now.area[f].norm();
         sums[3] += now.area[f].norm();
@@ -107,7 +107,7 @@ template <int D>
 std::vector<EffectVerdict> FluidParticipant<D>::audit() const {
   FluidEvidence evidence{.largest_peclet = fluid_->largest_peclet(), .largest_yplus = 0};
   for (const Patch& patch : mesh_.patches)
-    if (is_wall(fluid_->parameters().boundaries.at(patch.name).type))
+    if (is_wall(fluid_->parameters().boundaries.at(patch.name)))
       evidence.largest_yplus = std::max(evidence.largest_yplus, summarise_wall(*fluid_, patch).largest_yplus);
   double speed = 0;
   for (const Vec<D>& u : fluid_->state().u) speed = std::max(speed, u.squaredNorm());

@@ -1,29 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "common/fv/expression.hpp"
-#include "fluid_solver/boundary/inlet_profile.hpp"
+#include "fluid_solver/boundary/face_rows.hpp"
+#include "fluid_solver/boundary/given_velocity.hpp"
 #include "fluid_solver/parameters/parameters.hpp"
 #include "fluid_solver/state/placement.hpp"
 
 namespace couplet::fluid {
 
-/// What is known at a boundary face. Arrays over "boundary faces" are indexed by f - mesh.n_interior.
-enum class FaceKind : unsigned char {
-  velocity,  ///< w given: inlets, walls, interface
-  slip,      ///< only the normal velocity is given: that of the mesh
-  pressure,  ///< p given, velocity from inside
-};
-
-/// Consecutive boundary faces of one patch; on ranks without any `count` is 0.
-struct FaceRange {
-  Index first = 0, count = 0;
-};
 /// A patch that lets pressure waves out.
 struct AbsorbingPatch {
   FaceRange faces;
@@ -36,7 +24,8 @@ class Boundary {
   /// Throws Error if a patch has no boundary or a boundary names no patch.
   Boundary(const Mesh& mesh, const FluidParameters& parameters);
 
-  const std::vector<FaceKind>& kind() const { return kind_; }
+  /// What the conditions give to the loops over boundary faces.
+  const FaceRows& rows() const { return rows_; }
   /// No face of the whole domain has a given pressure: the pressure level is free.
   bool closed() const { return closed_; }
   /// Names of the patches of type interface.
@@ -65,7 +54,7 @@ class Boundary {
   void add_turn(const Mesh& mesh, std::span<const Vec3> points, double t, Vectors<D>& turn) const;
   /// p at time t [Pa] at the faces with given pressure; the others are left as they are.
   void pressure_at(double t, const std::vector<Vec3>& centres, std::vector<double>& p) const;
-  /// Velocity at all boundary faces from that in the cells: u_b = w, u_P with the normal part of w, or u_P.
+  /// Velocity at all boundary faces from that in the cells, see FaceRow.
   void close(const Mesh& mesh, const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& w,
              Vectors<D>& u_boundary) const;
   /// w one sub-step further at convective outlets, from w and u at its begin: dw/dt + U dw/dn = 0, implicit,
@@ -83,32 +72,23 @@ class Boundary {
   /// velocity is what flows into the volume.
   const std::vector<FaceRange>& upstream_patches() const { return upstream_patches_; }
   bool is_convective(Index boundary_face) const { return convective_[boundary_face] != 0; }
-  /// Part of the cell's velocity that convection sees at a face of given pressure where fluid comes in: 1/2
-  /// makes the face's share of the kinetic energy vanish, phi (u_b - u_P/2).u_P = 0.
-  double backflow(Index boundary_face) const { return free_backflow_[boundary_face] ? 1.0 : 0.5; }
 
  private:
-  void add_patch(const Mesh& mesh, const Patch& patch, const BoundaryParameters& b);
-  void add_openings(const Mesh& mesh, const FluidParameters& parameters);
-  struct Given {
-    Index first = 0, count = 0;  // boundary faces
-    BoundaryParameters parameters;
-    std::vector<Expression> velocity;
-    Expression pressure, mean_speed;
-    InletShape<D> shape;             // with mean_speed
-    std::optional<GridTable> table;  // of the velocity
-    Expression turning;              // [rad/s], with a rotation
-    const Patch* turns = nullptr;    // a wall whose velocity differs from place to place
+  struct GivenPressure {
+    FaceRange faces;
+    Expression value;
   };
-  /// At places of the patch, in the order of its faces where a profile was made for them [m/s].
-  void velocity_of(const Given& given, double t, std::span<const Vec3> places, Vec<D>* w) const;
+  void add_patch(const Mesh& mesh, const Patch& patch, const BoundaryParameters& b);
+  void add_interface(const Patch& patch, const FaceRange& faces, const BoundaryParameters& b);
+  void add_openings(const Mesh& mesh, const FluidParameters& parameters);
   MPI_Comm comm_;
-  std::vector<FaceKind> kind_;
-  std::vector<char> interface_, convective_, free_backflow_;
+  FaceRows rows_;
+  std::vector<char> interface_, convective_;
   std::vector<std::string> interface_patches_;
   std::vector<const Patch*> body_patches_;
-  std::vector<Given> velocity_patches_, pressure_patches_;
-  std::vector<std::pair<Index, Index>> convective_patches_;  // first boundary face, count; also empty ones
+  std::vector<GivenVelocity<D>> velocity_patches_;
+  std::vector<GivenPressure> pressure_patches_;
+  std::vector<FaceRange> convective_patches_;  // also empty ones
   bool closed_ = true, yields_ = false, asks_for_mass_ = false, turns_ = false;
   std::vector<AbsorbingPatch> absorbing_patches_;
   std::vector<FaceRange> upstream_patches_;

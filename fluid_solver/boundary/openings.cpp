@@ -20,9 +20,9 @@ constexpr double always = 0.9, much = 0.1;
 Openings::Openings(const Mesh& mesh, const FluidParameters& parameters, bool at_rest) : mesh_(mesh) {
   for (const Patch& patch : mesh.patches) {
     const BoundaryParameters& b = parameters.boundaries.at(patch.name);
-    const bool inlet = b.type == BoundaryType::inlet;
+    const bool inlet = condition_of(b).passage == Passage::in;
     // A pressure that is given on purpose may push.
-    const bool outlet = at_rest && b.type == BoundaryType::outlet && b.pressure.text == "0";
+    const bool outlet = at_rest && gives_pressure(b) && b.pressure.text == "0";
     if (inlet || outlet) openings_.push_back({&patch, inlet});
   }
 }

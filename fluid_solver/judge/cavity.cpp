@@ -32,12 +32,10 @@ std::pair<double, double> open_share(const Fluid<D>& fluid) {
 template <int D>
 double given_inflow(const Fluid<D>& fluid, const Placement<D>& at, double t) {
   const Boundary<D>& boundary = fluid.boundary();
-  Vectors<D> w(boundary.kind().size(), Vec<D>::Zero());
+  Vectors<D> w(boundary.rows().pressure.size(), Vec<D>::Zero());  // stays so at the interface
   boundary.velocity_at(t, at.boundary_centre, w);
   double inflow = 0;
-  for (std::size_t b = 0; b < w.size(); ++b)
-    if (boundary.kind()[b] == FaceKind::velocity && !boundary.is_interface(static_cast<Index>(b)))
-      inflow -= w[b].dot(at.area[fluid.mesh().n_interior + static_cast<Index>(b)]);
+  for (const Index b : boundary.rows().of_velocity) inflow -= w[b].dot(at.area[fluid.mesh().n_interior + b]);
   return inflow;
 }
 

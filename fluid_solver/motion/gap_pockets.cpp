@@ -18,17 +18,10 @@ constexpr double inlet_leftover = 1e-6;
 
 template <int D>
 GapPockets<D>::GapPockets(const Mesh& mesh, const FluidParameters& parameters) : mesh_(mesh) {
-  for (const Patch& patch : mesh.patches) switch (parameters.boundaries.at(patch.name).type) {
-      case BoundaryType::outlet:
-        open_.push_back(&patch);
-        break;
-      case BoundaryType::inlet:
-      case BoundaryType::convective_outlet:
-        given_.push_back(&patch);
-        break;
-      default:
-        break;
-    }
+  for (const Patch& patch : mesh.patches) {
+    const BoundaryParameters& b = parameters.boundaries.at(patch.name);
+    if (condition_of(b).passage != Passage::none) (gives_pressure(b) ? open_ : given_).push_back(&patch);
+  }
 }
 
 /// The least label spreads over the faces between free cells, then over the ranks, until all stand.

@@ -46,7 +46,7 @@ Gaps<D>::Gaps(const Mesh& mesh, const FluidParameters& parameters)
       if (!mesh.find_patch(patch))
         throw Error("gaps.{}.between: the mesh has no patch '{}'. {}", name, patch,
                     did_you_mean(patch, there, "patches"));
-      if (!is_wall(parameters.boundaries.at(patch).type))
+      if (!is_wall(parameters.boundaries.at(patch)))
         throw Error("gaps.{}.between: '{}' is not a wall; a gap lies between two walls.", name, patch);
       walls_.back()[side].patches.push_back(mesh.find_patch(patch));
     }
@@ -54,7 +54,7 @@ Gaps<D>::Gaps(const Mesh& mesh, const FluidParameters& parameters)
   facts_.resize(names_.size());
   std::vector<double> never(mesh.cells.n_local(), 0.0);
   for (const Patch& patch : mesh.patches)
-    if (parameters.boundaries.at(patch.name).type == BoundaryType::outlet)
+    if (gives_pressure(parameters.boundaries.at(patch.name)))
       for (Index f = patch.first; f < patch.first + patch.count; ++f) never[mesh.owner[f]] = 1;
   mesh.cells.update_ghosts(never);
   for (std::size_t c = 0; c < never.size(); ++c) never_[c] = never[c] != 0;

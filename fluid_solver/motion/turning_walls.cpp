@@ -38,15 +38,15 @@ void set_turn(const Mesh& mesh, const Patch& patch, std::span<const Vec3> points
 /// Of the walls whose velocity the case gives; the others' was given before.
 template <int D>
 void Boundary<D>::add_turn(const Mesh& mesh, std::span<const Vec3> points, double t, Vectors<D>& turn) const {
-  for (const Given& g : velocity_patches_) {
-    if (!g.turns) continue;
-    const Patch& patch = *g.turns;
+  for (const GivenVelocity<D>& given : velocity_patches_) {
+    if (!given.turns()) continue;
+    const Patch& patch = given.patch();
     std::vector<Vec3> corners;
     for (Index f = patch.first; f < patch.first + patch.count; ++f)
       for (const Index v : mesh.face_points[f]) corners.push_back(points[v]);
     std::vector<Vec3> velocities(corners.size(), Vec3::Zero());
     Vectors<D> w(corners.size(), Vec<D>::Zero());
-    velocity_of(g, t, corners, w.data());
+    given.evaluate(t, corners, w.data());
     for (std::size_t i = 0; i < w.size(); ++i) velocities[i].template head<D>() = w[i];
     set_turn<D>(mesh, patch, points, velocities, turn);
   }

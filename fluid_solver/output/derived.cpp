@@ -75,7 +75,7 @@ double through_moving_walls(const Fluid<D>& fluid) {
   const State<D>& s = fluid.state();
   double worst = std::numeric_limits<double>::quiet_NaN();
   for (const Patch& patch : mesh.patches) {
-    if (fluid.parameters().boundaries.at(patch.name).type != BoundaryType::moving_wall) continue;
+    if (!is_moving_wall(fluid.parameters().boundaries.at(patch.name))) continue;
     double through = 0, size = 0;
     for (Index f = patch.first; f < patch.first + patch.count; ++f) {
       const Vec<D>& w = s.w[f - mesh.n_interior];

@@ -21,7 +21,7 @@ FluidOutput<D>::FluidOutput(const Fluid<D>& fluid, FluidContext context)
     : fluid_(fluid), mesh_(fluid.mesh()), context_(std::move(context)), root_(comm_rank(mesh_.comm) == 0) {
   set_up_points();
   for (const Patch& patch : mesh_.patches)
-    if (is_wall(fluid.parameters().boundaries.at(patch.name).type)) walls_.push_back(&patch);
+    if (is_wall(fluid.parameters().boundaries.at(patch.name))) walls_.push_back(&patch);
   check_coefficients();
   if (!fluid.parameters().output.surfaces.empty()) surfaces_.emplace(fluid);
 }

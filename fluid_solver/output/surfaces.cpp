@@ -64,7 +64,7 @@ void FluidSurfaces<D>::write(double time, const FluidContext& context) {
     std::vector<OutputField> fields{{"pressure", "Pa", Place::cells, 1, pressure->boundary},
                                     {"traction", "Pa", Place::cells, D, all.traction},
                                     {"wall-shear", "Pa", Place::cells, D, all.shear}};
-    if (is_wall(fluid_.parameters().boundaries.at(patch.name).type))
+    if (is_wall(fluid_.parameters().boundaries.at(patch.name)))
       fields.push_back({"y-plus", "-", Place::cells, 1, all.yplus});
     const std::vector<double> cp = pressure_coefficient(patch, pressure->boundary);
     if (!cp.empty()) fields.push_back({"pressure-coefficient", "-", Place::cells, 1, cp});

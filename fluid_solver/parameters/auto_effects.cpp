@@ -81,7 +81,7 @@ EffectChoice mesh_motion(const FluidParameters& p, const ChoiceScene& scene) {
   if (scene.has_mover) return {"", "", "moving mesh", "'coupling.mesh' names a mesh mover", false};
   if (p.motion) return {"", "", "moving mesh", "'motion' prescribes it", false};
   const bool interface = std::ranges::any_of(
-      p.boundaries, [](const auto& b) { return b.second.type == BoundaryType::interface; });
+      p.boundaries, [](const auto& b) { return condition_of(b.second).velocity == GivenBy::structure; });
   if (scene.coupled && interface)
     return {"", "", "mesh at rest",
             "no mesh mover: the run reports if the interface moves by more than a tenth of a cell", false};

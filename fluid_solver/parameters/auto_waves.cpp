@@ -35,9 +35,10 @@ double largest_rate(const FluidParameters& p, const MeshFacts& mesh, const Choic
   std::vector<config::ExpressionText> texts;
   const auto add = [&texts](const auto& more) { texts.insert(texts.end(), more.begin(), more.end()); };
   for (const auto& [name, b] : p.boundaries) {
-    if (b.type == BoundaryType::inlet) add(b.velocity);
-    if (b.type == BoundaryType::inlet && b.mean_speed) texts.push_back(*b.mean_speed);
-    if (b.type == BoundaryType::outlet) texts.push_back(b.pressure);
+    const bool inlet = condition_of(b).passage == Passage::in;
+    if (inlet) add(b.velocity);
+    if (inlet && b.mean_speed) texts.push_back(*b.mean_speed);
+    if (gives_pressure(b)) texts.push_back(b.pressure);
   }
   if (p.motion) {
     add(p.motion->translation);
@@ -60,25 +61,28 @@ EffectChoice choose_waves(const FluidParameters& p, const MeshFacts& mesh, const
   const auto with = [](std::string reason) {
     return EffectChoice{"compressibility", "{scheme: three-level}", "three-level", std::move(reason), false};
   };
-  const auto has = [&p](BoundaryType type) {
-    return std::ranges::any_of(p.boundaries, [type](const auto& b) { return b.second.type == type; });
+  const auto has = [&p](const auto& fact) {
+    return std::ranges::any_of(p.boundaries, [&](const auto& b) { return fact(b.second); });
+  };
+  const auto velocity_by = [&has](GivenBy who) {
+    return has([who](const BoundaryParameters& b) { return condition_of(b).velocity == who; });
   };
   const auto sound = sound_of({}, p.density, p.viscosity);
   if (!sound) return without("a model fluid, whose sound is not known");
   if (!p.bodies.empty() || p.rotating_frame || p.scheme == ExplicitScheme::runge_kutta ||
-      has(BoundaryType::convective_outlet))
+      velocity_by(GivenBy::flow))
     return without("not available with another of the case's keys");
-  if (!p.gaps.empty() && has(BoundaryType::inlet))
+  if (!p.gaps.empty() && has([](const auto& b) { return condition_of(b).passage == Passage::in; }))
     return with("what flows into a part that 'gaps' shut off compresses it");
-  if (scene.coupled && p.volume_level == VolumeLevelBy::nobody && has(BoundaryType::interface) &&
-      !has(BoundaryType::outlet))
+  if (scene.coupled && p.volume_level == VolumeLevelBy::nobody && velocity_by(GivenBy::structure) &&
+      !has(gives_pressure))
     return with("no outlet: an interface that moves compresses the fluid");
   const double rate = largest_rate(p, mesh, scene), phase = rate * mesh.largest_side() / sound->speed;
   const std::string reason =
       fmt::format("sound crosses {} in {:.2g} s = {:.2g} of 1/omega of what is prescribed", sound->of,
                   mesh.largest_side() / sound->speed, phase);
   if (phase > slow) return with(reason);
-  return without(scene.coupled && has(BoundaryType::interface)
+  return without(scene.coupled && velocity_by(GivenBy::structure)
                      ? reason + "; the run reports if the compliance or the waves matter to the interface"
                      : reason);
 }

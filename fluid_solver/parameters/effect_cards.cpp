@@ -22,7 +22,7 @@ bool has_boundary(const S& s, const Test& test) {
 }
 
 bool has_interface(const S& s) {
-  return has_boundary(s, [](const auto& b) { return b.type == BoundaryType::interface; });
+  return has_boundary(s, [](const auto& b) { return condition_of(b).velocity == GivenBy::structure; });
 }
 
 // Layers are as thin as where they begin: where the mesh resolves those at the walls (y+ up to 1) it resolves what they shed,
@@ -267,7 +267,7 @@ const std::array cards{
               "`type: moving-wall`",
               [](const S& s) {
                 for (const auto& [name, b] : s.parameters.boundaries)
-                  if (b.type == BoundaryType::moving_wall) return "boundaries." + name;
+                  if (is_moving_wall(b)) return "boundaries." + name;
                 return std::string();
               },
               {},

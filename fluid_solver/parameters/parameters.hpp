@@ -8,71 +8,20 @@
 #include <vector>
 
 #include "common/config/section.hpp"
-#include "common/fv/grid_table.hpp"
 #include "common/fv/prescribed_motion.hpp"
+#include "fluid_solver/conditions/condition.hpp"
 #include "fluid_solver/parameters/sound.hpp"
 
 namespace couplet::fluid {
 
-enum class BoundaryType {
-  inlet,
-  outlet,
-  convective_outlet,
-  no_slip,
-  moving_wall,
-  slip,
-  symmetry,
-  periodic,
-  interface,
-  body
-};
-/// No-slip wall, whoever gives its velocity.
-inline bool is_wall(BoundaryType type) {
-  return type == BoundaryType::no_slip || type == BoundaryType::moving_wall ||
-         type == BoundaryType::interface || type == BoundaryType::body;
-}
-enum class InletProfile { uniform, parabolic };
 enum class ViscousTreatment { automatic, explicit_, implicit };
 /// Of the explicit terms: Adams-Bashforth of two levels, or Heun's Runge-Kutta of three stages.
 enum class ExplicitScheme { adams_bashforth, runge_kutta };
 /// How the face fluxes follow the cells' velocities from step to step.
 enum class Projection { flux_memory, incremental, non_incremental };
 
-/// Velocities in a file, see GridTable: columns u, v (and w) over some of x, y, z, t.
-struct VelocityTableParameters {
-  std::string file;
-  GridTable::Outside outside = GridTable::Outside::error;
-};
-
-/// omega(t) a x (x - c), besides the other velocity.
-struct RotationParameters {
-  config::ExpressionText speed;                      // [rad/s], of t
-  Vec3 centre = Vec3::Zero(), axis = Vec3::UnitZ();  // [m]
-};
-
-/// Who says what mass per area stands behind an interface of type Robin.
-enum class Impedance { given, structure };
-
 /// Who sets the pressure level, and so holds the volume, of a fluid without an outlet.
 enum class VolumeLevelBy { nobody, structure };
-
-struct BoundaryParameters {
-  BoundaryType type = BoundaryType::no_slip;
-  std::vector<config::ExpressionText> velocity;      // [m/s], inlet and moving wall
-  std::optional<VelocityTableParameters> table;      // instead of velocity; inlet and moving wall
-  std::optional<RotationParameters> rotation;        // inlet and moving wall
-  std::optional<config::ExpressionText> mean_speed;  // [m/s] into the domain, of t; inlet
-  InletProfile profile = InletProfile::uniform;      // of mean_speed
-  std::optional<double> ramp;                        // [s], inlet and moving wall
-  config::ExpressionText pressure;                   // [Pa], outlet
-  bool backflow_stabilisation = true;                // outlet
-  bool absorbing = false;                            // inlet and outlet: lets waves out
-  std::string partner;                               // periodic
-  std::optional<double> surface_density;             // [kg/m^2], interface: of the structure behind it
-  Impedance impedance = Impedance::given;            // interface
-  /// The wall's answer is foreseen in the pressure equation.
-  bool foresees() const { return surface_density || impedance == Impedance::structure; }
-};
 
 enum class TurbulenceModel { smagorinsky, wale };
 

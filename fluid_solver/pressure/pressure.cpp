@@ -49,9 +49,8 @@ std::vector<double> PressureEquation<D>::diagonal(const Placement<D>& at, std::s
   for (Index f = 0; f < mesh_.n_interior; ++f)
     for (const Index cell : {mesh_.owner[f], mesh_.neighbour[f]})
       if (cell < owned) sum[cell] += at.conductance[f];
-  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
-    if (boundary_.kind()[f - mesh_.n_interior] == FaceKind::pressure)
-      sum[mesh_.owner[f]] += at.conductance[f];
+  for (const Index b : boundary_.rows().of_pressure)
+    sum[mesh_.owner[mesh_.n_interior + b]] += at.conductance[mesh_.n_interior + b];
   for (std::size_t b = 0; b < admittance.size(); ++b)
     sum[mesh_.owner[mesh_.n_interior + static_cast<Index>(b)]] += admittance[b];
   for (std::size_t c = 0; c < storage.size(); ++c) sum[c] += storage[c];

@@ -94,10 +94,9 @@ void PressureProjection<D>::extrapolate_pressure() {
 
 template <int D>
 void PressureProjection<D>::set_boundary_flux(const Vectors<D>& w) {
-  for (std::size_t b = 0; b < w.size(); ++b) {
-    if (k_.boundary.kind()[b] == FaceKind::pressure) continue;
-    if (k_.boundary.kind()[b] == FaceKind::velocity) k_.w[b] = w[b];
-    const Index f = k_.mesh.n_interior + static_cast<Index>(b);
+  for (const Index b : k_.boundary.rows().of_velocity) k_.w[b] = w[b];
+  for (const Index b : k_.boundary.rows().of_flux) {
+    const Index f = k_.mesh.n_interior + b;
     k_.phi_p[f] = k_.w[b].dot(k_.step.to->area[f]);
   }
   if (k_.boundary.closed() && !k_.step.yields && !stores()) balance_closed_domain();
@@ -160,10 +159,9 @@ void PressureProjection<D>::add_oblique_pressure() {
         factor * (w * k_.gradient_guess[k_.mesh.owner[f]] + (1 - w) * k_.gradient_guess[k_.mesh.neighbour[f]])
                      .dot(around.oblique_of(f));
   }
-  for (std::size_t b = 0; b < k_.w.size(); ++b) {
-    const Index f = k_.mesh.n_interior + static_cast<Index>(b);
-    if (k_.boundary.kind()[b] == FaceKind::pressure)
-      k_.phi_p[f] -= factor * k_.gradient_guess[k_.mesh.owner[f]].dot(now.oblique_of(f));
+  for (const Index b : k_.boundary.rows().of_pressure) {
+    const Index f = k_.mesh.n_interior + b;
+    k_.phi_p[f] -= factor * k_.gradient_guess[k_.mesh.owner[f]].dot(now.oblique_of(f));
   }
 }
 
@@ -217,10 +215,10 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
   const double factor = k_.rho / k_.step.dt;
   set_boundary_flux(w);
   if (k_.step.yields) foresee_walls(from);
-  k_.p_boundary.resize(w.size());
+  k_.p_boundary.assign(w.size(), 0.0);
   k_.boundary.pressure_at(k_.by.time + k_.step.dt / 2, now.boundary_centre, k_.p_boundary);
-  for (std::size_t b = 0; k_.frame && b < w.size(); ++b)
-    if (k_.boundary.kind()[b] == FaceKind::pressure)
+  if (k_.frame)
+    for (const Index b : k_.boundary.rows().of_pressure)
       k_.p_boundary[b] -= k_.rho * k_.frame->potential(k_.by.time + k_.step.dt / 2, now.boundary_centre[b]);
   if (absorbing_) absorbing_->foresee(from);
   if (upstream_) upstream_->foresee();
@@ -235,8 +233,7 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
     const Index f = k_.mesh.n_interior + static_cast<Index>(b);
     b_[k_.mesh.owner[f]] -= factor * k_.phi_p[f];
     size += k_.phi_p[f] * k_.phi_p[f];
-    if (k_.boundary.kind()[b] == FaceKind::pressure)
-      b_[k_.mesh.owner[f]] += now.conductance[f] * k_.p_boundary[b];
+    b_[k_.mesh.owner[f]] += k_.boundary.rows().pressure[b] * now.conductance[f] * k_.p_boundary[b];
   }
   if (k_.gap_closed()) clear_gaps(b_);
   if (k_.bodies) {
@@ -252,17 +249,16 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
   if (k_.bodies) fill_pressure_in_bodies();
   if (k_.step.yields) let_walls_yield();
   if (absorbing_) absorbing_->follow();
-  set_boundary_pressure(from, w);
+  set_boundary_pressure(from);
 }
 
 /// Wall: grad p . S = -(rho/dt) (w^{n+1} - w^n).S, the added-mass pressure, exact for a rigidly moving box;
 /// p_b = p_P + (grad p . S - grad p~ . k)/g.
 template <int D>
-void PressureProjection<D>::set_boundary_pressure(const State<D>& from, const Vectors<D>& w) {
+void PressureProjection<D>::set_boundary_pressure(const State<D>& from) {
   const Placement<D>& now = *k_.step.to;
-  for (std::size_t b = 0; b < w.size(); ++b) {
-    if (k_.boundary.kind()[b] == FaceKind::pressure) continue;
-    const Index f = k_.mesh.n_interior + static_cast<Index>(b), p = k_.mesh.owner[f];
+  for (const Index b : k_.boundary.rows().of_flux) {
+    const Index f = k_.mesh.n_interior + b, p = k_.mesh.owner[f];
     const Vec<D> acceleration = (k_.w[b] - from.w[b]) / k_.step.dt;
     double normal = -k_.rho * acceleration.dot(now.area[f]);
     if (!k_.force.empty()) normal += k_.rho * k_.force[p].dot(now.area[f]);

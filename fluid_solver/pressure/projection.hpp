@@ -76,7 +76,7 @@ class PressureProjection {
   void add_oblique_pressure();
   bool gradient_stands() const;
   void solve_pressure(const State<D>& from, const Vectors<D>& w, double tolerance, double answer);
-  void set_boundary_pressure(const State<D>& from, const Vectors<D>& w);
+  void set_boundary_pressure(const State<D>& from);
   void pressure_gradient(const Placement<D>& at, const std::vector<double>& p,
                          const std::vector<double>& boundary, Vectors<D>& sum) const;
   void fill_pressure_in_bodies();

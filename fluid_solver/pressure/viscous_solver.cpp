@@ -31,15 +31,7 @@ void ViscousSolver<D>::multiply(Vectors<D>& x, Vectors<D>& y) const {
     y[p] += part;
     y[n] -= part;
   }
-  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
-    const FaceKind kind = boundary_.kind()[f - mesh_.n_interior];
-    const Index p = mesh_.owner[f];
-    if (kind == FaceKind::velocity) y[p] += beta * at.conductance[f] * x[p];
-    if (kind == FaceKind::slip) {
-      const Vec<D> n = at.area[f].normalized();
-      y[p] += beta * at.conductance[f] * x[p].dot(n) * n;
-    }
-  }
+  for (const BoundaryRow& row : rows_) y[row.cell] += row.times(x[row.cell]);
 }
 
 template <int D>
@@ -52,23 +44,20 @@ void ViscousSolver<D>::prepare(const Placement<D>& at, double beta) {
     inverse_diagonal_[mesh_.owner[f]] += a;
     inverse_diagonal_[mesh_.neighbour[f]] += a;
   }
-  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
-    inverse_diagonal_[mesh_.owner[f]] += beta * at.conductance[f];
+  rows_.clear();
+  const FaceRows& given = boundary_.rows();
+  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
+    const Index b = f - mesh_.n_interior;
+    const double a = beta * at.conductance[f], t = given.friction(at, b, f);
+    inverse_diagonal_[mesh_.owner[f]] += a;
+    rows_.push_back({mesh_.owner[f], a * t, a * (1 - given.pressure[b] - t), at.area[f].normalized()});
+  }
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) inverse_diagonal_[c] = 1 / inverse_diagonal_[c];
 }
 
 template <int D>
 void ViscousSolver<D>::add_boundary(const Vectors<D>& w, Vectors<D>& b) const {
-  const Placement<D>& at = *at_;
-  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
-    const double a = beta_ * at.conductance[f];
-    const std::size_t face = f - mesh_.n_interior;
-    if (boundary_.kind()[face] == FaceKind::velocity) b[mesh_.owner[f]] += a * w[face];
-    if (boundary_.kind()[face] == FaceKind::slip) {
-      const Vec<D> n = at.area[f].normalized();
-      b[mesh_.owner[f]] += a * w[face].dot(n) * n;
-    }
-  }
+  for (std::size_t face = 0; face < rows_.size(); ++face) b[rows_[face].cell] += rows_[face].times(w[face]);
 }
 
 template <int D>

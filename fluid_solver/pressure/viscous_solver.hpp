@@ -23,6 +23,13 @@ class ViscousSolver {
   int solve(const Vectors<D>& w, double tolerance, Vectors<D>& b, Vectors<D>& u);
 
  private:
+  /// What a boundary face adds to the row of its cell: beta g [t I + (1 - t) n n], see FaceRow.
+  struct BoundaryRow {
+    Index cell;
+    double both, normal;  // beta g t, beta g (1 - t)
+    Vec<D> n;
+    Vec<D> times(const Vec<D>& x) const { return both * x + normal * x.dot(n) * n; }
+  };
   void add_boundary(const Vectors<D>& w, Vectors<D>& b) const;
   void multiply(Vectors<D>& x, Vectors<D>& y) const;
   const Mesh& mesh_;
@@ -31,6 +38,7 @@ class ViscousSolver {
   double beta_ = 0;
   Vectors<D> r_, q_, search_;
   std::vector<double> inverse_diagonal_;
+  std::vector<BoundaryRow> rows_;  // per boundary face
 };
 
 }  // namespace couplet::fluid

@@ -23,10 +23,9 @@ std::shared_ptr<PressureLevel<D>> FractionalStep<D>::correct() {
   const double factor = k_.step.dt / k_.rho;
   for (Index f = 0; f < k_.mesh.n_interior; ++f)
     k_.phi_p[f] -= factor * conductance[f] * (k_.p[k_.mesh.neighbour[f]] - k_.p[k_.mesh.owner[f]]);
-  for (std::size_t b = 0; b < k_.w.size(); ++b) {
-    const Index f = k_.mesh.n_interior + static_cast<Index>(b);
-    if (k_.boundary.kind()[b] == FaceKind::pressure)
-      k_.phi_p[f] -= factor * now.conductance[f] * (k_.p_boundary[b] - k_.p[k_.mesh.owner[f]]);
+  for (const Index b : k_.boundary.rows().of_pressure) {
+    const Index f = k_.mesh.n_interior + b;
+    k_.phi_p[f] -= factor * now.conductance[f] * (k_.p_boundary[b] - k_.p[k_.mesh.owner[f]]);
   }
   auto level = projection_.pressure_level();
   Vectors<D>& u = k_.right_side;

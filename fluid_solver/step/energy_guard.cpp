@@ -98,6 +98,7 @@ double EnergyGuard<D>::energy_at_rest(const EnergyStep<D>& s) const {
 template <int D>
 void EnergyGuard<D>::add_boundary(const EnergyStep<D>& s, double level, double* sums) const {
   const bool moving = !s.swept.empty();
+  const FaceRows& rows = boundary_.rows();
   for (std::size_t b = 0; b < s.w.size(); ++b) {
     const Index f = mesh_.n_interior + static_cast<Index>(b), p = mesh_.owner[f];
     const Vec<D> inside = 0.5 * (s.from.u[p] + s.u[p]);
@@ -105,25 +106,17 @@ void EnergyGuard<D>::add_boundary(const EnergyStep<D>& s, double level, double* 
     const double pressure = -(s.p[b] - level) * flux;
     sums[2] += s.p[b] * std::abs(flux);
     sums[3] += std::abs(flux);
-    double convection = 0, friction = 0;
-    switch (boundary_.kind()[b]) {
-      case FaceKind::velocity: {
-        const Vec<D> on_face = 0.5 * (s.from.u_boundary[b] + s.w[b]);
-        convection = -rho_ * through * (on_face.dot(inside) - 0.5 * inside.squaredNorm());
-        // At most, at either level: a stiff layer changes within the step, its mean says nothing.
-        const Vec<D>&before = s.from.u_boundary[b], &after = s.w[b];
-        friction =
-            mu_ * s.to.conductance[f] *
-            std::max(before.norm() * (before - s.from.u[p]).norm(), after.norm() * (after - s.u[p]).norm());
-        break;
-      }
-      case FaceKind::pressure:
-        convection =
-            -rho_ * through * ((through < 0 ? boundary_.backflow(b) : 1.0) - 0.5) * inside.squaredNorm();
-        break;
-      case FaceKind::slip:
-        break;
-    }
+    const double t = rows.friction(s.to, static_cast<Index>(b), f);
+    const Vec<D>&before = s.from.u_boundary[b], &after = s.w[b];
+    const Vec<D> on_face = 0.5 * (before + after);
+    // Through faces of given velocity and of given pressure.
+    const double convection = -rho_ * through * (t * (on_face.dot(inside) - 0.5 * inside.squaredNorm())) -
+                              rho_ * through * rows.pressure[b] *
+                                  ((through < 0 ? rows.inflow[b] : 1.0) - 0.5) * inside.squaredNorm();
+    // At most, at either level: a stiff layer changes within the step, its mean says nothing.
+    const double friction =
+        t * mu_ * s.to.conductance[f] *
+        std::max(before.norm() * (before - s.from.u[p]).norm(), after.norm() * (after - s.u[p]).norm());
     sums[0] += s.dt * (pressure + convection + friction);
     sums[1] += s.dt * (std::abs(pressure) + std::abs(convection) + std::abs(friction));
   }
@@ -172,8 +165,8 @@ std::string likely_cause(const Mesh& mesh, const Boundary<D>& boundary, const En
     const bool outside = f >= mesh.n_interior;
     if (mesh.owner[f] != cell && (outside || mesh.neighbour[f] != cell)) continue;
     convection += 0.5 * std::abs(s.from.phi[f] - (s.swept.empty() ? 0 : s.swept[f] / s.dt));
-    if (!outside || boundary.kind()[f - mesh.n_interior] == FaceKind::velocity)
-      diffusion += 2 * nu * s.to.conductance[f];
+    const double share = outside ? boundary.rows().friction(s.to, f - mesh.n_interior, f) : 1;
+    diffusion += 2 * nu * s.to.conductance[f] * share;
     tangent = std::max(tangent, s.to.oblique_of(f).norm() / s.to.area[f].norm());
   }
   convection *= s.dt / s.to.volume[cell];

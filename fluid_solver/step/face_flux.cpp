@@ -28,10 +28,9 @@ void FaceFlux<D>::predict(const State<D>& from) {
     add_increment(from);
   else if (!from.memory.empty())
     add_memory(from);
-  for (std::size_t b = 0; b < k_.w.size(); ++b) {
-    const Index f = k_.mesh.n_interior + static_cast<Index>(b);
-    if (k_.boundary.kind()[b] == FaceKind::pressure)
-      k_.phi_orthogonal[f] = k_.u_p[k_.mesh.owner[f]].dot(now.area[f]);
+  for (const Index b : k_.boundary.rows().of_pressure) {
+    const Index f = k_.mesh.n_interior + b;
+    k_.phi_orthogonal[f] = k_.u_p[k_.mesh.owner[f]].dot(now.area[f]);
   }
   if (!k_.bodies) return;
   for (Index f = 0; f < k_.mesh.n_interior; ++f)

@@ -111,8 +111,7 @@ void Fluid<D>::start(double time) {
   }
   for (std::size_t b = 0; b < s.w.size(); ++b)
     if (boundary_.is_convective(b)) s.w[b] = s.u_boundary[b];
-  for (std::size_t b = 0; b < s.w.size(); ++b)
-    if (boundary_.kind()[b] == FaceKind::pressure) s.u_boundary[b] = s.u[mesh_.owner[mesh_.n_interior + b]];
+  for (const Index b : boundary_.rows().of_pressure) s.u_boundary[b] = s.u[mesh_.owner[mesh_.n_interior + b]];
   step_.project_initial(s);
   const Expression initial_pressure(parameters_.initial_pressure.value_or(config::ExpressionText{}),
                                     "initial-pressure");

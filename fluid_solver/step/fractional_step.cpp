@@ -39,11 +39,10 @@ void FractionalStep<D>::predict(const State<D>& from, const History<D>& by, SubS
   k_.w = w;
   const bool moving = !k_.step.swept.empty();
   if (moving)
-    for (std::size_t b = 0; b < k_.w.size(); ++b)
-      if (k_.boundary.kind()[b] == FaceKind::slip) {
-        const Index f = k_.mesh.n_interior + static_cast<Index>(b);
-        k_.w[b] = k_.step.swept[f] / (k_.step.dt * k_.step.to->area[f].squaredNorm()) * k_.step.to->area[f];
-      }
+    for (const Index b : k_.boundary.rows().of_mesh) {
+      const Index f = k_.mesh.n_interior + b;
+      k_.w[b] = k_.step.swept[f] / (k_.step.dt * k_.step.to->area[f].squaredNorm()) * k_.step.to->area[f];
+    }
   if (k_.bodies) projection_.mark_bodies(k_.by.time + k_.step.dt);
   if (k_.gaps && moving) projection_.mark_gaps();
   k_.gap_changed = k_.gaps && k_.gaps->differs(from.blocked.get());
@@ -126,9 +125,8 @@ void FractionalStep<D>::project_initial(State<D>& s) {
   const Vectors<D> jump_from = s.u_boundary;
   projection_.set_boundary_flux(s.w);
   projection_.solve_initial(at);
-  for (std::size_t b = 0; b < s.w.size(); ++b) {
-    const Index f = k_.mesh.n_interior + static_cast<Index>(b);
-    if (k_.boundary.kind()[b] == FaceKind::pressure) continue;
+  for (const Index b : k_.boundary.rows().of_flux) {
+    const Index f = k_.mesh.n_interior + b;
     k_.p_boundary[b] = k_.p[k_.mesh.owner[f]] - (s.w[b] - jump_from[b]).dot(at.area[f]) / at.conductance[f];
   }
   correct();
@@ -144,9 +142,9 @@ void FractionalStep<D>::project_initial(State<D>& s) {
 /// A compressible fluid may start from any velocity.
 template <int D>
 void FractionalStep<D>::keep_initial(State<D>& s) {
-  for (std::size_t b = 0; b < s.w.size(); ++b) {
-    const Index f = k_.mesh.n_interior + static_cast<Index>(b);
-    if (k_.boundary.kind()[b] != FaceKind::pressure) k_.phi_p[f] = s.w[b].dot(s.placement->area[f]);
+  for (const Index b : k_.boundary.rows().of_flux) {
+    const Index f = k_.mesh.n_interior + b;
+    k_.phi_p[f] = s.w[b].dot(s.placement->area[f]);
   }
   s.phi.swap(k_.phi_p);
   k_.phi_p.assign(s.phi.size(), 0.0);

@@ -7,7 +7,7 @@ namespace couplet::fluid {
 template <int D>
 Loads<D>::Loads(StepWork<D>& work) : k_(work) {
   const Boundary<D>& boundary = work.boundary;
-  for (std::size_t b = 0; b < boundary.kind().size(); ++b)
+  for (std::size_t b = 0; b < boundary.rows().pressure.size(); ++b)
     if (boundary.is_interface(static_cast<Index>(b))) interface_faces_.push_back(static_cast<Index>(b));
 }
 

@@ -42,6 +42,7 @@ template <int D>
 template <bool Split>
 void RateOperator<D>::face_loop(const State<D>& s, Rates<D>& rates) const {
   const Placement<D>& at = *s.placement;
+  const std::vector<double>& inflow = boundary_.rows().inflow;
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
     const Vec<D> convective = -0.5 * s.phi[f] * (s.u[p] + s.u[n]);
@@ -61,8 +62,7 @@ void RateOperator<D>::face_loop(const State<D>& s, Rates<D>& rates) const {
     const Index p = mesh_.owner[f];
     const Index b = f - mesh_.n_interior;
     const Vec<D>& on_face = s.u_boundary[b];
-    const bool backflow = s.phi[f] < 0 && boundary_.kind()[b] == FaceKind::pressure;
-    rates.rate[p] -= (backflow ? boundary_.backflow(b) : 1.0) * s.phi[f] * on_face;
+    rates.rate[p] -= (s.phi[f] < 0 ? inflow[b] : 1.0) * s.phi[f] * on_face;
     (Split ? rates.viscous : rates.rate)[p] += nu_ * at.conductance[f] * (on_face - s.u[p]);
   }
 }
@@ -86,9 +86,10 @@ void RateOperator<D>::add_oblique(const Placement<D>& at, const std::vector<Tens
     rate[p] += part;
     rate[n] -= part;
   }
-  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
-    if (boundary_.kind()[f - mesh_.n_interior] == FaceKind::velocity)
-      rate[mesh_.owner[f]] += nu_ * (gradient[mesh_.owner[f]] * at.oblique[f]);
+  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
+    const double friction = boundary_.rows().friction(at, f - mesh_.n_interior, f);
+    rate[mesh_.owner[f]] += friction * nu_ * (gradient[mesh_.owner[f]] * at.oblique[f]);
+  }
 }
 
 template <int D>

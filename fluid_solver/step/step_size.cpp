@@ -159,8 +159,8 @@ double StepSize<D>::add_rates(const State<D>& s, bool peclet) {
     peclet_of_[n] = std::max(peclet_of_[n], number);
   }
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
-    const bool given = boundary_.kind()[f - mesh_.n_interior] == FaceKind::velocity;
-    rates_[mesh_.owner[f]] += Vec<2>(0.5 * flux_of(f), given ? 2 * nu_ * at.conductance[f] : 0);
+    const double friction = boundary_.rows().friction(at, f - mesh_.n_interior, f);
+    rates_[mesh_.owner[f]] += Vec<2>(0.5 * flux_of(f), friction * 2 * nu_ * at.conductance[f]);
   }
   eddy_.assign(s.eddy.size(), 0.0);
   if (!s.eddy.empty()) add_eddies(s);

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// A wall that moves with the structure. Where its mass is known the pressure equation foresees its answer, as a Robin
+// condition: pressure/yielding_walls.
+#include "fluid_solver/conditions/condition.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+void declare_interface(config::Section& s, BoundaryParameters& b) {
+  s.value("surface-density", b.surface_density)
+      .unit("kg/m^2")
+      .plausible(1e-6, 1e6)
+      .positive()
+      .doc(
+          "mass per area of the structure behind the wall: the pressure equation then anticipates "
+          "its response (Robin condition), with `coupling.order: structure-first`; the density of a "
+          "solid times its thickness, or less: too small costs passes, too large may diverge; "
+          "absent: the wall moves as the coupling prescribes");
+  s.choice("impedance", b.impedance, {{"given", Impedance::given}, {"structure", Impedance::structure}})
+      .doc(
+          "source of the surface density: given: `surface-density`, if present; structure: the "
+          "structure itself, for each face (solid_solver with `interface: {surface-density: true}`, "
+          "plate_modal with `surface-density: true`, or any program that gives 'surface-density' "
+          "[kg/m^2] at its faces)");
+  s.check(
+      [&b] {
+        return b.surface_density && b.impedance == Impedance::structure
+                   ? "the structure gives it: remove 'surface-density'"
+                   : "";
+      },
+      "impedance");
+}
+
+}  // namespace
+
+Condition conditions::interface() {
+  return {.name = "interface",
+          .about = "interface: wall that moves with the structure",
+          .declare = declare_interface,
+          .velocity = GivenBy::structure,
+          .wall = true};
+}
+
+}  // namespace couplet::fluid
