@@ -3,6 +3,7 @@
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
+#include "coupler/exchange/foreign_structure.hpp"
 
 namespace couplet {
 namespace {
@@ -35,6 +36,9 @@ void Coupler::save(const std::filesystem::path& folder) {
   file.write("work", work_guard_.totals());
   if (accelerator_) accelerator_->save(file);
   if (volume_level_) volume_level_->save(file);
+  for (const Partner& partner : partners_)
+    if (const auto* foreign = dynamic_cast<const ForeignStructure*>(partner.channel.get()))
+      foreign->save(file);
   file.write("errors", errors_ ? errors_->state() : std::vector<double>{});
   file.write("lag", lag_ ? lag_->state() : std::vector<double>{});
   if (lag_)
@@ -59,6 +63,8 @@ void Coupler::load() {
   work_guard_.restore(work);
   if (accelerator_) accelerator_->load(file);
   if (volume_level_) volume_level_->load(file);
+  for (const Partner& partner : partners_)
+    if (auto* foreign = dynamic_cast<ForeignStructure*>(partner.channel.get())) foreign->load(file);
   const std::vector<double> errors = file.read("errors");
   if (errors_) errors_->restore(errors);
   const std::vector<double> lag = file.read("lag");

@@ -5,6 +5,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/io/checkpoint.hpp"
 
 namespace couplet {
 namespace {
@@ -36,6 +37,7 @@ void rename(std::map<std::string, int>& surface_of, const std::string& from, con
 
 void ForeignStructure::adapt(Interface& own, Surfaces& surfaces, const std::vector<Interface>& all) {
   adapt_displacement(own, surfaces);
+  n_values_ = own.vertices.size() * std::size_t(own.dim);
   if (!names_.load.empty()) adapt_load(own, surfaces, all);
 }
 
@@ -73,10 +75,6 @@ void ForeignStructure::adapt_load(Interface& own, Surfaces& surfaces, const std:
 }
 
 void ForeignStructure::send(const Command& command) {
-  if (command.op == Op::load && derives_velocity_)
-    throw Error(
-        "'{}' gives no velocity, which is found from earlier displacements: it cannot continue from a checkpoint.",
-        name());
   if (command.op == Op::begin_step) dt_ = command.step.dt;
   if (command.op == Op::accept_step) {
     older_ = now_.empty() ? std::vector<double>(next_.size()) : std::move(now_);
@@ -105,6 +103,22 @@ std::vector<double> ForeignStructure::velocity() const {
   for (std::size_t i = 0; i < v.size(); ++i)
     v[i] = newest * next_[i] + (now_.empty() ? 0 : last * now_[i]) + (parabola ? oldest * older_[i] : 0);
   return v;
+}
+
+void ForeignStructure::save(CheckpointWriter& file) const {
+  if (!derives_velocity_) return;
+  file.write(name() + "-displacement", now_);
+  file.write(name() + "-displacement-before", older_);
+  file.write_scalar(name() + "-dt", dt_);
+  file.write_scalar(name() + "-dt-before", old_dt_);
+}
+
+void ForeignStructure::load(CheckpointReader& file) {
+  if (!derives_velocity_) return;
+  now_ = file.read_or_none(name() + "-displacement", n_values_);
+  older_ = file.read_or_none(name() + "-displacement-before", n_values_);
+  dt_ = file.read_scalar(name() + "-dt");
+  old_dt_ = file.read_scalar(name() + "-dt-before");
 }
 
 Reply ForeignStructure::receive() {

@@ -10,6 +10,9 @@
 
 namespace couplet {
 
+class CheckpointReader;
+class CheckpointWriter;
+
 /// The channel to a structure that calls its data otherwise, and gives no velocity: a program on preCICE's
 /// interface. Its displacement [m] goes on by the coupler's name, its load is the sum of all forces [N] of the
 /// others, and its velocity [m/s] is the difference of second order through the displacements at t^{n+1}, t^n and
@@ -24,10 +27,13 @@ class ForeignStructure final : public Channel {
   void adapt(Interface& own, Surfaces& surfaces, const std::vector<Interface>& all);
 
   const std::string& name() const override { return channel_->name(); }
-  /// Throws Error on load where the velocity is derived: earlier displacements are not kept over a restart.
   void send(const Command& command) override;
   Reply receive() override;
   double waiting_seconds() const override { return channel_->waiting_seconds(); }
+
+  /// The displacements that its velocity follows from, between steps; nothing where it gives its velocity.
+  void save(CheckpointWriter& file) const;
+  void load(CheckpointReader& file);
 
  private:
   void adapt_displacement(Interface& own, Surfaces& surfaces);
@@ -40,6 +46,7 @@ class ForeignStructure final : public Channel {
   std::vector<std::string> forces_;         // whose sum is the load
   std::vector<double> next_, now_, older_;  // displacements [m]; empty: not known, as before the start
   double dt_ = 0, old_dt_ = 0;              // of the step under way and the one before [s]
+  std::size_t n_values_ = 0;                // of a displacement on this rank
 };
 
 }  // namespace couplet
