@@ -3,6 +3,7 @@
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <ifaddrs.h>
+#include <netdb.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -34,46 +35,51 @@ bool whole(const std::string& word, T& value) {
   return code == std::errc() && end == word.data() + word.size();
 }
 
-/// The first address of an interface, as bytes for bind() or connect().
-socklen_t address_of(const std::string& name, int port, sockaddr_storage& result) {
+/// The first address of a family of an interface, as bytes for bind(). Link-local ones mean another thing on each machine and
+/// are left out.
+socklen_t address_of(const std::string& name, int family, int port, sockaddr_storage& result) {
   ifaddrs* all = nullptr;
   if (::getifaddrs(&all) != 0) refuse("The network interfaces cannot be read.");
   std::string known;
   socklen_t size = 0;
   for (const ifaddrs* one = all; one != nullptr; one = one->ifa_next) {
-    if (one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
+    if (one->ifa_addr == nullptr || one->ifa_addr->sa_family != family) continue;
+    const auto* in6 = reinterpret_cast<const sockaddr_in6*>(one->ifa_addr);
+    if (family == AF_INET6 && IN6_IS_ADDR_LINKLOCAL(&in6->sin6_addr)) continue;
     if (known.find(one->ifa_name) == std::string::npos)
       known += (known.empty() ? "" : ", ") + std::string(one->ifa_name);
     if (size == 0 && name == one->ifa_name) {
-      size = sizeof(sockaddr_in);
+      size = family == AF_INET6 ? sizeof(sockaddr_in6) : sizeof(sockaddr_in);
       std::memcpy(&result, one->ifa_addr, size);
-      reinterpret_cast<sockaddr_in&>(result).sin_port = htons(std::uint16_t(port));
+      (family == AF_INET6 ? reinterpret_cast<sockaddr_in6&>(result).sin6_port
+                          : reinterpret_cast<sockaddr_in&>(result).sin_port) = htons(std::uint16_t(port));
     }
   }
   ::freeifaddrs(all);
   if (size == 0)
-    refuse("There is no network interface '" + name + "' with an IPv4 address; there are: " + known + ".");
+    refuse("There is no network interface '" + name + "' with an IPv" + (family == AF_INET6 ? '6' : '4') +
+           " address; there are: " + known + ".");
   return size;
 }
 
-int listen_on_tcp(const std::string& where, std::string& place) {
+int listen_on_tcp(const std::string& where, int family, std::string& place) {
   const std::size_t colon = where.find(':');
   int port = 0;
   if (colon != std::string::npos && (!whole(where.substr(colon + 1), port) || port < 0 || port > 65535))
     refuse("'" + where.substr(colon + 1) + "' is not a port; expected a whole number from 0 (any) to 65535.");
   sockaddr_storage at{};
-  socklen_t size = address_of(where.substr(0, colon), port, at);
-  const int s = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  socklen_t size = address_of(where.substr(0, colon), family, port, at);
+  const int s = ::socket(family, SOCK_STREAM | SOCK_CLOEXEC, 0);
   const int on = 1;
   widen(s);
   ::setsockopt(s, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
   if (s < 0 || ::bind(s, reinterpret_cast<sockaddr*>(&at), size) != 0 || ::listen(s, 8) != 0)
     refuse("Cannot listen on '" + where + "' (" + std::strerror(errno) + ").");
   ::getsockname(s, reinterpret_cast<sockaddr*>(&at), &size);
-  const auto& in = reinterpret_cast<const sockaddr_in&>(at);
-  char text[INET_ADDRSTRLEN] = "";
-  ::inet_ntop(AF_INET, &in.sin_addr, text, sizeof text);
-  place = std::string("tcp ") + text + ' ' + std::to_string(ntohs(in.sin_port));
+  char text[INET6_ADDRSTRLEN] = "", number[8] = "";
+  ::getnameinfo(reinterpret_cast<sockaddr*>(&at), size, text, sizeof text, number, sizeof number,
+                NI_NUMERICHOST | NI_NUMERICSERV);
+  place = std::string("tcp ") + text + ' ' + number;
   return s;
 }
 
@@ -98,8 +104,22 @@ int listen_on_unix(std::string& place, std::string& folder) {
 
 int listen_at(const std::string& how, std::string& place, std::string& folder) {
   if (how == "unix") return listen_on_unix(place, folder);
-  if (how.rfind("tcp:", 0) == 0) return listen_on_tcp(how.substr(4), place);
-  refuse("--listen " + how + ": expected unix, or tcp:INTERFACE[:PORT].");
+  if (how.rfind("tcp:", 0) == 0) return listen_on_tcp(how.substr(4), AF_INET, place);
+  if (how.rfind("tcp6:", 0) == 0) return listen_on_tcp(how.substr(5), AF_INET6, place);
+  refuse("--listen " + how + ": expected unix, or tcp:INTERFACE[:PORT], or tcp6:INTERFACE[:PORT].");
+}
+
+/// Of either family; 0: it is none.
+static socklen_t numeric_address(const std::string& host, const std::string& port, sockaddr_storage& result) {
+  addrinfo wanted{}, *found = nullptr;
+  wanted.ai_family = AF_UNSPEC;
+  wanted.ai_socktype = SOCK_STREAM;
+  wanted.ai_flags = AI_NUMERICHOST | AI_NUMERICSERV;
+  if (::getaddrinfo(host.c_str(), port.c_str(), &wanted, &found) != 0) return 0;
+  const socklen_t size = found->ai_addrlen;
+  std::memcpy(&result, found->ai_addr, size);
+  ::freeaddrinfo(found);
+  return size;
 }
 
 Stream connect_to(const std::string& place) {
@@ -114,12 +134,10 @@ Stream connect_to(const std::string& place) {
     un.sun_family = AF_UNIX;
     std::strncpy(un.sun_path, where.c_str(), sizeof un.sun_path - 1);
     size = sizeof un;
-  } else if (auto& in = reinterpret_cast<sockaddr_in&>(at);
-             kind == "tcp" && whole(port, number) && ::inet_pton(AF_INET, where.c_str(), &in.sin_addr) == 1) {
-    in.sin_family = AF_INET;
-    in.sin_port = htons(number);
-    size = sizeof in;
-  } else {
+  } else if (kind == "tcp" && whole(port, number)) {
+    size = numeric_address(where, port, at);
+  }
+  if (size == 0) {
     refuse("'" + place + "' is not a place; expected 'unix PATH' or 'tcp ADDRESS PORT'.");
   }
   Stream stream(::socket(at.ss_family, SOCK_STREAM | SOCK_CLOEXEC, 0));

@@ -57,9 +57,10 @@ extern "C" void stopped(int signal) {
   if (!problem.empty()) std::fprintf(stderr, "relay: %s\n", problem.c_str());
   std::fprintf(
       problem.empty() ? stdout : stderr,
-      "Usage: relay PARTICIPANT [--listen unix | tcp:INTERFACE[:PORT]] [--address FILE] [--wait SECONDS]\n"
+      "Usage: relay PARTICIPANT [--listen unix | tcp:INTERFACE[:PORT] | tcp6:INTERFACE[:PORT]] [--address FILE]\n"
+      "             [--wait SECONDS]\n"
       "Stands in a job for a participant that is launched separately with COUPLET_JOIN=FILE in its environment.\n"
-      "  --listen   how it is reached: a socket on this machine (unix, the default), or on one network interface\n"
+      "  --listen   how it is reached: a socket on this machine (unix, the default), or on one network interface (IPv4, IPv6)\n"
       "  --address  the file with its place and the token; default: PARTICIPANT.relay\n"
       "  --wait     seconds until the participant must have come; default: 600\n");
   std::exit(problem.empty() ? 0 : 2);

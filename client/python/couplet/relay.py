@@ -65,8 +65,13 @@ class OverSocket:
         if comm.size != len(places):
             raise ValueError(f"'{participant}' has {comm.size} processes, its relay {len(places)}: start as many of both.")
         kind, *where = places[comm.rank].split()
-        self._socket = socket.socket(socket.AF_UNIX if kind == "unix" else socket.AF_INET)
-        self._socket.connect(where[0] if kind == "unix" else (where[0], int(where[1])))
+        if kind == "unix":
+            self._socket = socket.socket(socket.AF_UNIX)
+            self._socket.connect(where[0])
+        else:  # a numeric address of either family
+            family, _, _, _, place = socket.getaddrinfo(*where, type=socket.SOCK_STREAM, flags=socket.AI_NUMERICHOST | socket.AI_NUMERICSERV)[0]
+            self._socket = socket.socket(family)
+            self._socket.connect(place)
         if kind == "tcp":  # as watch() of stream.cpp: a lost partner is known within 5 s
             self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
             for option, value in (("TCP_KEEPIDLE", 2), ("TCP_KEEPINTVL", 1), ("TCP_KEEPCNT", 3), ("TCP_USER_TIMEOUT", 5000), ("TCP_NODELAY", 1)):

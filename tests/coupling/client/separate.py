@@ -86,6 +86,11 @@ def steps(folder):
     return file.read_text().splitlines() if file.exists() else []
 
 
+def has_loopback6():
+    table = pathlib.Path("/proc/net/if_inet6")
+    return table.exists() and any(line.split()[-1] == "lo" for line in table.read_text().splitlines())
+
+
 def listening(token):
     """TCP ports on which processes listen whose command line has the token, as (address, port)."""
     inodes = set()
@@ -104,13 +109,16 @@ def listening(token):
     return found
 
 
+loop6 = [["--listen", "tcp6:lo"]] if has_loopback6() else []
+
+
 def same():
     short = ["simulation.end-time=0.08"]
     for language, body in bodies.items():
         with tempfile.TemporaryDirectory() as folder:
             end(job(folder, [*body, *parameters], *short))
             native = steps(folder)
-        ways = ([], ["--listen", "tcp:lo"]) if language == "c++" else ([],)
+        ways = ([], ["--listen", "tcp:lo"], *loop6) if language == "c++" else loop6 or ([],)
         for way in ways:
             with tempfile.TemporaryDirectory() as folder:
                 whole, guest = job(folder, relay(*way), *short), participant(folder, body)
@@ -216,7 +224,7 @@ def strangers(number):
             check("then the participant comes, and the job runs", (end(guest)[0], end(whole)[0]) == (0, 0) and len(steps(folder)) == 2)
             if way == "unix":
                 check("the socket is taken away", not pathlib.Path(place[1]).parent.exists())
-    for options, code, text in ((["--listen", "tcp:nowhere0"], 1, "no network interface 'nowhere0'"), (["--listen", "udp"], 1, "expected unix, or tcp:INTERFACE"),
+    for options, code, text in ((["--listen", "tcp:nowhere0"], 1, "no network interface 'nowhere0'"), (["--listen", "tcp6:nowhere0"], 1, "no network interface 'nowhere0' with an IPv6 address"), (["--listen", "udp"], 1, "expected unix, or tcp:INTERFACE"),
                                 (["--listen", "tcp:lo:70000"], 1, "is not a port"), (["--wait", "never"], 2, "expected seconds above 0"),
                                 (["--wait", "1"], 1, "nobody connected within 1 s"), (["--door"], 2, "unknown option '--door'")):
         with tempfile.TemporaryDirectory() as folder:
