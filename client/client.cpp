@@ -16,17 +16,15 @@
 #include <utility>
 #include <vector>
 
+#include "client.hpp"
 #include "socket_link.hpp"
 #include "transports.hpp"
-#include "wire.hpp"
-
-namespace {
 
 using namespace couplet::wire;
 
-Link* way = nullptr;  // of the client that joined last
+static Link* way = nullptr;  // of the client that joined last
 
-[[noreturn]] void end_the_job(const std::string& text) {
+[[noreturn]] void couplet::wire::end_the_job(const std::string& text) {
   std::fprintf(stderr, "couplet client: %s\n", text.c_str());
   if (way != nullptr) way->fail(text);
   std::fflush(nullptr);
@@ -34,43 +32,7 @@ Link* way = nullptr;  // of the client that joined last
   std::abort();
 }
 
-}  // namespace
-
-struct couplet_client {
-  std::string participant;
-  MPI_Comm comm = MPI_COMM_NULL;
-  std::unique_ptr<Link> coupler;
-  int rank = 0;
-  Surface surface;
-  std::vector<Datum> takes, gives;
-  std::vector<std::int64_t> vertex_cut, face_cut;
-  std::vector<Peer> peers;
-  // of the command under way
-  Command command;
-  bool pending = false;
-  std::map<std::string, std::vector<double>> input, output, spare;  // spare: arrays of outputs that were sent
-  std::int64_t status = 0;
-  std::string text, checkpoint;
-  double time = 0, dt = 0;  // of the step that began last
-  double advised = std::numeric_limits<double>::infinity();
-  std::int64_t iterations = 0;
-  double error = NAN, energy = NAN, started = 0;
-  bool described = false;
-  bool started_mpi = false;
-};
-
 namespace {
-
-std::size_t entries(const couplet_client& c, const Datum& d) {
-  const std::size_t places = d.place == COUPLET_FACES ? c.surface.faces() : c.surface.vertices();
-  return places * std::size_t(d.size(c.surface.dim));
-}
-
-const Datum* find(const std::vector<Datum>& list, const std::string& name) {
-  for (const Datum& d : list)
-    if (d.name == name) return &d;
-  return nullptr;
-}
 
 std::vector<std::int64_t> cut(MPI_Comm comm, std::size_t n) {
   int size = 0;
@@ -129,6 +91,7 @@ void send_reply(couplet_client& c) {
       for (auto& [name, values] : c.output) part_of(c, p, *find(c.gives, name), values, parts);  // by name
       if (!parts.empty()) c.coupler->send(p.rank, output_tag, parts);
     }
+  if (c.spare.size() > c.gives.size() + c.output.size()) c.spare.clear();  // of other times within the step
   for (auto& [name, values] : c.output) c.spare[name].swap(values);
   c.output.clear();
   c.status = 0;
@@ -136,23 +99,23 @@ void send_reply(couplet_client& c) {
 }
 
 void receive_input(couplet_client& c) {
-  std::vector<const Datum*> present;
+  std::map<std::string, const Datum*> present;
   for (const std::string& name : c.command.data) {
     const Datum* d = find(c.takes, name);
     if (d == nullptr)
       end_the_job("the coupler sent '" + name + "', which '" + c.participant + "' does not take.");
-    if (entries(c, *d) > 0) present.push_back(d);
+    if (entries(c, *d) > 0) present[name] = d;
   }
   // Arrays of the pass before are written over; what nobody has given this time is not there.
   auto before = std::exchange(c.input, {});
-  for (const Datum* d : present) {
-    std::vector<double>& values = c.input[d->name];
-    values.swap(before[d->name]);
+  for (const auto& [name, d] : present) {
+    std::vector<double>& values = c.input[name];
+    values.swap(before[name]);
     values.resize(entries(c, *d));
   }
   for (const Peer& p : c.peers) {
     std::vector<Stretch> parts;
-    for (const Datum* d : present) part_of(c, p, *d, c.input[d->name], parts);
+    for (const auto& [name, d] : present) part_of(c, p, *d, c.input[name], parts);  // by name
     if (!parts.empty() && !c.coupler->receive(p.rank, input_tag, parts))
       end_the_job("a message with values does not have the announced length.");
   }
@@ -295,9 +258,7 @@ const double* couplet_read(const couplet_client* c, const char* datum) {
 void couplet_write(couplet_client* c, const char* datum, const double* values) {
   const Datum* d = find(c->gives, datum);
   if (!d) end_the_job(std::string("'") + datum + "' was not announced by couplet_gives.");
-  std::vector<double>& to = c->output[datum];
-  if (to.empty()) to.swap(c->spare[datum]);
-  to.assign(values, values + entries(*c, *d));
+  take_over(*c, datum, values, entries(*c, *d));
 }
 
 void couplet_fail(couplet_client* c, const char* why, int halving_helps) {

@@ -75,6 +75,15 @@ const double* couplet_read(const couplet_client* c, const char* datum);
 /* SOLVE: values of a datum that is given. Before the first couplet_next: its value before the first step; all data or
  * none, by all processes. */
 void couplet_write(couplet_client* c, const char* datum, const double* values);
+/* Values within a step, of programs that subdivide it. They go to those that ask for them, before the first couplet_next and
+ * after couplet_takes. */
+void couplet_takes_within(couplet_client* c, const char* datum);
+/* SOLVE, besides couplet_write, which has the end of the step; `share`: of the step, between 0 and 1. */
+void couplet_write_within(couplet_client* c, const char* datum, double share, const double* values);
+/* SOLVE: how many there are of a datum that is taken; the values of one of them, by ascending share, counted from 0. Valid until
+ * the next couplet_next. */
+int couplet_within(const couplet_client* c, const char* datum);
+const double* couplet_read_within(const couplet_client* c, const char* datum, int number, double* share);
 /* SOLVE: instead of writing: the step could not be solved; `halving_helps`: a shorter one may be. */
 void couplet_fail(couplet_client* c, const char* why, int halving_helps);
 /* The largest step that is advised from now on [s]. */

@@ -149,7 +149,10 @@ void Coupler::solve(const Step& step) {
   std::vector<Exchange> outputs;
   const auto pass_from = [&](std::vector<Exchange> known) {
     give_back(std::move(outputs));
+    const bool shows_times = first && schedule_.iterates && unknown_->asked_within();
     outputs = pass(std::move(known), std::exchange(first, false));
+    if (shows_times && unknown_->adopt_times(outputs))  // what was learnt was of other unknowns
+      accelerator_ = make_accelerator(parameters_.acceleration, comm_);
   };
   const FixedPointMap map = [&](const Iterate& x) {
     std::vector<Exchange> known(partners_.size());
@@ -166,7 +169,7 @@ void Coupler::solve(const Step& step) {
     if (!unknown_->scaled()) unknown_->scale(outputs);
     last_ = {unknown_->gather(outputs), unknown_->gather(outputs), {}, 1};
   }
-  if (!begins) last_.x = predict(*unknown_, history_, step.dt, schedule_.predictor);
+  if (!begins) last_.x = unknown_->begin_step(predict(*unknown_, history_, step.dt, schedule_.predictor));
   if (!schedule_.iterates) {
     if (!begins && !unknown_->parts().empty()) {
       pass_once(step, map);
@@ -185,8 +188,10 @@ void Coupler::solve(const Step& step) {
     const ResidualMeasure measure = [&](const Iterate& x, const Iterate& image) {
       return unknown_->measure(x, image);
     };
-    last_ =
-        solve_fixed_point(std::move(last_.x), map, measure, parameters_.convergence, *accelerator_, observer);
+    std::optional<Iterate> seen = begins ? std::nullopt : look_within(map);
+    const FixedPointMap on = [&](const Iterate& x) { return seen ? *std::exchange(seen, {}) : map(x); };
+    last_ = solve_fixed_point(std::move(last_.x), seen ? on : map, measure, parameters_.convergence,
+                              *accelerator_, observer);
     if (!last_.converged) report_unconverged(step.time);
   }
   give_back(std::exchange(given_, std::move(outputs)));
@@ -209,6 +214,7 @@ void Coupler::accept(double time, int output) {
     // What it has learnt was in other scales.
     if (accelerator_) accelerator_ = make_accelerator(parameters_.acceleration, comm_);
   }
+  if (unknown_->has_within()) last_.image = unknown_->ends(std::move(last_.image));
   if (errors_ && history_.now.unknown.size() == last_.image.unknown.size())
     errors_->accepted(last_.residual, worst(unknown_->measure(history_.now, last_.image)), last_dt_);
   if (lag_ && !history_.now.rider.empty()) lag_->accepted(last_.x, last_.image, last_dt_);

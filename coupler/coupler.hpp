@@ -81,6 +81,8 @@ class Coupler {
   void solve(const Step& step);
   /// One pass from x, the explicit scheme's step.
   void pass_once(const Step& step, const FixedPointMap& map);
+  /// Where values within the step are asked for: the first pass, whose times they are iterated on at from then on.
+  std::optional<Iterate> look_within(const FixedPointMap& map);
   /// What comes back in a step half as long, of some steps of explicit coupling before they begin.
   void look_at_lag(Step step);
   /// One pass through the group from what is known to what all give.

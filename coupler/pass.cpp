@@ -127,6 +127,13 @@ void Coupler::look_at_lag(Step step) {
   give_back(std::move(outputs));
 }
 
+std::optional<Iterate> Coupler::look_within(const FixedPointMap& map) {
+  if (!unknown_->asked_within()) return {};
+  Iterate image = map(last_.x);
+  last_.x = unknown_->held(unknown_->ends(std::move(last_.x)));
+  return image;
+}
+
 void Coupler::pass_once(const Step& step, const FixedPointMap& map) {
   last_.image = map(last_.x);
   last_.residual = worst(unknown_->measure(last_.x, last_.image));

@@ -32,7 +32,7 @@ std::string listed(const std::vector<std::string>& names) {
 /// A datum from where it is written to where it is read.
 struct Connection {
   std::string data, giver, from, taker, to;
-  bool conservative = false, initialised = false, implicit = false, taker_is_early = false;
+  bool conservative = false, initialised = false, implicit = false, taker_is_early = false, sub_steps = true;
 };
 
 class Reader {
@@ -48,7 +48,10 @@ class Reader {
              "<precice-configuration> of preCICE's version 3 is expected, this is <" + root_.name + ">.");
     const Element& me = participant(c_.participant);
     for (const Element& child : root_.children)
-      if (begins(child.name, "data:")) is_vector_[child.attribute("name")] = child.name == "data:vector";
+      if (begins(child.name, "data:")) {
+        is_vector_[child.attribute("name")] = child.name == "data:vector";
+        degree_[child.attribute("name")] = degree(child);
+      }
     check_supported(me);
     meshes(me);
     data(me);
@@ -59,6 +62,17 @@ class Reader {
   }
 
  private:
+  /// Of the interpolation in time.
+  int degree(const Element& datum) const {
+    const std::string word = datum.attribute("waveform-degree");
+    if (word.empty()) return 1;
+    if (word.size() > 2 || word.find_first_not_of("0123456789") != std::string::npos)
+      refuse(c_.file, datum,
+             "waveform-degree of \"" + datum.attribute("name") + "\" is \"" + word +
+                 "\"; expected a whole number from 0 to 99.");
+    return std::stoi(word);
+  }
+
   const Element& participant(const std::string& name) const {
     std::vector<std::string> names;
     for (const Element* p : root_.all("participant")) {
@@ -179,10 +193,16 @@ class Reader {
         refuse(c_.file, *e,
                "no mapping of \"" + c_.participant + "\" leads \"" + datum + "\" on mesh \"" +
                    e->attribute("mesh") + "\" to where it is read or written.");
+      const bool sub_steps = e->attribute("substeps").empty() || is_true(e->attribute("substeps"));
+      if (const int degree = degree_[datum]; degree > 1 && !sub_steps)
+        refuse(c_.file, *e,
+               "waveform-degree " + std::to_string(degree) + " of \"" + datum +
+                   "\" needs its values at the sub-steps: substeps=\"true\".");
       for (const auto& [from, from_conservative] : starts)
         for (const auto& [to, to_conservative] : stops)
           connections_.push_back({datum, giver, from, taker, to, from_conservative || to_conservative,
-                                  is_true(e->attribute("initialize")), implicit, !serial || taker == first});
+                                  is_true(e->attribute("initialize")), implicit, !serial || taker == first,
+                                  sub_steps});
     }
   }
 
@@ -202,6 +222,8 @@ class Reader {
       wire.initialised = k.initialised;
       wire.held = !k.implicit && k.taker_is_early;
       wire.iterated = k.implicit && k.taker_is_early;
+      wire.degree = degree_[k.data];
+      wire.within = k.sub_steps && wire.degree > 0 && !wire.held;
       for (const auto& other : c_.wires)
         if (!gives && !other.given && other.data == wire.data)
           throw ::precice::Error(c_.file + ": \"" + k.data + "\" comes to mesh \"" + k.to +
@@ -213,6 +235,7 @@ class Reader {
   Element root_;
   Configuration c_;
   std::map<std::string, bool> is_vector_;
+  std::map<std::string, int> degree_;
   std::vector<Connection> connections_;
 };
 

@@ -29,6 +29,8 @@ struct Configuration {
     bool initialised = false;  ///< the giver has values before the first step
     bool held = false;         ///< taken with the value at the start of the window, all through it
     bool iterated = false;     ///< taken before it is given in a pass
+    int degree = 1;            ///< of the interpolation in time within a window
+    bool within = false;       ///< goes over with its values at the sub-steps
   };
   std::string file, participant;
   std::vector<Mesh> meshes;

@@ -159,18 +159,19 @@ void Participant::readData(string_view mesh, string_view data, span<const Vertex
   check_values(s, "readData", d, ids, values.size());
   const Sample* sample = s.sample(d);
   const std::size_t n = s.components(d), first = n * s.first_vertex(d.mesh);
-  // Ends are taken as they came; in between the line in time.
-  const double reached = s.at + time;
-  const bool at_end = !s.ongoing || s.window - reached <= 1e-12 * s.window;
-  const double share = at_end ? 1 : reached / s.window;
-  for (std::size_t i = 0; i < ids.size(); ++i)
-    for (std::size_t k = 0; k < n; ++k) {
-      const std::size_t from = first + n * std::size_t(ids[i]) + k;
-      values[n * i + k] = sample == nullptr ? 0
-                          : at_end          ? sample->end[from]
-                          : share <= 0      ? sample->start[from]
-                                            : (1 - share) * sample->start[from] + share * sample->end[from];
-    }
+  if (sample == nullptr) {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = 0;
+    return;
+  }
+  bool one = true;  // the first takes the place of what was there
+  for (const auto& [weight, from] : s.at_time(*sample, s.at + time)) {
+    for (std::size_t i = 0; i < ids.size(); ++i)
+      for (std::size_t k = 0; k < n; ++k) {
+        const double part = weight * from[first + n * std::size_t(ids[i]) + k];
+        values[n * i + k] = one ? part : values[n * i + k] + part;
+      }
+    one = false;
+  }
 }
 
 }  // namespace precice

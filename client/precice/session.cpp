@@ -137,23 +137,40 @@ void Session::describe() {
     const auto own = std::size_t(mesh(d.mesh) - meshes.data());
     const auto place = meshes.size() > 1 ? couplet_place(COUPLET_SURFACE + own) : COUPLET_VERTICES;
     (w.given ? couplet_gives : couplet_takes)(job, w.name.c_str(), unit_of(w, d), place, d.vector ? 0 : 1);
+    if (!w.given && w.within) couplet_takes_within(job, w.name.c_str());
   }
+}
+
+std::vector<double> Session::surface_of(std::size_t datum, const std::vector<double>& values) const {
+  const Configuration::Data& d = configuration.data[datum];
+  std::size_t all = 0;
+  for (const Mesh& m : meshes) all += std::size_t(m.vertices());
+  std::vector<double> surface(components(d) * all);
+  std::copy(values.begin(), values.end(),
+            surface.begin() + std::ptrdiff_t(components(d) * first_vertex(d.mesh)));
+  return surface;
 }
 
 /// What was written, zero where nothing was; `initial`: before the first step, only what the configuration asks for.
 void Session::hand_over(bool initial) {
-  std::size_t all = 0;
-  for (const Mesh& m : meshes) all += std::size_t(m.vertices());
   for (const Configuration::Wire& w : configuration.wires) {
     if (!w.given) continue;
-    const Configuration::Data& d = configuration.data[w.data];
-    const std::size_t n = components(d);
-    std::vector<double> values(n * all);
-    const std::vector<double>& from = written[w.data];
-    if (!initial || w.initialised)
-      std::copy(from.begin(), from.end(), values.begin() + std::ptrdiff_t(n * first_vertex(d.mesh)));
-    couplet_write(job, w.name.c_str(), values.data());
+    const bool nothing = initial && !w.initialised;
+    couplet_write(job, w.name.c_str(),
+                  surface_of(w.data, nothing ? std::vector<double>{} : written[w.data]).data());
+    if (w.within && !initial)
+      for (const auto& [share, then] : sub_steps_)
+        couplet_write_within(job, w.name.c_str(), share, surface_of(w.data, then[w.data]).data());
   }
+  sub_steps_.clear();
+}
+
+void Session::keep_sub_step() {
+  for (const Configuration::Wire& w : configuration.wires)
+    if (w.given && w.within) {
+      sub_steps_.emplace_back(at / window, written);
+      return;
+    }
 }
 
 void Session::begin() {
@@ -161,8 +178,12 @@ void Session::begin() {
   samples_.resize(configuration.wires.size());
   std::size_t all = 0;
   for (const Mesh& m : meshes) all += std::size_t(m.vertices());
-  for (std::size_t w = 0; w < samples_.size(); ++w)
+  const std::vector<double> ends{0, 1};
+  for (std::size_t w = 0; w < samples_.size(); ++w) {
+    samples_[w].shares = ends;
+    samples_[w].waveform.emplace(ends, configuration.wires[w].degree);
     samples_[w].start.assign(all * components(configuration.data[configuration.wires[w].data]), 0);
+  }
   for (Sample& s : samples_) s.end = s.start;
   for (std::size_t i = 0; i < written.size(); ++i) {
     const Configuration::Data& d = configuration.data[i];
@@ -215,14 +236,41 @@ void Session::take(bool new_window) {
     else
       std::copy_n(values, s.end.size(), s.end.begin());
     // What is iterated on is guessed, in the first pass, by its value at the start of the window.
-    if (wire.held || (wire.iterated && new_window)) s.start = s.end;
+    const bool constant = wire.held || (wire.iterated && new_window);
+    if (constant) s.start = s.end;
+    if (wire.within) take_within(wire, s, constant);
   }
+}
+
+void Session::take_within(const Configuration::Wire& wire, Sample& s, bool constant) {
+  const int n = constant ? 0 : couplet_within(job, wire.name.c_str());
+  std::vector<double> shares(std::size_t(n) + 2, 0.);
+  s.within.resize(std::size_t(n));
+  for (int i = 0; i < n; ++i)
+    s.within[std::size_t(i)] = couplet_read_within(job, wire.name.c_str(), i, &shares[std::size_t(i) + 1]);
+  shares.back() = 1;
+  if (shares == s.shares) return;
+  s.waveform.emplace(shares, wire.degree);
+  s.shares = std::move(shares);
+}
+
+Blend Session::at_time(const Sample& s, double reached) const {
+  if (!ongoing || window - reached <= 1e-12 * window) return {{1, s.end.data()}};
+  if (reached <= 0) return {{1, s.start.data()}};
+  const std::vector<double> weights = s.waveform->weights(reached / window);
+  Blend blend;
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    if (weights[i] != 0)
+      blend.emplace_back(weights[i], i == 0                    ? s.start.data()
+                                     : i + 1 == weights.size() ? s.end.data()
+                                                               : s.within[i - 1]);
+  return blend;
 }
 
 void Session::go_on(double dt) {
   at += dt;
   window_complete = writing_due = reading_due = false;
-  if (window - at > 1e-12 * window) return;  // within the window: the values at its end go over
+  if (window - at > 1e-12 * window) return keep_sub_step();
   hand_over(false);
   for (auto& values : written) std::fill(values.begin(), values.end(), 0.);
   bool accepted = false;

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "configuration.hpp"
 #include "couplet.h"
 #include "mesh.hpp"
 #include "precice/precice.hpp"
+#include "waveform.hpp"
 
 namespace couplet::dropin {
 
@@ -16,10 +19,17 @@ namespace couplet::dropin {
 /// The client of this participant, which takes part in the start of the job on the first call.
 couplet_client* joined(const std::string& participant, const MPI_Comm* processes);
 
-/// What comes over one wire, at the start of the time window and at its end; the whole surface's values.
+/// What comes over one wire, at the start of the time window, at its end, and in between where the giver takes sub-steps;
+/// the whole surface's values.
 struct Sample {
   std::vector<double> start, end;
+  std::vector<const double*> within;  ///< the client's
+  std::vector<double> shares;         ///< of the window, of start, within and end
+  std::optional<Waveform> waveform;   ///< through the shares
 };
+
+/// A value in time: the sum of weights times values.
+using Blend = std::vector<std::pair<double, const double*>>;
 
 /// A participant between its construction and its end: the windows of its job as the coupler's client sees them.
 class Session {
@@ -37,8 +47,10 @@ class Session {
   Mesh* mesh(const std::string& name);
   double remaining() const { return ongoing ? window - at : 0; }
   std::size_t components(const Configuration::Data& d) const;
-  /// Values of what is read on a mesh at a time within the window, from its start [s]; null: nobody gives it.
+  /// Values of what is read on a mesh; null: nobody gives it.
   const Sample* sample(const Configuration::Data& d) const;
+  /// The value at a time within the window, from its start [s]; ends are taken as they came.
+  Blend at_time(const Sample& s, double reached) const;
   std::size_t first_vertex(const std::string& mesh) const;
 
   Configuration configuration;
@@ -56,8 +68,15 @@ class Session {
   bool wait_for_window(bool& accepted);
   void take(bool new_window);
   void hand_over(bool initial);
+  /// What a datum's whole surface has of what was written.
+  std::vector<double> surface_of(std::size_t datum, const std::vector<double>& values) const;
+  /// Keeps what was written at a sub-step of the window.
+  void keep_sub_step();
+  void take_within(const Configuration::Wire& wire, Sample& s, bool constant);
 
   std::vector<Sample> samples_;  // by wire
+  std::vector<std::pair<double, std::vector<std::vector<double>>>>
+      sub_steps_;  // share of the window; as `written`
 };
 
 }  // namespace couplet::dropin

@@ -6,6 +6,7 @@
 
 #include "common/base/error.hpp"
 #include "common/coupling/unpacker.hpp"
+#include "common/coupling/within_step.hpp"
 
 namespace couplet {
 namespace {
@@ -140,6 +141,23 @@ std::vector<char> pack(const Reply& r, const Cut& cut) {
   return out.take();
 }
 
+namespace {
+
+/// "datum@" beside "datum" asks for its values within the step.
+void take_out_within(std::vector<Interface::Datum>& takes, Surfaces& surfaces) {
+  std::erase_if(takes, [&](const Interface::Datum& d) {
+    if (!d.name.ends_with(WithinStep::mark)) return false;
+    surfaces.within.insert(d.name.substr(0, d.name.size() - 1));
+    surfaces.takes.erase(d.name);
+    return true;
+  });
+  for (const std::string& name : surfaces.within)
+    if (std::ranges::find(takes, name, &Interface::Datum::name) == takes.end())
+      throw Error("A reply announces '{}{}' without '{}'.", name, WithinStep::mark, name);
+}
+
+}  // namespace
+
 Reply unpack_reply(std::span<const char> bytes, Cut& cut) {
   Unpacker in(bytes, reply_mark, "reply");
   Reply r;
@@ -156,6 +174,7 @@ Reply unpack_reply(std::span<const char> bytes, Cut& cut) {
   r.anew = in.integer(0, 1, "the flag for a recomputed reply") != 0;
   r.interface.parts = in.names();
   r.interface.takes = in.data(r.surfaces.takes);
+  take_out_within(r.interface.takes, r.surfaces);
   r.interface.gives = in.data(r.surfaces.gives);
   cut.vertices = in.cut("vertices");
   cut.faces = in.cut("faces");
@@ -167,7 +186,15 @@ std::vector<Interface::Datum> present(const Exchange& data, const std::vector<In
                                       const std::string& whose) {
   std::vector<Interface::Datum> list;
   for (const auto& [name, values] : data) {
-    const auto found = std::ranges::find(announced, name, &Interface::Datum::name);
+    auto found = std::ranges::find(announced, name, &Interface::Datum::name);
+    if (const auto within = found == announced.end() ? WithinStep::parse(name) : std::nullopt) {
+      found = std::ranges::find(announced, within->first, &Interface::Datum::name);
+      if (found != announced.end()) {
+        list.push_back(*found);
+        list.back().name = name;
+        continue;
+      }
+    }
     if (found == announced.end())
       throw Error("'{}' is not a datum that '{}' announced at its interface.", name, whose);
     list.push_back(*found);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -42,6 +43,8 @@ struct Surfaces {
   std::vector<int> of_vertex{};  ///< of this rank; empty: there are no such surfaces
   std::map<std::string, int> takes{},
       gives{};  ///< by datum at vertices; one that is not here is at all of them
+  std::set<std::string>
+      within{};  ///< taken data whose values within the step are wanted, too (see WithinStep)
 };
 
 /// Participant to coupler. Every command has exactly one reply.
@@ -88,7 +91,8 @@ std::vector<std::span<const double>> cut_out(const Exchange& data, const std::ve
 /// The same of arrays that are to be filled.
 std::vector<std::span<double>> places_in(Exchange& data, const std::vector<Interface::Datum>& of, int dim,
                                          const Slice& slice, const std::string& whose);
-/// Those of `announced` whose names are in `data`, by name; throws Error if a name was not announced.
+/// Those of `announced` whose names are in `data`, by name, values within the step by their own names; throws Error if a
+/// name was not announced.
 std::vector<Interface::Datum> present(const Exchange& data, const std::vector<Interface::Datum>& announced,
                                       const std::string& whose);
 

@@ -17,9 +17,13 @@ Unknown::Unknown(MPI_Comm comm, const std::vector<Side>& sides, const Links& lin
   const auto add = [&](const Links::Link& link) {
     const auto known = std::ranges::find_if(
         parts_, [&](const Part& p) { return p.giver == link.giver && p.datum.name == link.datum.name; });
-    if (known != parts_.end()) return;
+    if (known != parts_.end()) {
+      known->asked_within = known->asked_within || link.within;
+      return;
+    }
     parts_.push_back({link.giver, link.datum, link.components, 0,
                       sides[link.giver].entries(link.datum.place) * std::size_t(link.components)});
+    parts_.back().asked_within = link.within;
   };
   for (const auto& link : links.all()) {
     if (place_in_group(link.giver) == std::ssize(group)) continue;  // not a member
@@ -37,6 +41,7 @@ Unknown::Unknown(MPI_Comm comm, const std::vector<Side>& sides, const Links& lin
     for (Part& d : parts_)
       if (d.giver == p.giver && d.datum.name == "displacement" && d.count == p.count) p.rides = true;
   }
+  n_parts_ = parts_.size();
   for (Part& p : parts_) {
     std::size_t& n = p.rides ? n_rider_ : n_unknown_;
     p.first = n;
@@ -53,7 +58,7 @@ Unknown::Unknown(MPI_Comm comm, const std::vector<Side>& sides, const Links& lin
 
 bool Unknown::complete(const std::vector<Exchange>& given) const {
   bool missing = false;
-  for (const Part& p : parts_) missing = missing || !given[p.giver].contains(p.datum.name);
+  for (const Part& p : parts()) missing = missing || !given[p.giver].contains(p.datum.name);
   return !missing;
 }
 
@@ -61,8 +66,13 @@ Iterate Unknown::gather(const std::vector<Exchange>& given) const {
   Iterate x;
   x.unknown.reserve(n_unknown_);
   x.rider.reserve(n_rider_);
+  std::vector<double> between;
   for (const Part& p : parts_) {
-    const std::vector<double>& values = given[p.giver].at(p.datum.name);
+    const auto found = given[p.giver].find(p.datum.name);
+    if (found == given[p.giver].end() && !p.within)
+      throw Error("A participant did not give '{}'.", p.datum.name);
+    const std::vector<double>& values =
+        found != given[p.giver].end() ? found->second : between = between_times(p, given[p.giver]);
     if (values.size() != p.count)
       throw Error("A participant gave {} values of '{}', but {} were announced.", values.size(), p.datum.name,
                   p.count);
@@ -86,7 +96,7 @@ void Unknown::scatter(const Iterate& x, std::vector<Exchange>& given) const {
 
 bool Unknown::start_at_rest(std::vector<Exchange>& given) const {
   bool all = true;
-  for (const Part& p : parts_) {
+  for (const Part& p : parts()) {
     const bool motion = p.rides || p.velocity;
     if (motion) given[p.giver][p.datum.name].assign(p.count, 0.);
     all = all && motion;
@@ -97,7 +107,7 @@ bool Unknown::start_at_rest(std::vector<Exchange>& given) const {
 void Unknown::scale(const std::vector<Exchange>& given) {
   scaled_ = true;
   for (Part& p : parts_) {
-    if (p.rides) continue;
+    if (p.rides || p.within) continue;
     const std::vector<double>& values = given[p.giver].at(p.datum.name);
     const double square = sum(comm_, dot(values, values));
     if (square > 0) p.weight = 1 / std::sqrt(square);
@@ -105,33 +115,51 @@ void Unknown::scale(const std::vector<Exchange>& given) {
   for (Part& p : parts_)  // the velocity goes with its displacement
     for (const Part& d : parts_)
       if (p.rides && d.giver == p.giver && d.datum.name == "displacement") p.weight = d.weight;
+  for (Part& p : parts_)
+    if (p.within) p.weight = parts_[*p.within].weight;
 }
 
 std::vector<double> Unknown::weights() const {
   std::vector<double> w{double(scaled_)};
-  for (const Part& p : parts_) w.push_back(p.weight);
+  for (const Part& p : parts()) w.push_back(p.weight);
+  for (std::size_t i = n_parts_; i < parts_.size(); ++i)
+    w.insert(w.end(), {double(*parts_[i].within), parts_[i].share});
   return w;
 }
 
 void Unknown::restore_weights(const std::vector<double>& w) {
-  if (w.size() != parts_.size() + 1) throw Error("The checkpoint is from a coupling with other data.");
+  bool sound = w.size() >= n_parts_ + 1 && (w.size() - n_parts_) % 2 == 1;
+  std::vector<std::pair<std::size_t, double>> times;
+  for (std::size_t i = n_parts_ + 1; sound && i + 1 < w.size(); i += 2) {
+    times.emplace_back(std::size_t(w[i]), w[i + 1]);
+    sound = w[i] >= 0 && times.back().first < n_parts_;
+  }
+  if (!sound) throw Error("The checkpoint is from a coupling with other data.");
   scaled_ = w[0] != 0;
-  for (std::size_t i = 0; i < parts_.size(); ++i) parts_[i].weight = w[i + 1];
+  for (std::size_t i = 0; i < n_parts_; ++i) parts_[i].weight = w[i + 1];
+  set_times(times);
 }
 
 std::vector<Residual> Unknown::measure(const Iterate& x, const Iterate& image) const {
   std::vector<double> sums;
-  for (const Part& p : parts_) {
+  std::vector<std::size_t> place_of(n_parts_);
+  const auto all = x.unknown.size() == n_unknown_ ? parts() : std::span<const Part>(parts_);
+  for (const Part& p : all) {
     if (p.rides) continue;
+    if (!p.within) place_of[std::size_t(&p - parts_.data())] = sums.size();
     const std::span<const double> here(x.unknown.data() + p.first, p.count),
         there(image.unknown.data() + p.first, p.count);
     const ChangeSquares squares = squares_of_change(there, here);
-    sums.insert(sums.end(), {squares.change, squares.size, double(p.count) / p.components});
+    const double three[] = {squares.change, squares.size, double(p.count) / p.components};
+    if (!p.within)
+      sums.insert(sums.end(), std::begin(three), std::end(three));
+    else
+      for (std::size_t i = 0; i < 3; ++i) sums[place_of[*p.within] + i] += three[i];
   }
   sum_over(comm_, sums);
   std::vector<Residual> list;
   std::size_t k = 0;
-  for (const Part& p : parts_) {
+  for (const Part& p : parts()) {
     if (p.rides) continue;
     const double r = sums[k], h = sums[k + 1], places = sums[k + 2];
     k += 3;

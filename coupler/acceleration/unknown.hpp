@@ -4,6 +4,8 @@
 #include <mpi.h>
 
 #include <optional>
+#include <span>
+#include <utility>
 
 #include "coupler/acceleration/accelerator.hpp"
 #include "coupler/mapping/links.hpp"
@@ -20,7 +22,9 @@ struct Residual {
 /// data always). In
 /// the order of the list (Gauss-Seidel) these are the data given to earlier members, side by side (Jacobi)
 /// all of the group's. A velocity that goes with a displacement of the same giver is no unknown of its own:
-/// it rides on the displacement's combinations. Several data are scaled to like size, once.
+/// it rides on the displacement's combinations. Several data are scaled to like size, once. Of data whose values
+/// within the step somebody asks for (WithinStep) these are unknowns, too, at the times that the first pass of a step
+/// shows; they stand behind all others.
 class Unknown {
  public:
   struct Part {
@@ -31,15 +35,31 @@ class Unknown {
     bool rides = false;
     std::optional<std::size_t> velocity{};  ///< of a displacement: first value of its velocity in `rider`
     double weight = 1;
+    bool asked_within = false;            ///< somebody takes its values within the step
+    std::optional<std::size_t> within{};  ///< of a value within the step: the part of its end
+    double share = 1;                     ///< of the step
   };
   /// `group`: indices into `sides`.
   Unknown(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
           const std::vector<std::size_t>& group, bool side_by_side);
 
-  const std::vector<Part>& parts() const { return parts_; }
-  /// Values of this rank.
+  /// At the end of the step.
+  std::span<const Part> parts() const { return {parts_.data(), n_parts_}; }
+  /// Values of this rank at the end of the step.
   std::size_t n_unknown() const { return n_unknown_; }
   std::size_t n_rider() const { return n_rider_; }
+
+  /// Whether somebody asks for values within the step.
+  bool asked_within() const;
+  /// Whether there are such.
+  bool has_within() const { return parts_.size() > n_parts_; }
+  /// Takes the times within the step from what all have given; whether they are others than before.
+  bool adopt_times(const std::vector<Exchange>& given);
+  /// The guess of a step, of ends alone: constant within it.
+  Iterate begin_step(Iterate guess);
+  Iterate held(Iterate ends) const;
+  /// Without the values within the step.
+  Iterate ends(Iterate x) const;
   /// Whether all of it has been given.
   bool complete(const std::vector<Exchange>& given) const;
   /// From what all have given, scaled; to it. Data of the unknown alone.
@@ -51,19 +71,24 @@ class Unknown {
   /// The scales from the first values that all have given; collective.
   void scale(const std::vector<Exchange>& given);
   bool scaled() const { return scaled_; }
+  /// The scales, and the times within the step.
   std::vector<double> weights() const;
   void restore_weights(const std::vector<double>& weights);
 
-  /// Residual of each unknown (riders left out), over all ranks. Collective.
+  /// Residual of each unknown (riders left out), over all ranks; with its values within the step, if x has them. Collective.
   std::vector<Residual> measure(const Iterate& x, const Iterate& image) const;
   /// Values of the unknown that are displacements [m], this rank's.
   std::vector<double> motion(const Iterate& x) const;
 
  private:
+  void set_times(const std::vector<std::pair<std::size_t, double>>& times);
+  std::vector<double> between_times(const Part& part, const Exchange& given) const;
+
   MPI_Comm comm_;
   std::vector<Part> parts_;
-  std::size_t n_unknown_ = 0, n_rider_ = 0;
+  std::size_t n_parts_ = 0, n_unknown_ = 0, n_rider_ = 0;  // of ends
   bool scaled_ = false;
+  Iterate start_;  // ends at the start of the step; empty where nobody asks for values within it
 };
 
 /// What the predictor remembers of accepted steps.

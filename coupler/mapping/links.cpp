@@ -8,6 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/coupling/within_step.hpp"
 #include "common/parallel/collective.hpp"
 #include "coupler/mapping/conjugate_map.hpp"
 #include "coupler/mapping/map_projection.hpp"
@@ -224,33 +225,44 @@ Links::Links(MPI_Comm comm, const std::vector<Side>& sides, const MappingParamet
         if (!is_own(wanted)) notes_.push_back(given->name + ": " + links_.back().mapping->summary());
       }
     }
+  for (Link& link : links_)
+    link.within = sides[link.taker].surfaces.within.contains(link.datum.name) &&
+                  std::ranges::count_if(links_, [&](const Link& l) {
+                    return l.taker == link.taker && l.datum.name == link.datum.name;
+                  }) == 1;
   for (const Side& side : sides)
     for (const Datum& datum : side.interface.gives)
       if (takers_of(datum, sides).empty())
         notes_.push_back(fmt::format("note: no participant takes '{}' of '{}'", datum.name, side.name));
 }
 
-std::vector<double> Links::carried(const Link& link, const std::vector<Exchange>& given) const {
-  const auto found = given[link.giver].find(link.datum.name);
-  if (found == given[link.giver].end()) return {};
+std::vector<double> Links::carried(const Link& link, const std::string& name,
+                                   const std::vector<double>& values) const {
   const std::size_t places = entries_[link.giver][link.datum.place == Place::vertices ? 0 : 1];
-  if (found->second.size() != places * std::size_t(link.components))
+  if (values.size() != places * std::size_t(link.components))
     throw Error("'{}' gave {} values of '{}', but announced {} locations of {} components.",
-                names_[link.giver], found->second.size(), link.datum.name, places, link.components);
-  return link.mapping->apply(found->second, link.components);
+                names_[link.giver], values.size(), name, places, link.components);
+  return link.mapping->apply(values, link.components);
 }
 
 Exchange Links::input(std::size_t taker, const std::vector<Exchange>& given) const {
   Exchange data;
   for (const Link& link : links_) {
-    if (link.taker != taker || !given[link.giver].contains(link.datum.name)) continue;
-    std::vector<double> values = carried(link, given);
+    if (link.taker != taker) continue;
+    const auto found = given[link.giver].find(link.datum.name);
+    if (found == given[link.giver].end()) continue;
+    std::vector<double> values = carried(link, found->first, found->second);
     // Places that have another giver got nothing.
     std::vector<double>& all = data[link.datum.name];
     if (all.empty())
       all = std::move(values);
     else
       for (std::size_t i = 0; i < values.size(); ++i) all[i] += values[i];
+    if (link.within)
+      for_within(given[link.giver], link.datum.name,
+                 [&](double, const std::string& name, const std::vector<double>& then) {
+                   data[name] = carried(link, name, then);
+                 });
   }
   return data;
 }
@@ -258,8 +270,9 @@ Exchange Links::input(std::size_t taker, const std::vector<Exchange>& given) con
 std::vector<Links::Amount> Links::amounts(const std::vector<Exchange>& given) const {
   std::vector<Amount> result;
   for (const Link& link : links_) {
-    if (!is_amount(link.datum) || !given[link.giver].contains(link.datum.name)) continue;
-    const std::vector<double> taken = carried(link, given);
+    const auto found = given[link.giver].find(link.datum.name);
+    if (!is_amount(link.datum) || found == given[link.giver].end()) continue;
+    const std::vector<double> taken = carried(link, found->first, found->second);
     for (int c = 0; c < link.components; ++c) {
       const std::string what = link.datum.name +
                                (link.components > 1 ? std::string(" ") + "xyz"[c % 3] : std::string()) +

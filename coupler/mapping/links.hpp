@@ -29,11 +29,12 @@ class Links {
     Interface::Place to;                     ///< where it is taken
     std::shared_ptr<const Mapping> mapping;  ///< shared by all data that go the same way
     bool whole = true;                       ///< between all places of both; false: some have other partners
+    bool within = false;  ///< its values within the step go over, too: wanted, and of one giver
   };
   const std::vector<Link>& all() const { return links_; }
 
   /// What participant `taker` takes of what all have `given` so far; data that have not been given yet are
-  /// left out. Collective.
+  /// left out. Values within the step go to those that asked for them. Collective.
   Exchange input(std::size_t taker, const std::vector<Exchange>& given) const;
 
   /// An amount on its way: sums over the places of giver and taker.
@@ -47,7 +48,8 @@ class Links {
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
-  std::vector<double> carried(const Link& link, const std::vector<Exchange>& given) const;
+  std::vector<double> carried(const Link& link, const std::string& name,
+                              const std::vector<double>& values) const;
   MPI_Comm comm_;
   std::vector<std::string> names_;
   std::vector<std::vector<std::size_t>> entries_;  // by participant: vertices, faces of this rank

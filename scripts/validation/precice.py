@@ -7,6 +7,10 @@ from validation.parts.trust.runs import tests
 OWN = [
     Bar("own programs in C++, C, Python and Fortran against each other, serial implicit", "the monolithic trapezoidal rule, 1e-10", tests("^precice_languages$")),
     Bar("serial and parallel, explicit and implicit, 3 and 2 sub-steps a window, with and without initial data", "the same scheme computed by itself: 1e-13 explicit, 1e-9 implicit", tests("^precice_schemes$")),
+    Bar("values at the sub-steps of both, degrees 1 to 3, serial and parallel, explicit and implicit; polynomials in time; a circuit's order; 3 and 2 processes",
+        "the same scheme computed by itself: 1e-13 explicit, 1e-9 implicit; degree n to rounding, n + 1 not; order n + 1", tests("^precice_waveforms$")),
+    Bar("values within a step in the coupler: serial and parallel, halved steps, a restart, sub-steps that change from pass to pass; interpolation in time",
+        "the monolithic scheme of the sub-steps: 1e-10; the restart bit for bit", tests("^coupling_within_step$")),
     Bar("1 to 3 processes of each, 1 and 2 of the coupler", "the same motion, 1e-9", tests("^precice_ranks$")),
     Bar("two meshes of one participant in the same place", "each datum stays on its mesh; sums kept", tests("^precice_meshes$")),
     Bar("participants started by launches of their own, over a socket of the machine and of a network interface, 1 to 3 processes", "the values of one launch, bit for bit", tests("^precice_separate$")),

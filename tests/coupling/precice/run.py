@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Programs on preCICE's interface in a job: C++, C, Python and Fortran against each other, all schemes and sub-steps against the same
 scheme computed here, several processes, wrong calls, and the import of configurations.
-Usage: run.py PROJECT BUILD MPIRUN... -- languages | schemes | ranks | meshes | wrong | import"""
+Usage: run.py PROJECT BUILD MPIRUN... -- languages | schemes | waveforms | ranks | meshes | wrong | import"""
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -31,15 +32,16 @@ def check(claim, holds, detail=""):
 EXCHANGES = """
     <max-time value="{end}" />
     <time-window-size value="0.1" />
-    <exchange data="Displacement-Left" mesh="Left-Mesh" from="Left" to="Right" initialize="{initialize}" />
-    <exchange data="Displacement-Right" mesh="Right-Mesh" from="Right" to="Left" initialize="{initialize}" />"""
+    <exchange data="Displacement-Left" mesh="Left-Mesh" from="Left" to="Right" initialize="{initialize}"{substeps} />
+    <exchange data="Displacement-Right" mesh="Right-Mesh" from="Right" to="Left" initialize="{initialize}"{substeps} />"""
 IMPLICIT = """
     <max-iterations value="{iterations}" />
     <relative-convergence-measure limit="1e-12" data="Displacement-Right" mesh="Right-Mesh" />
     <acceleration:IQN-ILS><data name="Displacement-Right" mesh="Right-Mesh" /><initial-relaxation value="0.5" /></acceleration:IQN-ILS>"""
 
 
-def configuration(scheme, initialize="true", end=1, iterations=50):
+def configuration(scheme, initialize="true", end=1, iterations=50, degree=None, substeps=None):
+    """degree, substeps: None: as preCICE has it where nothing is said, a line in time through the values at all sub-steps."""
     body = EXCHANGES + (IMPLICIT if "implicit" in scheme else "")
     sides = "".join(f"""
   <participant name="{me}">
@@ -54,11 +56,11 @@ def configuration(scheme, initialize="true", end=1, iterations=50):
 <!-- pairs of masses -->
 <precice-configuration>
   <log><sink filter="%Severity% > debug" /></log>
-  <data:scalar name="Displacement-Left" />
-  <data:scalar name="Displacement-Right" />{meshes}{sides}
+  <data:scalar name="Displacement-Left"{f' waveform-degree="{degree}"' if degree is not None else ''} />
+  <data:scalar name="Displacement-Right"{f' waveform-degree="{degree}"' if degree is not None else ''} />{meshes}{sides}
   <m2n:sockets acceptor="Left" connector="Right" />
   <coupling-scheme:{scheme}>
-    <participants first="Left" second="Right" />{body.format(initialize=initialize, end=end, iterations=iterations)}
+    <participants first="Left" second="Right" />{body.format(initialize=initialize, end=end, iterations=iterations, substeps=f' substeps="{substeps}"' if substeps else '')}
   </coupling-scheme:{scheme}>
 </precice-configuration>
 """
@@ -91,10 +93,10 @@ def motion(folder, name, ranks=1):
     return np.column_stack((parts[0][:, 0], u if name == "Left" else u[:, ::-1]))
 
 
-def run(scheme, left="c++", right="c++", steps=(1, 1), ranks=None, initialize="true", sets=(), iterations=50):
+def run(scheme, left="c++", right="c++", steps=(1, 1), ranks=None, initialize="true", sets=(), iterations=50, degree=None, substeps=None):
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
-        imported(folder, configuration(scheme, initialize, iterations=iterations))
+        imported(folder, configuration(scheme, initialize, iterations=iterations, degree=degree, substeps=substeps))
         words = {name: [*programs[kind], name, "precice-config.xml", n, *(["parallel"] if ranks else [])]
                  for name, kind, n in (("Left", left, steps[0]), ("Right", right, steps[1]))}
         done = launch(folder, words, sets, ranks)
@@ -121,28 +123,42 @@ START = {"Left": 1 - 0.1 * X, "Right": 0.3 * X - 0.5}
 STIFFNESS = {"Left": 40 + 4 * X, "Right": 30 + 2 * X}
 
 
-def window(name, state, w_start, w_end, steps):
-    (u, v), h, k = state, WINDOW / steps, STIFFNESS[name] + SPRING
-    at = lambda n: w_start + n / steps * (w_end - w_start)  # noqa: E731
+def in_time(values, share, degree):
+    """The polynomial through all values at equal distances, if they are too few for more than one of the degree, or the line from one to the next."""
+    n = len(values) - 1
+    if degree > 1:
+        assert n <= degree
+        nodes = np.arange(n + 1) / n
+        return sum(v * np.prod([(share - other) / (node - other) for other in nodes if other != node]) for v, node in zip(values, nodes))
+    k = min(int(share * n), n - 1)
+    return values[k] + (share * n - k) * (values[k + 1] - values[k])
+
+
+def window(name, state, others, steps, degree=1):
+    """The motion at the ends of the sub-steps; others: the other's motion at equal distances, from the start of the window on."""
+    (u, v), h, k, motion = state, WINDOW / steps, STIFFNESS[name] + SPRING, []
+    at = lambda n: in_time(others, n / steps, degree)  # noqa: E731
     for n in range(steps):
         v_new = (v + h * (SPRING * (at(n) + at(n + 1)) / 2 - k * (u + h / 4 * v))) / (1 + h * h / 4 * k)
         u, v = u + h / 2 * (v + v_new), v_new
-    return u, v
+        motion.append(u)
+    return u, v, motion
 
 
-def expected(scheme, steps=(1, 1), initialize="true", windows=10):
+def expected(scheme, steps=(1, 1), initialize="true", windows=10, degree=1, substeps=False):
+    """substeps: the values at all sub-steps go over, not only those at the end of the window."""
     state = {name: (u, 0 * u) for name, u in START.items()}
     seen = {name: (u if initialize == "true" else 0 * u) for name, u in START.items()}  # at the start of the window, by the others
     rows = {name: [] for name in START}
     for _ in range(windows):
-        end = dict(seen)
+        end = {name: [u] for name, u in seen.items()}  # at the ends of the sub-steps
         for _ in range(200 if "implicit" in scheme else 1):
             held = "explicit" in scheme
-            left = window("Left", state["Left"], end["Right"] if held else seen["Right"], end["Right"], steps[0])
-            taken = left[0] if "serial" in scheme else end["Left"]
-            right = window("Right", state["Right"], taken if held and "parallel" in scheme else seen["Left"], taken, steps[1])
-            end = {"Left": left[0], "Right": right[0]}
-        state, seen = {"Left": left, "Right": right}, end
+            left = window("Left", state["Left"], [end["Right"][-1]] * 2 if held else [seen["Right"], *end["Right"]], steps[0], degree)
+            given = left[2] if substeps else left[2][-1:]
+            right = window("Right", state["Right"], [seen["Left"], *given] if "serial" in scheme else [end["Left"][-1]] * 2 if held else [seen["Left"], *end["Left"]], steps[1], degree)
+            end = {"Left": given, "Right": right[2] if substeps else right[2][-1:]}
+        state, seen = {"Left": left[:2], "Right": right[:2]}, {name: values[-1] for name, values in end.items()}
         for name, (u, _) in state.items():
             rows[name].append(u)
     return {name: np.array(r) for name, r in rows.items()}
@@ -182,7 +198,7 @@ def languages():
 
 def schemes():
     for scheme in ("serial-explicit", "parallel-explicit", "serial-implicit", "parallel-implicit"):
-        off = apart(run(scheme, steps=(3, 2)), expected(scheme, (3, 2)))
+        off = apart(run(scheme, steps=(3, 2), substeps="false"), expected(scheme, (3, 2)))
         check(f"{scheme}: as computed", off < (1e-9 if "implicit" in scheme else 1e-13), f"{off:.1e}")
     off = apart(run("parallel-explicit", initialize="false"), expected("parallel-explicit", initialize="false"))
     check("without initial data the first window reads zeros", off < 1e-13, f"{off:.1e}")
@@ -193,8 +209,44 @@ def schemes():
     check("a window is accepted at max-iterations", 1e-9 < few < 0.3, f"{few:.1e} from the converged motion")
 
 
+def said_by(folder, name, words):
+    """A job of one of the programs here on both sides; what it printed."""
+    done = launch(folder, {side: [python, here / name, side, "precice-config.xml", *words] for side in ("Left", "Right")})
+    check(f"{name} {' '.join(map(str, words))}: runs", done.returncode == 0, done.stderr[-800:])
+    return done.stdout
+
+
+def waveforms():
+    for scheme, steps, degree in (("serial-implicit", (3, 2), 1), ("parallel-implicit", (3, 2), 3), ("serial-implicit", (2, 3), 3), ("serial-explicit", (3, 2), 3)):
+        off = apart(run(scheme, steps=steps, degree=degree), expected(scheme, steps, degree=degree, substeps=True))
+        check(f"{scheme}, degree {degree}, values at {steps} sub-steps: as computed", off < (1e-9 if "implicit" in scheme else 1e-13), f"{off:.1e}")
+    cubic, lines = (expected("serial-implicit", (3, 2), degree=degree, substeps=True) for degree in (3, 1))
+    two = max(abs(cubic[name] - lines[name]).max() for name in cubic)
+    check("degree 3 is another motion than degree 1", two > 1e-5, f"{two:.1e}")
+    off = apart(run("serial-implicit", steps=(2, 2), ranks={"Left": 3, "Right": 2, "coupler": 2}), expected("serial-implicit", (2, 2), substeps=True))
+    check("values at the sub-steps on 3 and 2 processes, coupler on 2: the same motion", off < 1e-9, f"{off:.1e}")
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        for scheme, degree in (("serial-explicit", 3), ("serial-implicit", 2), ("parallel-implicit", 3)):
+            imported(folder, configuration(scheme, degree=degree, end=0.3))
+            found = re.search(r"worst (\S+) beyond ([-+.e\d]+)", said_by(folder, "polynomial.py", [degree]))
+            worst, beyond = map(float, found.groups()) if found else (1, 0)
+            check(f"{scheme}: polynomials of degree {degree} in time arrive to rounding (side by side: to the limit of convergence)", worst < (1e-11 if "parallel" in scheme else 1e-14), f"{worst:.1e}")
+            check(f"{scheme}: one of degree {degree + 1} does not", beyond > 1e-9, f"{beyond:.1e}")
+        errors = {}
+        for scheme, degree, steps in (("serial-implicit", 1, 4), ("serial-implicit", 1, 8), ("serial-implicit", 3, 4), ("serial-implicit", 3, 8), ("parallel-implicit", 3, 8)):
+            imported(folder, configuration(scheme, degree=degree, end=1).replace('size value="0.1"', 'size value="0.5"'))
+            found = re.search(r"Left ends with ([-+.e\d]+)", said_by(folder, "circuit.py", [steps]))
+            errors[scheme, degree, steps] = abs(float(found[1]) - np.cos(1)) if found else np.nan
+        for degree, least, most in ((1, 1.8, 2.2), (3, 3.5, 6)):
+            order = np.log2(errors["serial-implicit", degree, 4] / errors["serial-implicit", degree, 8])
+            check(f"a circuit with degree {degree} is at least of order {degree + 1} in its sub-steps", least < order < most, f"{order:.2f}, error {errors['serial-implicit', degree, 8]:.1e}")
+        both = errors["serial-implicit", 3, 8], errors["parallel-implicit", 3, 8]
+        check("side by side the same", abs(both[0] - both[1]) < 1e-10, both)
+
+
 def ranks():
-    wanted = expected("serial-implicit", (2, 1))
+    wanted = expected("serial-implicit", (2, 1), substeps=True)
     for left, right, coupler in ((3, 2, 2), (1, 3, 1)):
         off = apart(run("serial-implicit", steps=(2, 1), ranks={"Left": left, "Right": right, "coupler": coupler}), wanted)
         check(f"{left} and {right} processes, coupler on {coupler}: the same motion", off < 1e-9, f"{off:.1e}")
@@ -209,8 +261,9 @@ def ranks():
 
 
 def separately():
-    ways = {"Left": "unix", "Right": "tcp:lo"}
-    for kinds, ranks in ((("c++", "c++"), {"Left": 3, "Right": 2, "coupler": 2}), (("python", "c"), {"Left": 1, "Right": 1, "coupler": 1})):
+    table = pathlib.Path("/proc/net/if_inet6")
+    six = "tcp6:lo" if table.exists() and " lo\n" in table.read_text() else "unix"
+    for ways, kinds, ranks in (({"Left": "unix", "Right": "tcp:lo"}, ("c++", "c++"), {"Left": 3, "Right": 2, "coupler": 2}), ({"Left": six, "Right": "tcp:lo"}, ("python", "c"), {"Left": 1, "Right": 1, "coupler": 1})):
         wanted = run("serial-implicit", *kinds, ranks=ranks if kinds[0] == "c++" else None)
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
@@ -297,7 +350,7 @@ def wrong():
         check("a case that is not that of the configuration is refused", done.returncode != 0 and "repeat a step of explicit coupling" in done.stderr, done.stderr[-300:])
 
 
-GOOD = configuration("serial-implicit")
+GOOD = configuration("serial-implicit", substeps="false")
 BAD = {  # replaced, by what, what is said
     "direct access": ('from="Right" />\n    <write', 'from="Right" api-access="true" />\n    <write', ":11: direct access to the received mesh 'Right-Mesh'"),
     "just-in-time mapping": ('from="Right-Mesh" to="Left-Mesh" constraint', 'from="Right-Mesh" constraint', "just-in-time mapping"),
@@ -308,6 +361,8 @@ BAD = {  # replaced, by what, what is said
     "an unknown element": ("<m2n:sockets", "<shape /><m2n:sockets", "<shape> is not known"),
     "version 2": ("precice-configuration", "solver-interface", "<precice-configuration> of preCICE's version 3 is expected"),
     "no end": ('<max-time value="1" />', "", "neither <max-time> nor <max-time-windows>"),
+    "a degree": ("<data:scalar name", '<data:scalar waveform-degree="-1" name', ":5: the waveform-degree '-1' of 'Displacement-Left' is not supported"),
+    "a degree without sub-steps": ('<data:scalar name="Displacement-Left" />', '<data:scalar name="Displacement-Left" waveform-degree="2" />', ":28: waveform-degree 2 of 'Displacement-Left' without"),
     "windows by the first": ('<time-window-size value="0.1" />', '<time-window-size value="-1" method="first-participant" />', "time windows by the first participant"),
     "entities": ("<!-- pairs", '<!DOCTYPE a [<!ENTITY b "c">]><!-- pairs', "document types are not read"),
 }
@@ -328,9 +383,10 @@ def imports():
             file.write_text(GOOD.replace(old, new))
             done = ask("--force")
             check(f"{name}: refused with the line", GOOD != file.read_text() and done.returncode == 2 and said in done.stderr, done.stderr[-300:])
-        file.write_text(GOOD.replace("<data:scalar name", '<data:scalar waveform-degree="3" name'))
-        check("what differs is said", "not with waveform-degree 3" in ask("--force").stdout)
+        file.write_text(configuration("serial-implicit", degree=3))
+        done = ask("--force")
+        check("a higher degree is taken as it is", done.returncode == 0 and "waveform" not in done.stdout, done.stdout)
 
 
-{"languages": languages, "schemes": schemes, "ranks": ranks, "meshes": meshes, "wrong": wrong, "import": imports, "separate": separately}[what]()
+{"languages": languages, "schemes": schemes, "waveforms": waveforms, "ranks": ranks, "meshes": meshes, "wrong": wrong, "import": imports, "separate": separately}[what]()
 sys.exit(1 if failed else 0)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The case that a configuration of preCICE asks for, what of it differs here (notes), and what is not supported (refusals), each
 with its line."""
+import re
+
 from couplet.precice.elements import MAPPED, REFUSED, SILENT, WITHOUT_EFFECT, listed
 
 TRUE = ("true", "1", "yes", "on")
@@ -50,10 +52,12 @@ class Import:
             self._refuse(e, f"the constraint '{e.get('constraint')}' is not supported")
         if e.name == "time-window-size" and e.get("method") == "first-participant":
             self._refuse(e, "time windows by the first participant are not supported")
-        if e.name.startswith("data:") and e.get("waveform-degree", "1") not in ("0", "1"):
-            self._note(e, f"'{e.get('name')}' is read as a line in time within a window, not with waveform-degree {e.get('waveform-degree')}")
-        if e.name == "exchange" and e.get("substeps") in TRUE:
-            self._note(e, f"'{e.get('data')}' goes over with its value at the end of the window, without those of sub-steps")
+        if e.name.startswith("data:") and not re.fullmatch("[0-9]{1,2}", e.get("waveform-degree", "1")):
+            self._refuse(e, f"the waveform-degree '{e.get('waveform-degree')}' of '{e.get('name')}' is not supported; expected a whole number from 0 to 99")
+        if e.name == "exchange" and e.get("substeps", "true") not in TRUE:
+            degree = next((d.get("waveform-degree", "1") for d in self.root.starting("data:") if d.get("name") == e.get("data")), "1")
+            if degree.isdigit() and int(degree) > 1:
+                self._refuse(e, f"waveform-degree {degree} of '{e.get('data')}' without the values at its sub-steps (substeps='{e.get('substeps')}') is not supported")
 
     # -- who takes part -----------------------------------------------------------------------------------------------
     def _participants(self):
