@@ -63,6 +63,8 @@ class Coupler {
   double time() const { return loop_.time(); }
   int halvings() const { return loop_.halvings(); }
   long iterations() const { return iterations_; }
+  /// The budget of the whole job, once it has ended well.
+  const ErrorParts& errors() const { return found_; }
   /// What each has given in the last pass, in the order of the schedule's everyone().
   const std::vector<Exchange>& given() const { return given_; }
   const Exchange& given_by(const std::string& name) const { return given_[index_of(name)]; }
@@ -99,7 +101,7 @@ class Coupler {
   void watch(double time, const std::vector<SideBalance>& balances);
   void finalise(const std::string& problem);
   void tell_work() const;
-  void tell_errors(std::vector<NamedErrors> participants) const;
+  void tell_errors(std::vector<NamedErrors> participants);
 
   MPI_Comm comm_;
   CouplingParameters parameters_;
@@ -131,6 +133,7 @@ class Coupler {
   std::optional<CouplingErrorEstimate> errors_;  // none: not wanted, or nothing is iterated
   std::optional<LagEstimate> lag_;               // none: not wanted, not explicit, or it could not tell
   std::optional<LagEstimate::Look> half_;        // of the step under way; none: it is not looked at
+  ErrorParts found_;                             // of all participants, at the end
   std::string diverged_;                         // empty: no guard has fired
   double worst_accepted_ = 0;                    // relative residual of a step that was accepted unconverged
   bool warned_ = false;

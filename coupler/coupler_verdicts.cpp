@@ -97,8 +97,11 @@ void Coupler::tell_work() const {
                                   .sentence = v.text});
 }
 
-void Coupler::tell_errors(std::vector<NamedErrors> participants) const {
-  if (errors_) participants.push_back({"coupling", {.coupling = errors_->over_size()}});
+void Coupler::tell_errors(std::vector<NamedErrors> participants) {
+  ErrorParts mine = audit_->parts(parameters_);
+  if (errors_) mine.coupling = errors_->over_size();
+  if (mine.known() || !mine.left_out.empty()) participants.push_back({"coupling", std::move(mine)});
+  found_ = largest(participants);
   for (const std::string& sentence : error_sentences(participants)) log::info("{}", sentence);
   if (const auto finding = worthless(participants)) log::finding(comm_rank(comm_), *finding);
   if (!schedule_.iterates) log::info("{}", lag_ ? lag_->sentence(participants) : LagEstimate::not_possible());

@@ -28,7 +28,8 @@ int run(const couplet::Job& job, const couplet::CouplingParameters& read) {
   RunReport report(job, false);
   const std::string problem = coupler.run();
   report.total(coupler.time(), long(coupler.steps()), coupler.iterations());
-  report.finish(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), problem, {});
+  report.finish(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), problem,
+                coupler.errors());
   log::tell_where(job.output_folder.parent_path().string(), "coupler/" + job.name + ".log");
   if (problem.empty()) return 0;
   if (job.rank == 0) log::error("{}", problem);

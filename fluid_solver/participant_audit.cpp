@@ -127,6 +127,12 @@ std::vector<EffectVerdict> FluidParticipant<D>::audit() const {
     evidence.blocked_cells = blocked / double(mesh_.cells.n_global());
   }
   add_motion(evidence);
+  if (fluid_->parameters().turbulence) {
+    double largest = 0;
+    for (const double eddy : fluid_->state().eddy) largest = std::max(largest, eddy);
+    evidence.eddy_viscosity =
+        max(mesh_.comm, largest) * fluid_->parameters().density / fluid_->parameters().viscosity;
+  }
   if (const EnergyLedger& ledger = fluid_->state().ledger; ledger.is_judged())
     evidence.energy_excess = ledger.excess / ledger.reference;
   const FluidScene scene{fluid_->parameters(), fluid_->moving(), step_.scheme != Scheme::standalone};

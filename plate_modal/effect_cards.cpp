@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "plate_modal/model/build_model.hpp"
@@ -20,9 +21,12 @@ using V = std::optional<EffectVerdict>;
 std::string when(bool on, const char* reason) { return on ? reason : ""; }
 bool is_dynamic(const S& s) { return s.parameters.analysis == Parameters::Analysis::dynamic; }
 
-V verdict(double number, double threshold, std::string sentence, std::string recommendation) {
+V verdict(double number, double threshold, std::string sentence, std::string recommendation,
+          double share = std::numeric_limits<double>::quiet_NaN()) {
   if (std::isnan(number)) return {};
-  return EffectVerdict{"", number, threshold, std::move(sentence), std::move(recommendation)};
+  EffectVerdict v{"", number, threshold, std::move(sentence), std::move(recommendation)};
+  v.share = share;
+  return v;
 }
 
 // A clamped strip whose tip has moved by a quarter of its length has turned there by about 20 degrees: the
@@ -31,10 +35,12 @@ V judge_rotation(const S&, const E& e) {
   // A rigid body that turns by 0.25 rad is stretched by 1 / cos, 3 %.
   if (!std::isnan(e.rotation))
     return verdict(e.rotation, 0.25, fmt::format("rigid rotation = {:.2g} rad", e.rotation),
-                   "linear modes move a body along its tangent: use a program for finite strain");
+                   "linear modes move a body along its tangent: use a program for finite strain",
+                   1 / std::max(0.1, std::cos(e.rotation)) - 1);
   return verdict(e.displacement_over_size, 0.25,
                  fmt::format("max displacement / structure size = {:.2g}", e.displacement_over_size),
-                 "modes are linear and cannot describe large rotations: use a program for finite strain");
+                 "modes are linear and cannot describe large rotations: use a program for finite strain",
+                 0.6 * e.displacement_over_size * e.displacement_over_size);
 }
 
 V judge_in_plane(const S& s, const E& e) {
@@ -44,18 +50,20 @@ V judge_in_plane(const S& s, const E& e) {
           "in-plane share of {1} = {0:.2g}", e.in_plane_share,
           s.parameters.gravity.empty() ? "the initial velocity" : "the gravity or the initial velocity"),
       "no mode moves along the plane, so that part is neglected: apply only its normal part, or use a volume "
-      "model");
+      "model",
+      e.in_plane_share);
 }
 
 V judge_kept(const S& s, const E& e) {
   if (is_dynamic(s))
     return verdict(e.modes_apart, 0.05,
                    fmt::format("compliance of the loads in truncated modes = {:.2g}", e.modes_apart),
-                   "the loads excite truncated modes: keep more modes ('modes.number')");
+                   "the loads excite truncated modes: keep more modes ('modes.number')", e.modes_apart);
   return verdict(
       e.modes_apart, 0.05, fmt::format("truncation error of the deflection = {:.2g}", e.modes_apart),
       "fields and probes show the full deflection, but modal.csv and the interface only the modes: keep "
-      "more modes ('modes.number')");
+      "more modes ('modes.number')",
+      e.modes_apart);
 }
 
 // A mode answers a load of frequency f as 1 / (1 - (f / f_mode)^2): at two thirds of its own frequency with 1.8 times
@@ -70,14 +78,15 @@ V judge_load_beyond(const S&, const E& e) {
 V judge_velocity(const S&, const E& e) {
   return verdict(e.velocity_lost, 0.1,
                  fmt::format("initial kinetic energy outside the modes = {:.2g}", e.velocity_lost),
-                 "a uniform velocity near supports needs many modes: keep more, or use 'initial-amplitudes'");
+                 "a uniform velocity near supports needs many modes: keep more, or use 'initial-amplitudes'",
+                 0.5 * e.velocity_lost);  // of an energy
 }
 
 V judge_within(const S&, const E& e) {
   return verdict(
       e.within_faces, 0.05,
       fmt::format("error of the load's effect on the modes with one force per face = {:.2g}", e.within_faces),
-      "the pressure varies within a face: refine the mesh there");
+      "the pressure varies within a face: refine the mesh there", e.within_faces);
 }
 
 // Cells of h in half a wave of n cells: (pi / n)^2 / 12 a direction; 0.1 is four cells in both.
@@ -91,12 +100,14 @@ V judge_mesh(const S&, const E& e) {
 
 // A plate that is held all round is stiffened by its stretch as 1 + 0.5 (w/h)^2, more or less by its edges.
 V judge_stretch(const S&, const E& e) {
+  const double stiffening = 0.5 * e.displacement_over_thickness * e.displacement_over_thickness;
   return verdict(
       e.displacement_over_thickness, e.stretch_limit,
       fmt::format("held on opposite sides: max deflection / thickness = {:.2g}",
                   e.displacement_over_thickness),
       "unless its edges may slide in its plane, stretching stiffens it noticeably: use a program for finite "
-      "strain");
+      "strain",
+      stiffening / (1 + stiffening));
 }
 
 // A force at the middle of each face does not see what lies between them.
@@ -123,10 +134,12 @@ V judge_no_part(const S&, const E& e) {
 // Mindlin's plate against Kirchhoff's: rotary inertia and shear lower omega^2 by (k h)^2 (1/12 + 1/(5 (1 - nu)))
 // of it, omega by 2 % where half a wave, pi / k, is ten thicknesses long.
 V judge_shear(const S& s, const E& e) {
-  return verdict(e.thickness_over_wave, 0.1,
-                 fmt::format("thickness / half the wavelength of the highest mode {1} = {0:.2g}",
-                             e.thickness_over_wave, is_dynamic(s) ? "with 1 % of the motion" : "kept"),
-                 "shear and rotary inertia soften such modes: keep fewer, or use a volume model");
+  return verdict(
+      e.thickness_over_wave, 0.1,
+      fmt::format("thickness / half the wavelength of the highest mode {1} = {0:.2g}", e.thickness_over_wave,
+                  is_dynamic(s) ? "with 1 % of the motion" : "kept"),
+      "shear and rotary inertia soften such modes: keep fewer, or use a volume model",
+      4 * e.thickness_over_wave * e.thickness_over_wave);  // twice the 2 % of omega at 0.1, in the motion
 }
 
 // Ten steps a period make the trapezoidal rule's 3 % too long, and a mode that swings at another frequency than its

@@ -30,7 +30,7 @@ std::vector<std::string> RunAudit::closing_lines(bool with_sound) {
   look();
   std::vector<std::string> lines;
   for (const EffectVerdict& verdict : trail_.worst())
-    if (with_sound || !verdict.sound()) lines.push_back(text(verdict));
+    if (!(verdict.saves > 0) && (with_sound || !verdict.sound())) lines.push_back(text(verdict));
   return lines;
 }
 

@@ -22,6 +22,8 @@ class RunAudit {
   /// Asks a last time; a line for each verdict, the worst of the run. `with_sound`: else only those that were not: of a run
   /// that failed, what was seen until then proves nothing sound. Collective.
   std::vector<std::string> closing_lines(bool with_sound = true);
+  /// What that makes of the answer, by the worst of the run: for the error budget.
+  ModelError model() const { return model_error(trail_.worst()); }
 
  private:
   void look();

@@ -35,6 +35,7 @@ Phase phase_of(Op op) {
       return Phase::initialise;
     case Op::begin_step:
       return Phase::begin_step;
+    case Op::start:
     case Op::solve:
       return Phase::solve;
     case Op::accept_step:
@@ -85,12 +86,17 @@ class Errors {
  public:
   Errors(const Job& job, Participant& participant)
       : name_(job.name),
+        wanted_(job.simulation.error_estimate),
         source_(job.simulation.error_estimate ? dynamic_cast<EstimatesError*>(&participant) : nullptr) {
     if (source_) source_->collect_errors();
   }
-  /// After the last step. Collective.
-  void find() {
+  /// After the last step, with what neglected effects make of the answer. Collective.
+  void find(ModelError model) {
     if (source_) parts_ = source_->error_parts();
+    if (!wanted_) return;
+    parts_.model = model.sum;
+    parts_.model_by = std::move(model.largest);
+    parts_.left_out = std::move(model.idle);
   }
   const ErrorParts& parts() const { return parts_; }
   std::vector<std::string> sentences() const { return error_sentences({{name_, parts_}}); }
@@ -98,6 +104,7 @@ class Errors {
 
  private:
   std::string name_;
+  bool wanted_;
   EstimatesError* source_;  // null: none
   ErrorParts parts_;
 };
@@ -117,7 +124,7 @@ void closing_words(const Job& job, Participant& participant, RunAudit& audit, Er
     sentences.push_back(
         "the run failed: its error and neglected effects are not judged, except as reported above.");
   else
-    errors.find();
+    errors.find(audit.model());
   for (std::string& line : errors.sentences()) {
     sentences.push_back(std::move(line));
     if (!closing.is_alone) break;

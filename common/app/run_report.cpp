@@ -44,8 +44,11 @@ std::string json(const ErrorParts& e) {
   const auto number = [](double value) {
     return std::isfinite(value) ? fmt::format("{:.6g}", value) : "null";
   };
-  return fmt::format("{{\"mesh\": {}, \"step\": {}, \"linear\": {}}}", number(e.mesh), number(e.step),
-                     number(e.linear));
+  const auto words = [](const std::string& text) { return text.empty() ? "null" : quoted(text); };
+  return fmt::format(
+      "{{\"mesh\": {}, \"step\": {}, \"linear\": {}, \"coupling\": {}, \"model\": {}, \"model-by\": {}, \"could-be-omitted\": {}}}",
+      number(e.mesh), number(e.step), number(e.linear), number(e.coupling), number(e.model),
+      words(e.model_by), words(e.left_out));
 }
 
 }  // namespace

@@ -20,32 +20,50 @@ struct Kind {
   const char* name;
   double ErrorParts::*value;
   const char* words;
-  const char* advice;  // where it dominates
 };
 
-constexpr std::array<Kind, 4> kinds{
-    {{"mesh", &ErrorParts::mesh, "mesh", "a finer mesh would reduce it"},
-     {"step", &ErrorParts::step, "step", "a shorter time step would reduce it"},
-     {"linear", &ErrorParts::linear, "linear tolerance", "a tighter solver tolerance would reduce it"},
-     {"coupling", &ErrorParts::coupling, "coupling tolerance",
-      "a tighter 'convergence' of the coupling would reduce it"}}};
+constexpr std::array<Kind, 5> kinds{{{"mesh", &ErrorParts::mesh, "mesh"},
+                                     {"step", &ErrorParts::step, "step"},
+                                     {"linear", &ErrorParts::linear, "linear tolerance"},
+                                     {"coupling", &ErrorParts::coupling, "coupling tolerance"},
+                                     {"model", &ErrorParts::model, "model"}}};
 
 struct Part {
   const Kind* kind;
   double value;
-  std::string whose;
+  const NamedErrors* of;
+  bool is(double ErrorParts::*which) const { return kind->value == which; }
 };
+
+/// The cheapest change that lowers a part, what it leaves of it (schemes are of second order), and its price.
+std::string cure(const Part& part) {
+  if (part.is(&ErrorParts::mesh)) {
+    constexpr std::array cells{"4 to 8 times", "twice", "4 times", "8 times"};
+    return fmt::format("half the cell size would leave about {:.2g}, for {} the cells", part.value / 4,
+                       cells.at(std::size_t(std::clamp(part.of->parts.dimension, 0, 3))));
+  }
+  if (part.is(&ErrorParts::step))
+    return fmt::format("half the time step would leave about {:.2g}, for twice the steps", part.value / 4);
+  if (part.is(&ErrorParts::linear))
+    return fmt::format("a tenth of the solver tolerance would leave about {:.2g}, for some more iterations",
+                       part.value / 10);
+  if (part.is(&ErrorParts::coupling))
+    return fmt::format(
+        "a tenth of 'convergence' of the coupling would leave about {:.2g}, for a pass or two more per step",
+        part.value / 10);
+  return part.of->parts.model_by;
+}
 
 /// What would buy nothing, as words: "halving the step", ...
 std::string idle_words(const std::vector<Part>& parts, double most) {
   std::string words;
   for (const Part& p : parts) {
     if (!(p.value < nothing * most)) continue;
-    const std::string_view name = p.kind->name;
+    if (p.is(&ErrorParts::model)) continue;
     words += words.empty() ? "" : " or ";
-    words += name == "step"   ? "halving the step"
-             : name == "mesh" ? "refining the mesh"
-                              : fmt::format("tightening the {}", p.kind->words);
+    words += p.is(&ErrorParts::step)   ? "halving the step"
+             : p.is(&ErrorParts::mesh) ? "refining the mesh"
+                                       : fmt::format("tightening the {}", p.kind->words);
   }
   return words;
 }
@@ -58,7 +76,7 @@ std::vector<Part> largest_parts(const std::vector<NamedErrors>& participants) {
     for (const NamedErrors& n : participants)
       if (!std::isnan(n.parts.*k.value) && (!largest || n.parts.*k.value > largest->parts.*k.value))
         largest = &n;
-    if (largest) parts.push_back({&k, largest->parts.*k.value, largest->name});
+    if (largest) parts.push_back({&k, largest->parts.*k.value, largest});
   }
   return parts;
 }
@@ -74,28 +92,52 @@ std::string ErrorParts::text() const {
   for (const Kind& k : kinds)
     if (!std::isnan(this->*k.value))
       text += fmt::format("{}{} {:.6g}", text.empty() ? "" : " ", k.name, this->*k.value);
+  if (!text.empty() && dimension > 0) text += fmt::format(" dimension {}", dimension);
+  if (!model_by.empty() || !left_out.empty()) text += fmt::format(" | {} | {}", model_by, left_out);
   return text;
 }
 
 ErrorParts ErrorParts::of(const std::string& text) {
   ErrorParts parts;
-  std::istringstream words(text);
+  const std::size_t words_at = text.find(" | ");
+  if (words_at != text.npos) {
+    const std::size_t last = text.rfind(" | ");
+    if (last > words_at) parts.model_by = text.substr(words_at + 3, last - words_at - 3);
+    parts.left_out = text.substr(last + 3);
+  }
+  std::istringstream words(text.substr(0, words_at));
   for (std::string name; words >> name;) {
     const auto kind = std::ranges::find_if(kinds, [&](const Kind& k) { return k.name == name; });
     double value = 0;
-    if (kind == kinds.end() || !(words >> value))
+    if ((kind == kinds.end() && name != "dimension") || !(words >> value))
       throw Error(
-          "'{}' is not a valid list of error parts: expected names (mesh, step, linear, coupling), each "
-          "with a number.",
+          "'{}' is not a valid list of error parts: expected names (mesh, step, linear, coupling, model), "
+          "each with a number.",
           text);
-    parts.*(kind->value) = value;
+    if (kind == kinds.end())
+      parts.dimension = int(std::clamp(value, 0.0, 3.0));
+    else
+      parts.*(kind->value) = value;
   }
+  return parts;
+}
+
+ErrorParts largest(const std::vector<NamedErrors>& participants) {
+  ErrorParts parts;
+  for (const Part& p : largest_parts(participants)) {
+    parts.*(p.kind->value) = p.value;
+    if (p.is(&ErrorParts::model)) parts.model_by = p.of->parts.model_by;
+  }
+  for (const NamedErrors& n : participants)
+    if (!n.parts.left_out.empty())
+      parts.left_out += fmt::format("{}{}: {}", parts.left_out.empty() ? "" : "; ", n.name, n.parts.left_out);
   return parts;
 }
 
 double total_error(const std::vector<NamedErrors>& participants) {
   double total = 0;
-  for (const Part& p : largest_parts(participants)) total += p.value;
+  for (const Part& p : largest_parts(participants))
+    if (!p.is(&ErrorParts::model)) total += p.value;
   return total;
 }
 
@@ -103,7 +145,8 @@ std::optional<log::Finding> worthless(const std::vector<NamedErrors>& participan
   const double total = total_error(participants);
   if (!(total >= as_large_as_the_solution)) return {};
   double largest = 0;
-  for (const Part& p : largest_parts(participants)) largest = std::max(largest, p.value);
+  for (const Part& p : largest_parts(participants))
+    if (!p.is(&ErrorParts::model)) largest = std::max(largest, p.value);
   return log::Finding{
       .id = "error-estimate",
       .severity = largest >= as_large_as_the_solution ? Severity::wrong : Severity::warning,
@@ -116,28 +159,34 @@ std::optional<log::Finding> worthless(const std::vector<NamedErrors>& participan
 
 std::vector<std::string> error_sentences(const std::vector<NamedErrors>& participants) {
   std::vector<Part> parts = largest_parts(participants);
-  if (parts.empty()) return {};
-  std::ranges::stable_sort(parts, std::greater<>{}, &Part::value);
-  std::string list;
   const bool several = participants.size() > 1;
-  for (const Part& p : parts) {
-    list += fmt::format("{}{} {:.2g}{}", list.empty() ? "" : ", ", p.kind->words, p.value,
-                        several ? " (" + p.whose + ")" : "");
+  std::vector<std::string> sentences;
+  if (!parts.empty()) {
+    std::ranges::stable_sort(parts, std::greater<>{}, &Part::value);
+    std::string list;
+    double total = 0;
+    for (const Part& p : parts) {
+      list += fmt::format("{}{} {:.2g}{}", list.empty() ? "" : ", ", p.kind->words, p.value,
+                          several ? " (" + p.of->name + ")" : "");
+      total += p.value;
+    }
+    // The largest part of many a run: a number without it must not pass for the whole.
+    const bool knows_mesh = std::ranges::any_of(parts, [](const Part& p) { return p.is(&ErrorParts::mesh); });
+    sentences.push_back(fmt::format(
+        "estimated error {:.2g} of the solution: {}{}.", total, list,
+        knows_mesh ? "" : "; the error due to the mesh (or truncated modes) is unknown and not included"));
   }
-  const Part& worst = parts.front();
-  // The largest part of many a run: a number without it must not pass for the whole.
-  const bool knows_mesh =
-      std::ranges::any_of(parts, [](const Part& p) { return p.kind->value == &ErrorParts::mesh; });
-  std::vector<std::string> sentences{
-      fmt::format("estimated error {:.2g} of the solution: {}{}.", total_error(participants), list,
-                  knows_mesh ? ""
-                             : "; the error due to the mesh (or truncated modes) is unknown and not "
-                               "included")};
-  if (parts.size() < 2 || !(worst.value > 0)) return sentences;
-  const std::string idle = idle_words(parts, worst.value);
-  sentences.push_back(fmt::format("the {}{} dominates: {}{}.", worst.kind->words,
-                                  several ? " (" + worst.whose + ")" : "", worst.kind->advice,
-                                  idle.empty() ? "" : "; " + idle + " would not help"));
+  if (parts.size() > 1 && parts.front().value > 0) {
+    const Part& worst = parts.front();
+    const std::string idle = idle_words(parts, worst.value);
+    sentences.push_back(fmt::format("the {}{} dominates: {}{}.", worst.kind->words,
+                                    several ? " (" + worst.of->name + ")" : "", cure(worst),
+                                    idle.empty() ? "" : "; " + idle + " would not help"));
+  }
+  for (const NamedErrors& n : participants)
+    if (!n.parts.left_out.empty())
+      sentences.push_back(
+          fmt::format("could be omitted{}: {}.", several ? " of '" + n.name + "'" : "", n.parts.left_out));
   return sentences;
 }
 

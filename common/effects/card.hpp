@@ -35,6 +35,8 @@ struct EffectCard {
   const char* judged_by = "";  ///< the number and its threshold, for the documents
   std::optional<EffectVerdict> (*judge)(const Parameters&, const Evidence&) = nullptr;
   bool judged_when_on = false;
+  /// Of an effect that is on: how little it does. The verdict's `saves` is taken from `cost` where it is 0.
+  std::optional<EffectVerdict> (*spare)(const Parameters&, const Evidence&) = nullptr;
 };
 
 /// A card looked at with the parameters of a scene.
@@ -70,12 +72,21 @@ std::vector<EffectVerdict> audit(std::span<const EffectCard<Parameters, Evidence
                                  const Parameters& parameters, const Evidence& evidence) {
   std::vector<EffectVerdict> verdicts;
   for (const auto& card : cards) {
-    if (card.judge == nullptr || card.asked_by(parameters).empty() == card.judged_when_on) continue;
-    if (std::optional<EffectVerdict> verdict = card.judge(parameters, evidence)) {
-      verdict->effect = card.name;
-      verdict->left_out = !card.judged_when_on;
-      verdicts.push_back(std::move(*verdict));
-    }
+    const bool on = !card.asked_by(parameters).empty();
+    if (card.judge != nullptr && on == card.judged_when_on)
+      if (std::optional<EffectVerdict> verdict = card.judge(parameters, evidence)) {
+        verdict->effect = card.name;
+        verdict->left_out = !card.judged_when_on;
+        verdicts.push_back(std::move(*verdict));
+      }
+    if (card.spare != nullptr && on)
+      if (std::optional<EffectVerdict> verdict = card.spare(parameters, evidence)) {
+        const double share = card.cost.share_of_step;
+        verdict->effect = card.name;
+        verdict->left_out = false;
+        if (!(verdict->saves > 0)) verdict->saves = share / (1 + share);
+        verdicts.push_back(std::move(*verdict));
+      }
   }
   return verdicts;
 }

@@ -35,6 +35,26 @@ std::string without_advice(const EffectVerdict& v) {
                      v.threshold, verdict_word(v));
 }
 
+ModelError model_error(const std::vector<EffectVerdict>& verdicts) {
+  ModelError model;
+  double largest = 0;
+  for (const EffectVerdict& v : verdicts) {
+    if (v.could_be_left_out())
+      model.idle +=
+          fmt::format("{}{} ({}; limit {:.2g}) saves about {:.0f} % of the time",
+                      model.idle.empty() ? "" : ", ", v.effect, v.sentence, v.threshold, 100 * v.saves);
+    if (std::isnan(v.share)) continue;
+    model.sum = std::isnan(model.sum) ? v.share : model.sum + v.share;
+    if (!(v.share > largest)) continue;
+    largest = v.share;
+    model.largest = fmt::format("{}{}{}", v.effect, v.left_out ? " is neglected" : "",
+                                v.sound() && v.share < 0.1 ? ", which is justified"
+                                : v.recommendation.empty() ? ""
+                                                           : ": " + v.recommendation);
+  }
+  return model;
+}
+
 std::string EffectVerdict::id() const {
   std::string id;
   for (const unsigned char c : effect) {

@@ -13,16 +13,23 @@ namespace couplet {
 /// What a run found out about an effect that its scene left out, or about one that it has and that may not do
 /// what it should there (a turbulence model beside walls that are not resolved).
 struct EffectVerdict {
-  std::string effect;          ///< the name on its card
-  double number = 0;           ///< how large what was left out would have been, of the whole run so far
-  double threshold = 0;        ///< neglecting it is justified up to here
-  std::string sentence;        ///< what the number is, with its unit, without verdict: "max |grad u| = 0.29"
-  std::string recommendation;  ///< what to switch on, or to do, where it was not sound
-  bool left_out = true;        ///< false: a verdict on an effect that the scene has
+  std::string effect;    ///< the name on its card
+  double number = 0;     ///< how large what was left out would have been, of the whole run so far
+  double threshold = 0;  ///< neglecting it is justified up to here
+  std::string sentence;  ///< what the number is, with its unit, without verdict: "max |grad u| = 0.29"
+  std::string recommendation{};  ///< what to switch on, or to do, where it was not sound
+  bool left_out = true;          ///< false: a verdict on an effect that the scene has
   /// From here on (or NaN) the answer is useless, not only questionable; infinite: never.
   double wrong_from = std::numeric_limits<double>::infinity();
+  /// What that changes in the answer, as a share of it [1], good to a factor of two or so: its part of the error budget.
+  /// NaN: the number says nothing of it.
+  double share = std::numeric_limits<double>::quiet_NaN();
+  /// Above 0: of an effect that the scene has and that does next to nothing up to the threshold: what the run would save
+  /// without it, of its time [1]. Such a verdict is advice, and never unsound.
+  double saves = 0;
   /// NaN is never sound.
-  bool sound() const { return number <= threshold; }
+  bool sound() const { return number <= threshold || saves > 0; }
+  bool could_be_left_out() const { return saves > 0 && number <= threshold; }
   /// Of a verdict that is not sound.
   Severity severity() const {
     return number < wrong_from || std::isinf(wrong_from) ? Severity::warning : Severity::wrong;
@@ -30,6 +37,15 @@ struct EffectVerdict {
   /// The name of the effect in lower case with hyphens: "waves-of-pressure".
   std::string id() const;
 };
+
+/// The part of the error that is the model's: what the verdicts make of the answer, each as a share of it.
+struct ModelError {
+  double sum = std::numeric_limits<double>::quiet_NaN();  ///< NaN: nothing is known
+  std::string largest;  ///< "thermal strain is neglected: use 'thermal-expansion'"
+  std::string idle;     ///< "turbulence model (... saves 44 %)": what could be omitted
+};
+/// Sum over the verdicts that know their share, and what could be omitted.
+ModelError model_error(const std::vector<EffectVerdict>& verdicts);
 
 /// One line: "<effect> neglected: <sentence> (limit <threshold>): <justified, not justified or wrong>", and where it
 /// is not justified the recommendation.

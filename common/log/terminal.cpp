@@ -106,7 +106,8 @@ class Terminal final : public spdlog::sinks::base_sink<std::mutex> {
         print(shortened(text.substr(0, text.find("; neglected: "))));
     } else if (text.find('\n') != text.npos) {
       table(text);
-    } else if (text.starts_with("estimated error") || text.find(" dominates: ") != text.npos) {
+    } else if (text.starts_with("estimated error") || text.find(" dominates: ") != text.npos ||
+               text.starts_with("could be omitted")) {
       above(text);
     } else if (text.starts_with("peak memory") ||
                (!text.starts_with("t = ") && !text.ends_with(": justified") &&

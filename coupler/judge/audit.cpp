@@ -80,7 +80,16 @@ void CouplingAudit::tell(const CouplingParameters& parameters, double time) {
 
 void CouplingAudit::tell_at_end(const CouplingParameters& parameters, bool with_sound) const {
   for (const EffectVerdict& v : audit(coupling_effect_cards(), parameters, evidence_))
-    if (with_sound || !v.sound()) log::info("{}", text(v));
+    if (!(v.saves > 0) && (with_sound || !v.sound())) log::info("{}", text(v));
+}
+
+ErrorParts CouplingAudit::parts(const CouplingParameters& parameters) const {
+  ModelError model = model_error(audit(coupling_effect_cards(), parameters, evidence_));
+  ErrorParts parts;
+  parts.model = model.sum;
+  parts.model_by = std::move(model.largest);
+  parts.left_out = std::move(model.idle);
+  return parts;
 }
 
 }  // namespace couplet

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/base/types.hpp"
+#include "common/coupling/error_parts.hpp"
 #include "common/effects/verdict.hpp"
 #include "coupler/acceleration/unknown.hpp"
 #include "coupler/mapping/links.hpp"
@@ -45,6 +46,8 @@ class CouplingAudit {
   void tell(const CouplingParameters& parameters, double time);
   /// `with_sound`: else only those that were not: what a failed run saw until then proves nothing sound.
   void tell_at_end(const CouplingParameters& parameters, bool with_sound) const;
+  /// The coupling's own part of the model's error.
+  ErrorParts parts(const CouplingParameters& parameters) const;
 
  private:
   struct Force {

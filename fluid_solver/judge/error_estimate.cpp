@@ -146,6 +146,7 @@ double FluidErrorEstimate<D>::net_outflow() const {
 template <int D>
 ErrorParts FluidErrorEstimate<D>::parts() const {
   ErrorParts parts;
+  parts.dimension = D;
   const double speed = size(fluid_.state().u);
   if (!(speed > 0) || seen_ == 0) return parts;
   parts.mesh = recovered_difference() / speed;

@@ -30,10 +30,14 @@ bool has_interface(const S& s) {
 V judge_turbulence(const S&, const E& e) {
   if (std::isnan(e.largest_peclet)) return {};
   const bool resolved_walls = e.largest_yplus > 0 && e.largest_yplus <= 1;
-  return EffectVerdict{
-      "", e.largest_peclet, resolved_walls ? 250. : 50.,
+  const double limit = resolved_walls ? 250. : 50.;
+  EffectVerdict v{
+      "", e.largest_peclet, limit,
       fmt::format("max cell Reynolds number = {:.3g}, max y+ = {:.3g}", e.largest_peclet, e.largest_yplus),
       "steep layers may be thinner than the mesh: refine it, or add 'turbulence' if the flow is turbulent"};
+  // Layers get thinner with the root of the number: what a mesh that is too coarse by that misses of them.
+  v.share = e.largest_peclet > limit ? 1 - std::sqrt(limit / e.largest_peclet) : 0;
+  return v;
 }
 
 V judge_walls(const S&, const E& e) {
@@ -42,6 +46,16 @@ V judge_walls(const S&, const E& e) {
       "", e.largest_yplus, 2,
       fmt::format("max y+ = {:.3g}, max cell Reynolds number = {:.3g}", e.largest_yplus, e.largest_peclet),
       "there is no wall function: refine at the walls to y+ of about 1"};
+}
+
+/// What the model adds to the viscosity decides what it does.
+V spare_turbulence(const S&, const E& e) {
+  if (std::isnan(e.eddy_viscosity)) return {};
+  return EffectVerdict{
+      .effect = "",
+      .number = e.eddy_viscosity,
+      .threshold = 0.01,
+      .sentence = fmt::format("max eddy viscosity = {:.2g} of the molecular", e.eddy_viscosity)};
 }
 
 std::optional<Sound> sound_in(const S& s) {
@@ -61,11 +75,13 @@ V judge_compressibility(const S& s, const E& e) {
                               e.largest_speed, mach, sound->of, sound->speed),
       .recommendation =
           "density would change by more than 5 %: use a compressible solver; if the speed of sound differs, "
-          "set it in 'compressibility'"};
+          "set it in 'compressibility'",
+      .share = mach < 0.9 ? 1 / std::sqrt(1 - mach * mach) - 1 : 1};  // of pressures [Prandtl and Glauert]
 }
 
 // Where flow is stopped or driven faster than waves cross the domain the pressure rises as rho c du or rho L
-// du/dt, whatever the Mach number; the density follows by dp/(rho c^2).
+// du/dt, whatever the Mach number; the density follows by dp/(rho c^2). What the speed itself explains of that, 2 M^2 of a
+// body in a stream (pressures from 1 to -3 of rho u^2/2), is the compressibility's share.
 EffectVerdict judge_density(const S& s, const E& e, const Sound& sound) {
   const double change = e.pressure_range / (s.parameters.density * sound.speed * sound.speed);
   return {.effect = "",
@@ -76,7 +92,8 @@ EffectVerdict judge_density(const S& s, const E& e, const Sound& sound) {
           .recommendation =
               s.parameters.is_compressible()
                   ? "'compressibility' holds for small changes of density only: use a compressible solver"
-                  : "the flow changes faster than pressure waves would allow: add 'compressibility'"};
+                  : "the flow changes faster than pressure waves would allow: add 'compressibility'",
+          .share = std::max(0., change - 2 * std::pow(e.largest_speed / sound.speed, 2))};
 }
 
 // What the walls displace goes partly into compression, V dp / (rho c^2) = V dp / (gamma p) of a gas: of the volume of their
@@ -91,7 +108,8 @@ EffectVerdict judge_compliance(const S& s, const E& e, const Sound& sound) {
       .sentence = fmt::format("compression of {} / volume displaced by the walls = {:.2g}", sound.of, share),
       .recommendation =
           "the compliance of the fluid may change frequencies and stability of the coupled motion: add "
-          "'compressibility'"};
+          "'compressibility'",
+      .share = share};
 }
 
 // A column of length L answers a motion of rate omega as tan(omega L/c) / (omega L/c): 3 % more than without waves at 0.3.
@@ -103,7 +121,8 @@ EffectVerdict judge_wave_time(const S&, const E& e, const Sound& sound) {
           .sentence =
               fmt::format("sound crosses {} in {:.2g} s = {:.2g} of 1/omega = {:.2g} s of the wall motion",
                           sound.of, e.size / sound.speed, phase, 1 / e.wall_rate),
-          .recommendation = "pressure waves return while the walls move: add 'compressibility'"};
+          .recommendation = "pressure waves return while the walls move: add 'compressibility'",
+          .share = phase < 1 ? std::tan(phase) / std::max(phase, 1e-300) - 1 : 1};
 }
 
 // Linear acoustics: what it leaves out goes with the change of density.
@@ -173,7 +192,9 @@ const std::array cards{
               [](const S& s) { return when(s.parameters.turbulence.has_value(), "turbulence"); },
               {"an eddy viscosity per cell, a velocity gradient per step", 62, 0.78},
               "max cell Reynolds number, 50, or 250 with resolved walls (y+ up to 1)",
-              judge_turbulence},
+              judge_turbulence,
+              false,
+              spare_turbulence},
     FluidCard{"resolved walls",
               "`turbulence`",
               [](const S& s) { return when(s.parameters.turbulence.has_value(), "turbulence"); },

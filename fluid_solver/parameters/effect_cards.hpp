@@ -31,7 +31,8 @@ struct FluidEvidence {
   double wall_displacement = unknown;
   double through_walls =
       unknown;  ///< largest flow through a moving wall of a resting mesh over its speed and area
-  double blocked_cells = unknown;  ///< share of all cells that gaps block
+  double eddy_viscosity = unknown;  ///< largest, over the molecular viscosity
+  double blocked_cells = unknown;   ///< share of all cells that gaps block
 };
 
 using FluidCard = EffectCard<FluidScene, FluidEvidence>;

@@ -30,19 +30,60 @@ bool varies(const P& p) {
       materials_of(p), [](const SolidMaterial& m) { return m.heat.youngs_modulus || m.heat.poissons_ratio; });
 }
 
-V verdict(double number, double threshold, std::string sentence, std::string recommendation) {
+V verdict(double number, double threshold, std::string sentence, std::string recommendation,
+          double share = E::unknown) {
   if (std::isnan(number)) return {};
-  return EffectVerdict{"", number, threshold, std::move(sentence), std::move(recommendation)};
+  EffectVerdict v{"", number, threshold, std::move(sentence), std::move(recommendation)};
+  v.share = share;
+  return v;
 }
 
+/// Of an effect that is on: advice where it does next to nothing. `saves`: 0: what the card says.
+V spare(double number, double threshold, std::string sentence, double saves = 0) {
+  if (std::isnan(number)) return {};
+  EffectVerdict v{"", number, threshold, std::move(sentence), ""};
+  v.saves = saves;
+  return v;
+}
+
+// A static answer to a load of circular frequency w is too large by r = inertia / load = (w / w_1)^2 of itself where that is
+// small, and all of it is wrong where it is not: a load that comes at once moves a body twice as far.
 V judge_inertia(const P& p, const E& e) {
   if (!is_elastic(p) || has_finite_strain(p)) return {};  // whose static steps are load steps: t is no time
   return verdict(e.inertia_over_load, 0.01, fmt::format("inertia / load = {:.2g}", e.inertia_over_load),
-                 "use 'analysis: dynamic'");
+                 "use 'analysis: dynamic'", std::min(e.inertia_over_load, 1.));
+}
+
+// A body that moves slowly enough holds next to no kinetic energy beside its strain energy, (w / w_1)^2 of it.
+V spare_inertia(const P& p, const E& e) {
+  if (!is_dynamic(p) || !(e.dynamic_steps > 1)) return {};
+  return spare(
+      e.kinetic_over_strain, 1e-3,
+      fmt::format("max kinetic / largest strain energy = {:.2g}; 'analysis: static' takes one step for "
+                  "the final state",
+                  e.kinetic_over_strain),
+      1 - 1 / e.dynamic_steps);
 }
 
 // The stretch along a fibre that turns by an angle phi without straining is off by phi^2/2 in the linear
 // theory; a gradient of 0.02 is a fiftieth of that in the strain itself.
+// What that makes of a displacement: 0.4 of the square of the rotation at the tip of a cantilever (elastica; the norm of the
+// gradient is sqrt(2) times the rotation), about the strain of a bar, and 1/(f - 1) where a load of 1/f of the buckling load makes lateral motion grow.
+double share_of_geometry(const E& e) {
+  if (!std::isnan(e.large_strain_change)) return e.large_strain_change;
+  const double strain = std::isnan(e.largest_strain) ? 0 : e.largest_strain;
+  const double share = std::min(1., 0.2 * e.largest_gradient * e.largest_gradient + 0.8 * strain);
+  if (std::isnan(e.buckling_factor)) return share;
+  constexpr double all = 10;  // of a load beyond the buckling load nothing is left
+  return std::max(share, e.buckling_factor > 1 + 1 / all ? 1 / (e.buckling_factor - 1) : all);
+}
+
+// Linear theory errs by less than a thousandth there, and takes one linear solution a step.
+V spare_geometry(const P& p, const E& e) {
+  if (!has_finite_strain(p) || !std::isnan(e.buckling_factor)) return {};
+  return spare(e.largest_gradient, 1e-3, fmt::format("max |grad u| = {:.2g}", e.largest_gradient));
+}
+
 V judge_geometry(const P& p, const E& e) {
   if (!is_elastic(p) || has_finite_strain(p)) return {};
   const double g = e.largest_gradient;
@@ -52,16 +93,21 @@ V judge_geometry(const P& p, const E& e) {
                                               e.largest_strain, 57.29578 * e.largest_rotation);
   const std::string change = e.large_strain.empty() ? "" : "; " + e.large_strain;
   return verdict(g, 0.02, fmt::format("max |grad u| = {:.2g}{}{}", g, parts, change),
-                 g < 0.1 ? "expect errors of a few per cent"
-                         : "the result holds for linear theory, not for the body: use 'kinematics: "
-                           "finite-strain'");
+                 e.buckling_factor < 3
+                     ? "lateral motion grows as the load nears the buckling load: use 'kinematics: "
+                       "finite-strain'"
+                 : g < 0.1 ? "expect errors of a few per cent"
+                           : "the result holds for linear theory, not for the body: use 'kinematics: "
+                             "finite-strain'",
+                 share_of_geometry(e));
 }
 
 V judge_yield(const P& p, const E& e) {
   if (!is_elastic(p)) return {};
-  return verdict(
-      e.share_of_yield, 1, fmt::format("max equivalent stress / yield strength = {:.2g}", e.share_of_yield),
-      "the body would yield: the result is that of an elastic body; use a program with plasticity");
+  return verdict(e.share_of_yield, 1,
+                 fmt::format("max equivalent stress / yield strength = {:.2g}", e.share_of_yield),
+                 "the body would yield: the result is that of an elastic body; use a program with plasticity",
+                 std::max(0., e.share_of_yield - 1));
 }
 
 V judge_incompressibility(const P& p, const E&) {
@@ -86,13 +132,18 @@ V judge_thermal_strain(const P& p, const E& e) {
           "a temperature range of {:.3g} K would strain a free body with 1e-5 1/K by {:.2g}; max |grad u| = "
           "{:.2g}",
           e.temperature_range, strain, e.largest_gradient),
-      "use 'thermal-expansion'");
+      "use 'thermal-expansion'", strain / std::max(e.largest_gradient, 1e-300));
 }
 
 V judge_thermoelastic(const P&, const E& e) {
   return verdict(e.coupling_number, 0.05,
                  fmt::format("heat of deformation / stiffness = {:.1e}", e.coupling_number),
-                 "use 'thermoelastic-coupling: true'");
+                 "use 'thermoelastic-coupling: true'", e.coupling_number);
+}
+
+V spare_thermoelastic(const P&, const E& e) {
+  return spare(e.coupling_number, 0.005,
+               fmt::format("heat of deformation / stiffness = {:.1e}", e.coupling_number));
 }
 
 const std::array cards{
@@ -101,7 +152,9 @@ const std::array cards{
               [](const P& p) { return when(is_dynamic(p), "analysis: dynamic"); },
               {"velocities, a mass in the matrix", 0, 0},
               "inertia over load, 0.01",
-              judge_inertia},
+              judge_inertia,
+              false,
+              spare_inertia},
     SolidCard{
         "geometric non-linearity",
         "`kinematics: finite-strain`",
@@ -110,7 +163,9 @@ const std::array cards{
          "updated-Lagrangian method of the thesis instead, at 9 to 17 times the solution time",
          0, 33},
         "largest displacement gradient, 0.02",
-        judge_geometry},
+        judge_geometry,
+        false,
+        spare_geometry},
     SolidCard{"yielding",
               "not available here",
               [](const P&) { return std::string(); },
@@ -158,7 +213,9 @@ const std::array cards{
               [](const P& p) { return when(p.thermoelastic_coupling, "thermoelastic-coupling"); },
               {"a strain rate per cell", 0, 0},
               "stiffening by heat of deformation, 0.05",
-              judge_thermoelastic},
+              judge_thermoelastic,
+              false,
+              spare_thermoelastic},
     SolidCard{"properties of temperature",
               "`youngs-modulus-table`, `poissons-ratio-table`",
               [](const P& p) { return when(varies(p), "a table of the material"); },

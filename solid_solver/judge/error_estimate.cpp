@@ -175,6 +175,7 @@ void SolidErrorEstimate::see_swing(const SolidState& now, const StepErrors::Seen
 
 ErrorParts SolidErrorEstimate::parts() const {
   ErrorParts parts;
+  parts.dimension = body_.mesh().dim;
   if (stepper_.state().steps == 0) return parts;
   if (body_.is_dynamic()) {
     parts.step = steps_.over_size();

@@ -72,7 +72,10 @@ void SolidJudge::judge_energy(double strain, const char* cure) {
   const double work = sum(mesh_.comm, state.load_work);
   energy_audit_.is_driven = work != 0;
   energy_audit_.given = sum(mesh_.comm, state.energies.initial_kinetic) + work;
-  energy_audit_.held = sum(mesh_.comm, stepper_.ledger().kinetic(state)) + strain;
+  const double kinetic = sum(mesh_.comm, stepper_.ledger().kinetic(state));
+  largest_kinetic_ = std::max(largest_kinetic_, kinetic);
+  largest_strain_energy_ = std::max(largest_strain_energy_, strain);
+  energy_audit_.held = kinetic + strain;
   energy_audit_.scale = std::max(energy_audit_.scale, std::abs(energy_audit_.given));
   if (energy_audit_.is_hopeless())
     throw Error("t = {:g} s: energy balance: {}: spurious growth has replaced the solution; {}.", state.time,
@@ -125,6 +128,7 @@ void SolidJudge::see_buckling() {
     return;
   const BucklingEstimate found =
       estimate_buckling(body_, fields_, stepper_.state().time, *method, compression_seen_);
+  if (found.factor > 0) buckling_factor_ = std::min(buckling_factor_, found.factor);
   if (found.factor > 0 && found.factor < buckling_told_) {
     buckling_told_ = found.factor >= 1 ? std::min(1.0, found.factor) : 0;
     tell_buckling(mesh_.comm, found.factor, "at most ");
@@ -137,7 +141,15 @@ SolidEvidence SolidJudge::evidence() const {
   evidence.share_of_yield = fields_.share_of_yield(points);
   evidence.largest_gradient = std::max(largest_gradient_, evidence.largest_gradient);
   if (!body_.is_dynamic() && stepper_.state().steps > 1) evidence.inertia_over_load = inertia_over_load_;
-  if (large_strain_) evidence.large_strain = large_strain_->text();
+  if (large_strain_) {
+    evidence.large_strain = large_strain_->text();
+    evidence.large_strain_change = large_strain_->change;
+  }
+  if (buckling_factor_ < BucklingEstimate::low) evidence.buckling_factor = buckling_factor_;
+  if (body_.is_dynamic() && largest_strain_energy_ > 0) {
+    evidence.kinetic_over_strain = largest_kinetic_ / largest_strain_energy_;
+    evidence.dynamic_steps = double(stepper_.state().steps);
+  }
   for (const auto& effect : body_.effects()) effect->add_evidence(evidence);
   return evidence;
 }
@@ -161,6 +173,8 @@ void SolidJudge::save(CheckpointWriter& file) const {
   file.write_scalar("audit-scale", energy_audit_.scale);
   file.write_scalar("largest-gradient", largest_gradient_);
   file.write_scalar("inertia-over-load", inertia_over_load_);
+  file.write_scalar("largest-kinetic", largest_kinetic_);
+  file.write_scalar("largest-strain-energy", largest_strain_energy_);
 }
 
 void SolidJudge::load(CheckpointReader& file) {
@@ -169,6 +183,8 @@ void SolidJudge::load(CheckpointReader& file) {
   energy_audit_.scale = file.read_scalar("audit-scale");
   largest_gradient_ = file.read_scalar("largest-gradient");
   inertia_over_load_ = file.read_scalar("inertia-over-load");
+  largest_kinetic_ = file.read_scalar("largest-kinetic");
+  largest_strain_energy_ = file.read_scalar("largest-strain-energy");
 }
 
 }  // namespace couplet

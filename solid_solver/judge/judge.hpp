@@ -60,13 +60,15 @@ class SolidJudge final {
   const SolidFields& fields_;
   const Mesh& mesh_;
   double largest_gradient_ = 0, inertia_over_load_ = 0;
+  double largest_kinetic_ = 0, largest_strain_energy_ = 0;  // of a dynamic run [J]
   std::optional<StrainAudit> audit_, latest_;
   int steps_of_latest_ = -1;
   EnergyAudit energy_audit_;
   std::optional<LargeStrainEstimate> large_strain_;  // of the last step
   EquilibriumWatch equilibrium_;
-  double buckling_told_ = BucklingEstimate::low;  // a factor below this is told
-  double compression_seen_ = 0;                   // of the last look at buckling
+  double buckling_told_ = BucklingEstimate::low;    // a factor below this is told
+  double buckling_factor_ = BucklingEstimate::low;  // lowest of the run
+  double compression_seen_ = 0;                     // of the last look at buckling
   Severity strain_told_ = Severity::note, energy_told_ = Severity::note;
 };
 

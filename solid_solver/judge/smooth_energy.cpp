@@ -110,7 +110,10 @@ double SmoothEnergy::missed(std::span<const double> point_u) const {
   const GlobalIndex stride = 1 + mesh_.cells.n_global() / cells_looked_at;
   Patch patch{.cells_of_point = transpose(mesh_.cell_points, 0, mesh_.points.n_local()),
               .faces_of_cell = boundary_faces_of_cells(mesh_),
-              .mark = std::vector<Index>(std::size_t(mesh_.cells.n_local()), -1)};
+              .mark = std::vector<Index>(std::size_t(mesh_.cells.n_local()), -1),
+              .cells = {},
+              .points = {},
+              .mirrors = {}};
   double smooth = 0, counted = 0;
   for (Index cell = 0; cell < mesh_.cells.n_owned(); ++cell) {
     if (mesh_.cell_id[cell] % stride != 0) continue;  // the same ones on any number of ranks

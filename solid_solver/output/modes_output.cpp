@@ -32,7 +32,6 @@ std::vector<double> cell_masses(const SolidBody& body) {
 void SolidOutput::write_modes(bool estimates) {
   if (context_.output_folder.empty() || modes_written_) return;
   modes_written_ = true;
-  const Mesh& mesh = body_.mesh();
   const std::optional<SolidProblem> problem = vibration(body_);
   if (!problem)
     throw Error(

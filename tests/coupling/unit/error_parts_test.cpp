@@ -36,13 +36,52 @@ TEST(ErrorPartsTest, the_largest_part_dominates_and_what_is_a_tenth_of_it_buys_n
     const auto sentences = error_sentences({{"solid", parts}});
     return sentences.size() > 1 ? sentences[1] : "";
   };
-  EXPECT_EQ(said({.mesh = 1e-2, .step = 5e-4, .linear = 5e-3}),
-            "the mesh dominates: a finer mesh would reduce it; halving the step would not help.");
-  EXPECT_EQ(said({.mesh = 1e-3, .step = 5e-2}),
-            "the step dominates: a shorter time step would reduce it; refining the mesh would not help.");
-  EXPECT_EQ(said({.mesh = 1e-3, .step = 2e-3}), "the step dominates: a shorter time step would reduce it.");
+  EXPECT_EQ(
+      said({.mesh = 1e-2, .step = 5e-4, .linear = 5e-3}),
+      "the mesh dominates: half the cell size would leave about 0.0025, for 4 to 8 times the cells; halving the step "
+      "would not help.");
+  EXPECT_NE(said({.mesh = 1e-2, .step = 5e-4, .dimension = 2}).find("for 4 times the cells"),
+            std::string::npos);
+  EXPECT_EQ(
+      said({.mesh = 1e-3, .step = 5e-2}),
+      "the step dominates: half the time step would leave about 0.013, for twice the steps; refining the mesh would "
+      "not help.");
+  EXPECT_EQ(said({.mesh = 1e-3, .step = 2e-3}),
+            "the step dominates: half the time step would leave about 0.0005, for twice the steps.");
   EXPECT_EQ(said({.mesh = 1e-2}), "");  // one part alone says nothing of the others
   EXPECT_TRUE(error_sentences({{"solid", {}}}).empty());
+}
+
+// A run that leaves something out must not pass its discretisation's error for that of its answer; yet what the guards of
+// the discretisation judge stays without it: neglected effects have findings of their own.
+TEST(ErrorPartsTest, the_model_is_a_part_of_the_budget_and_proves_no_answer_useless) {
+  const NamedErrors hot{
+      "solid",
+      {.mesh = 0.018, .model = 750, .model_by = "thermal strain is neglected: use 'thermal-expansion'"}};
+  const auto sentences = error_sentences({hot});
+  ASSERT_EQ(sentences.size(), 2u);
+  EXPECT_EQ(sentences[0], "estimated error 7.5e+02 of the solution: model 7.5e+02, mesh 0.018.");
+  EXPECT_EQ(
+      sentences[1],
+      "the model dominates: thermal strain is neglected: use 'thermal-expansion'; refining the mesh would not help.");
+  EXPECT_DOUBLE_EQ(total_error({hot}), 0.018);
+  EXPECT_FALSE(worthless({hot}).has_value());
+  const NamedErrors small{
+      "solid", {.mesh = 0.018, .model = 1e-4, .left_out = "inertia (...) saves about 97 % of the time"}};
+  const auto other = error_sentences({small});
+  ASSERT_EQ(other.size(), 3u);
+  EXPECT_EQ(other[1].rfind("the mesh dominates", 0), 0u) << other[1];
+  EXPECT_EQ(other[2], "could be omitted: inertia (...) saves about 97 % of the time.");
+}
+
+TEST(ErrorPartsTest, words_and_dimension_are_read_again) {
+  const ErrorParts parts{.mesh = 0.5, .model = 0.25, .model_by = "a | b", .left_out = "c", .dimension = 3};
+  const ErrorParts again = ErrorParts::of(parts.text());
+  EXPECT_EQ(again.mesh, 0.5);
+  EXPECT_EQ(again.model, 0.25);
+  EXPECT_EQ(again.model_by, "a | b");
+  EXPECT_EQ(again.left_out, "c");
+  EXPECT_EQ(again.dimension, 3);
 }
 
 TEST(ErrorPartsTest, of_a_job_the_largest_of_each_kind_counts_and_is_named) {

@@ -52,6 +52,45 @@ TEST(EffectCards, without_evidence_there_is_no_verdict) {
   EXPECT_THAT(audit(fluid::fluid_effect_cards(), fluid::FluidScene{}, fluid::FluidEvidence{}), IsEmpty());
 }
 
+// Each share is what a closed form says of the answer.
+TEST(EffectCards, neglected_effects_say_what_share_of_the_answer_they_change) {
+  const SolidParameters p = static_solid();
+  const auto model = [&](const SolidEvidence& e) { return model_error(audit(solid_effect_cards(), p, e)); };
+  EXPECT_DOUBLE_EQ(model({.inertia_over_load = 0.04}).sum, 0.04);
+  EXPECT_DOUBLE_EQ(model({.inertia_over_load = 430}).sum, 1);
+  const ModelError hot = model({.largest_gradient = 1e-6, .temperature_range = 75});
+  EXPECT_NEAR(hot.sum, 750, 1e-9);
+  EXPECT_EQ(hot.largest, "thermal strain is neglected: use 'thermal-expansion'");
+  // The elastica: a cantilever with P L^2 / (E I) = 1 has a slope of 0.46 at its tip, which moves 9.5 % less than the linear one.
+  EXPECT_NEAR(model({.largest_gradient = 0.46 * std::sqrt(2.)}).sum, 0.095, 0.02);
+  EXPECT_DOUBLE_EQ(model({.largest_gradient = 1e-4, .buckling_factor = 1.5}).sum, 2);
+  EXPECT_DOUBLE_EQ(model({.largest_gradient = 1e-4, .buckling_factor = 0}).sum, 10);
+  EXPECT_TRUE(std::isnan(model_error(audit(solid_effect_cards(), p, SolidEvidence{})).sum));
+}
+
+TEST(EffectCards, what_does_next_to_nothing_could_be_left_out) {
+  SolidParameters p = static_solid();
+  p.analysis = SolidParameters::Analysis::dynamic;
+  const auto idle = [&](double energies) {
+    return model_error(audit(solid_effect_cards(), p,
+                             SolidEvidence{.kinetic_over_strain = energies, .dynamic_steps = 100}))
+        .idle;
+  };
+  EXPECT_THAT(idle(5e-4), HasSubstr("inertia (max kinetic / largest strain energy = 0.0005"));
+  EXPECT_THAT(idle(5e-4), HasSubstr("saves about 99 % of the time"));
+  EXPECT_THAT(idle(5e-3), IsEmpty());
+  fluid::FluidScene scene;
+  scene.parameters.turbulence.emplace();
+  const auto model = [&](double eddy) {
+    return model_error(
+               audit(fluid::fluid_effect_cards(), scene, fluid::FluidEvidence{.eddy_viscosity = eddy}))
+        .idle;
+  };
+  EXPECT_THAT(model(0.002),
+              HasSubstr("turbulence model (max eddy viscosity = 0.002 of the molecular; limit 0.01) saves"));
+  EXPECT_THAT(model(0.02), IsEmpty());
+}
+
 // Each pair lies just inside and just outside of validity.
 TEST(EffectCards, solid_verdicts_turn_at_their_thresholds) {
   const SolidParameters p = static_solid();

@@ -67,8 +67,9 @@ class Results:
         return [{"participant": name, **found} for name in self.participants() for found in self.report(name).get("findings", ())]
 
     def budget(self):
-        """{participant: {mesh, step, linear: share of the solution}}: parts of the error, as far as the run could estimate them."""
-        told = {name: {k: v for k, v in self.report(name).get("errors", {}).items() if v is not None} for name in self.participants()}
+        """{participant: {mesh, step, linear, coupling, model: share of the solution}}: parts of the error, as far as the run could
+        estimate them; model: what neglected effects change."""
+        told = {name: {k: v for k, v in self.report(name).get("errors", {}).items() if isinstance(v, (int, float))} for name in self.participants()}
         return {name: parts for name, parts in told.items() if parts}
 
     def report(self, participant):

@@ -111,8 +111,14 @@ class Digest(Screen):
         for name, report in [r for r in reports if r[1]][:8]:
             working = report.get("processor-working") or report.get("processor", 0)
             print(f"{name:12} {report.get('steps', 0):5}  {report.get('iterations', 0):10}  {working:11.1f}  {report.get('memory-all', 0):11.0f}")
-        for name, parts in [item for item in results.budget().items() if item[0] in mine][:4]:
-            print(f"estimated error of {name}: " + ", ".join(f"{part} {value:.2g}" for part, value in sorted(parts.items(), key=lambda p: -p[1])))
+        known = [item for item in results.budget().items() if item[0] in mine]
+        for name, parts in ([item for item in known if item[0] == "coupler"] or known)[:4]:  # the coupler's is that of the job
+            told = results.report(name)["errors"]
+            lines = [f"estimated error of {name}: " + ", ".join(f"{part} {value:.2g}" for part, value in sorted(parts.items(), key=lambda p: -p[1]))]
+            lines += [f"  the model dominates: {told['model-by']}"] * (parts.get("model") == max(parts.values()) > 0)
+            lines += [f"  could be omitted: {told['could-be-omitted']}"] * bool(told.get("could-be-omitted"))
+            for line in lines:
+                print(textwrap.shorten(line, width(), placeholder=" ...") if not line.startswith(" ") else "  " + textwrap.shorten(line, width() - 2, placeholder=" ..."))
         hidden = len(self.told) - MOST_FINDINGS
         if hidden > 0:
             print(f"{hidden} more warnings in the logs")
