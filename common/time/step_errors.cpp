@@ -25,7 +25,7 @@ void StepErrors::add(const Seen& seen, int steps) {
        {std::pair{&rate_, seen.rate}, {&size_, seen.size}, {&below_, seen.below}, {&highest_, seen.highest}})
     *of_late = std::max(now, kept * *of_late);
   if (seen.forgotten > 0)
-    for (auto& [of, error] : errors_) error *= std::exp(-seen.forgotten * steps * seen.dt);
+    for (auto& [of, sum] : errors_) sum.kept *= std::exp(-seen.forgotten * steps * seen.dt);
   if (!(seen.error > 0) || !(rate_ > 0)) return;
   int swing = 0;
   double amplitude = std::numeric_limits<double>::infinity();
@@ -34,17 +34,18 @@ void StepErrors::add(const Seen& seen, int steps) {
     swing = std::ilogb(frequency);
     amplitude = below_ / std::pow(frequency, seen.order);
   }
-  errors_[{swing, std::ilogb(rate_)}] += steps * seen.error;
+  Sum& sum = errors_[{swing, std::ilogb(rate_)}];
+  sum.all += steps * seen.error, sum.kept += steps * seen.error;
   amplitude_[swing] = std::max(amplitude_[swing], amplitude);
 }
 
 double StepErrors::over_size() const {
   if (!(size_ > 0)) return std::numeric_limits<double>::quiet_NaN();
   std::map<int, double> left;
-  for (const auto& [key, error] : errors_) {
+  for (const auto& [key, sum] : errors_) {
     const auto [swing, level] = key;
     const double shrunk = level >= std::ilogb(rate_) ? std::min(1.0, rate_ / std::ldexp(1.0, level)) : 1.0;
-    left[swing] += error * shrunk;
+    left[swing] += std::min(sum.all * shrunk, sum.kept);
   }
   double all = 0;
   for (const auto& [swing, error] : left) all += std::min(error, 2 * amplitude_.at(swing));
@@ -54,8 +55,8 @@ double StepErrors::over_size() const {
 std::vector<double> StepErrors::state() const {
   std::vector<double> values{rate_, size_, below_, highest_, time_, double(amplitude_.size())};
   for (const auto& [swing, amplitude] : amplitude_) values.insert(values.end(), {double(swing), amplitude});
-  for (const auto& [key, error] : errors_)
-    values.insert(values.end(), {double(key.first), double(key.second), error});
+  for (const auto& [key, sum] : errors_)
+    values.insert(values.end(), {double(key.first), double(key.second), sum.all, sum.kept});
   return values;
 }
 
@@ -75,11 +76,12 @@ void StepErrors::restore(std::span<const double> state) {
     const int at = key();
     amplitude_[at] = saved.real();
   }
-  if (saved.left() % 3 != 0) saved.damaged();
+  if (saved.left() % 4 != 0) saved.damaged();
   while (saved.left() > 0) {
     const int first = key(), second = key();
     if (!amplitude_.contains(first)) saved.damaged();
-    errors_[{first, second}] = saved.real();
+    Sum& sum = errors_[{first, second}];
+    sum.all = saved.real(), sum.kept = saved.real();
   }
 }
 

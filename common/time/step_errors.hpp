@@ -13,7 +13,7 @@ namespace couplet {
 /// An error propagates by the equation linearised about the solution, and so does the solution's own rate of change
 /// where the equation does not depend on time: what was made at step k has since shrunk as the rate of change has,
 /// |u'(now)| / |u'(t_k)|. So errors on the way to a steady state are forgotten, those of an oscillation add up, unless damping is known to take
-/// them away while loads keep the solution going. None
+/// them away while loads keep the solution going: of the two the one that leaves less counts. None
 /// is taken to grow, and none to exceed what it is an error of: a scheme of order p errs by C dt^{p+1} u^(p+1), which
 /// belongs to a swing of frequency w = |u^(p+1)| / |u^(p)| and amplitude |u^(p)| / w^p, out of phase by at most twice
 /// that. All are norms of one kind over the whole field, the same on all ranks.
@@ -30,6 +30,8 @@ class StepErrors {
   };
   /// `steps`: that it stands for, of which the first ones of a run cannot be judged by themselves.
   void add(const Seen& seen, int steps = 1);
+  /// |u|, the largest of late.
+  double size() const { return size_; }
   /// The error left over the size of the solution [1]; NaN before the first step.
   double over_size() const;
   /// For checkpoints.
@@ -37,8 +39,11 @@ class StepErrors {
   void restore(std::span<const double> state);
 
  private:
-  // Sums of errors, by the binary logarithms of frequency and of the rate when they were made.
-  std::map<std::pair<int, int>, double> errors_;
+  struct Sum {
+    double all = 0, kept = 0;  // as they were made; of these what damping has not taken away
+  };
+  // By the binary logarithms of frequency and of the rate when they were made.
+  std::map<std::pair<int, int>, Sum> errors_;
   std::map<int, double> amplitude_;  // largest, by the binary logarithm of the frequency
   // Largest of late: an oscillation passes through places of no rate or no size.
   double rate_ = 0, size_ = 0, below_ = 0, highest_ = 0, time_ = 0;

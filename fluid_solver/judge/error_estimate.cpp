@@ -14,6 +14,9 @@ namespace couplet::fluid {
 namespace {
 
 constexpr double adams_bashforth_error = 5. / 12;
+// Of what a clock drives: forces at mid-step 1/24, friction by the trapezoidal rule 1/12, convection 5/12.
+constexpr double driven_error = 1. / 12;
+constexpr double window = 0.25;  // "of late" is about this part of the time that has gone by
 
 /// Sums of a linear fit through the neighbours of a cell, weighted by 1 / d^2.
 template <int D>
@@ -46,6 +49,19 @@ double FluidErrorEstimate<D>::size(const Vectors<D>& values) const {
   return whole > 0 ? std::sqrt(squares / whole) : 0;
 }
 
+/// Rate at which errors leave the flow [1/s]: with the outflow of all its volume, and by the friction that takes what work brings
+/// in. `outflow`: of the volume [1/s]. The flow's own decay is not in it: it takes the errors along with the solution.
+template <int D>
+double FluidErrorEstimate<D>::forgetting(double dt, double outflow) {
+  const EnergyLedger& ledger = fluid_.state().ledger;
+  time_ += dt;
+  const double share = std::min(1., dt / (window * time_));
+  power_ += share * ((ledger.work - work_) / dt - power_);
+  energy_ += share * (std::max(0., ledger.energy) - energy_);
+  work_ = ledger.work;
+  return outflow + (energy_ > 0 ? std::max(0., power_) / (2 * energy_) : 0);
+}
+
 // Divided differences of u at the ends of the last four steps, their lengths nearly alike: the rate over each step,
 // the change of the rate, the change of that. One loop and one sum over the ranks: a cheap step costs little more.
 template <int D>
@@ -56,12 +72,22 @@ void FluidErrorEstimate<D>::accepted(double dt) {
   const double apart = 0.5 * (dt + dt_old_), per_step = 1 / dt, per_apart = 1 / apart;
   const bool knows_rate = seen_ > 0, knows_change = seen_ > 1, knows_third = seen_ > 2;
   u_.resize(n, Vec<D>::Zero()), rate_.resize(n, Vec<D>::Zero()), rate_change_.resize(n, Vec<D>::Zero());
-  std::array<double, 5> squares{};  // of u, its rate, the change of that, the change of that; the volume
+  // Of u, its rate, the change of that, the change of that; the volume; of what is left, outflow.
+  std::array<double, 7> squares{};
+  const double cut = std::max(1, fluid_.statistics().sub_steps);
+  const double local = adams_bashforth_error * dt * dt * dt / (cut * cut) / apart;
+  if (driving_.is_possible()) left_.resize(n, Vec<D>::Zero());
   for (std::size_t c = 0; c < n && knows_rate; ++c) {
     const Vec<D> rate = (u[c] - u_[c]) * per_step;
     Vec<D> change = Vec<D>::Zero();
     if (knows_change) change = (rate - rate_[c]) * per_apart;
-    if (knows_third) squares[3] += volume[c] * (change - rate_change_[c]).squaredNorm();
+    if (knows_third) {
+      squares[3] += volume[c] * (change - rate_change_[c]).squaredNorm();
+      if (!left_.empty()) {
+        left_[c] += (driven_error / adams_bashforth_error) * local * (change - rate_change_[c]);
+        squares[5] += volume[c] * left_[c].squaredNorm();
+      }
+    }
     squares[0] += volume[c] * u[c].squaredNorm();
     squares[1] += volume[c] * rate.squaredNorm();
     squares[2] += volume[c] * change.squaredNorm();
@@ -70,16 +96,22 @@ void FluidErrorEstimate<D>::accepted(double dt) {
   }
   std::copy_n(u.begin(), n, u_.begin());
   if (knows_third) {
-    MPI_Allreduce(MPI_IN_PLACE, squares.data(), 5, MPI_DOUBLE, MPI_SUM, fluid_.mesh().comm);
+    for (Index f = fluid_.mesh().n_interior; f < fluid_.mesh().n_flux_faces(); ++f)
+      squares[6] += std::max(0., fluid_.state().phi[f]);
+    MPI_Allreduce(MPI_IN_PLACE, squares.data(), int(squares.size()), MPI_DOUBLE, MPI_SUM, fluid_.mesh().comm);
     const auto mean = [&](int k) { return squares[4] > 0 ? std::sqrt(squares[k] / squares[4]) : 0; };
-    const double cut = std::max(1, fluid_.statistics().sub_steps), highest = mean(3) / apart;
-    steps_.add({.error = adams_bashforth_error * dt * dt * dt / (cut * cut) * highest,
+    const double highest = mean(3) / apart;
+    const double forgotten = forgetting(dt, squares[4] > 0 ? squares[6] / squares[4] : 0);
+    for (Vec<D>& v : left_) v *= std::exp(-forgotten * dt);
+    left_of_late_ = std::max(mean(5), left_of_late_ * std::exp(-dt / (window * time_)));
+    steps_.add({.error = local * mean(3),
                 .rate = mean(1),
                 .size = mean(0),
                 .dt = dt,
                 .order = 2,
                 .below = mean(2),
-                .highest = highest},
+                .highest = highest,
+                .forgotten = forgotten},
                judged_ ? 1 : 3);
     judged_ = true;
   }
@@ -144,13 +176,23 @@ double FluidErrorEstimate<D>::net_outflow() const {
 }
 
 template <int D>
+double FluidErrorEstimate<D>::step_part() const {
+  const double sum = steps_.over_size();
+  if (!driving_.is_possible() || !(steps_.size() > 0)) return sum;
+  std::vector<Vec3> places;
+  for (const Vec3& x : fluid_.state().placement->boundary_centre) places.push_back(x);
+  const bool acts = driving_.acts(fluid_.mesh().comm, places, fluid_.state().time, dt_old_);
+  return acts ? std::min(sum, left_of_late_ / steps_.size()) : sum;
+}
+
+template <int D>
 ErrorParts FluidErrorEstimate<D>::parts() const {
   ErrorParts parts;
   parts.dimension = D;
   const double speed = size(fluid_.state().u);
   if (!(speed > 0) || seen_ == 0) return parts;
   parts.mesh = recovered_difference() / speed;
-  parts.step = steps_.over_size();
+  parts.step = step_part();
   const double across = std::pow(double(fluid_.mesh().cells.n_global()), 1. / D);
   const auto& known =
       fluid_.parameters().compressibility;  // the trapezoidal rule knows the divergence before, too
@@ -161,8 +203,10 @@ ErrorParts FluidErrorEstimate<D>::parts() const {
 
 template <int D>
 std::vector<double> FluidErrorEstimate<D>::state() const {
-  std::vector<double> values{double(seen_), judged_ ? 1. : 0., dt_old_, double(rate_.size())};
-  for (const Vectors<D>* vectors : {&rate_, &rate_change_})
+  std::vector<double> values{
+      double(seen_),        judged_ ? 1. : 0.,   dt_old_, time_, power_, energy_, work_, left_of_late_,
+      double(left_.size()), double(rate_.size())};
+  for (const Vectors<D>* vectors : {&left_, &rate_, &rate_change_})
     for (const Vec<D>& v : *vectors) values.insert(values.end(), v.begin(), v.end());
   const std::vector<double> sums = steps_.state();
   values.insert(values.end(), sums.begin(), sums.end());
@@ -172,13 +216,17 @@ std::vector<double> FluidErrorEstimate<D>::state() const {
 template <int D>
 void FluidErrorEstimate<D>::restore(std::span<const double> state) {
   seen_ = 0, judged_ = false, steps_ = {};
-  u_.clear(), rate_.clear(), rate_change_.clear();
+  time_ = power_ = energy_ = work_ = left_of_late_ = 0;
+  u_.clear(), rate_.clear(), rate_change_.clear(), left_.clear();
   if (state.empty()) return;
   SavedNumbers saved(state, "step errors");
   seen_ = int(saved.count(1e9)), judged_ = saved.real() != 0, dt_old_ = saved.real();
-  const std::size_t n = saved.count_of(2 * D);
+  for (double* value : {&time_, &power_, &energy_, &work_, &left_of_late_}) *value = saved.real();
+  const std::size_t kept = saved.count_of(D), n = saved.count_of(2 * D);
   const Vectors<D>& u = fluid_.state().u;
-  if (n != 0 && n != std::size_t(fluid_.mesh().cells.n_owned())) saved.damaged();
+  for (const std::size_t size : {kept, n})
+    if (size != 0 && size != std::size_t(fluid_.mesh().cells.n_owned())) saved.damaged();
+  for (std::size_t c = 0; c < kept; ++c) left_.emplace_back(saved.next(D).data());
   for (Vectors<D>* vectors : {&rate_, &rate_change_})
     for (std::size_t c = 0; c < n; ++c) vectors->emplace_back(saved.next(D).data());
   steps_.restore(saved.rest());

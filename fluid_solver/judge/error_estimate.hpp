@@ -6,6 +6,7 @@
 
 #include "common/coupling/error_parts.hpp"
 #include "common/time/step_errors.hpp"
+#include "fluid_solver/judge/driving.hpp"
 #include "fluid_solver/step/fluid.hpp"
 
 namespace couplet::fluid {
@@ -14,7 +15,9 @@ namespace couplet::fluid {
 ///   mesh    difference of u from the value that a linear fit through the neighbours of each cell has in it, h^2/4
 ///           times the Laplacian of u on equal cells: recovery of the values
 ///   step    sum of the local errors 5/12 dt^3 d3u/dt3 of Adams and Bashforth's second order, see StepErrors; of
-///           k sub-steps each k^-3
+///           k sub-steps each k^-3. The flow forgets at the rate at which it is renewed, outflow over volume, and at which
+///           friction takes what work has brought in, W'/(2 E). Where a clock drives it (Driving) no error drifts: the sum of
+///           the local errors as vectors, which turn back with each half period, counts if it is less
 ///   linear  what the pressure's solver leaves of the cells' net outflow against what passes through them, times the
 ///           square root of the number of cells across: an outflow that alternates moves its neighbours alone, one
 ///           that does not the whole field; this is the mean of the two in logarithms
@@ -23,7 +26,7 @@ template <int D>
 class FluidErrorEstimate {
  public:
   /// By reference.
-  explicit FluidErrorEstimate(const Fluid<D>& fluid) : fluid_(fluid) {}
+  explicit FluidErrorEstimate(const Fluid<D>& fluid) : fluid_(fluid), driving_(fluid.parameters()) {}
   /// After the step of `dt` [s] was accepted.
   void accepted(double dt);
   ErrorParts parts() const;
@@ -34,6 +37,8 @@ class FluidErrorEstimate {
 
  private:
   double size(const Vectors<D>& values) const;
+  double forgetting(double dt, double outflow);
+  double step_part() const;
   double recovered_difference() const;
   double net_outflow() const;
   void add_compression(std::vector<double>& net) const;
@@ -44,6 +49,10 @@ class FluidErrorEstimate {
   bool judged_ = false;                // a step has been judged
   double dt_old_ = 0;
   StepErrors steps_;
+  double time_ = 0, power_ = 0, energy_ = 0, work_ = 0;  // judged so far; means of late; what the ledger had
+  Driving driving_;
+  Vectors<D> left_;          // sum of local errors; empty: nothing drives
+  double left_of_late_ = 0;  // norm, the largest of late
 };
 
 }  // namespace couplet::fluid

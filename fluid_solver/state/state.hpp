@@ -59,6 +59,7 @@ struct EnergyLedger {
   double excess = 0;     ///< [J]
   double reference = 0;  ///< by which the excess is measured: of late [J]
   double level = 0;      ///< pressure about which the boundaries' work is counted [Pa]
+  double work = 0;       ///< brought in so far, less what was taken out [J]
   /// Below a share of the largest energy so far there is only round-off.
   bool is_judged() const { return energy > 1e-10 * largest && reference > 0; }
 };

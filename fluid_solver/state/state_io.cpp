@@ -54,6 +54,7 @@ void write_state(CheckpointWriter& file, const State<D>& s, bool compressible) {
   file.write_scalar("energy-excess", s.ledger.excess);
   file.write_scalar("energy-reference", s.ledger.reference);
   file.write_scalar("energy-level", s.ledger.level);
+  file.write_scalar("energy-work", s.ledger.work);
   file.write_scalar("pressure-levels", levels);
   file.write_scalar("has-mesh-flux", s.mesh_flux.empty() ? 0 : 1);
   file.write_scalar("has-flux-memory", s.memory.empty() ? 0 : 1);
@@ -97,9 +98,9 @@ State<D> read_state(CheckpointReader& file, const Mesh& mesh, std::shared_ptr<co
   s.dt_old = file.read_scalar("dt-old");
   s.implicit = file.read_scalar("implicit") != 0;
   s.start = static_cast<Start>(file.read_count("start", 2));
-  s.ledger = {file.read_scalar("energy"), file.read_scalar("energy-largest"),
+  s.ledger = {file.read_scalar("energy"),        file.read_scalar("energy-largest"),
               file.read_scalar("energy-excess"), file.read_scalar("energy-reference"),
-              file.read_scalar("energy-level")};
+              file.read_scalar("energy-level"),  file.read_scalar("energy-work")};
   const auto levels = static_cast<int>(file.read_count("pressure-levels", s.pressure.size()));
   const bool has_mesh_flux = file.read_scalar("has-mesh-flux") != 0;
   const bool has_memory = file.read_scalar("has-flux-memory") != 0;

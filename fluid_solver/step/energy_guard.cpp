@@ -144,6 +144,7 @@ EnergyJudgement EnergyGuard<D>::judge(const EnergyStep<D>& s) const {
   EnergyJudgement j;
   j.gain = sums[energy] - (before.energy < 0 ? sums[old_energy] : before.energy);
   j.work = sums[work];
+  j.ledger.work = before.work + sums[work];
   j.ledger.energy = sums[energy];
   j.ledger.largest = std::max({before.largest, sums[energy], before.energy < 0 ? sums[old_energy] : 0});
   j.ledger.level = bulk_ > 0 ? level : sums[fluxes] > 0 ? sums[weighted] / sums[fluxes] : 0;
