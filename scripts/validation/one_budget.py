@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bars of the error budget, the predictions and the atlas. Built so far: other programs on a case by one command, pictures that can be
-read, --for-error beside ladders of runs, the budget with the model in it. The bars of periodic flow and of the atlas have no rows yet."""
+read, --for-error beside ladders of runs, the budget with the model in it, a flow
+that a clock drives. The bars of the atlas have no rows yet."""
 import csv
 import re
 import sys
@@ -9,8 +10,8 @@ from validation.job import Bar
 from validation.parts.prediction import rows as prediction
 from validation.parts.trust.runs import tests
 
-NOTE = ("Built so far: other programs on a case by one command, pictures that can be read, `--for-error`, and the budget with the model in it. The bars of the budget with the model in it, "
-        "of periodic flow and of the atlas have no rows yet.")
+NOTE = ("Built so far: other programs on a case by one command, pictures that can be read, `--for-error`, the budget with the model in it, and Womersley's flow. "
+        "The bars of the atlas have no rows yet.")
 SOURCES = ("client/python/couplet/peers", "client/python/couplet/study", "configs/elliptic-plate", "configs/le1", "configs/cook", "configs/cavity", "configs/cylinder", "coupler")
 FOAM = "solidDisplacementFoam"
 # What of a study is run (--only: the sizes that a busy machine allows), its quantity, and the error that each program's best run has at most.
@@ -86,7 +87,7 @@ def periodic(job):
     return "; ".join(f"{name}: {step} for {truth}" for _, name, step, truth in found), len(found) == 6 and all(word == "ok" for word, *_ in found)
 
 
-BARS.append(Bar("periodic flow (Womersley, alpha 3 and 10, 40 steps a period): the step's estimate over the truth at 4, 32, 100 periods", "within a factor of 3", periodic, long=True,
+BARS.append(Bar("periodic flow (Womersley, alpha 3 and 10, 40 steps per period): the step's estimate over the truth at 4, 32, 100 periods", "within a factor of 3", periodic, long=True,
                 but="2D-2 has no row yet: what drifts there is the phase"))
 BARS.append(Bar("ten scenes with a known error of their model: the largest part of the budget, or what could be omitted, is the right one; its share", "10 of 10, 8 within a factor of 2",
                 scenes, but="two of the ten, a light solid coupled explicitly and friction forgotten, are not built: their shares are tested as cards alone; two are effects that do nothing and have no share"))
