@@ -9,6 +9,7 @@
 #include "common/base/text.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
+#include "coupler/exchange/foreign_fluid.hpp"
 #include "coupler/exchange/foreign_structure.hpp"
 #include "coupler/exchange/role_checks.hpp"
 #include "coupler/judge/places.hpp"
@@ -50,6 +51,8 @@ Coupler::Coupler(MPI_Comm comm, const CouplingParameters& parameters, const Simu
     if (const auto& structure = parameters.structure;
         structure && structure->participant == name && structure->foreign())
       partner.channel = std::make_unique<ForeignStructure>(std::move(partner.channel), *structure);
+    if (const auto& fluid = parameters.fluid; fluid && fluid->participant == name && fluid->foreign())
+      partner.channel = std::make_unique<ForeignFluid>(std::move(partner.channel), *fluid);
   }
   for (const std::string& name : schedule_.group) group_.push_back(index_of(name));
   given_.resize(partners_.size());
@@ -59,7 +62,8 @@ Coupler::Coupler(MPI_Comm comm, const CouplingParameters& parameters, const Simu
 namespace {
 
 CouplingParameters with_roles(CouplingParameters p, const CouplerChannels& c) {
-  p.fluid = {c.fluid->name()};
+  if (!p.fluid) p.fluid.emplace();
+  p.fluid->participant = c.fluid->name();
   if (!p.structure) p.structure.emplace();
   p.structure->participant = c.structure->name();
   if (c.mesh) p.mesh = {c.mesh->name()};
@@ -95,6 +99,9 @@ std::vector<Partner*> Coupler::everyone() {
 void Coupler::initialise() {
   enter_(Phase::initialise, {});
   std::vector<Interface> interfaces = initialise_all(everyone());
+  for (std::size_t i = 0; i < partners_.size(); ++i)
+    if (auto* foreign = dynamic_cast<ForeignFluid*>(partners_[i].channel.get()))
+      foreign->adapt(interfaces[i], partners_[i].surfaces);
   for (std::size_t i = 0; i < partners_.size(); ++i)
     if (auto* foreign = dynamic_cast<ForeignStructure*>(partners_[i].channel.get()))
       foreign->adapt(interfaces[i], partners_[i].surfaces, interfaces);

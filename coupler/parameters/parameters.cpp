@@ -199,8 +199,24 @@ void declare(config::Section& section, CouplingParameters& p) {
       .doc(
           "explicit: one pass per step; semi-implicit: mesh motion and momentum predictor once per step, "
           "pressure and structure iterated; implicit: everything iterated");
-  declare_role(section, "fluid", p.fluid,
-               "participant that receives the interface motion and gives the load");
+  section.optional_section<CouplingParameters::Fluid>(
+      "fluid", p.fluid,
+      [](config::Section& s, CouplingParameters::Fluid& r) {
+        s.value("participant", r.participant).required().doc("its name under `participants`");
+        s.value("displacement", r.displacement)
+            .doc(
+                "what another program calls the displacement that it takes (m, or without a unit) at vertices");
+        s.value("load", r.load)
+            .doc("what another program calls the force that it gives (N), with `displacement`");
+        s.check(
+            [&] {
+              return r.displacement.empty() == r.load.empty()
+                         ? std::string()
+                         : "'displacement' and 'load' are given together: the names of another program's data";
+            },
+            "load");
+      },
+      "participant that receives the interface motion and gives the load");
   section.optional_section<CouplingParameters::Structure>(
       "structure", p.structure,
       [](config::Section& s, CouplingParameters::Structure& r) {

@@ -50,12 +50,18 @@ struct CouplingParameters {
   struct Role {
     std::string participant;
   };
+  /// As its program calls its displacement and its load; empty: as this project does.
+  struct Fluid : Role {
+    std::string displacement, load;
+    bool foreign() const { return !displacement.empty() || !load.empty(); }
+  };
   struct Structure : Role {
     std::string displacement = "displacement",
                 load;  // as its program calls them; load: the sum of all forces
     bool foreign() const { return displacement != "displacement" || !load.empty(); }
   };
-  std::optional<Role> fluid, mesh;
+  std::optional<Fluid> fluid;
+  std::optional<Role> mesh;
   std::optional<Structure> structure;
   using Exchange = ExchangeParameters;
   std::optional<Exchange> exchange;

@@ -328,6 +328,9 @@ case.yaml:38:15: coupling.structure.participant: 'fluid' is run by fluid_solver,
 case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure, mesh or exchange): assign one, or remove the participant.
 case.yaml:38:3: coupling.structure: fluid and structure must be two different participants.
 """, ("structure: {participant: solid}", "structure: {participant: fluid}")),
+    coupler("half the names of another program's fluid", """
+case.yaml:37:31: coupling.fluid.load: 'displacement' and 'load' are given together: the names of another program's data.
+""", ("fluid: {participant: fluid}", "fluid: {participant: fluid, load: Force}")),
     coupler("exchange beside a fluid", """
 case.yaml:40:3: coupling.exchange: an exchange has no separate structure: it is one of its participants; use one or the other.
 """, ("  mesh: {participant: mover}\n", "  mesh: {participant: mover}\n  exchange: {participants: [fluid, solid]}\n")),

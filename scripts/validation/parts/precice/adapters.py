@@ -55,6 +55,10 @@ def flap_under_openfoam(text):
     return text
 
 
+def libraries(job):
+    return f"{job.build}/precice/lib:{os.environ.get('LD_LIBRARY_PATH', '')}"
+
+
 def motion_of(frd, node):
     """(time, x displacement) of each step of CalculiX's result file."""
     rows, time, displacement = [], 0.0, False
@@ -85,7 +89,7 @@ def calculix(job):
     line = ["mpirun", "--oversubscribe", *(["--allow-run-as-root"] if os.geteuid() == 0 else [])]
     for i, name in enumerate(("coupler", "fluid_solver", "mesh_mover")):
         line += [":"] * (i > 0) + ["-n", "1", job.build / "bin" / name, case]
-    line += [":", "-n", "1", "sh", "-c", f"cd solid-calculix && OMP_NUM_THREADS=1 exec {pathlib.Path(program).resolve()} -i flap -precice-participant Solid > ccx.log"]
+    line += [":", "-n", "1", "sh", "-c", f"cd solid-calculix && LD_LIBRARY_PATH={libraries(job)} OMP_NUM_THREADS=1 exec {pathlib.Path(program).resolve()} -i flap -precice-participant Solid > ccx.log"]
     done = job.run(line, cwd=where)
     if done.returncode:
         raise RuntimeError((done.stdout + done.stderr).strip().splitlines()[-1][:200])
@@ -114,14 +118,14 @@ def openfoam(solid):
         for part in ("fluid-openfoam", "solid-calculix"):
             shutil.copytree(source / "perpendicular-flap" / part, where / part)
         shutil.copy(source / "perpendicular-flap/precice-config.xml", where)
-        path = f"{pathlib.Path(adapter).resolve().parent}:{job.build}/precice/lib:{os.environ.get('LD_LIBRARY_PATH', '')}"
+        path = f"{pathlib.Path(adapter).resolve().parent}:{libraries(job)}"
         job.run(["blockMesh"], cwd=where / "fluid-openfoam", check=True)
         fluid = f"cd {where}/fluid-openfoam && LD_LIBRARY_PATH={path} exec pimpleFoam > foam.log"
         line = ["mpirun", "--oversubscribe", *(["--allow-run-as-root"] if os.geteuid() == 0 else []), "-n", "1", job.build / "bin/coupler", where / "case.yaml"]
         if solid == "calculix":
             job.run([job.root / "scripts/couplet", "import", where / "precice-config.xml", "-o", where / "case.yaml", "--force"], check=True)
             line += ["--set=simulation.end-time=2.5", ":", "-n", "1", "sh", "-c",
-                     f"cd {where}/solid-calculix && OMP_NUM_THREADS=1 exec {pathlib.Path(program).resolve()} -i flap -precice-participant Solid > ccx.log"]
+                     f"cd {where}/solid-calculix && LD_LIBRARY_PATH={path} OMP_NUM_THREADS=1 exec {pathlib.Path(program).resolve()} -i flap -precice-participant Solid > ccx.log"]
         else:
             ours = job.root / "configs/perpendicular-flap"
             shutil.copy(ours / "solid.geo", where)
