@@ -73,6 +73,14 @@ std::vector<double> node_inertia(const SolidProblem& problem) {
   return result;
 }
 
+DeformedBody at_rest(const Mesh& mesh) {
+  DeformedBody body;
+  body.gradient.assign(std::size_t(mesh.n_flux_faces()), Tensor3::Identity());
+  body.displacement.assign(std::size_t(mesh.cells.n_local()) + std::size_t(mesh.boundary.n_local()),
+                           Vec3::Zero());
+  return body;
+}
+
 NewtonKrylov::NewtonKrylov(const SolidProblem& problem, const MethodParameters& parameters)
     : problem_(problem),
       options_{parameters.relative_tolerance, parameters.max_iterations, problem.is_symmetric()} {
@@ -161,11 +169,7 @@ void NewtonKrylov::add_rigid_motions(const std::vector<double>& inertia, double 
                                 std::min(static_cast<GlobalIndex>(length), cells / fewest_cells)));
   if (aggregates < fewest_aggregates) return;
   modes_ = std::make_unique<CurrentRigidModes>(mesh, problem_.elastic, static_cast<int>(aggregates), inertia);
-  DeformedBody at_rest;
-  at_rest.gradient.assign(std::size_t(mesh.n_flux_faces()), Tensor3::Identity());
-  at_rest.displacement.assign(std::size_t(mesh.cells.n_local()) + std::size_t(mesh.boundary.n_local()),
-                              Vec3::Zero());
-  modes_->update(at_rest);
+  modes_->update(at_rest(mesh));
 }
 
 void NewtonKrylov::choose_factors() {

@@ -39,6 +39,9 @@ class NewtonKrylov final : public SolutionMethod {
   std::unique_ptr<KrylovSolver> krylov_;
 };
 
+/// A body as it lies in the reference configuration.
+DeformedBody at_rest(const Mesh& mesh);
+
 /// Largest extent of a body over its mean thickness 2 V / S: a beam in the plane L/h, one of square section 2 L/h, a cube 3. Collective.
 double slenderness(const Mesh& mesh);
 

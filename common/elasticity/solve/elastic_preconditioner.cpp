@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <utility>
 
 #include "common/elasticity/elastic_nodes.hpp"
 #include "common/elasticity/symmetric/symmetric_diagonal.hpp"
@@ -137,6 +138,13 @@ ComponentMultigrid::Rows CompactRows::make(std::span<const double> inertia) {
   return result;
 }
 
+ComponentCycle multigrid_cycle(ComponentMultigrid::Rows rows, const ComponentMultigrid::Options& options) {
+  return [multigrid = std::make_shared<ComponentMultigrid>(std::move(rows), options)](
+             std::span<const double> b, std::span<double> x, int components) {
+    multigrid->apply(b, x, components);
+  };
+}
+
 /// Of a support's face with the block `own`: springs beside what is free, `whole` where it is known.
 Tensor3 supported(const Tensor3& own, const ElasticSupport& s, double area, double whole) {
   const Tensor3 open = Tensor3::Identity() - s.known;
@@ -164,8 +172,8 @@ ElasticPreconditioner::ElasticPreconditioner(const Mesh& mesh, const ElasticOper
       CompactRows(mesh, rows, boundary_factor, left_out_)
           .make(options.node_inertia.empty() ? inertia
                                              : options.node_inertia.first(std::size_t(mesh.cells.n_owned())));
-  multigrid_ = std::make_unique<ComponentMultigrid>(
-      std::move(compact), ComponentMultigrid::Options{is_symmetric_ ? of_smooth : 1, &mesh.cells, mesh.comm});
+  const ComponentMultigrid::Options of_cycle{is_symmetric_ ? of_smooth : 1, &mesh.cells, mesh.comm};
+  cycle_ = options.cycle ? options.cycle(std::move(compact), of_cycle) : multigrid_cycle(std::move(compact), of_cycle);
   find_face_rows(boundary_factor, options.node_inertia);
   if (is_symmetric_) add_true_diagonal(options.node_inertia);
   if (options.n_aggregates > 0 && !is_symmetric_)
@@ -252,7 +260,7 @@ void ElasticPreconditioner::add_true_diagonal(std::span<const double> node_inert
 void ElasticPreconditioner::smooth(std::span<const double> r, std::span<double> z) {
   const int dim = mesh_->dim;
   const std::size_t n_cells = std::size_t(mesh_->cells.n_owned()) * dim;
-  multigrid_->apply(r.first(n_cells), z.first(n_cells), dim);
+  cycle_(r.first(n_cells), z.first(n_cells), dim);
   for (std::size_t i = 0; i < face_rows_.size(); ++i) {
     const FaceRow& row = face_rows_[i];
     const double* own = r.data() + n_cells + i * dim;
@@ -281,7 +289,7 @@ void ElasticPreconditioner::smooth_symmetric(std::span<const double> r, std::spa
         if (row.twin_owner >= 0) gathered_[std::size_t(row.twin_owner) * dim + a] += row.other(b, a) * own[b];
       }
   }
-  multigrid_->apply(gathered_, z.first(n_cells), dim);
+  cycle_(gathered_, z.first(n_cells), dim);
   for (std::size_t i = 0; i < face_rows_.size(); ++i) {
     const FaceRow& row = face_rows_[i];
     const double* own = r.data() + n_cells + i * dim;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -10,6 +11,9 @@
 #include "common/linalg/component_multigrid.hpp"
 
 namespace couplet {
+
+/// x = V(b), `components` values a cell. Collective.
+using ComponentCycle = std::function<void(std::span<const double> b, std::span<double> x, int components)>;
 
 /// Preconditioner of diag(inertia) + A without A: the two-point flux of each component by itself, coefficient
 /// |S| / (d . n) [mu + (mu + lambda) n_c^2] (the diagonal of the compact block operator), under a multigrid
@@ -27,6 +31,8 @@ class ElasticPreconditioner {
     std::span<const double> node_inertia = {};
     /// Of what is left of the symmetric operator without the bulk modulus of cells: of the mixed form.
     bool without_cells_bulk = false;
+    /// What makes another cycle than ComponentMultigrid's, to compare them (benchmarks/linalg); empty: none.
+    std::function<ComponentCycle(ComponentMultigrid::Rows, const ComponentMultigrid::Options&)> cycle = {};
   };
   /// Collective.
   ElasticPreconditioner(const Mesh& mesh, const ElasticOperator& rows, std::span<const double> inertia,
@@ -55,7 +61,7 @@ class ElasticPreconditioner {
   VolumeStrain left_out_;         // faces: the preconditioner is that of the whole operator
   std::vector<double> gathered_;  // of the symmetric form, as the next
   std::vector<float> inverse_diagonal_;
-  std::unique_ptr<ComponentMultigrid> multigrid_;
+  ComponentCycle cycle_;
   std::vector<FaceRow> face_rows_;
   std::unique_ptr<RigidCoarseSpace> coarse_;
   std::vector<double> left_, smooth_;  // of the multiplicative form

@@ -150,8 +150,16 @@ def glossary(job):
 
 
 def comparison(job):
-    there = sorted(p.name for p in (job.root / "benchmarks").iterdir() if p.is_dir())
-    return f"benchmarks: {', '.join(there)}", "linalg" in there and (job.root / "benchmarks/linalg/README.md").exists()
+    folder = str(job.root / "benchmarks/linalg")
+    if folder not in sys.path:
+        sys.path.append(folder)
+    tables = importlib.import_module("tables")
+    rows = tables.read(job.root / "benchmarks/linalg/table.csv")
+    there = [n for n in tables.HAND_WRITTEN if (job.root / f"common/linalg/{n}.hpp").exists()]
+    gains = {n: tables.best(rows, n) for n in there}
+    lacking = tables.problems(rows, job.root / "common/linalg")
+    text = ", ".join(f"{n} {min(g[:2]):.2f} of PETSc's best ({g[2]['system']})" for n, g in gains.items() if g)
+    return f"{len({r['system'] for r in rows})} systems, {len(rows)} rows; {text}{'; ' + '; '.join(lacking) if lacking else ''}", not lacking
 
 
 def minutes(limit, *targets):

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/elasticity/solve/elastic_preconditioner.hpp"
+
+namespace couplet::benchmark {
+
+/// What ComponentMultigrid does, by a preconditioner of PETSc for each component (its options without a prefix). Collective.
+ComponentCycle petsc_cycle(ComponentMultigrid::Rows rows, const ComponentMultigrid::Options& options);
+
+}  // namespace couplet::benchmark

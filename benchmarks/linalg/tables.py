@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: Apache-2.0
+"""table.csv of benchmarks/linalg and what is made of it: the tables of README.md, and whether each hand-written solver wins by a third."""
+import csv
+import pathlib
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+COLUMNS = ("system", "size", "ranks", "unknowns", "solver", "iterations", "setup", "solve", "reuse", "megabytes", "tolerance", "residual", "error",
+           "turns", "note")
+SYSTEMS = ("fluid 2-D", "fluid 3-D", "plate B", "tetrahedra", "nu 0.4999", "slender")
+WINS = 0.75  # time or memory over those of PETSc's best, which then takes a third more
+PETSC = ("GAMG", "BoomerAMG", "MUMPS")
+# Hand-written solvers of common/linalg: the row of ours, what the rows of PETSc in its place have in their names, and the systems where the
+# programs use it.
+HAND_WRITTEN = {
+    "component_multigrid": ("our krylov CG, component_multigrid", lambda name: "component_multigrid" not in name, ("plate B", "tetrahedra", "slender")),
+    "single_factors": ("our single_factors, CG", lambda name: "PETSc" in name, ("fluid 2-D",)),
+    "krylov": ("our krylov CG, component_multigrid", lambda name: name == "PETSc CG, our component_multigrid", ("plate B", "tetrahedra", "slender")),
+    "idr": ("our idr, mixed form", lambda name: "PETSc" in name, ("nu 0.4999",)),
+}
+# What else lies in that folder: PETSc's and MUMPS's own behind one call, LAPACK, what is no linear solver.
+NOT_SOLVERS = ("acceleration", "dense_eigenvalues", "dot", "linear_map", "linear_solver", "matrix", "petsc_check", "petsc_environment",
+               "residual_projection", "symmetric_factors")
+BEGIN, END = "<!-- tables -->", "<!-- end of tables -->"
+
+
+def read(path=HERE / "table.csv"):
+    if not path.exists():
+        return []
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def solved(row):
+    return bool(row["solve"]) and float(row["residual"]) < 2
+
+
+def seconds(row):
+    """One making of the preconditioner and its solves, a solve."""
+    return float(row["setup"]) / float(row["reuse"]) + float(row["solve"])
+
+
+def gains(rows, name):
+    """[(time over that of PETSc's quickest, memory over that of its leanest, our row)] of a hand-written solver."""
+    ours, is_rival, systems = HAND_WRITTEN[name]
+    found = []
+    for row in rows:
+        if row["solver"] != ours or row["system"] not in systems or not solved(row):
+            continue
+        rivals = [r for r in rows if all(r[k] == row[k] for k in ("system", "size", "ranks")) and r["solver"] != ours and is_rival(r["solver"]) and solved(r)]
+        if rivals:
+            found.append((seconds(row) / min(map(seconds, rivals)), float(row["megabytes"]) / min(float(r["megabytes"]) for r in rivals), row))
+    return found
+
+
+def best(rows, name):
+    return min(gains(rows, name), key=lambda g: min(g[:2]), default=None)
+
+
+def wins(rows, name):
+    found = best(rows, name)
+    return found is not None and min(found[:2]) <= WINS
+
+
+def problems(rows, folder=ROOT / "common/linalg"):
+    """What the comparison lacks; empty: it is whole, and every hand-written solver that is there wins."""
+    found = []
+    for system in SYSTEMS:
+        here = [r for r in rows if r["system"] == system]
+        done = [r for r in here if solved(r)]
+        if not any(w in r["solver"] for r in done for w in ("our ", "PETSc CG, ML")):
+            found.append(f"{system}: the program's own solver is missing")
+        found += [f"{system}: {word} is missing" for word in PETSC if not any(word in r["solver"] for r in here)]
+        found += [f"{system}: nothing on {ranks} ranks" for ranks in ("1", "2") if not any(r["ranks"] == ranks for r in done)]
+    for file in sorted(folder.glob("*.hpp")):
+        if file.stem in NOT_SOLVERS:
+            continue
+        if file.stem not in HAND_WRITTEN:
+            found.append(f"{file.stem} has no row")
+        elif not wins(rows, file.stem):
+            gain = best(rows, file.stem)
+            found.append(f"{file.stem} does not win by a third" + (f" ({min(gain[:2]):.2f} of PETSc's best)" if gain else ""))
+    return found
+
+
+def verdicts(rows):
+    yield "| solver | system | size | ranks | unknowns | time over PETSc's quickest | memory over PETSc's leanest |"
+    yield "|---|---|---|---|---|---|---|"
+    for name in HAND_WRITTEN:
+        for time, memory, row in gains(rows, name):
+            yield f"| {name} | {row['system']} | {row['size']} | {row['ranks']} | {row['unknowns']} | {time:.2f} | {memory:.2f} |"
+
+
+def table_of(rows, system, size):
+    here = [r for r in rows if r["system"] == system and r["size"] == size]
+    for ranks in sorted({r["ranks"] for r in here}):
+        group = [r for r in here if r["ranks"] == ranks]
+        done = [r for r in group if solved(r)]
+        if not done:
+            continue
+        first = done[0]
+        base = seconds(first)
+        reuse = f", {float(first['reuse']):.0f} solves a preconditioner" if float(first["reuse"]) > 1 else ""
+        yield ""
+        yield f"**{system}**, {first['unknowns']} unknowns, {ranks} rank{'s' if ranks != '1' else ''}, to {float(first['tolerance']):.0e}{reuse}:"
+        yield ""
+        yield "| solver | iterations | set-up [s] | solve [s] | time | memory [MB] | residual over wanted |"
+        yield "|---|---|---|---|---|---|---|"
+        for r in group:
+            if not solved(r):
+                yield f"| {r['solver']} | {r['note']} | | | | | |"
+                continue
+            yield (f"| {r['solver']} | {r['iterations']} | {float(r['setup']):.3g} | {float(r['solve']):.3g} | {seconds(r) / base:.2f} | "
+                   f"{float(r['megabytes']):.3g} | {float(r['residual']):.2g} |")
+
+
+def write_tables(rows):
+    lines = [BEGIN, "", *verdicts(rows)]
+    for size in ("quick", "large"):
+        if any(r["size"] == size for r in rows):
+            lines += ["", f"### {size.capitalize()} sizes", *(line for system in SYSTEMS for line in table_of(rows, system, size))]
+    readme = HERE / "README.md"
+    text = readme.read_text()
+    before, rest = text.split(BEGIN)
+    readme.write_text(before + "\n".join([*lines, "", END]) + rest.split(END)[1])
