@@ -67,7 +67,8 @@ Result solve_by_program(const System& system, SparseMatrix& matrix, std::span<co
   matrix.fill(made);
   const Meter whole(system.comm);
   LinearSolver solver("pressure", matrix, {.method = method});
-  solver.restore({.is_due = false, .is_single = method == LinearMethod::cg_single && comm_size(system.comm) == 1,
+  solver.restore({.is_due = false,
+                  .is_single = method == LinearMethod::cg_single && comm_size(system.comm) == 1,
                   .most_iterations = 500});
   result.setup = whole.seconds();
   matrix.fill(now);
@@ -92,7 +93,8 @@ int run_matrix(const std::string& folder, const std::string& how) {
   PetscInt rows = 0;
   for (int r = 0; r <= comm_rank(comm); ++r) about >> rows;
   if (!about) throw Error("{} holds no system of {} ranks (record.c).", folder, ranks);
-  const Mat a = read_matrix(comm, folder + "/A-" + ranks, rows), p = read_matrix(comm, folder + "/P-" + ranks, rows);
+  const Mat a = read_matrix(comm, folder + "/A-" + ranks, rows),
+            p = read_matrix(comm, folder + "/P-" + ranks, rows);
   system.b = read_vector(comm, folder + "/b-" + ranks, rows);
   system.guess = read_vector(comm, folder + "/x-" + ranks, rows);
   std::vector<double> now, made;

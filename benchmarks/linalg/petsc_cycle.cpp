@@ -16,7 +16,8 @@ struct Component {
   ::Vec b = nullptr, x = nullptr;
 };
 
-Component component_of(const ComponentMultigrid::Rows& rows, const ComponentMultigrid::Options& options, int c) {
+Component component_of(const ComponentMultigrid::Rows& rows, const ComponentMultigrid::Options& options,
+                       int c) {
   Component made;
   const PetscInt n = rows.size();
   const auto number = [&](Index i) { return static_cast<PetscInt>(options.map->global(i)); };

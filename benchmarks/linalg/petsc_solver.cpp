@@ -122,7 +122,8 @@ Result solve_by_petsc(const System& system, Mat a, Mat p, const LinearMap& inver
   result.iterations = solve_from_guess(system, ksp, b, x, starts);
   result.solve = whole.seconds() - result.setup;
   const double first = whole.seconds();
-  for (; turns < most_turns && whole.seconds() - first < short_enough; ++turns) solve_from_guess(system, ksp, b, x, starts);
+  for (; turns < most_turns && whole.seconds() - first < short_enough; ++turns)
+    solve_from_guess(system, ksp, b, x, starts);
   if (result.solve < short_enough) result.solve = (whole.seconds() - first) / turns;
   result.x = values_of(x);
   result.megabytes = whole.peak();
@@ -139,11 +140,12 @@ void print(const System& system, const Result& result, const std::string& note) 
   }
   const GlobalIndex rows = sum(system.comm, GlobalIndex(system.b.size()));
   if (comm_rank(system.comm) == 0)
-    fmt::print("RESULT {{\"unknowns\": {}, \"iterations\": {}, \"setup\": {:.4g}, \"solve\": {:.4g}, "
-               "\"megabytes\": {:.1f}, \"residual\": {:.3g}, \"tolerance\": {:.3g}, \"error\": {:.3g}, "
-               "\"note\": \"{}\"}}\n",
-               rows, result.iterations, result.setup, result.solve, result.megabytes, residual,
-               system.wanted / size, error, note);
+    fmt::print(
+        "RESULT {{\"unknowns\": {}, \"iterations\": {}, \"setup\": {:.4g}, \"solve\": {:.4g}, "
+        "\"megabytes\": {:.1f}, \"residual\": {:.3g}, \"tolerance\": {:.3g}, \"error\": {:.3g}, "
+        "\"note\": \"{}\"}}\n",
+        rows, result.iterations, result.setup, result.solve, result.megabytes, residual, system.wanted / size,
+        error, note);
   std::fflush(stdout);
 }
 

@@ -44,7 +44,8 @@ void record(Solid& solid, const Files& files) {
   const MPI_Comm comm = solid.body().mesh().comm;
   write_vector(comm, files.of("b"), last.rhs);
   write_vector(comm, files.of("solution"), last.unknowns);
-  if (comm_rank(comm) == 0) std::printf("RESULT {\"note\": \"%s\"}\n", solid.stepper().method()->name().c_str());
+  if (comm_rank(comm) == 0)
+    std::printf("RESULT {\"note\": \"%s\"}\n", solid.stepper().method()->name().c_str());
 }
 
 /// Rigid motions for aggregation, which moves nodes and knows their places.
@@ -66,7 +67,8 @@ void add_rigid_motions(const SolidBody& body, Mat p) {
 }
 
 /// The assembled operator; it is the kernel's own unless faces share at edges: then PETSc preconditions with it.
-Result by_assembled(const System& system, const SolidBody& body, const std::string& options, std::string& note) {
+Result by_assembled(const System& system, const SolidBody& body, const std::string& options,
+                    std::string& note) {
   const Meter assembling(system.comm);
   const SparseMatrix matrix = symmetric_matrix(body.mesh(), body.elastic(), {});
   Mat p = matrix.petsc();
@@ -81,10 +83,11 @@ Result by_assembled(const System& system, const SolidBody& body, const std::stri
   }
   const double difference = std::sqrt(sum(system.comm, squares[0]) / sum(system.comm, squares[1]));
   const bool is_same = difference < 1e-7;
-  MatInfo info;  // entries of 8 bytes with columns of 4; it knows no more of a matrix that was made of triplets
+  MatInfo
+      info;  // entries of 8 bytes with columns of 4; it knows no more of a matrix that was made of triplets
   petsc_check(MatGetInfo(p, MAT_GLOBAL_SUM, &info));
-  std::snprintf(text, sizeof text, "assembled in %.3g s, %.3g entries, %.0f MB%s", assembling.seconds(), info.nz_used,
-                12 * info.nz_used / 1048576, is_same ? "" : ", not quite the operator");
+  std::snprintf(text, sizeof text, "assembled in %.3g s, %.3g entries, %.0f MB%s", assembling.seconds(),
+                info.nz_used, 12 * info.nz_used / 1048576, is_same ? "" : ", not quite the operator");
   note = text;
   petsc_check(MatSetBlockSize(p, body.mesh().dim));
   petsc_check(MatSetOption(p, MAT_SYMMETRIC, PETSC_TRUE));
@@ -165,7 +168,8 @@ Result by_cycle(const System& system, const SolidBody& body, const std::string& 
   result.setup = whole.seconds() - choosing;
   result.x = system.guess;
   const MethodParameters& p = body.parameters().method;
-  result.iterations = krylov.solve(system.b, result.x, {p.relative_tolerance, p.max_iterations, true}).iterations;
+  result.iterations =
+      krylov.solve(system.b, result.x, {p.relative_tolerance, p.max_iterations, true}).iterations;
   result.solve = whole.seconds() - result.setup - choosing;
   result.megabytes = whole.peak();
   return result;
@@ -175,8 +179,11 @@ void measure(const SolidBody& body, const Files& files, const std::string& how) 
   const Mesh& mesh = body.mesh();
   const auto rows = static_cast<PetscInt>(body.elastic().n_unknowns());
   const SolidProblem problem = problem_of(body);
-  System system{mesh.comm, [&](std::span<const double> x, std::span<double> y) { problem.apply(x, y); },
-                read_vector(mesh.comm, files.of("b"), rows), std::vector<double>(std::size_t(rows), 0), 0,
+  System system{mesh.comm,
+                [&](std::span<const double> x, std::span<double> y) { problem.apply(x, y); },
+                read_vector(mesh.comm, files.of("b"), rows),
+                std::vector<double>(std::size_t(rows), 0),
+                0,
                 read_vector(mesh.comm, files.of("solution"), rows)};
   const bool mixed = dynamic_cast<MixedForm*>(make_solution_method(problem, body.parameters().method).get());
   const double tolerance = body.parameters().method.relative_tolerance;

@@ -28,7 +28,8 @@ struct Result {
 
 /// PETSc's KSP with these options. `p`: what the preconditioner is made from; null: `inverse` in its place. `a`: null: the
 /// operator is applied by the program. Begins again until the true residual is small enough. Collective.
-Result solve_by_petsc(const System& system, Mat a, Mat p, const LinearMap& inverse, const std::string& options);
+Result solve_by_petsc(const System& system, Mat a, Mat p, const LinearMap& inverse,
+                      const std::string& options);
 
 /// One line of JSON with the true residual over the wanted one and the distance from the program's solution. Collective.
 void print(const System& system, const Result& result, const std::string& note);

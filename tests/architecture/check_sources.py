@@ -69,7 +69,7 @@ def folder_of(path):
 def wrong_include(path, included):
     """What is wrong with one #include of a file, or nothing."""
     here = folder_of(path)
-    if here == "tests":
+    if here in ("tests", "benchmarks"):
         return None
     target = pathlib.PurePosixPath(included)
     top = target.parts[0]

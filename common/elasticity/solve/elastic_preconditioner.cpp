@@ -173,7 +173,8 @@ ElasticPreconditioner::ElasticPreconditioner(const Mesh& mesh, const ElasticOper
           .make(options.node_inertia.empty() ? inertia
                                              : options.node_inertia.first(std::size_t(mesh.cells.n_owned())));
   const ComponentMultigrid::Options of_cycle{is_symmetric_ ? of_smooth : 1, &mesh.cells, mesh.comm};
-  cycle_ = options.cycle ? options.cycle(std::move(compact), of_cycle) : multigrid_cycle(std::move(compact), of_cycle);
+  cycle_ = options.cycle ? options.cycle(std::move(compact), of_cycle)
+                         : multigrid_cycle(std::move(compact), of_cycle);
   find_face_rows(boundary_factor, options.node_inertia);
   if (is_symmetric_) add_true_diagonal(options.node_inertia);
   if (options.n_aggregates > 0 && !is_symmetric_)
