@@ -59,7 +59,8 @@ def gains(rows, name):
 
 
 def best(rows, name):
-    return min(gains(rows, name), key=lambda g: min(g[:2]), default=None)
+    """On one rank: seconds of two hold the waiting of one for the other."""
+    return min((g for g in gains(rows, name) if g[2]["ranks"] == "1"), key=lambda g: min(g[:2]), default=None)
 
 
 def wins(rows, name):
