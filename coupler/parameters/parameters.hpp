@@ -52,12 +52,12 @@ struct CouplingParameters {
   };
   /// As its program calls its displacement and its load; empty: as this project does.
   struct Fluid : Role {
-    std::string displacement, load;
+    std::string displacement{}, load{};
     bool foreign() const { return !displacement.empty() || !load.empty(); }
   };
   struct Structure : Role {
     std::string displacement = "displacement",
-                load;  // as its program calls them; load: the sum of all forces
+                load{};  // as its program calls them; load: the sum of all forces
     bool foreign() const { return displacement != "displacement" || !load.empty(); }
   };
   std::optional<Fluid> fluid;
