@@ -29,5 +29,18 @@ TEST(CornerWeights, meet_the_centre_of_a_face_that_is_no_parallelogram) {
   }
 }
 
+// Over the triangles about the mean (3/2, 3/4) of the corners, whose areas are as 6, 7, 4 and 3: a third of both
+// triangles at a corner and 1/12 of all.
+TEST(CornerWeights, are_those_of_the_triangles_about_the_mean_of_the_corners) {
+  Interface s;
+  s.vertices = {{0, 0, 0}, {4, 0, 0}, {2, 2, 0}, {0, 1, 0}};
+  s.face_offset = {0, 4};
+  s.face_vertices = {0, 1, 2, 3};
+  s.face_centres = {{26. / 15, 11. / 15, 0}};
+  const std::vector<double> weights = corner_weights(s, 0);
+  const double wanted[] = {14. / 60, 18. / 60, 16. / 60, 12. / 60};
+  for (int i = 0; i < 4; ++i) EXPECT_NEAR(weights[std::size_t(i)], wanted[i], 1e-13) << i;
+}
+
 }  // namespace
 }  // namespace couplet

@@ -72,7 +72,18 @@ TEST(Slab, two_layers_pass_the_heat_of_resistances_in_series) {
   const double wanted = 3 * (500 - 290) / (1 / 25.0 + 0.1 / 0.05 + 0.5 / 1.2 + 1 / 10.0);
   EXPECT_NEAR(heat.inner / 1e6, wanted, 1e-9 * wanted);
   EXPECT_NEAR(heat.outer / 1e6, wanted, 1e-9 * wanted);
+  EXPECT_NEAR(column.outer_surface(Film{10, 290}), 290 + wanted / 3 / 10, 1e-9);
   EXPECT_NEAR(wool.conductivity(323.15), 0.040, 1e-12);
+}
+
+TEST(MineralWool, conducts_as_its_table_says_and_linearly_between) {
+  const Insulator wool = mineral_wool();
+  const double known[] = {0.040, 0.047, 0.066, 0.091, 0.123, 0.163};  // at 50, 100, 200 ... 500 degC
+  EXPECT_NEAR(wool.conductivity(kelvin(50)), known[0], 1e-12);
+  for (int i = 1; i < 6; ++i) {
+    EXPECT_NEAR(wool.conductivity(kelvin(100 * i)), known[i], 1e-12);
+    if (i > 1) EXPECT_NEAR(wool.conductivity(kelvin(100 * i - 50)), 0.5 * (known[i - 1] + known[i]), 1e-12);
+  }
 }
 
 TEST(Slab, a_steady_start_is_linear_in_the_resistance_passed) {

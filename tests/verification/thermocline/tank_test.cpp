@@ -325,6 +325,28 @@ TEST_F(Participation, only_accepted_steps_change_the_state) {
   expect_equal(*a, *b);
 }
 
+TEST_F(Participation, the_records_of_the_steps_add_up_to_the_ledger) {
+  struct Sums final : TankObserver {
+    explicit Sums(TankRecord& all) : all(all) {}
+    void record(const TankRecord& r) override {
+      all.stored += r.stored;
+      all.loss_side += r.loss_side, all.loss_roof += r.loss_roof, all.loss_ground += r.loss_ground;
+    }
+    TankRecord& all;
+  };
+  const auto tank = make();
+  TankRecord all;
+  tank->add_observer(std::make_unique<Sums>(all));
+  const double start = tank->model().ledger().bed;
+  for (int n = 0; n < 8; ++n) take(*tank, n);
+  const Ledger& whole = tank->model().ledger();
+  EXPECT_GT(std::abs(whole.ground), 1);
+  EXPECT_NEAR(all.stored, whole.bed - start, 1e-9 * std::abs(whole.bed - start));
+  EXPECT_NEAR(all.loss_side, whole.side, 1e-9 * std::abs(whole.side));
+  EXPECT_NEAR(all.loss_roof, whole.roof, 1e-9 * std::abs(whole.roof));
+  EXPECT_NEAR(all.loss_ground, whole.ground, 1e-9 * std::abs(whole.ground));
+}
+
 TEST_F(Participation, a_checkpoint_continues_bit_for_bit) {
   const auto a = make(), b = make();
   for (int n = 0; n < 45; ++n) take(*a, n);
