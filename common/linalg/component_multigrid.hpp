@@ -21,7 +21,7 @@ namespace couplet {
 ///
 /// With other ranks: aggregates and Gauss-Seidel sweeps are each rank's own, residuals and Galerkin products know the
 /// couplings between them, and the coarsest level is gathered, so that a cycle is hardly weaker on many ranks than on one.
-/// Two messages a level. On plate B 0.38 of the time of PETSc's best in its place, ML (benchmarks/linalg).
+/// Two messages a level. On plate B 0.34 of the time of PETSc's best in its place, ML (benchmarks/linalg).
 class ComponentMultigrid {
  public:
   static constexpr int lanes = 4;

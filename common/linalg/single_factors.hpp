@@ -13,7 +13,7 @@ namespace couplet {
 /// Cholesky factors P A P^T = L L^T of one rank's symmetric positive definite matrix, as a preconditioner.
 /// Eigen orders (AMD) and factorises in double precision; L is kept in single precision, by supernodes
 /// (columns with nearly the same rows), so that solving reads a third of what a column-by-column factor in
-/// double precision has to and runs four rows at a time. At 110 592 cells 0.68 of the time of PETSc's best (benchmarks/linalg).
+/// double precision has to and runs four rows at a time.
 class SingleFactors {
  public:
   SingleFactors();
