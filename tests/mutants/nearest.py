@@ -4,10 +4,12 @@
 from fields import folder_of
 
 FILE = {
-    "fluid_solver/step/energy_guard": "stability_fluid_energy_guard",
+    "fluid_solver/step/energy_guard": "stability_fluid_energy_guard verification_fluid_sound",
+    "fluid_solver/pressure/projection": "verification_fluid_steps",
+    "fluid_solver/step/predictor": "verification_fluid_boundaries",
     "fluid_solver/step/step_size": "stability_fluid_step_sizes verification_fluid_steps",
     "fluid_solver/turbulence/turbulence": "verification_fluid_effects",
-    "fluid_solver/motion/immersed": "verification_fluid_effects verification_fluid_immersed_loads",
+    "fluid_solver/motion/immersed": "verification_fluid_effects",
     "fluid_solver/pressure/projection_bodies": "verification_fluid_effects",
     "fluid_solver/motion/turning_walls": "verification_fluid_turning_walls",
     "fluid_solver/motion/rotating_frame": "verification_fluid_rotating_frame",
@@ -32,6 +34,7 @@ FILE = {
     "common/elasticity/finite/finite_edges": "verification_solid_finite_strain",
     "common/elasticity/finite/finite_pressures": "verification_solid_finite_strain verification_solid_conditions",
     "common/elasticity/finite/follower_pressure": "verification_solid_finite_strain verification_solid_conditions",
+    "common/elasticity/joined_vertices": "verification_mover_periodic",
     "common/elasticity/anisotropic": "verification_solid_orthotropic",
     "common/elasticity/symmetric/shared_edges": "verification_solid_symmetric verification_heat_strain",
     "common/elasticity/symmetric/symmetric_loads": "unit_symmetric_loads verification_heat_strain verification_solid_symmetric",
@@ -42,6 +45,7 @@ FILE = {
     "common/fv/vertex_weights": "unit_fv_interpolation",
     "common/fv/face_gradient": "unit_fv_interpolation verification_heat_exactness",
     "common/time": "unit_time verification_solid_time_schemes verification_solid_spectrum",
+    "common/modes/modal_checks": "verification_plate_modes_file",
     "common/modes/surface_parts": "verification_plate_modes_file",
     "common/modes/facing": "verification_plate_modes_file",
     "coupler/acceleration/volume_level": "coupling_volume_level coupling_cavity",
@@ -52,8 +56,8 @@ FILE = {
     "coupler/mapping/map_local": "unit_maps unit_coupler_maps_2",
     "coupler/mapping/map_projection": "unit_maps unit_coupler_maps_2",
     "coupler/mapping/conjugate_map": "unit_conjugate_maps unit_maps",
-    "coupler/mapping/corner_weights": "unit_conjugate_maps unit_maps",
-    "coupler/mapping/overlay": "unit_conjugate_maps unit_maps",
+    "coupler/mapping/corner_weights": "unit_maps unit_conjugate_maps",
+    "coupler/mapping/overlay": "unit_maps unit_conjugate_maps",
     "coupler/mapping/slopes": "unit_conjugate_maps unit_maps",
     "coupler/mapping/surface_rows": "unit_conjugate_maps unit_maps",
     "coupler/output/watch_integrals": "unit_coupler_maps_2 coupling_exchange",
@@ -62,7 +66,9 @@ FILE = {
     "plate_modal/motion/contact": "verification_plate_contact stability_plate_contact",
     "plate_modal/audit": "verification_plate_guards verification_plate_dynamics",
     "plate_modal/model/kirchhoff": "verification_plate_patch verification_plate_statics",
-    "plate_modal/motion/oscillators": "verification_plate_dynamics",
+    "plate_modal/model/midsurface": "verification_plate_guards",
+    "plate_modal/motion/oscillators": "verification_plate_contact verification_plate_dynamics",
+    "plate_modal/motion/pressure_load": "verification_plate_resolution",
     "thermocline/wall/mechanics": "stability_thermocline",
     "thermocline/wall/wall_bending": "verification_thermocline_mechanics stability_thermocline",
     "thermocline/bed/bed_step": "verification_thermocline_bed",
@@ -70,7 +76,9 @@ FILE = {
     "thermocline/bed/grain_kernels": "verification_thermocline_grains",
     "thermocline/economics/day_report": "unit_thermocline_plant",
     "thermocline/bed/closures": "verification_thermocline_grains verification_thermocline_bed",
-    "thermocline/material/properties": "verification_thermocline_properties",
+    "thermocline/material/properties": "verification_thermocline_conduction",
+    "thermocline/wall/column": "verification_thermocline_conduction",
+    "thermocline/model/tank": "verification_thermocline_tank",
 }
 
 FOLDER = {

@@ -71,6 +71,26 @@ TEST(ImmersedGate, closes_and_opens_the_channel) {
   EXPECT_LT(max(MPI_COMM_WORLD, largest), 3);
 }
 
+/// A square of 4 x 4 cells under p = x and in a uniform flow that stops at it: a pressure at the middles of the cells beside
+/// it, and mu du/h on each of the 16 faces.
+TEST(ImmersedBody, has_the_load_of_a_linear_pressure_and_of_the_shear_beside_it) {
+  const FluidParameters p = channel_with("max(abs(x-0.5), abs(y-0.5))-0.21");
+  FluidCase<2> c(MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {10, 10, 1}, Vec3::Zero(), Vec3::Ones()),
+                 p);
+  c.step(1e-4);
+  const ImmersedBodies<2>& bodies = *c.fluid().bodies();
+  const Placement<2>& at = *c.state().placement;
+  std::vector<double> pressure;
+  Vectors<2> u;
+  for (Index i = 0; i < c.mesh().cells.n_local(); ++i) {
+    pressure.push_back(at.centre[i].x());
+    u.push_back(bodies.is_solid(i) ? Vec<2>(0, 0) : Vec<2>(1, 0));
+  }
+  const auto [pushed, rubbed] = bodies.forces(at, pressure, u, 1e-3).front();
+  EXPECT_LT((pushed - Vec<2>(0.4 * (0.25 - 0.75), 0)).norm(), 1e-12);
+  EXPECT_LT((rubbed - Vec<2>(16 * 1e-3, 0)).norm(), 1e-12);
+}
+
 TEST(ImmersedBody, without_an_outlet_is_refused) {
   FluidParameters p = channel_with("y-0.1");
   p.boundaries["xmin"] = p.boundaries["xmax"] = boundary(BoundaryType::no_slip);

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "common/base/error.hpp"
+#include "common/elasticity/anisotropic.hpp"
 #include "common/parallel/collective.hpp"
 #include "tests/verification/solid/linear_field.hpp"
 
@@ -121,6 +122,13 @@ std::unique_ptr<Solid> strip(BoxCells cells, int n, const std::vector<std::strin
   auto solid = make_solid(make_box(cells, {4 * n, n, 1}, Vec3(0, -0.5, 0), Vec3(4, 0.5, 0)), p);
   step(*solid, 1);
   return solid;
+}
+
+TEST(Orthotropic, of_equal_constants_is_the_isotropic_matrix) {
+  const double e = 200e9, nu = 0.3, g = e / (2 * (1 + nu));
+  const ElasticMatrix isotropic = isotropic_matrix(lame_constants(e, nu));
+  EXPECT_LT((orthotropic_matrix({{e, e, e}, {nu, nu, nu}, {g, g, g}}) - isotropic).norm(),
+            1e-12 * isotropic.norm());
 }
 
 TEST(Orthotropic, a_bar_cut_off_axis_stretches_and_shears_as_its_closed_form) {
