@@ -32,9 +32,8 @@ void declare_gap(config::Section& s, GapParameters& gap) {
       "between");
 }
 
-}  // namespace
-
-void declare(config::Section& s, FluidParameters& p) {
+/// Mesh and fluid.
+void declare_scene(config::Section& s, FluidParameters& p) {
   s.value("mesh", p.mesh).required().doc("mesh file, .msh or .geo, relative to the case's folder");
   s.value("mesh-scale", p.mesh_scale)
       .positive()
@@ -54,6 +53,10 @@ void declare(config::Section& s, FluidParameters& p) {
   s.doubt([&p] { return config::doubt_of_kinematic_viscosity(p.viscosity, p.density); }, "viscosity");
   s.map<BoundaryParameters>("boundaries", p.boundaries, declare_boundary, "patch",
                             "boundary condition of each patch of the mesh; every patch needs an entry");
+}
+
+/// Size of the steps, and how exactly they are solved.
+void declare_steps(config::Section& s, FluidParameters& p) {
   s.value("time-step", p.time_step)
       .unit("s")
       .plausible(1e-12, 1e10)
@@ -89,6 +92,10 @@ void declare(config::Section& s, FluidParameters& p) {
       .doc(
           "tolerance of the pressure equation, relative to the divergence of the predicted velocity; a "
           "coupled run needs about 1e-4 of the coupling tolerance");
+}
+
+/// What the fluid starts from, and what pulls at it.
+void declare_start(config::Section& s, FluidParameters& p) {
   s.value("initial-velocity", p.initial_velocity)
       .unit("m/s")
       .plausible(1e-9, 1e4)
@@ -104,6 +111,10 @@ void declare(config::Section& s, FluidParameters& p) {
       .unit("m/s^2")
       .plausible(1e-4, 1e6)
       .doc("force per mass, one expression of x, y, z [m] and t [s] per component; absent: none");
+}
+
+/// Schemes in time.
+void declare_schemes(config::Section& s, FluidParameters& p) {
   s.choice(
        "scheme", p.scheme,
        {{"adams-bashforth", ExplicitScheme::adams_bashforth}, {"runge-kutta", ExplicitScheme::runge_kutta}})
@@ -127,6 +138,10 @@ void declare(config::Section& s, FluidParameters& p) {
           "level that conserves its volume; none: such a fluid is rejected; structure: the coupler finds "
           "the level from the structure's response to a pressure (coupler/volume.csv); the fluid's own "
           "pressures keep zero mean");
+}
+
+/// What moves, closes or rotates.
+void declare_moving_parts(config::Section& s, FluidParameters& p) {
   s.map<BodyParameters>(
       "bodies", p.bodies,
       [](config::Section& b, BodyParameters& body) {
@@ -158,6 +173,10 @@ void declare(config::Section& s, FluidParameters& p) {
       "rotating-frame", p.rotating_frame, declare_rotation,
       "a rotating frame: the mesh is at rest in it, all velocities are relative to it, and Coriolis, "
       "centrifugal and Euler forces act; absent: none");
+}
+
+/// Models of what the equations leave out.
+void declare_models(config::Section& s, FluidParameters& p) {
   s.optional_section<TurbulenceParameters>(
       "turbulence", p.turbulence,
       [](config::Section& t, TurbulenceParameters& turbulence) {
@@ -184,6 +203,10 @@ void declare(config::Section& s, FluidParameters& p) {
       [](config::Section& c, CompressibilityParameters& known) { declare(c, known); },
       "weakly compressible fluid: pressure waves travel at the speed of sound, closed parts compress; absent: "
       "incompressible, judged by the speed of sound of a gas at 1 atm or of a liquid, by density and viscosity");
+}
+
+/// What is written.
+void declare_written(config::Section& s, FluidParameters& p) {
   s.section(
       "output",
       [&p](config::Section& o) {
@@ -201,6 +224,18 @@ void declare(config::Section& s, FluidParameters& p) {
             .doc("position in the reference configuration");
       },
       "probe", "points whose velocity and pressure are written after each step");
+}
+
+}  // namespace
+
+void declare(config::Section& s, FluidParameters& p) {
+  declare_scene(s, p);
+  declare_steps(s, p);
+  declare_start(s, p);
+  declare_schemes(s, p);
+  declare_moving_parts(s, p);
+  declare_models(s, p);
+  declare_written(s, p);
 }
 
 }  // namespace couplet::fluid
