@@ -26,12 +26,6 @@ namespace {
 // At the end of a step: what a growing oscillation reaches.
 constexpr double near_limit = 0.1;
 
-// Sub-steps of a step over those of the step last told in the log, or the other way round.
-constexpr double most_times_as_many = 2;
-// Of the limits of a step that is given: what is certain to go wrong.
-constexpr double far_above = 2;
-constexpr int steps_between_looks = 10;
-
 }  // namespace
 
 template <int D>
@@ -204,63 +198,6 @@ Exchange FluidParticipant<D>::solve(const Exchange& in) {
   fluid_->solve_pressure(w, answer());
   if (stands_still()) trial_displacement_ = wall_displacement(in);
   return forces();
-}
-
-/// A step that is given is kept, also where it is too long for the implicit term on cells with few faces (StepSize). Looked at where
-/// it is the longest so far, and, where the limit itself changes (cells that move, viscosity of eddies), every few steps and at the
-/// end.
-template <int D>
-void FluidParticipant<D>::see_given_step() {
-  if (!fluid_->parameters().time_step || !fluid_->state().implicit) return;
-  if (fluid_->moving() || fluid_->parameters().turbulence) ++steps_unseen_;
-  const double size = step_.dt / fluid_->statistics().sub_steps;
-  if (size <= longest_seen_ && steps_unseen_ < steps_between_looks) return;
-  longest_seen_ = std::max(longest_seen_, size);
-  doubt_given_step(size);
-}
-
-template <int D>
-void FluidParticipant<D>::doubt_given_step(double size) {
-  steps_unseen_ = 0;
-  const StepLimiter by = fluid_->step_limiter();
-  if (!by.friction || size <= far_above * by.limit || size / by.limit <= 2 * doubted_times_) return;
-  doubted_times_ = size / by.limit;
-  log::finding(
-      comm_rank(mesh_.comm),
-      {.id = "given-step",
-       .number = size / by.limit,
-       .limit = far_above,
-       .sentence = fmt::format(
-           "t = {:.6g} s: time-step: sub-steps of {:.3g} s are {:.1f} times the limit of an implicit "
-           "viscous term in cell {} at ({:.4g}, {:.4g}, {:.4g}) m: pressures and forces grow spuriously",
-           step_.time + step_.dt, size, size / by.limit, by.cell, by.place.x(), by.place.y(), by.place.z()),
-       .advice = fmt::format("remove 'time-step', or set at most {:.3g} s", by.limit)});
-}
-
-/// One line where a step took many more parts than when it was last told, or many fewer, with the cell that
-/// asks for them.
-template <int D>
-void FluidParticipant<D>::tell_sub_steps() {
-  const int now = fluid_->statistics().sub_steps;
-  const bool as_told =
-      now < most_times_as_many * told_sub_steps_ && told_sub_steps_ < most_times_as_many * now;
-  if (as_told) return;
-  told_sub_steps_ = now;
-  const double end = step_.time + step_.dt;
-  if (const auto own = fluid_->parameters().time_step) {
-    if (comm_rank(mesh_.comm) == 0)
-      log::info("t = {:.6g} s: {} sub-steps of {:.3g} s: time-step is {:.3g} s", end, now, step_.dt / now,
-                *own);
-    return;
-  }
-  const StepLimiter limiter = fluid_->step_limiter();
-  if (comm_rank(mesh_.comm) == 0)
-    log::info(
-        "t = {:.6g} s: {} sub-steps of {:.3g} s; {} in cell {} at ({:.4g}, {:.4g}, {:.4g}) m limits them to "
-        "{:.3g} s, of which {:.0f} % are used",
-        end, now, step_.dt / now, limiter.friction ? "friction" : "convection", limiter.cell,
-        limiter.place.x(), limiter.place.y(), limiter.place.z(), limiter.limit,
-        100 * fluid_->parameters().safety_factor);
 }
 
 template <int D>

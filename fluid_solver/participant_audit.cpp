@@ -105,7 +105,8 @@ void FluidParticipant<D>::add_motion(FluidEvidence& evidence) const {
 
 template <int D>
 std::vector<EffectVerdict> FluidParticipant<D>::audit() const {
-  FluidEvidence evidence{.largest_peclet = fluid_->largest_peclet(), .largest_yplus = 0};
+  FluidEvidence evidence{.largest_peclet = fluid_->sizes().largest_peclet(fluid_->state()),
+                         .largest_yplus = 0};
   for (const Patch& patch : mesh_.patches)
     if (is_wall(fluid_->parameters().boundaries.at(patch.name)))
       evidence.largest_yplus = std::max(evidence.largest_yplus, summarise_wall(*fluid_, patch).largest_yplus);

@@ -7,17 +7,16 @@
 #include <span>
 #include <vector>
 
-#include "common/mesh/periodic_points.hpp"
 #include "common/parallel/collective.hpp"
+#include "fluid_solver/motion/mesh_path.hpp"
 #include "fluid_solver/step/fractional_step.hpp"
-#include "fluid_solver/step/step_size.hpp"
+#include "fluid_solver/step/sub_step_size.hpp"
 
 namespace couplet::fluid {
 
 struct FluidStatistics {
   int sub_steps = 0;  ///< of the last step
   long all_sub_steps = 0, pressure_iterations = 0, viscous_iterations = 0, pressure_solves = 0;
-  StepLimits limits;  ///< at the begin of the last step; left out where nothing depends on them
 };
 
 /// The fluid through whole coupling steps: cuts them into stable sub-steps, moves the mesh and the walls
@@ -82,14 +81,8 @@ class Fluid {
   const Mesh& mesh() const { return mesh_; }
   const FluidParameters& parameters() const { return parameters_; }
   const FluidStatistics& statistics() const { return statistics_; }
-  /// Largest cell Reynolds number |phi| / (nu g) of the accepted state. Collective.
-  double largest_peclet() {
-    step_size_.limits(accepted_);
-    return step_size_.largest_peclet();
-  }
-  bool moving() const { return moving_; }
-  /// What limits the steps that follow the accepted state. Collective.
-  StepLimiter step_limiter() { return step_size_.limiter(accepted_, accepted_.implicit); }
+  SubStepSize<D>& sizes() { return sizes_; }
+  bool moving() const { return path_.moves(); }
 
   /// Null: no immersed bodies.
   const ImmersedBodies<D>* bodies() const { return step_.bodies(); }
@@ -102,11 +95,6 @@ class Fluid {
   void run_stages(SubStep<D>& step, double done, const Vectors<D>& wall_velocity);
   void start(double time);
   void check_wall_velocity() const;
-  void refuse_inverted(const Placement<D>& at) const;
-  void choose_viscous_treatment();
-  double implicit_limit(const StepLimits& limits) const;
-  double next_size(double remaining, bool& last);
-  SubStep<D> make_sub_step(double dt, double done, std::span<const Vec3> points) const;
   Vectors<D> wall_velocity_at(double done, const Vectors<D>& interface_velocity,
                               const SubStep<D>& step) const;
   void start_pressure(const SubStep<D>& step, const Vectors<D>& w);
@@ -115,17 +103,14 @@ class Fluid {
 
   const Mesh& mesh_;
   FluidParameters parameters_;
-  bool moving_;
-  bool translates_;                         // the mesh moves as a frame that does not turn
-  std::optional<PeriodicPoints> periodic_;  // with patches joined on a mesh that moves
+  MeshPath<D> path_;
   Boundary<D> boundary_;
   FractionalStep<D> step_;
-  StepSize<D> step_size_;
-  std::shared_ptr<const Placement<D>> frame_;  // with translates_: the reference placement
-  State<D> accepted_;                          // level n: accept() and restore() alone change it
-  History<D> begin_;                           // how the step under way sees level n
-  State<D> trial_;                             // after the last finished sub-step of the step under way
-  History<D> history_;                         // how the sub-step under way sees level()
+  SubStepSize<D> sizes_;
+  State<D> accepted_;    // level n: accept() and restore() alone change it
+  History<D> begin_;     // how the step under way sees level n
+  State<D> trial_;       // after the last finished sub-step of the step under way
+  History<D> history_;   // how the sub-step under way sees level()
   bool split_ = false;   // a sub-step of the step under way is finished: it goes on from trial_
   bool judged_ = false;  // the prediction under way has given a sound level n+1
   bool yields_ = false;  // the walls, in the last sub-step

@@ -11,9 +11,6 @@ namespace couplet::fluid {
 
 namespace {
 
-// Of the distance of periodic patches: how far apart their sides may move.
-constexpr double most_torn = 1e-8;
-
 template <int D>
 void check_frame(const Mesh& mesh, const Boundary<D>& boundary, const FluidParameters& parameters,
                  bool moving) {
@@ -85,22 +82,6 @@ void check_together(const Mesh& mesh, const Boundary<D>& boundary, FluidParamete
     throw Error(
         "scheme: runge-kutta treats the viscous term explicitly; use 'viscous: explicit' or adams-bashforth.");
   parameters.viscous = ViscousTreatment::explicit_;
-}
-
-void refuse_torn(const Mesh& mesh, const PeriodicPoints& periodic, std::span<const Vec3> points,
-                 double time) {
-  std::vector<double> moved;
-  for (std::size_t v = 0; v < points.size(); ++v)
-    for (int c = 0; c < mesh.dim; ++c) moved.push_back(points[v][c] - mesh.reference_points[v][c]);
-  const double gap = periodic.largest_gap(moved, mesh.dim);
-  double size = 0;
-  for (Index f = 0; f < mesh.n_interior; ++f) size = std::max(size, mesh.shift(f).norm());
-  if (gap > most_torn * max(mesh.comm, size))
-    throw Error(
-        "The mesh motion to t = {:.6g} s separates the two sides of periodic patches by {:.3g} m. Both must "
-        "move alike: set 'type: periodic' for them in the mesh mover as well; a 'motion' must be periodic "
-        "from side to side, which a rotation of the whole mesh is not.",
-        time, gap);
 }
 
 template void check_together<2>(const Mesh&, const Boundary<2>&, FluidParameters&, bool);

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <span>
-
-#include "common/mesh/periodic_points.hpp"
 #include "fluid_solver/boundary/boundary.hpp"
 
 namespace couplet::fluid {
@@ -12,8 +9,5 @@ namespace couplet::fluid {
 /// mesh will move. Collective.
 template <int D>
 void check_together(const Mesh& mesh, const Boundary<D>& boundary, FluidParameters& parameters, bool moving);
-
-/// Throws Error where the points at `time` part what is joined: its faces would have two shapes. Collective.
-void refuse_torn(const Mesh& mesh, const PeriodicPoints& periodic, std::span<const Vec3> points, double time);
 
 }  // namespace couplet::fluid

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What ends a step of the fluid from outside: the motion of its mesh and walls; and what its coupling misses.
+// What ends a step of the fluid from outside: the motion of its walls; and what its coupling misses.
 #include <cmath>
 #include <limits>
 
@@ -14,29 +14,6 @@ namespace {
 constexpr double most_times_faster = 1e4, most_speed = 1e8;
 
 }  // namespace
-
-/// Whoever moved the points: a cell turned over has no flow.
-template <int D>
-void Fluid<D>::refuse_inverted(const Placement<D>& at) const {
-  struct {
-    double value;
-    int rank;
-  } least{std::numeric_limits<double>::infinity(), comm_rank(mesh_.comm)};
-  Index where = 0;
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    if (at.volume[c] >= least.value) continue;
-    least.value = at.volume[c];
-    where = c;
-  }
-  MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, mesh_.comm);
-  if (least.value > 0) return;
-  Vec3 place = Vec3::Zero();
-  if (mesh_.cells.n_owned() > 0) place.template head<D>() = at.centre[where];
-  MPI_Bcast(place.data(), 3, MPI_DOUBLE, least.rank, mesh_.comm);
-  throw SolveFailure(
-      "The mesh motion from t = {:.6g} s inverts a cell near ({:.6g}, {:.6g}, {:.6g}) m (volume {:.3e} m^3).",
-      time_, place.x(), place.y(), place.z(), least.value);
-}
 
 /// The layer that a wall drags along within a step is rho sqrt(nu dt) thick: a mass that acts on w* in the
 /// loop, see docs/theory.md.
@@ -91,10 +68,8 @@ void Fluid<D>::check_wall_velocity() const {
       time_ + dt_, place.x(), place.y(), place.z());
 }
 
-template void Fluid<2>::refuse_inverted(const Placement<2>&) const;
 template double Fluid<2>::unseen_share(const Vectors<2>&) const;
 template void Fluid<2>::check_wall_velocity() const;
-template void Fluid<3>::refuse_inverted(const Placement<3>&) const;
 template double Fluid<3>::unseen_share(const Vectors<3>&) const;
 template void Fluid<3>::check_wall_velocity() const;
 

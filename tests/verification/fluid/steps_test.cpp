@@ -198,7 +198,7 @@ TEST(ImplicitStretch, bounds_an_implicit_sub_step_in_limits_of_the_explicit_one)
     p.implicit_stretch = stretch;
     FluidCase<2> c(MPI_COMM_WORLD, raw, p);
     c.step(0.1);
-    const StepLimits limits = c.fluid().statistics().limits;
+    const StepLimits limits = c.fluid().sizes().limits();
     EXPECT_GT(0.1, 10 * limits.explicit_viscous);
     return std::pair(c.fluid().statistics().sub_steps, 0.1 / (p.safety_factor * limits.explicit_viscous));
   };

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/motion/mesh_path.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+// Of the distance of periodic patches: how far apart their sides may move.
+constexpr double most_torn = 1e-8;
+
+/// Whoever moved the points: a cell turned over has no flow.
+template <int D>
+void refuse_inverted(const Mesh& mesh, const Placement<D>& at, double time) {
+  struct {
+    double value;
+    int rank;
+  } least{std::numeric_limits<double>::infinity(), comm_rank(mesh.comm)};
+  Index where = 0;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+    if (at.volume[c] >= least.value) continue;
+    least.value = at.volume[c];
+    where = c;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, mesh.comm);
+  if (least.value > 0) return;
+  Vec3 place = Vec3::Zero();
+  if (mesh.cells.n_owned() > 0) place.template head<D>() = at.centre[where];
+  MPI_Bcast(place.data(), 3, MPI_DOUBLE, least.rank, mesh.comm);
+  throw SolveFailure(
+      "The mesh motion from t = {:.6g} s inverts a cell near ({:.6g}, {:.6g}, {:.6g}) m (volume {:.3e} m^3).",
+      time, place.x(), place.y(), place.z(), least.value);
+}
+
+}  // namespace
+
+template <int D>
+MeshPath<D>::MeshPath(const Mesh& mesh, const FluidParameters& parameters, bool moves)
+    : mesh_(mesh), moves_(moves), translates_(parameters.motion && parameters.motion->translates()) {
+  if (moves_ && !translates_ &&
+      any(mesh.comm, !mesh.neighbour_shift.empty()))  // a rank without cells has none
+    periodic_.emplace(mesh);
+}
+
+template <int D>
+std::shared_ptr<const Placement<D>> MeshPath<D>::start() {
+  std::shared_ptr<const Placement<D>> first =
+      moves_ ? make_placement<D>(mesh_, mesh_.reference_points) : make_placement<D>(mesh_, mesh_.reference);
+  if (!translates_) return first;
+  auto frame = std::make_shared<Placement<D>>(*first);
+  frame->shape = std::make_shared<const char>();
+  return frame_ = std::move(frame);
+}
+
+template <int D>
+std::shared_ptr<const Placement<D>> MeshPath<D>::at(std::span<const Vec3> points) const {
+  if (!frame_) return make_placement<D>(mesh_, points);
+  return translated(*frame_,
+                    points.empty() ? Vec3(Vec3::Zero()) : Vec3(points[0] - mesh_.reference_points[0]));
+}
+
+template <int D>
+SubStep<D> MeshPath<D>::sub_step(const State<D>& level, double dt, double s, std::span<const Vec3> begin,
+                                 std::span<const Vec3> end, double time) const {
+  SubStep<D> step;
+  step.dt = dt;
+  step.to = level.placement;
+  if (!moves_) return step;
+  if (s == 1 || end.empty()) {
+    const std::span<const Vec3> points = end.empty() ? begin : end;
+    step.points.assign(points.begin(), points.end());
+  } else {
+    step.points.resize(end.size());
+    for (std::size_t i = 0; i < end.size(); ++i) step.points[i] = begin[i] + s * (end[i] - begin[i]);
+  }
+  step.to = at(step.points);
+  if (!translates_) refuse_inverted(mesh_, *step.to, time);
+  step.swept = swept_volumes(mesh_, level.points, step.points);
+  step.swept.resize(mesh_.n_flux_faces());
+  return step;
+}
+
+template <int D>
+void MeshPath<D>::refuse_torn(std::span<const Vec3> points, double time) const {
+  if (!periodic_ || points.empty()) return;
+  std::vector<double> moved;
+  for (std::size_t v = 0; v < points.size(); ++v)
+    for (int c = 0; c < mesh_.dim; ++c) moved.push_back(points[v][c] - mesh_.reference_points[v][c]);
+  const double gap = periodic_->largest_gap(moved, mesh_.dim);
+  double size = 0;
+  for (Index f = 0; f < mesh_.n_interior; ++f) size = std::max(size, mesh_.shift(f).norm());
+  if (gap > most_torn * max(mesh_.comm, size))
+    throw Error(
+        "The mesh motion to t = {:.6g} s separates the two sides of periodic patches by {:.3g} m. Both must "
+        "move alike: set 'type: periodic' for them in the mesh mover as well; a 'motion' must be periodic "
+        "from side to side, which a rotation of the whole mesh is not.",
+        time, gap);
+}
+
+template class MeshPath<2>;
+template class MeshPath<3>;
+
+}  // namespace couplet::fluid

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "common/mesh/periodic_points.hpp"
+#include "fluid_solver/motion/step_work.hpp"
+
+namespace couplet::fluid {
+
+/// Where the mesh is in a coupling step: its points move along straight lines from that of level n to that at the end.
+template <int D>
+class MeshPath {
+ public:
+  /// `moves`: the mesh will. Collective.
+  MeshPath(const Mesh& mesh, const FluidParameters& parameters, bool moves);
+
+  bool moves() const { return moves_; }
+  /// As a frame that does not turn.
+  bool translates() const { return translates_; }
+  /// Of the reference points; a frame that is only translated keeps its shape, and with it the pressure equation and its
+  /// factors.
+  std::shared_ptr<const Placement<D>> start();
+  /// Of other points; empty: of those at rest.
+  std::shared_ptr<const Placement<D>> at(std::span<const Vec3> points) const;
+  /// What a sub-step of `dt` needs of the mesh that ends at the share `s` of the way from `begin` to `end` (empty: it rests
+  /// there). `level`: where it starts, at t = `time` of the coupling step. Throws SolveFailure for inverted cells.
+  /// Collective.
+  SubStep<D> sub_step(const State<D>& level, double dt, double s, std::span<const Vec3> begin,
+                      std::span<const Vec3> end, double time) const;
+  /// Throws Error where the points at `time` part what is joined. Collective.
+  void refuse_torn(std::span<const Vec3> points, double time) const;
+
+ private:
+  const Mesh& mesh_;
+  bool moves_, translates_;
+  std::optional<PeriodicPoints> periodic_;     // with patches joined on a mesh that moves
+  std::shared_ptr<const Placement<D>> frame_;  // with translates_: the reference placement
+};
+
+}  // namespace couplet::fluid
