@@ -18,6 +18,7 @@ enum class BoundaryType {
   convective_outlet,
   no_slip,
   moving_wall,
+  partial_slip,
   slip,
   symmetry,
   periodic,
@@ -53,6 +54,7 @@ struct BoundaryParameters {
   config::ExpressionText pressure;                   // [Pa], outlet
   bool backflow_stabilisation = true;                // outlet
   bool absorbing = false;                            // inlet and outlet: lets waves out
+  double slip_length = 0;                            // [m], partial slip
   std::string partner;                               // periodic
   std::optional<double> surface_density;             // [kg/m^2], interface: of the structure behind it
   Impedance impedance = Impedance::given;            // interface
@@ -119,6 +121,7 @@ Condition outlet();
 Condition convective_outlet();
 Condition no_slip();
 Condition moving_wall();
+Condition partial_slip();
 Condition slip();
 Condition symmetry();
 Condition periodic();

@@ -20,6 +20,7 @@ const auto& condition_table() {
       Entry{BoundaryType::convective_outlet, conditions::convective_outlet()},
       Entry{BoundaryType::no_slip, conditions::no_slip()},
       Entry{BoundaryType::moving_wall, conditions::moving_wall()},
+      Entry{BoundaryType::partial_slip, conditions::partial_slip()},
       Entry{BoundaryType::slip, conditions::slip()},
       Entry{BoundaryType::symmetry, conditions::symmetry()},
       Entry{BoundaryType::periodic, conditions::periodic()},

@@ -8,7 +8,7 @@ def cases(fluid, RUN):
 case.yaml:9:5: participants.fluid.viscosity: '1e-6 m^2/s': the unit 'm^2/s' is not convertible to Pa s; expected Pa s or a unit convertible to it.
 """, ("1e-3 Pa s", "1e-6 m^2/s")),
     fluid("boundary of a fluid without type", """
-case.yaml:13:7: participants.fluid.boundaries.bottom.type: this required key is missing (one of: inlet, outlet, convective-outlet, no-slip, moving-wall, slip, symmetry, periodic, interface, body).
+case.yaml:13:7: participants.fluid.boundaries.bottom.type: this required key is missing (one of: inlet, outlet, convective-outlet, no-slip, moving-wall, partial-slip, slip, symmetry, periodic, interface, body).
 """, ("{type: no-slip}", "{}")),
     fluid("inlet without velocity", """
 case.yaml:11:14: participants.fluid.boundaries.left.type: give either 'velocity', 'mean-speed' or 'table'.
@@ -34,6 +34,12 @@ case.yaml:10:14: participants.fluid.bodies.ball.level: this required key is miss
     fluid("periodic without partner", """
 case.yaml:12:7: participants.fluid.boundaries.right.partner: this required key is missing (the patch that is a translated copy of this one: text).
 """, ("{type: outlet, pressure: 0}", "{type: periodic}")),
+    fluid("partial slip without its length", """
+case.yaml:12:7: participants.fluid.boundaries.right.slip-length: this required key is missing (distance behind the wall at which the velocity along it, continued, is zero: u = L du/dn: number in m).
+""", ("{type: outlet, pressure: 0}", "{type: partial-slip}")),
+    fluid("partial slip of no length", """
+case.yaml:12:35: participants.fluid.boundaries.right.slip-length: 0 m is out of range; expected a value above 0 m.
+""", ("{type: outlet, pressure: 0}", "{type: partial-slip, slip-length: 0}")),
     fluid("component with a wrong unit", """
 case.yaml:11:27: participants.fluid.boundaries.left.velocity: entry 2 of the list: '0 Pa': the unit 'Pa' is not convertible to m/s; expected m/s or a unit convertible to it.
 """, ("0 m/s]", "0 Pa]")),

@@ -473,7 +473,7 @@ couplet: The job cannot start:
 [fluid 0] error: boundaries.rigth: the mesh 'square.msh' has no patch 'rigth'. Did you mean 'right'?
 """, ("right: {type", "rigth: {type"), **RUN),
     fluid("patch of a fluid without a boundary", """
-[fluid 0] error: boundaries: the mesh 'square.msh' has patches without a boundary condition: top. Give each of them a type (inlet, outlet, convective-outlet, no-slip, moving-wall, slip, symmetry, periodic, interface or body).
+[fluid 0] error: boundaries: the mesh 'square.msh' has patches without a boundary condition: top. Give each of them a type (inlet, outlet, convective-outlet, no-slip, moving-wall, partial-slip, slip, symmetry, periodic, interface or body).
 """, ("      top: {type: slip}\n", ""), **RUN),
     mover("mover without its coupled job", """
 couplet: The job cannot start:
