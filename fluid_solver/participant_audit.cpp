@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the participant has seen of the effects that it neglects.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
