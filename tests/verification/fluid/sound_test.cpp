@@ -110,6 +110,16 @@ void stays_bounded(WaveScheme scheme, int steps) {
   }
 }
 
+// rho u^2/2 and (p - mean)^2/(2 rho c^2) of exp(-(x/(c width))^2), over the duct of 0.02 m.
+TEST_P(Pulse, has_the_energy_of_its_motion_and_of_its_pressure) {
+  FluidCase<2> d(MPI_COMM_WORLD, duct(200), pulse(GetParam()));
+  for (int i = 0; i < 4; ++i) d.step(5e-6);
+  const double square = c * width * std::sqrt(std::acos(-1.) / 2),
+               mean = c * width * std::sqrt(std::acos(-1.));
+  const double wanted = 0.02 * (square / 2 + (square - mean * mean) / 2) / (rho * c * c);
+  EXPECT_NEAR(d.state().ledger.energy / wanted, 1, 2e-3);
+}
+
 TEST_P(Pulse, in_a_closed_duct_stays_bounded_at_any_courant_number) { stays_bounded(GetParam(), 600); }
 TEST_P(Pulse, in_a_closed_duct_stays_bounded_over_ten_thousand_steps) { stays_bounded(GetParam(), 10000); }
 

@@ -23,6 +23,15 @@ TEST(PlateContact, rebound_speed_is_exact_when_conserving_and_tends_to_it_otherw
   const double t_c = std::numbers::pi / 100;  // pi sqrt(m / kappa)
   EXPECT_LT(rebound_error(ContactRule::conserving, t_c / 7), 1e-12);
   EXPECT_LT(rebound_error(ContactRule::conserving, t_c * 3), 1e-12);
+  // What the seat does on the body is what its springs give.
+  Bounce hit(1e4, 0.01, -1, ContactRule::conserving);
+  double held = 0;
+  for (int k = 0; k < 40; ++k) {
+    hit.step(t_c / 7);
+    EXPECT_NEAR(hit.now.energies.impact_work, -hit.now.energies.contact, 1e-9) << k;
+    held = std::max(held, hit.now.energies.contact);
+  }
+  EXPECT_GT(held, 0.3);
   // The plain rule: its error depends on where in a step the body leaves; the mean over places falls.
   const auto mean = [&](double dt) {
     double sum = 0;

@@ -170,6 +170,8 @@ TEST(PlateGuards, a_load_between_the_middles_of_the_faces_is_missed) {
     // About a point of the mesh, nearer than the middles around it.
     EXPECT_FALSE(within("(x - 0.5)^2 + (y - 0.5)^2 < 0.05^2 ? 1000 : 0").sound());
     EXPECT_TRUE(within("1000 * (1 + x * y)").sound());
+    // None at the start of the step: it is judged in the middle.
+    EXPECT_FALSE(within("(x - 0.5)^2 + (y - 0.5)^2 < 0.05^2 ? 1e6 * t : 0").sound());
   }
 }
 
@@ -208,6 +210,22 @@ TEST(PlateGuards, edges_that_hold_nothing_or_twice_are_refused) {
   }
   EXPECT_TRUE(inside);
   EXPECT_TRUE(doubled);
+}
+
+TEST(PlateGuards, an_edge_of_the_outline_in_no_patch_is_named_by_its_middle) {
+  RawMesh raw = square(4);
+  const auto edge = [&](Index e) {
+    const auto ends = raw.boundary_points[e];
+    const Vec3 middle = 0.5 * (raw.points[ends[0]] + raw.points[ends[1]]);
+    return fmt::format("({:.6g}, {:.6g}) belongs to no patch", middle.x(), middle.y());
+  };
+  const std::string wanted = edge(raw.boundary_points.size() - 1);
+  decltype(raw.boundary_points) kept;
+  for (Index e = 0; e + 1 < raw.boundary_points.size(); ++e) kept.push_row(raw.boundary_points[e]);
+  raw.boundary_points = kept;
+  raw.boundary_patch.pop_back();
+  const std::string text = message_of([&] { midsurface_of(raw); });
+  EXPECT_NE(text.find(wanted), std::string::npos) << wanted << " / " << text;
 }
 
 TEST(PlateGuards, a_mesh_out_of_its_plane_is_refused) {

@@ -9,9 +9,11 @@
 #include "common/base/error.hpp"
 #include "common/io/hdf5.hpp"
 #include "common/modes/facing.hpp"
+#include "common/modes/modal_checks.hpp"
 #include "common/modes/modes_file.hpp"
 #include "common/parallel/collective.hpp"
 #include "plate_modal/structure.hpp"
+#include "tests/verification/plate/bounce.hpp"
 #include "tests/verification/plate/plates.hpp"
 
 namespace couplet::plate {
@@ -216,6 +218,15 @@ TEST_F(PlateModesFile, what_is_wrong_with_a_file_is_said) {
             std::string::npos);
   EXPECT_NE(damaged([](ModalModel& m) { m.vertex_shape.resize(m.vertex_shape.size() - 6); }).find("rows"),
             std::string::npos);
+}
+
+TEST(ModalMass, is_the_mass_times_the_square_of_a_shape_that_is_everywhere_the_same) {
+  ModalModel model = block();  // 1 kg that moves by 1 as a whole
+  EXPECT_EQ(scale_problem_of(model), "");
+  for (double& value : model.vertex_shape) value *= 200;
+  average_faces(model);
+  const std::string text = scale_problem_of(model);
+  EXPECT_NE(text.find("the surface alone has a modal mass of 4e+04;"), std::string::npos) << text;
 }
 
 TEST_F(PlateModesFile, a_surface_turned_inside_out_is_refused_unless_it_is_a_cavity) {

@@ -144,6 +144,16 @@ TEST(PlateResolution, the_frequency_of_a_load_is_seen) {
   EXPECT_NEAR(seen([](double t) { return std::sin(2 * pi * t) > 0 ? 1. : 0.; }), 2 * pi, 0.2);
 }
 
+// 3 t^2 Pa on 1 m^2 over a step of 1 s: 3/4 in the middle, 1 - 1/(4 n^2) as the mean of n samples.
+TEST(PlateResolution, what_a_step_misses_of_a_load_is_its_mean_less_its_middle) {
+  const Share share(MPI_COMM_SELF, block());
+  Load load;
+  load.lower.emplace().text = "3 * t^2";
+  const PressureLoad::Seen seen = PressureLoad(share, load, Vec3::UnitZ()).seen(0, 1, 8);
+  EXPECT_NEAR(seen.apart, std::pow(1 - 1. / 256 - 0.75, 2), 1e-12);
+  EXPECT_NEAR(seen.size, 9. / 5, 0.03);
+}
+
 TEST(PlateResolution, what_was_seen_goes_on_after_a_restart) {
   const std::vector<double> omega{2 * pi, 30}, zero{0, 0};
   Oscillators modes(omega, zero, zero, {}, nullptr);
