@@ -237,6 +237,33 @@ TEST(ThermoelasticCoupling, a_stretched_body_cools_and_a_compressed_one_warms) {
   EXPECT_LT(largest, 1e-3);
 }
 
+// In plane stress, held along x and y, tr(sigma) = E/(1 - nu) (eps_x - 2 alpha dT) and (2.27) is
+// rho c dT = - alpha T d(tr(sigma) + 9 K alpha dT). Expands so much that the answer to its own warming counts.
+TEST(ThermoelasticCoupling, of_a_sheet_in_plane_stress_counts_its_own_expansion) {
+  constexpr double large = 6e-5, strain = 1e-4, capacity = 7800 * 480;
+  SolidParameters p = warm_box(2, "0");
+  p.plane = SolidParameters::Plane::stress;
+  p.temperature.reset();
+  p.material.heat.expansion = config::ExpressionText{"6e-5"};
+  p.material.heat.conductivity = config::ExpressionText{"50"};
+  p.material.heat.specific_heat = config::ExpressionText{"480"};
+  p.heat.emplace();
+  p.heat->initial_temperature = {"300"};
+  p.heat->scheme = HeatParameters::Scheme::euler;
+  p.thermoelastic_coupling = true;
+  const std::string u = fmt::format("{}*x*table(t, 0, 0, 1, 1)", strain);
+  for (auto& [name, b] : p.boundaries) b = boundary(Type::fixed_displacement, {u, "0"});
+  const auto solid = make_solid(distorted_box(BoxCells::quadrilaterals), p);
+  for (int i = 0; i < 40; ++i) step(*solid, 0.1);
+  const double sheet = modulus / (1 - nu), bulk = modulus / (1 - 2 * nu);  // 3 K
+  const double exact =
+      -large * 300 * sheet * strain / (capacity + large * large * 300 * (3 * bulk - 2 * sheet));
+  const auto& effect = dynamic_cast<const ThermalStrain&>(*solid->body().effects().front());
+  const std::vector<double>& t = effect.heat()->accepted().cells;
+  for (Index c = 0; c < solid->body().mesh().cells.n_owned(); ++c)
+    ASSERT_NEAR((t[c] - 300) / exact, 1, 2e-3) << c;
+}
+
 class Scratch {
  public:
   Scratch()
