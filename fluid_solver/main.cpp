@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
       .declare = [&](couplet::config::Section& section) { couplet::fluid::declare(section, parameters); },
       .make =
           [&](const couplet::ParticipantContext& context) {
-            couplet::Mesh mesh =
+            couplet::LoadedMesh loaded =
                 couplet::load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension,
                                    parameters.mesh_parameters, couplet::fluid::periodic_patches(parameters),
                                    {}, false, parameters.mesh_scale);
@@ -25,11 +25,12 @@ int main(int argc, char** argv) {
                 boundary.table->file = (context.case_folder / boundary.table->file).string();
             couplet::fluid::MotionLink link;
             if (context.mesh_peer != MPI_COMM_NULL)
-              link = [peer = context.mesh_peer](const couplet::Mesh& m) {
-                return couplet::make_mesh_motion_source(peer, m);
+              link = [peer = context.mesh_peer](const couplet::Mesh& m,
+                                                std::span<const couplet::Vec3> points) {
+                return couplet::make_mesh_motion_source(peer, m, points);
               };
             return couplet::fluid::make_participant(
-                std::move(mesh), parameters, {context.name, context.output_folder, context.restart_time},
+                std::move(loaded), parameters, {context.name, context.output_folder, context.restart_time},
                 link);
           },
       .environment = couplet::petsc_environment,

@@ -29,21 +29,25 @@ constexpr double near_limit = 0.1;
 }  // namespace
 
 template <int D>
-FluidParticipant<D>::FluidParticipant(Mesh mesh, const FluidParameters& parameters, FluidContext context,
-                                      const MotionLink& link)
-    : mesh_(std::move(mesh)),
-      fluid_(std::make_unique<Fluid<D>>(mesh_, parameters, bool(link) || parameters.motion)),
-      output_(*fluid_, std::move(context)) {
-  if (link) motion_ = link(mesh_);
+FluidParticipant<D>::FluidParticipant(LoadedMesh loaded, const FluidParameters& parameters,
+                                      FluidContext context, const MotionLink& link)
+    : mesh_(std::move(loaded.mesh)),
+      fluid_(std::make_unique<Fluid<D>>(mesh_, loaded.geometry, parameters, bool(link) || parameters.motion)),
+      output_(*fluid_, loaded.geometry, std::move(context)) {
+  if (link) motion_ = link(mesh_, fluid_->points_at_rest());
   set_up_motion();
   openings_.emplace(mesh_, parameters,
                     !motion_ && !prescribed_ && fluid_->boundary().interface_patches().empty());
   if (parameters.statistics) statistics_.emplace(mesh_.cells.n_local(), mesh_.boundary.n_owned());
-  if (fluid_->boundary().interface_patches().empty()) {
-    if (!fluid_->moving()) mesh_.reference = {};  // only the set-up needed it
-    return;
-  }
+  if (!fluid_->boundary().interface_patches().empty()) set_up_interface(loaded.geometry);
+  if ((interface_ && motion_) || !fluid_->boundary().body_patches().empty())
+    for (const Index f : moving_faces()) at_start_.push_back(loaded.geometry.face_centre[f]);
+}
+
+template <int D>
+void FluidParticipant<D>::set_up_interface(const Geometry& geometry) {
   interface_ = std::make_unique<InterfaceMap>(mesh_, fluid_->boundary().interface_patches());
+  description_ = interface_->describe(geometry);
   const std::vector<Index>& points = interface_->points();
   std::vector<Index> row;
   for (const Index face : interface_->faces()) {
@@ -52,6 +56,9 @@ FluidParticipant<D>::FluidParticipant(Mesh mesh, const FluidParameters& paramete
       row.push_back(
           static_cast<Index>(std::lower_bound(points.begin(), points.end(), point) - points.begin()));
     interface_vertices_.push_row(row);
+    interface_area_.push_back(geometry.face_area[face].norm());
+    const Vec3 arm = geometry.face_centre[face] - geometry.cell_centre[mesh_.owner[face]];
+    cell_height_.push_back(2 * std::abs(arm.dot(geometry.face_area[face].normalized())));
   }
 }
 
@@ -73,7 +80,7 @@ void FluidParticipant<D>::set_up_motion() {
         "a mesh mover moves by itself ('type: moving' there) has type 'body' here.");
   prescribed_ = std::make_unique<PrescribedMotion>(*parameters.motion, D);
   const double start = fluid_->state().time;
-  const double largest = max(mesh_.comm, prescribed_->largest_displacement(mesh_.reference_points, start));
+  const double largest = max(mesh_.comm, prescribed_->largest_displacement(fluid_->points_at_rest(), start));
   if (largest > 0)
     throw Error(
         "motion: at t = {:g} s it displaces the mesh by up to {:.3g} m, but the fluid starts from the "
@@ -84,8 +91,7 @@ void FluidParticipant<D>::set_up_motion() {
 template <int D>
 Interface FluidParticipant<D>::initialise() {
   if (!interface_) return {};
-  Interface description =
-      interface_->describe();  // of this rank, which may hold no part; the data are those of all
+  Interface description = description_;  // of this rank, which may hold no part; the data are those of all
   using Place = Interface::Place;
   description.takes = {{"displacement", "m", Place::vertices}, {"velocity", "m/s", Place::vertices}};
   description.gives = {{"pressure-force", "N", Place::faces}, {"viscous-force", "N", Place::faces}};
@@ -106,7 +112,8 @@ void FluidParticipant<D>::tell_impulse() const {
   const Boundary<D>& boundary = fluid_->boundary();
   if (boundary.body_patches().empty() || !prescribed_ || fluid_->state().start != Start::at_rest) return;
   Vectors<D> w(mesh_.boundary.n_owned()), no_turn;
-  const double speed = set_body_start(mesh_, boundary, *fluid_->parameters().motion, step_.time, w, no_turn);
+  const double speed = set_body_start(mesh_, fluid_->points_at_rest(), boundary, *fluid_->parameters().motion,
+                                      step_.time, w, no_turn);
   if (speed > 0 && comm_rank(mesh_.comm) == 0)
     log::warn(
         "motion: at t = {:g} s its bodies already move at {:.3g} m/s in a fluid at rest, so the first step "
@@ -126,10 +133,10 @@ void FluidParticipant<D>::begin_step(const Step& step) {
 
 template <int D>
 std::vector<Vec3> FluidParticipant<D>::receive_points() {
-  if (prescribed_) return prescribed_->places(mesh_.reference_points, step_.time + step_.dt);
+  if (prescribed_) return prescribed_->places(fluid_->points_at_rest(), step_.time + step_.dt);
   if (!motion_) return {};
   const std::vector<double> displacement = motion_->receive();
-  std::vector<Vec3> points = mesh_.reference_points;
+  std::vector<Vec3> points = fluid_->points_at_rest();
   for (std::size_t i = 0; i < points.size(); ++i)
     points[i].template head<D>() += Eigen::Map<const Vec<D>>(displacement.data() + i * D);
   return points;
@@ -151,8 +158,7 @@ Exchange FluidParticipant<D>::forces() const {
   if (yields()) {
     std::vector<double> wall(faces.size());
     for (std::size_t i = 0; i < faces.size(); ++i)
-      wall[i] = fluid_->boundary_pressure()[faces[i] - mesh_.n_interior] *
-                mesh_.reference.face_area[faces[i]].norm();
+      wall[i] = fluid_->boundary_pressure()[faces[i] - mesh_.n_interior] * interface_area_[i];
     out["own-wall-force"] = interface_->gather_faces(wall, 1);
   }
   if (holds_volume())
@@ -288,11 +294,11 @@ std::vector<std::string> FluidParticipant<D>::finish() {
 template class FluidParticipant<2>;
 template class FluidParticipant<3>;
 
-std::unique_ptr<Participant> make_participant(Mesh mesh, const FluidParameters& parameters,
+std::unique_ptr<Participant> make_participant(LoadedMesh loaded, const FluidParameters& parameters,
                                               FluidContext context, const MotionLink& link) {
   if (parameters.dimension == 2)
-    return std::make_unique<FluidParticipant<2>>(std::move(mesh), parameters, std::move(context), link);
-  return std::make_unique<FluidParticipant<3>>(std::move(mesh), parameters, std::move(context), link);
+    return std::make_unique<FluidParticipant<2>>(std::move(loaded), parameters, std::move(context), link);
+  return std::make_unique<FluidParticipant<3>>(std::move(loaded), parameters, std::move(context), link);
 }
 
 }  // namespace couplet::fluid

@@ -23,7 +23,8 @@ namespace couplet::fluid {
 struct FluidEvidence;
 
 /// Makes the link to a mesh mover once the mesh has its final place; empty for a mesh at rest.
-using MotionLink = std::function<std::unique_ptr<MeshMotionSource>(const Mesh&)>;
+using MotionLink =
+    std::function<std::unique_ptr<MeshMotionSource>(const Mesh&, std::span<const Vec3> points)>;
 
 /// The fluid seen from outside. Takes "velocity" (and "displacement", which the mesh mover uses) at the
 /// interface vertices, gives "pressure-force" and "viscous-force" on the interface faces, acting on the
@@ -40,7 +41,7 @@ using MotionLink = std::function<std::unique_ptr<MeshMotionSource>(const Mesh&)>
 template <int D>
 class FluidParticipant final : public Participant, public EstimatesError {
  public:
-  FluidParticipant(Mesh mesh, const FluidParameters& parameters, FluidContext context,
+  FluidParticipant(LoadedMesh loaded, const FluidParameters& parameters, FluidContext context,
                    const MotionLink& link);
 
   Interface initialise() override;
@@ -74,6 +75,7 @@ class FluidParticipant final : public Participant, public EstimatesError {
   double answer() const;
   void prepare(const Vectors<D>& w);
   void set_up_motion();
+  void set_up_interface(const Geometry& geometry);
   void tell_impulse() const;
   void add_body_velocity(Vectors<D>& w) const;
   std::vector<Vec3> receive_points();
@@ -86,10 +88,13 @@ class FluidParticipant final : public Participant, public EstimatesError {
   void add_motion(FluidEvidence& evidence) const;
   void doubt_given_step(double size);
 
-  Mesh mesh_;
+  const Mesh mesh_;
   std::unique_ptr<Fluid<D>> fluid_;
   std::unique_ptr<InterfaceMap> interface_;       // null: no interface patch
+  Interface description_;                         // of what this rank has of it
   Csr interface_vertices_;                        // per interface face: entries of interface_->points()
+  std::vector<double> interface_area_;            // per interface face, at rest [m^2]
+  std::vector<double> cell_height_;               // of the cells beside them, at rest [m]
   std::unique_ptr<MeshMotionSource> motion_;      // by a mesh mover
   std::unique_ptr<PrescribedMotion> prescribed_;  // by the case
   std::optional<RunningStatistics<D>> statistics_;
@@ -116,7 +121,7 @@ class FluidParticipant final : public Participant, public EstimatesError {
 };
 
 /// The participant of the dimension that the parameters name.
-std::unique_ptr<Participant> make_participant(Mesh mesh, const FluidParameters& parameters,
+std::unique_ptr<Participant> make_participant(LoadedMesh loaded, const FluidParameters& parameters,
                                               FluidContext context, const MotionLink& link);
 
 }  // namespace couplet::fluid

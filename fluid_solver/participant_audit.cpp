@@ -51,8 +51,6 @@ void FluidParticipant<D>::see_motion() {
   if (!latest || !sound_of(p.compressibility, p.density, p.viscosity)) return;
   const Placement<D>& now = *fluid_->state().placement;
   const std::vector<Index> faces = moving_faces();
-  if (at_start_.empty())
-    for (const Index f : faces) at_start_.push_back(mesh_.reference.face_centre[f]);
   std::vector<double> swept;
   std::array<double, 4> sums{};  // swept, pressure times volume, pressure times area and area of inlets
   for (std::size_t i = 0; i < faces.size(); ++i) {

@@ -27,7 +27,7 @@ std::vector<Vec3> FluidParticipant<D>::body_velocities(const Patch& patch) const
     return corners;
   }
   for (Index f = patch.first; f < patch.first + patch.count; ++f)
-    for (const Index v : mesh_.face_points[f]) corners.push_back(mesh_.reference_points[v]);
+    for (const Index v : mesh_.face_points[f]) corners.push_back(fluid_->points_at_rest()[v]);
   return prescribed_->velocities(corners, step_.time + step_.dt, step_.dt);
 }
 
@@ -52,7 +52,7 @@ Vectors<D> FluidParticipant<D>::wall_turn(const Exchange& in) const {
   const bool coupled = interface_ && step_.scheme != Scheme::standalone;
   if (!coupled && !moves_bodies()) return {};
   Vectors<D> turn(mesh_.boundary.n_owned(), Vec<D>::Zero());
-  const std::vector<Vec3>& points = points_.empty() ? mesh_.reference_points : points_;
+  const std::vector<Vec3>& points = points_.empty() ? fluid_->points_at_rest() : points_;
   for (const Patch* patch : fluid_->boundary().body_patches())
     fluid::set_turn<D>(mesh_, *patch, points, body_velocities(*patch), turn);
   if (!coupled) return turn;
@@ -104,7 +104,7 @@ std::vector<double> FluidParticipant<D>::wall_load(const Exchange& in) const {
       interface_->scatter_faces(given == in.end() ? std::vector<double>{} : given->second, 1);
   const std::vector<Index>& faces = interface_->faces();
   for (std::size_t i = 0; i < faces.size(); ++i)
-    load[faces[i] - mesh_.n_interior] = at_faces[i] / mesh_.reference.face_area[faces[i]].norm();
+    load[faces[i] - mesh_.n_interior] = at_faces[i] / interface_area_[i];
   return load;
 }
 
@@ -133,10 +133,7 @@ double FluidParticipant<D>::wall_displacement(const Exchange& in) const {
     Vec<D> mean = Vec<D>::Zero();
     for (const Index v : vertices) mean += Eigen::Map<const Vec<D>>(at_points.data() + std::size_t(v) * D);
     mean /= static_cast<double>(vertices.size());
-    const Geometry& g = mesh_.reference;
-    const Vec3 arm = g.face_centre[faces[i]] - g.cell_centre[mesh_.owner[faces[i]]];
-    const double height = 2 * std::abs(arm.dot(g.face_area[faces[i]].normalized()));
-    largest = std::max(largest, mean.norm() / height);
+    largest = std::max(largest, mean.norm() / cell_height_[i]);
   }
   return max(mesh_.comm, largest);
 }

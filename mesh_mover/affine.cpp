@@ -18,10 +18,11 @@ constexpr double least_extent = 1e-10;
 
 }  // namespace
 
-AffineFit::AffineFit(const Mesh& mesh, std::vector<Index> points) : mesh_(mesh), points_(std::move(points)) {
+AffineFit::AffineFit(const Mesh& mesh, const Geometry& geometry, std::vector<Index> points)
+    : mesh_(mesh), geometry_(geometry), points_(std::move(points)) {
   const auto over_owned = [&](auto&& add) {
     for (const Index v : points_)
-      if (v < mesh_.points.n_owned()) add(mesh_.reference_points[v]);
+      if (v < mesh_.points.n_owned()) add(geometry_.points[v]);
   };
   std::array<double, 4> sums{};
   over_owned([&](const Vec3& x) {
@@ -48,7 +49,7 @@ std::optional<AffineFit::Coefficients> AffineFit::operator()(std::span<const dou
   for (const Index v : points_) {
     if (v >= mesh_.points.n_owned()) continue;
     sums[0] += value(v);
-    for (int c = 0; c < 3; ++c) sums[c + 1] += value(v) * (mesh_.reference_points[v][c] - centre_[c]);
+    for (int c = 0; c < 3; ++c) sums[c + 1] += value(v) * (geometry_.points[v][c] - centre_[c]);
   }
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), 4, MPI_DOUBLE, MPI_SUM, mesh_.comm);
   const double a = sums[0] / n_;
@@ -57,7 +58,7 @@ std::optional<AffineFit::Coefficients> AffineFit::operator()(std::span<const dou
   for (const Index v : points_) {
     largest[0] = std::max(largest[0], std::abs(value(v)));
     const double left = value(v) - a;
-    largest[1] = std::max(largest[1], std::abs(left - b.dot(mesh_.reference_points[v] - centre_)));
+    largest[1] = std::max(largest[1], std::abs(left - b.dot(geometry_.points[v] - centre_)));
     largest[2] = std::max(largest[2], std::abs(left));
   }
   MPI_Allreduce(MPI_IN_PLACE, largest.data(), 3, MPI_DOUBLE, MPI_MAX, mesh_.comm);

@@ -15,21 +15,22 @@ namespace {
 constexpr double flat = 1e-9;
 
 /// Collective.
-bool is_flat(const Mesh& mesh, const Patch& patch) {
+bool is_flat(const Mesh& mesh, const Geometry& geometry, const Patch& patch) {
   Vec3 sum = Vec3::Zero();
-  for (Index f = patch.first; f < patch.first + patch.count; ++f) sum += mesh.reference.face_area[f];
+  for (Index f = patch.first; f < patch.first + patch.count; ++f) sum += geometry.face_area[f];
   MPI_Allreduce(MPI_IN_PLACE, sum.data(), 3, MPI_DOUBLE, MPI_SUM, mesh.comm);
   if (!(sum.norm() > 0)) return false;
   const Vec3 normal = sum.normalized();
   double off = 0;
   for (Index f = patch.first; f < patch.first + patch.count; ++f)
-    off = std::max(off, 1 - std::abs(mesh.reference.face_area[f].normalized().dot(normal)));
+    off = std::max(off, 1 - std::abs(geometry.face_area[f].normalized().dot(normal)));
   return max(mesh.comm, off) <= flat;
 }
 
 }  // namespace
 
-CurvedSlide::CurvedSlide(const Mesh& mesh, const Parameters& parameters) : mesh_(mesh) {
+CurvedSlide::CurvedSlide(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters)
+    : mesh_(mesh), geometry_(geometry) {
   std::vector<char> held(mesh.points.n_local(), 0);  // by a patch that does not slide
   const auto for_points = [&](const Patch& patch, const auto& action) {
     for (const auto& [first, count] :
@@ -43,7 +44,7 @@ CurvedSlide::CurvedSlide(const Mesh& mesh, const Parameters& parameters) : mesh_
   for (const Patch& patch : mesh.patches)
     if (!slides(patch)) for_points(patch, [&](Index v) { held[v] = 1; });
   for (const Patch& patch : mesh.patches) {
-    if (!slides(patch) || is_flat(mesh, patch)) continue;
+    if (!slides(patch) || is_flat(mesh, geometry, patch)) continue;
     Curved curved;
     for_points(patch, [&](Index v) {
       if (!held[v]) curved.points.push_back(v);
@@ -58,7 +59,7 @@ CurvedSlide::CurvedSlide(const Mesh& mesh, const Parameters& parameters) : mesh_
     };
     for (Index f = patch.first; f < patch.first + patch.count; ++f) {
       const auto v = mesh.face_points[f];
-      const auto x = [&](std::size_t i) -> const Vec3& { return mesh.reference_points[v[i]]; };
+      const auto x = [&](std::size_t i) -> const Vec3& { return geometry.points[v[i]]; };
       if (v.size() == 2) add(x(0), x(1), x(1));
       for (std::size_t i = 2; i < v.size(); ++i) add(x(0), x(i - 1), x(i));
     }
@@ -99,10 +100,10 @@ void CurvedSlide::put_back(std::vector<double>& displacement) const {
   for (const Curved& patch : patches_)
     for (const Index v : patch.points) {
       double* d = displacement.data() + std::size_t(v) * mesh_.dim;
-      Vec3 x = mesh_.reference_points[v];
+      Vec3 x = geometry_.points[v];
       for (int c = 0; c < mesh_.dim; ++c) x[c] += d[c];
-      if (x == mesh_.reference_points[v]) continue;
-      const Vec3 moved = nearest(patch, x) - mesh_.reference_points[v];
+      if (x == geometry_.points[v]) continue;
+      const Vec3 moved = nearest(patch, x) - geometry_.points[v];
       for (int c = 0; c < mesh_.dim; ++c) d[c] = moved[c];
     }
   if (!empty()) mesh_.points.update_ghosts(displacement, mesh_.dim);

@@ -45,10 +45,12 @@ void reduce(MPI_Comm comm, int measure, Worst& worst, bool any_here) {
 
 }  // namespace
 
-Guard::Guard(const Mesh& mesh, const Parameters& parameters)
-    : mesh_(mesh), smallest_volume_ratio_(parameters.smallest_volume_ratio), limits_(parameters.guard) {
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-    longest_.push_back(shape(c, mesh.reference_points).longest);
+Guard::Guard(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters)
+    : mesh_(mesh),
+      geometry_(geometry),
+      smallest_volume_ratio_(parameters.smallest_volume_ratio),
+      limits_(parameters.guard) {
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) longest_.push_back(shape(c, geometry.points).longest);
 }
 
 Guard::Shape Guard::shape(Index cell, std::span<const Vec3> points) const {
@@ -78,7 +80,7 @@ Guard::Shape Guard::shape(Index cell, std::span<const Vec3> points) const {
 }
 
 double Guard::value(MeshState::Measure measure, Index cell, const Geometry& moved, const Shape& s) const {
-  const double ratio = moved.volume[cell] / mesh_.reference.volume[cell];
+  const double ratio = moved.volume[cell] / geometry_.volume[cell];
   const auto log2 = [](double x) {
     return x > 0 ? std::abs(std::log2(x)) : std::numeric_limits<double>::infinity();
   };
@@ -98,10 +100,10 @@ double Guard::value(MeshState::Measure measure, Index cell, const Geometry& move
   }
 }
 
-std::vector<double> Guard::of_cells(MeshState::Measure measure, const Geometry& moved,
-                                    std::span<const Vec3> points) const {
+std::vector<double> Guard::of_cells(MeshState::Measure measure, const Geometry& moved) const {
   std::vector<double> values(mesh_.cells.n_local(), 0.0);
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) values[c] = value(measure, c, moved, shape(c, points));
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
+    values[c] = value(measure, c, moved, shape(c, moved.points));
   return values;
 }
 
@@ -119,12 +121,12 @@ double Guard::largest_angle(const Geometry& moved, Index& cell) const {
   return std::acos(std::clamp(least, -1.0, 1.0)) * 180 / std::numbers::pi;
 }
 
-MeshState Guard::measure(const Geometry& moved, std::span<const Vec3> points) const {
+MeshState Guard::measure(const Geometry& moved) const {
   MeshState state;
   std::array<Index, MeshState::n_measures> cell{};
   const bool any_here = mesh_.cells.n_owned() > 0;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    const Shape s = shape(c, points);
+    const Shape s = shape(c, moved.points);
     for (int m = 0; m < MeshState::n_measures; ++m) {
       if (m == MeshState::angle) continue;
       const double v = value(MeshState::Measure(m), c, moved, s);
@@ -146,20 +148,20 @@ MeshState Guard::measure(const Geometry& moved, std::span<const Vec3> points) co
   return state;
 }
 
-std::string Guard::refusal(const Geometry& moved, std::span<const Vec3> points) const {
+std::string Guard::refusal(const Geometry& moved) const {
   const auto at = [](const Vec3& x) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", x.x(), x.y(), x.z()); };
   if (const auto trouble = find_inverted(mesh_, moved))
     return fmt::format(
         "inverts cell {} at {} (volume {:.3e} m^3). Try a smaller step, more stiffening, another 'method', "
         "or a coarser mesh there.",
         trouble->cell_id, at(trouble->centre), trouble->volume);
-  if (const auto trouble = find_crossed(mesh_, moved, points))
+  if (const auto trouble = find_crossed(mesh_, moved))
     return fmt::format(
         "makes cell {} at {} intersect itself. Try a smaller step, more stiffening, another 'method', or a "
         "coarser mesh there.",
         trouble->cell_id, at(trouble->centre));
   if (smallest_volume_ratio_ <= 0 && !limits_.judges_shape()) return "";
-  const MeshState state = measure(moved, points);
+  const MeshState state = measure(moved);
   using Limit = std::pair<std::optional<double>, const char*>;
   const std::array<Limit, MeshState::n_measures> limits{
       Limit{smallest_volume_ratio_ > 0 ? std::optional(smallest_volume_ratio_) : std::nullopt,

@@ -33,16 +33,15 @@ extern const std::array<const char*, MeshState::n_measures> measure_names;
 /// f_AR = |log2(AR/AR0)|, AR = (longest edge)^dim / V [stein2003].
 class Guard {
  public:
-  Guard(const Mesh& mesh, const Parameters& parameters);
+  Guard(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters);
 
   /// Collective.
-  MeshState measure(const Geometry& moved, std::span<const Vec3> points) const;
+  MeshState measure(const Geometry& moved) const;
   /// Per local cell, of one measure but the angle.
-  std::vector<double> of_cells(MeshState::Measure measure, const Geometry& moved,
-                               std::span<const Vec3> points) const;
+  std::vector<double> of_cells(MeshState::Measure measure, const Geometry& moved) const;
   /// What is beyond a limit, as a sentence; empty: nothing. Inverted cells, cells that cross themselves, and what
   /// the parameters ask for. Collective.
-  std::string refusal(const Geometry& moved, std::span<const Vec3> points) const;
+  std::string refusal(const Geometry& moved) const;
 
  private:
   struct Shape {
@@ -53,6 +52,7 @@ class Guard {
   double largest_angle(const Geometry& moved, Index& cell) const;
 
   const Mesh& mesh_;
+  const Geometry& geometry_;
   double smallest_volume_ratio_;
   GuardParameters limits_;
   std::vector<double> longest_;  // edge of each owned cell in the reference mesh [m]

@@ -12,10 +12,10 @@ namespace {
 constexpr double axis_tolerance = 1e-6, least_cosine = 0.02;
 
 /// The axis a patch is normal to. Collective.
-int normal_axis(const Mesh& mesh, const Patch& patch) {
+int normal_axis(const Mesh& mesh, const Geometry& geometry, const Patch& patch) {
   std::array<double, 3> off{};
   for (Index f = patch.first; f < patch.first + patch.count; ++f) {
-    const Vec3 n = mesh.reference.face_area[f].normalized();
+    const Vec3 n = geometry.face_area[f].normalized();
     for (int c = 0; c < 3; ++c) off[c] = std::max(off[c], 1 - std::abs(n[c]));
   }
   for (int c = 0; c < mesh.dim; ++c)
@@ -35,15 +35,17 @@ struct Laplacian::Equation {
   std::vector<double> diagonal;
 };
 
-Laplacian::Laplacian(const Mesh& mesh, const Parameters& parameters, std::span<const double> volumes)
+Laplacian::Laplacian(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters,
+                     std::span<const double> volumes)
     : mesh_(mesh),
+      geometry_(geometry),
       dim_(mesh.dim),
-      periodic_(mesh),
+      periodic_(mesh, geometry),
       relative_tolerance_(parameters.linear.relative_tolerance),
       cell_displacement_(std::size_t(mesh.cells.n_local()) * mesh.dim, 0.0) {
   set_kinds(parameters);
   set_weights();
-  set_coefficients(parameters.stiffening, volumes.empty() ? mesh.reference.volume : volumes);
+  set_coefficients(parameters.stiffening, volumes.empty() ? geometry.volume : volumes);
 
   for (int c = 0; c < dim_; ++c) {
     for (int same = 0; same < c && !equation_[c]; ++same) {
@@ -89,7 +91,7 @@ void Laplacian::set_kinds(const Parameters& parameters) {
   for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
     const Patch& patch = mesh_.patches[p];
     const BoundaryMotion motion = parameters.boundaries.at(patch.name).motion;
-    const int axis = motion == BoundaryMotion::slip ? normal_axis(mesh_, patch) : -1;
+    const int axis = motion == BoundaryMotion::slip ? normal_axis(mesh_, geometry_, patch) : -1;
     std::array<bool, 3> held{};
     if (motion == BoundaryMotion::periodic) {  // its faces are interior ones
       held_.push_back(held);
@@ -128,7 +130,7 @@ void Laplacian::set_kinds(const Parameters& parameters) {
     std::vector<Index> moved;
     for (const Index v : interface_points_)
       if (kind_[v][c] == PointKind::interface) moved.push_back(v);
-    fit_[c] = std::make_unique<AffineFit>(mesh_, std::move(moved));
+    fit_[c] = std::make_unique<AffineFit>(mesh_, geometry_, std::move(moved));
   }
 }
 
@@ -152,7 +154,7 @@ void Laplacian::set_weights() {
   std::vector<double> totals(cells.size(), 0.0);
   for (Index v = 0; v < mesh_.points.n_local(); ++v) {
     for (const Index c : cells[v]) {
-      weight_.push_back(1 / (mesh_.reference_points[v] - mesh_.reference.cell_centre[c]).norm());
+      weight_.push_back(1 / (geometry_.points[v] - geometry_.cell_centre[c]).norm());
       totals[v] += weight_.back();
     }
     around_.push_row(cells[v]);
@@ -164,7 +166,7 @@ void Laplacian::set_weights() {
 }
 
 void Laplacian::set_coefficients(double stiffening, std::span<const double> volumes) {
-  const Geometry& g = mesh_.reference;
+  const Geometry& g = geometry_;
   double volume = 0;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) volume += volumes[c];
   const double mean = sum(mesh_.comm, volume) / static_cast<double>(mesh_.cells.n_global());
@@ -237,7 +239,7 @@ void Laplacian::make_shapes(int c) {
     std::vector<double> prescribed(std::size_t(mesh_.points.n_local()) * dim_, 0.0), points(prescribed),
         cells(cell_displacement_.size(), 0.0);
     for (Index v = 0; v < mesh_.points.n_local(); ++v)
-      prescribed[std::size_t(v) * dim_ + c] = fit_[c]->shape(k, mesh_.reference_points[v]);
+      prescribed[std::size_t(v) * dim_ + c] = fit_[c]->shape(k, geometry_.points[v]);
     solve_cells(c, prescribed, cells);
     mesh_.cells.update_ghosts(cells, dim_);
     interpolate(c, prescribed, cells, points);

@@ -31,7 +31,8 @@ class Laplacian final : public MotionMethod {
  public:
   /// `volumes`: V of (4.12) per local cell; empty: those of the mesh. Throws Error if no patch holds the mesh
   /// or a slip patch is not normal to an axis.
-  Laplacian(const Mesh& mesh, const Parameters& parameters, std::span<const double> volumes = {});
+  Laplacian(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters,
+            std::span<const double> volumes = {});
 
   std::vector<double> solve(std::span<const double> prescribed) override;
   /// Local points on patches whose displacement is given.
@@ -59,6 +60,7 @@ class Laplacian final : public MotionMethod {
   void make_shapes(int component);
 
   const Mesh& mesh_;
+  const Geometry& geometry_;
   int dim_;
   PeriodicPoints periodic_;
   double relative_tolerance_;

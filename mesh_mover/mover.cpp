@@ -21,13 +21,14 @@ namespace {
 // Of the distance of periodic patches: how far apart their sides may move.
 constexpr double most_torn = 1e-9;
 
-Mesh load_checked(const Parameters& parameters, const ParticipantContext& context) {
+LoadedMesh load_checked(const Parameters& parameters, const ParticipantContext& context) {
   std::map<std::string, std::string> partner_of;
   for (const auto& [name, boundary] : parameters.boundaries)
     if (boundary.motion == BoundaryMotion::periodic) partner_of[name] = boundary.partner;
-  Mesh mesh =
+  LoadedMesh loaded =
       load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension,
                 parameters.mesh_parameters, periodic_pairs(partner_of), {}, false, parameters.mesh_scale);
+  const Mesh& mesh = loaded.mesh;
   std::string patches;
   for (const Patch& p : mesh.patches) patches += (patches.empty() ? "'" : ", '") + p.name + "'";
   for (const auto& [name, boundary] : parameters.boundaries)
@@ -40,12 +41,12 @@ Mesh load_checked(const Parameters& parameters, const ParticipantContext& contex
           "participants.{}.boundaries: patch '{}' has no entry; give it type: interface, moving, fixed, slip, "
           "free or periodic.",
           context.name, p.name);
-  if (const auto fold = find_fold(mesh, mesh.reference))
+  if (const auto fold = find_fold(mesh, loaded.geometry))
     throw Error(
         "participants.{}.mesh: the mesh is folded at ({:.4g}, {:.4g}, {:.4g}) m: cell {} (counted from 0 in "
         "the file) is not behind its face there. Cells overlap or are bent over; remesh there.",
         context.name, fold->centre.x(), fold->centre.y(), fold->centre.z(), fold->cell_id);
-  return mesh;
+  return loaded;
 }
 
 std::vector<std::string> interface_patches(const Parameters& parameters) {
@@ -58,12 +59,16 @@ std::vector<std::string> interface_patches(const Parameters& parameters) {
 }  // namespace
 
 Mover::Mover(const Parameters& parameters, const ParticipantContext& context)
+    : Mover(load_checked(parameters, context), parameters, context) {}
+
+Mover::Mover(LoadedMesh loaded, const Parameters& parameters, const ParticipantContext& context)
     : name_(context.name),
       parameters_(parameters),
-      mesh_(load_checked(parameters, context)),
-      periodic_(mesh_),
-      guard_(mesh_, parameters),
-      curved_(mesh_, parameters),
+      mesh_(std::move(loaded.mesh)),
+      geometry_(std::move(loaded.geometry)),
+      periodic_(mesh_, geometry_),
+      guard_(mesh_, geometry_, parameters),
+      curved_(mesh_, geometry_, parameters),
       interface_(mesh_, interface_patches(parameters)),
       displacement_(std::size_t(mesh_.points.n_local()) * mesh_.dim, 0.0),
       accepted_(displacement_) {
@@ -77,9 +82,11 @@ Mover::Mover(const Parameters& parameters, const ParticipantContext& context)
     log::info(
         "mesh motion: displacements from the reference mesh (form: total), so the mesh depends only on the "
         "current interface");
-  if (context.mesh_peer != MPI_COMM_NULL) sink_ = make_mesh_motion_sink(context.mesh_peer, mesh_);
+  if (context.mesh_peer != MPI_COMM_NULL)
+    sink_ = make_mesh_motion_sink(context.mesh_peer, mesh_, geometry_.points);
   if (!context.coupled && !context.output_folder.empty())
-    fields_ = std::make_unique<FieldWriter>(mesh_, context.output_folder, name_, true, context.restart_time);
+    fields_ = std::make_unique<FieldWriter>(mesh_, geometry_.points, context.output_folder, name_, true,
+                                            context.restart_time);
   if (comm_rank(mesh_.comm) != 0) return;
   std::vector<std::string> columns{"time [s]"};
   columns.insert(columns.end(), measure_names.begin(), measure_names.end());
@@ -104,38 +111,36 @@ void Mover::set_up_moving() {
   }
 }
 
-/// On the reference mesh, or on that of the last accepted step.
+/// On the geometry as read, or on that of the last accepted step.
 void Mover::make_method() {
-  const Mesh* on = &mesh_;
+  const Geometry* at = &geometry_;
   if (incremental()) {
-    if (!base_) base_ = std::make_unique<Mesh>(mesh_);
     place();  // displacement_ is accepted_ where a method is made
-    base_->reference_points = points_;
-    base_->reference = moved_;
-    on = base_.get();
+    if (!base_) base_ = std::make_unique<Geometry>();
+    *base_ = moved_;
+    at = base_.get();
   }
-  const std::vector<double>& volumes = parameters_.stiffening_volumes == StiffeningVolumes::current
-                                           ? on->reference.volume
-                                           : mesh_.reference.volume;
+  const std::vector<double>& volumes =
+      parameters_.stiffening_volumes == StiffeningVolumes::current ? at->volume : geometry_.volume;
   switch (parameters_.method) {
     case Method::laplacian:
     case Method::automatic:
-      method_ = std::make_unique<Laplacian>(*on, parameters_, volumes);
+      method_ = std::make_unique<Laplacian>(mesh_, *at, parameters_, volumes);
       break;
     case Method::pseudo_solid:
-      method_ = std::make_unique<PseudoSolid>(*on, parameters_, volumes);
+      method_ = std::make_unique<PseudoSolid>(mesh_, *at, parameters_, volumes);
       break;
     case Method::barrier:
-      method_ = std::make_unique<BarrierMotion>(*on, parameters_, volumes);
+      method_ = std::make_unique<BarrierMotion>(mesh_, *at, parameters_, volumes);
       break;
     case Method::rotations:
-      method_ = std::make_unique<Rotations>(*on, parameters_, volumes);
+      method_ = std::make_unique<Rotations>(mesh_, *at, parameters_, volumes);
       break;
   }
 }
 
 Interface Mover::initialise() {
-  Interface interface = interface_.describe();
+  Interface interface = interface_.describe(geometry_);
   // All ranks say so, whether or not they hold a part of the interface: rank 0 may hold none.
   if (!interface_patches(parameters_).empty())
     interface.takes = {{"displacement", "m", Interface::Place::vertices}};
@@ -150,7 +155,7 @@ std::vector<double> Mover::prescribed(const Exchange& in) const {
   std::vector<double> values(displacement_.size(), 0.0);
   for (const Moving& moving : moving_) {
     std::vector<Vec3> reference;
-    for (const Index v : moving.points) reference.push_back(mesh_.reference_points[v]);
+    for (const Index v : moving.points) reference.push_back(geometry_.points[v]);
     const std::vector<Vec3> places = moving.motion.places(reference, step_.time + step_.dt);
     for (std::size_t i = 0; i < places.size(); ++i)
       for (int c = 0; c < dim; ++c)
@@ -173,7 +178,7 @@ std::vector<double> Mover::body_velocities() const {
   values.assign(displacement_.size(), 0.0);
   for (const Moving& moving : moving_) {
     std::vector<Vec3> reference;
-    for (const Index v : moving.points) reference.push_back(mesh_.reference_points[v]);
+    for (const Index v : moving.points) reference.push_back(geometry_.points[v]);
     const std::vector<Vec3> velocity = moving.motion.velocities(reference, step_.time + step_.dt, step_.dt);
     for (std::size_t i = 0; i < velocity.size(); ++i)
       for (int c = 0; c < mesh_.dim; ++c)
@@ -185,10 +190,11 @@ std::vector<double> Mover::body_velocities() const {
 
 void Mover::place() {
   if (placed_) return;
-  points_ = mesh_.reference_points;
-  for (std::size_t v = 0; v < points_.size(); ++v)
-    for (int c = 0; c < mesh_.dim; ++c) points_[v][c] += displacement_[v * mesh_.dim + c];
-  moved_ = compute_geometry(mesh_, points_);
+  std::vector<Vec3> points = std::move(moved_.points);
+  points = geometry_.points;
+  for (std::size_t v = 0; v < points.size(); ++v)
+    for (int c = 0; c < mesh_.dim; ++c) points[v][c] += displacement_[v * mesh_.dim + c];
+  moved_ = compute_geometry(mesh_, std::move(points));
   placed_ = true;
 }
 
@@ -215,7 +221,7 @@ Exchange Mover::solve(const Exchange& in) {
     curved_.put_back(displacement_);
     refuse_torn();
     place();
-    const std::string refusal = guard_.refusal(moved_, points_);
+    const std::string refusal = guard_.refusal(moved_);
     if (!refusal.empty())
       throw SolveFailure(
           "participant '{}': the mesh motion from t = {:.6g} s {}{}", name_, step_.time, refusal,
@@ -240,7 +246,7 @@ StepReport Mover::accept_step() {
 
 MeshState Mover::state() {
   place();
-  return guard_.measure(moved_, points_);
+  return guard_.measure(moved_);
 }
 
 void Mover::save(CheckpointWriter& file) const {
@@ -277,10 +283,10 @@ void Mover::write_output(double time, int) {
   if (!fields_) return;
   place();
   using Place = OutputField::Place;
-  const std::vector<double> volume = guard_.of_cells(MeshState::volume_ratio, moved_, points_),
-                            jacobian = guard_.of_cells(MeshState::scaled_jacobian, moved_, points_),
-                            edges = guard_.of_cells(MeshState::edge_ratio, moved_, points_);
-  fields_->write(time, points_,
+  const std::vector<double> volume = guard_.of_cells(MeshState::volume_ratio, moved_),
+                            jacobian = guard_.of_cells(MeshState::scaled_jacobian, moved_),
+                            edges = guard_.of_cells(MeshState::edge_ratio, moved_);
+  fields_->write(time, moved_.points,
                  {{"displacement", "m", Place::points, mesh_.dim, displacement_},
                   {"volume-ratio", "1", Place::cells, 1, volume},
                   {"scaled-jacobian", "1", Place::cells, 1, jacobian},

@@ -39,12 +39,15 @@ class Mover final : public Participant {
   void write_monitors(double time) override;
 
   const Mesh& mesh() const { return mesh_; }
+  /// Of the points as read.
+  const Geometry& geometry() const { return geometry_; }
   /// dim values per local point, of the last solve [m].
   const std::vector<double>& displacement() const { return displacement_; }
   /// Of the mesh of the last solve. Collective.
   MeshState state();
 
  private:
+  Mover(LoadedMesh loaded, const Parameters& parameters, const ParticipantContext& context);
   struct Moving {
     std::vector<Index> points;  // local
     PrescribedMotion motion;
@@ -59,14 +62,15 @@ class Mover final : public Participant {
   /// Of the points of patches that move by themselves, zero elsewhere; empty without such patches.
   std::vector<double> body_velocities() const;
   void refuse_torn() const;
-  /// Points and geometry for displacement_, made once a motion. Collective.
+  /// The geometry for displacement_, made once a motion. Collective.
   void place();
 
   std::string name_;
   Parameters parameters_;
-  Mesh mesh_;
+  const Mesh mesh_;
+  const Geometry geometry_;
   PeriodicPoints periodic_;
-  std::unique_ptr<Mesh> base_;  // incremental: the mesh of the last step
+  std::unique_ptr<Geometry> base_;  // incremental: that of the last step
   Guard guard_;
   CurvedSlide curved_;
   std::unique_ptr<MotionMethod> method_;
@@ -75,8 +79,7 @@ class Mover final : public Participant {
   std::unique_ptr<MeshMotionSink> sink_;
   Step step_;
   std::vector<double> displacement_, accepted_;
-  bool placed_ = false;  // the next two are those of displacement_
-  std::vector<Vec3> points_;
+  bool placed_ = false;  // the next one is that of displacement_
   Geometry moved_;
   std::unique_ptr<Series> quality_;
   std::unique_ptr<FieldWriter> fields_;  // alone only

@@ -30,7 +30,7 @@ void Mover::choose_method(double end) {
       displacement_ = method_->solve(prescribed({}));
       placed_ = false;
       place();
-      const std::string refusal = guard_.refusal(moved_, points_);
+      const std::string refusal = guard_.refusal(moved_);
       if (refusal.empty()) continue;
       use_barrier(fmt::format("at t = {:.4g} s the prescribed motion with laplacian {}", step_.dt,
                               refusal.substr(0, refusal.find(". "))));
@@ -50,7 +50,7 @@ void Mover::choose_method(double end) {
 /// Where the Laplacian's mesh is refused the barrier moves it, from now on.
 void Mover::leave_laplacian(const Exchange& in) {
   place();
-  const std::string refusal = guard_.refusal(moved_, points_);
+  const std::string refusal = guard_.refusal(moved_);
   if (refusal.empty() || !periodic_.empty()) return;  // no barrier across periodic patches
   use_barrier(fmt::format("the motion from t = {:.4g} s with laplacian {}", step_.time,
                           refusal.substr(0, refusal.find(". "))));

@@ -38,7 +38,8 @@ std::vector<LameConstants> stiffness(const Mesh& mesh, const Parameters& p, std:
 
 }  // namespace
 
-PseudoSolid::PseudoSolid(const Mesh& mesh, const Parameters& parameters, std::span<const double> volumes)
+PseudoSolid::PseudoSolid(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters,
+                         std::span<const double> volumes)
     : mesh_(mesh),
       dim_(mesh.dim),
       options_{parameters.linear.relative_tolerance, parameters.linear.max_iterations, true},
@@ -68,8 +69,9 @@ PseudoSolid::PseudoSolid(const Mesh& mesh, const Parameters& parameters, std::sp
         for (Index f = first; f < first + count; ++f)
           for (const Index v : mesh.face_points[f]) given_point_[v] = 0;
   ElasticBody body;
-  body.lame = stiffness(mesh, parameters, volumes.empty() ? std::span(mesh.reference.volume) : volumes);
-  rows_ = std::make_unique<ElasticOperator>(mesh, boundary_of_patches(mesh, conditions), std::move(body));
+  body.lame = stiffness(mesh, parameters, volumes.empty() ? std::span(geometry.volume) : volumes);
+  rows_ = std::make_unique<ElasticOperator>(mesh, geometry, boundary_of_patches(mesh, conditions),
+                                            std::move(body));
   kernel_ = std::make_unique<ElasticKernel>(mesh, *rows_, FaceGradientScheme::symmetric);
   unknowns_.assign(rows_->n_unknowns(), 0.0);
   make_solver(parameters.linear);

@@ -19,7 +19,8 @@ namespace couplet::mesh_mover {
 class PseudoSolid final : public MotionMethod {
  public:
   /// `volumes`: V of (4.12) per local cell; empty: those of the mesh. Throws Error if no patch holds the mesh.
-  PseudoSolid(const Mesh& mesh, const Parameters& parameters, std::span<const double> volumes = {});
+  PseudoSolid(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters,
+              std::span<const double> volumes = {});
 
   std::vector<double> solve(std::span<const double> prescribed) override;
   SolveStatistics last() const override { return last_; }

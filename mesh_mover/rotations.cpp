@@ -49,8 +49,9 @@ std::vector<Index> points_of(const Mesh& mesh, const Patch& patch) {
 
 }  // namespace
 
-Rotations::Rotations(const Mesh& mesh, const Parameters& parameters, std::span<const double> volumes)
-    : mesh_(mesh), dim_(mesh.dim), rest_(mesh, parameters, volumes) {
+Rotations::Rotations(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters,
+                     std::span<const double> volumes)
+    : mesh_(mesh), geometry_(geometry), dim_(mesh.dim), rest_(mesh, geometry, parameters, volumes) {
   find_bodies(parameters);
   find_room(parameters);
 }
@@ -64,28 +65,28 @@ void Rotations::find_bodies(const Parameters& parameters) {
     double sums[4] = {};
     for (const Index v : body.points)
       if (v < mesh_.points.n_owned()) {
-        for (int c = 0; c < 3; ++c) sums[c] += mesh_.reference_points[v][c];
+        for (int c = 0; c < 3; ++c) sums[c] += geometry_.points[v][c];
         sums[3] += 1;
       }
     MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, mesh_.comm);
     body.centre = Vec3(sums[0], sums[1], sums[2]) / std::max(sums[3], 1.0);
     for (const Index v : body.points)
-      body.inner = std::max(body.inner, (mesh_.reference_points[v] - body.centre).norm());
+      body.inner = std::max(body.inner, (geometry_.points[v] - body.centre).norm());
     body.inner = max(mesh_.comm, body.inner);
     bodies_.push_back(std::move(body));
   }
 }
 
 void Rotations::find_room(const Parameters& parameters) {
-  const PeriodicPoints periodic(mesh_);  // nothing turns across them
+  const PeriodicPoints periodic(mesh_, geometry_);  // nothing turns across them
   for (Body& body : bodies_) {
     double nearest = std::numeric_limits<double>::max();
     for (const Patch& patch : mesh_.patches)
       if (patch.name != body.name && parameters.boundaries.at(patch.name).motion != BoundaryMotion::free)
         for (const Index v : points_of(mesh_, patch))
-          nearest = std::min(nearest, (mesh_.reference_points[v] - body.centre).norm());
+          nearest = std::min(nearest, (geometry_.points[v] - body.centre).norm());
     for (const Index v : periodic.points())
-      nearest = std::min(nearest, (mesh_.reference_points[v] - body.centre).norm());
+      nearest = std::min(nearest, (geometry_.points[v] - body.centre).norm());
     body.outer = min(mesh_.comm, nearest);
     if (!(body.outer > least_room * body.inner))
       throw Error(
@@ -121,7 +122,7 @@ Vec3 Rotations::best_rotation(const Body& body, std::span<const double> prescrib
   Tensor3 m = Tensor3::Zero();
   for (const Index v : body.points)
     if (v < mesh_.points.n_owned()) {
-      const Vec3 r = mesh_.reference_points[v] - body.centre;
+      const Vec3 r = geometry_.points[v] - body.centre;
       m += (r + given(v) - shift) * r.transpose();
     }
   MPI_Allreduce(MPI_IN_PLACE, m.data(), 9, MPI_DOUBLE, MPI_SUM, mesh_.comm);
@@ -137,7 +138,7 @@ std::vector<double> Rotations::turned() const {
     if (angle == 0) continue;
     const Vec3 axis = body.theta / angle;
     for (Index v = 0; v < mesh_.points.n_local(); ++v) {
-      const Vec3 r = mesh_.reference_points[v] - body.centre;
+      const Vec3 r = geometry_.points[v] - body.centre;
       const double distance = r.norm();
       if (distance >= body.outer) continue;
       const double share =

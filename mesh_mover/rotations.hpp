@@ -23,7 +23,8 @@ namespace couplet::mesh_mover {
 class Rotations final : public MotionMethod {
  public:
   /// Throws Error where a body has no room to turn.
-  Rotations(const Mesh& mesh, const Parameters& parameters, std::span<const double> volumes = {});
+  Rotations(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters,
+            std::span<const double> volumes = {});
 
   std::vector<double> solve(std::span<const double> prescribed) override;
   SolveStatistics last() const override { return rest_.last(); }
@@ -45,6 +46,7 @@ class Rotations final : public MotionMethod {
   std::vector<double> turned() const;
 
   const Mesh& mesh_;
+  const Geometry& geometry_;
   int dim_;
   Laplacian rest_;
   std::vector<Body> bodies_;

@@ -40,7 +40,6 @@ Mesh surface_mesh(MPI_Comm comm, const ModalModel& model) {
   mesh.cells = IndexMap(comm, model.faces.size(), {}, {});
   mesh.points = IndexMap(comm, Index(model.vertices.size()), {}, {});
   mesh.cell_points = model.faces;
-  mesh.reference_points = model.vertices;
   for (Index f = 0; f < model.faces.size(); ++f)
     mesh.cell_type.push_back(model.faces[f].size() == 3 ? CellType::triangle : CellType::quadrilateral);
   mesh.cell_id.resize(model.faces.size());
@@ -164,7 +163,7 @@ void PlateResults::write_frequencies() {
 void PlateResults::write_shapes() {
   const ModalModel& model = structure_.model();
   const std::size_t n = structure_.share().n_modes();
-  FieldWriter writer(surface_, structure_.context().output_folder, "modes-shapes", false,
+  FieldWriter writer(surface_, model.vertices, structure_.context().output_folder, "modes-shapes", false,
                      std::numeric_limits<double>::quiet_NaN());
   for (std::size_t m = 0; m < n; ++m) {
     std::vector<double> shape(model.vertex_shape.size() / n);
@@ -180,11 +179,11 @@ void PlateResults::write_fields(double time) {
     return;
   const std::vector<double> u = structure_.displacement(),
                             v = structure_.share().gather_vertices(structure_.state().v);
-  std::vector<Vec3> places = surface_.reference_points;
+  std::vector<Vec3> places = structure_.model().vertices;
   for (std::size_t i = 0; i < places.size(); ++i) places[i] += Vec3(&u[3 * i]);
   if (!fields_)
-    fields_.emplace(surface_, structure_.context().output_folder, structure_.context().name, true,
-                    structure_.context().restart_time);
+    fields_.emplace(surface_, structure_.model().vertices, structure_.context().output_folder,
+                    structure_.context().name, true, structure_.context().restart_time);
   fields_->write(time, places,
                  {{"displacement", "m", OutputField::Place::points, 3, u},
                   {"velocity", "m/s", OutputField::Place::points, 3, v}});

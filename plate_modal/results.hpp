@@ -39,7 +39,7 @@ class PlateResults final {
 
   const Structure& structure_;
   bool active_, root_;
-  Mesh surface_;  // the whole surface on rank 0
+  Mesh surface_;  // the whole surface on rank 0, the places of its points being the vertices of the model
   std::vector<SurfacePlace> probes_;
   std::optional<FieldWriter> fields_;
   std::optional<Series> modal_, energies_, contact_, probe_series_, static_;

@@ -15,14 +15,14 @@ int main(int argc, char** argv) {
           "linear thermoelasticity, static or dynamic, and heat conduction, by the finite-volume method",
       .declare = [&](couplet::config::Section& section) { couplet::declare(section, parameters); },
       .make = [&](const couplet::ParticipantContext& context) -> std::unique_ptr<couplet::Participant> {
-        couplet::Mesh mesh =
+        couplet::LoadedMesh body =
             couplet::load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension,
                                parameters.mesh_parameters, {}, couplet::zones_of(parameters.materials), true,
                                parameters.mesh_scale);
         const couplet::SolidContext where{context.name, context.output_folder, context.restart_time};
         if (parameters.analysis == couplet::SolidParameters::Analysis::thermal)
-          return std::make_unique<couplet::ThermalSolid>(std::move(mesh), parameters, where);
-        return std::make_unique<couplet::Solid>(std::move(mesh), parameters, where);
+          return std::make_unique<couplet::ThermalSolid>(std::move(body), parameters, where);
+        return std::make_unique<couplet::Solid>(std::move(body), parameters, where);
       },
       .environment = couplet::petsc_environment,
       .effects =

@@ -14,9 +14,9 @@ constexpr int steps_between_looks = 50;  // of a motion at its energy; a look co
 
 }  // namespace
 
-Solid::Solid(Mesh mesh, SolidParameters parameters, SolidContext context)
+Solid::Solid(LoadedMesh body, SolidParameters parameters, SolidContext context)
     : context_(std::move(context)),
-      body_(std::move(mesh), std::move(parameters)),
+      body_(std::move(body), std::move(parameters)),
       interface_(body_),
       stepper_(body_),
       fields_(body_, stepper_.state(), stepper_.last_solve()),

@@ -24,7 +24,7 @@ class SolidOutput;
 class Solid final : public Participant, public EstimatesError {
  public:
   /// Collective over mesh.comm.
-  Solid(Mesh mesh, SolidParameters parameters, SolidContext context);
+  Solid(LoadedMesh body, SolidParameters parameters, SolidContext context);
   ~Solid() override;
 
   Interface initialise() override { return interface_.description(); }

@@ -8,14 +8,16 @@
 
 namespace couplet {
 
-ThermalSolid::ThermalSolid(Mesh mesh, SolidParameters parameters, SolidContext context)
-    : mesh_(std::move(mesh)),
+ThermalSolid::ThermalSolid(LoadedMesh body, SolidParameters parameters, SolidContext context)
+    : mesh_(std::move(body.mesh)),
+      geometry_(std::move(body.geometry)),
       parameters_(std::move(parameters)),
       context_(std::move(context)),
-      heat_(make_heat(mesh_, parameters_)) {
-  for (const auto& [name, probe] : parameters_.probes) probes_.emplace_back(mesh_, name, probe.point);
+      heat_(make_heat(mesh_, geometry_, parameters_)) {
+  for (const auto& [name, probe] : parameters_.probes)
+    probes_.emplace_back(mesh_, geometry_.points, name, probe.point);
   if (!parameters_.output.surfaces.empty())
-    surfaces_.emplace(mesh_, parameters_.output.surfaces, "output.surfaces");
+    surfaces_.emplace(mesh_, geometry_.points, parameters_.output.surfaces, "output.surfaces");
 }
 
 Interface ThermalSolid::initialise() {
@@ -47,9 +49,11 @@ void ThermalSolid::load(CheckpointReader& file) {
 
 void ThermalSolid::write_output(double time, int) {
   if (context_.output_folder.empty()) return;
-  if (!fields_) fields_.emplace(mesh_, context_.output_folder, context_.name, false, context_.restart_time);
+  if (!fields_)
+    fields_.emplace(mesh_, geometry_.points, context_.output_folder, context_.name, false,
+                    context_.restart_time);
   const std::vector<double> points = heat_->point_temperature(heat_->accepted());
-  fields_->write(time, mesh_.reference_points,
+  fields_->write(time, geometry_.points,
                  {{"temperature", "K", OutputField::Place::points, 1, points},
                   {"cell-temperature", "K", OutputField::Place::cells, 1, heat_->accepted().cells}});
   if (surfaces_) write_surfaces(time, points);
@@ -60,7 +64,7 @@ void ThermalSolid::write_surfaces(double time, std::span<const double> points) {
   surfaces_open_ = true;
   const std::vector<double> inflow = heat_->boundary_inflow();
   for (std::size_t i = 0; i < surfaces_->patches().size(); ++i)
-    surfaces_->write(i, time, mesh_.reference_points,
+    surfaces_->write(i, time, geometry_.points,
                      {{"temperature", "K", OutputField::Place::points, 1, points},
                       {"heat-flux", "W/m^2", OutputField::Place::cells, 1, inflow}});
 }

@@ -26,7 +26,7 @@ namespace couplet {
 class ThermalSolid final : public Participant, public EstimatesError {
  public:
   /// Collective over mesh.comm.
-  ThermalSolid(Mesh mesh, SolidParameters parameters, SolidContext context);
+  ThermalSolid(LoadedMesh body, SolidParameters parameters, SolidContext context);
 
   Interface initialise() override;
   void begin_step(const Step& step) override;
@@ -38,7 +38,7 @@ class ThermalSolid final : public Participant, public EstimatesError {
   }
   void save(CheckpointWriter& file) const override;
   void load(CheckpointReader& file) override;
-  void collect_errors() override { errors_.emplace(mesh_, parameters_.heat.value()); }
+  void collect_errors() override { errors_.emplace(mesh_, geometry_, parameters_.heat.value()); }
   ErrorParts error_parts() const override { return errors_ ? errors_->parts(*heat_) : ErrorParts{}; }
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
@@ -53,6 +53,7 @@ class ThermalSolid final : public Participant, public EstimatesError {
   void write_surfaces(double time, std::span<const double> points);
 
   const Mesh mesh_;
+  const Geometry geometry_;
   const SolidParameters parameters_;
   const SolidContext context_;
   std::unique_ptr<Heat> heat_;

@@ -55,8 +55,8 @@ void add_rigid_motions(const SolidBody& body, Mat p) {
   const auto add = [&](const Vec3& x) {
     for (int a = 0; a < mesh.dim; ++a) places.push_back(x[a]);
   };
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) add(mesh.reference.cell_centre[c]);
-  for (const Index f : body.elastic().unknown_faces()) add(mesh.reference.face_centre[f]);
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) add(body.geometry().cell_centre[c]);
+  for (const Index f : body.elastic().unknown_faces()) add(body.geometry().face_centre[f]);
   ::Vec v = vector_of(mesh.comm, places);
   petsc_check(VecSetBlockSize(v, mesh.dim));
   MatNullSpace motions = nullptr;
@@ -102,7 +102,6 @@ Result by_program(const System& system, const SolidBody& body) {
   Result result;
   const Meter whole(system.comm);
   const auto method = make_solution_method(problem_of(body), body.parameters().method);
-  body.elastic().forget_faces();
   result.setup = whole.seconds();
   result.x = system.guess;
   result.iterations = method->solve(system.b, result.x).iterations;
@@ -115,7 +114,6 @@ Result by_program(const System& system, const SolidBody& body) {
 Result by_krylov(const System& system, const SolidBody& body, const std::string& options) {
   const Meter whole(system.comm);
   const auto method = make_solution_method(problem_of(body), body.parameters().method);
-  body.elastic().forget_faces();
   const double making = whole.seconds(), peak = whole.peak();
   auto* mixed = dynamic_cast<MixedForm*>(method.get());
   System same = system;
@@ -159,7 +157,6 @@ Result by_cycle(const System& system, const SolidBody& body, const std::string& 
     modes.emplace(problem.mesh, problem.elastic, aggregates, std::vector<double>{});
     modes->update(at_rest(problem.mesh));
   }
-  body.elastic().forget_faces();
   KrylovSolver krylov("displacement", system.comm, system.b.size(), system.apply,
                       [&](std::span<const double> r, std::span<double> z) {
                         preconditioner.apply(r, z);
@@ -213,15 +210,15 @@ int run_solid(const std::string& folder, const std::string& how, int argc, char*
   program.declare = [&](config::Section& section) { declare(section, parameters); };
   program.environment = petsc_environment;
   program.make = [&](const ParticipantContext& context) -> std::unique_ptr<Participant> {
-    Mesh mesh = load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension,
-                          parameters.mesh_parameters, {}, zones_of(parameters.materials), true,
-                          parameters.mesh_scale);
+    LoadedMesh loaded = load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension,
+                                  parameters.mesh_parameters, {}, zones_of(parameters.materials), true,
+                                  parameters.mesh_scale);
     const Files files{folder, std::to_string(comm_size(context.comm))};
     if (how == "record") {
-      Solid solid(std::move(mesh), parameters, {context.name, context.output_folder, context.restart_time});
+      Solid solid(std::move(loaded), parameters, {context.name, context.output_folder, context.restart_time});
       record(solid, files);
     } else {
-      const SolidBody body(std::move(mesh), parameters);
+      const SolidBody body(std::move(loaded), parameters);
       measure(body, files, how);
     }
     std::fflush(stdout);

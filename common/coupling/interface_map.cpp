@@ -99,18 +99,18 @@ std::vector<double> InterfaceMap::gather_faces(std::span<const double> local, in
   return {local.begin(), local.end()};
 }
 
-Interface InterfaceMap::describe() const {
+Interface InterfaceMap::describe(const Geometry& geometry) const {
   Interface interface;
   interface.dim = mesh_->dim;
   for (Index i = 0; i < vertices_.n_owned(); ++i) {
-    interface.vertices.push_back(mesh_->reference_points[points_[i]]);
+    interface.vertices.push_back(geometry.points[points_[i]]);
     interface.vertex_ids.push_back(mesh_->point_id[points_[i]]);
   }
   interface.parts = patches_;
   interface.face_offset.push_back(0);
   for (const Index f : faces_) {
-    interface.face_centres.push_back(mesh_->reference.face_centre[f]);
-    interface.face_areas.push_back(mesh_->reference.face_area[f]);
+    interface.face_centres.push_back(geometry.face_centre[f]);
+    interface.face_areas.push_back(geometry.face_area[f]);
     interface.face_ids.push_back(mesh_->boundary_id[f - mesh_->n_interior]);
     for (const Index point : mesh_->face_points[f]) {
       const auto here = std::lower_bound(points_.begin(), points_.end(), point) - points_.begin();

@@ -23,8 +23,8 @@ class InterfaceMap {
   /// Boundary faces (face indices) of owned cells on these patches, ascending.
   const std::vector<Index>& faces() const { return faces_; }
 
-  /// The reference configuration of what this rank owns; takes and gives stay empty.
-  Interface describe() const;
+  /// Where what this rank owns is in this geometry; takes and gives stay empty.
+  Interface describe(const Geometry& geometry) const;
   /// Values of the vertices that this rank owns to values at points(), in that order. An empty vector
   /// (nothing was given) stands for zeros; any other wrong size is an Error.
   std::vector<double> scatter_vertices(const std::vector<double>& owned, int components) const;

@@ -103,7 +103,8 @@ bool any_of_source(MPI_Comm peers, MPI_Comm own, bool is_source, bool value) {
 
 class Source final : public MeshMotionSource {
  public:
-  Source(MPI_Comm peers, const Mesh& mesh) : peers_(peers), dim_(mesh.dim), n_points_(mesh.points.n_local()) {
+  Source(MPI_Comm peers, const Mesh& mesh, std::span<const Vec3> places)
+      : peers_(peers), dim_(mesh.dim), n_points_(mesh.points.n_local()) {
     meet(peers, mover_name);
     const auto owned = exchange_owned_ids(peers, mesh);
     std::vector<std::pair<GlobalIndex, int>> owner_of;
@@ -128,7 +129,7 @@ class Source final : public MeshMotionSource {
       throw_other_points(": their points have different numbers");
     for (std::size_t r = 0; r < points.size(); ++r)
       if (!points[r].empty()) from_.push_back({static_cast<int>(r), std::move(points[r])});
-    compare_points(mesh);
+    compare_points(mesh, places);
   }
 
   std::vector<double> receive() override {
@@ -161,10 +162,10 @@ class Source final : public MeshMotionSource {
       for (int c = 0; c < dim_; ++c) values[std::size_t(peer.points[i]) * dim_ + c] = from[i * dim_ + c];
   }
   /// Equal numbers with other places would pass unseen and move the wrong points.
-  void compare_points(const Mesh& mesh) {
+  void compare_points(const Mesh& mesh, std::span<const Vec3> places) {
     const std::vector<double> theirs = receive();
     Vec3 low = Vec3::Constant(INFINITY), high = -low;
-    for (const Vec3& x : mesh.reference_points) {
+    for (const Vec3& x : places) {
       low = low.cwiseMin(x);
       high = high.cwiseMax(x);
     }
@@ -172,8 +173,7 @@ class Source final : public MeshMotionSource {
     bool other = false;
     for (Index p = 0; p < n_points_; ++p)
       for (int c = 0; c < dim_; ++c)
-        other =
-            other || std::abs(theirs[std::size_t(p) * dim_ + c] - mesh.reference_points[p][c]) > tolerance;
+        other = other || std::abs(theirs[std::size_t(p) * dim_ + c] - places[p][c]) > tolerance;
     if (any_of_source(peers_, mesh.comm, true, other))
       throw_other_points(
           ": their points have different "
@@ -189,7 +189,7 @@ class Source final : public MeshMotionSource {
 
 class Sink final : public MeshMotionSink {
  public:
-  Sink(MPI_Comm peers, const Mesh& mesh) : peers_(peers), dim_(mesh.dim) {
+  Sink(MPI_Comm peers, const Mesh& mesh, std::span<const Vec3> places) : peers_(peers), dim_(mesh.dim) {
     meet(peers, fluid_name);
     exchange_owned_ids(peers, mesh);
     const auto wanted = exchange(peers, std::vector<std::vector<GlobalIndex>>(remote_size(peers)));
@@ -208,7 +208,7 @@ class Sink final : public MeshMotionSink {
             std::lower_bound(owned.begin(), owned.end(), std::pair(id, Index(0)))->second);
     }
     std::vector<double> points;
-    for (const Vec3& x : mesh.reference_points) points.insert(points.end(), x.begin(), x.begin() + dim_);
+    for (const Vec3& x : places) points.insert(points.end(), x.begin(), x.begin() + dim_);
     send(points, {});
     if (any_of_source(peers, mesh.comm, false, false))
       throw_other_points(
@@ -269,12 +269,14 @@ class Sink final : public MeshMotionSink {
 
 }  // namespace
 
-std::unique_ptr<MeshMotionSource> make_mesh_motion_source(MPI_Comm peers, const Mesh& mesh) {
-  return std::make_unique<Source>(peers, mesh);
+std::unique_ptr<MeshMotionSource> make_mesh_motion_source(MPI_Comm peers, const Mesh& mesh,
+                                                          std::span<const Vec3> points) {
+  return std::make_unique<Source>(peers, mesh, points);
 }
 
-std::unique_ptr<MeshMotionSink> make_mesh_motion_sink(MPI_Comm peers, const Mesh& mesh) {
-  return std::make_unique<Sink>(peers, mesh);
+std::unique_ptr<MeshMotionSink> make_mesh_motion_sink(MPI_Comm peers, const Mesh& mesh,
+                                                      std::span<const Vec3> points) {
+  return std::make_unique<Sink>(peers, mesh, points);
 }
 
 }  // namespace couplet

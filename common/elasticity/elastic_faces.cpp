@@ -28,7 +28,7 @@ Vec3 ElasticOperator::add_forces(std::span<const double> forces, std::span<doubl
 void ElasticOperator::add_pressure(std::span<const double> pressure, std::span<double> rhs) const {
   const int dim = mesh_->dim;
   const Index n_owned = mesh_->cells.n_owned();
-  const auto force = [&](Index f) { return Vec3(pressure[f] * mesh_->reference.face_area[f]); };
+  const auto force = [&](Index f) { return Vec3(pressure[f] * geometry_->face_area[f]); };
   const auto add = [&](Index row, const Vec3& value) {
     for (int a = 0; a < dim; ++a) rhs[std::size_t(row) * dim + a] += value[a];
   };
@@ -84,8 +84,8 @@ void ElasticOperator::join_twins(std::span<double> faces) const {
 
 Vec3 ElasticOperator::holding_force(Index face, const Tensor3& stress, std::span<const double> faces,
                                     std::span<const double> known) const {
-  const Vec3 force = stress * mesh_->reference.face_area[face];
-  const Vec3 n = mesh_->reference.face_area[face].normalized();
+  const Vec3 force = stress * geometry_->face_area[face];
+  const Vec3 n = geometry_->face_area[face].normalized();
   switch (condition(face)) {
     case ElasticCondition::symmetry:
       return n * n.dot(force);

@@ -13,16 +13,17 @@ namespace couplet {
 /// What the boundary faces of owned cells do with the force on them: the rows that ElasticOperator defines.
 class ElasticRows {
  public:
-  ElasticRows(const Mesh& mesh, const ElasticOperator& rows) : mesh_(&mesh), rows_(&rows) {
+  ElasticRows(const Mesh& mesh, const ElasticOperator& rows)
+      : mesh_(&mesh), geometry_(&rows.geometry()), rows_(&rows) {
+    const Geometry& geometry = rows.geometry();
     for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
       const ElasticCondition here = rows.condition(f);
-      if (here == ElasticCondition::symmetry)
-        symmetry_.push_back({f, mesh.reference.face_area[f].normalized()});
+      if (here == ElasticCondition::symmetry) symmetry_.push_back({f, geometry.face_area[f].normalized()});
       if (here == ElasticCondition::prescribed || here == ElasticCondition::bonded) held_.push_back(f);
     }
     for (const Index f : rows.unknown_faces()) {
       const LameConstants lame = rows.lame(mesh.owner[f]);
-      const FaceLine line = face_line(mesh, mesh.reference, f);
+      const FaceLine line = face_line(mesh, geometry, f);
       stiffness_.push_back((2 * lame.mu + lame.lambda) * line.area * line.inverse_dn);
     }
   }
@@ -53,7 +54,7 @@ class ElasticRows {
         case ElasticCondition::zero_gradient: {
           const LameConstants lame = rows_->lame(mesh_->owner[f]);
           lanes::add<D>(nodes.force(mesh_->owner[f]), -force(f));
-          own = (2 * lame.mu + lame.lambda) * mesh_->reference.face_area[f].norm() * slope(f);
+          own = (2 * lame.mu + lame.lambda) * geometry_->face_area[f].norm() * slope(f);
           break;
         }
         case ElasticCondition::bonded:
@@ -73,7 +74,7 @@ class ElasticRows {
   void support_row(Index f, double stiffness, ElasticNodes<D>& nodes, std::span<const double> known,
                    std::array<double, Width>& force) const {
     const ElasticSupport& support = rows_->support(f);
-    const double area = mesh_->reference.face_area[f].norm();
+    const double area = geometry_->face_area[f].norm();
     Vec3 jump = Vec3::Zero(), flux = Vec3::Zero();
     for (int a = 0; a < D; ++a) {
       jump[a] =
@@ -92,6 +93,7 @@ class ElasticRows {
   }
 
   const Mesh* mesh_;
+  const Geometry* geometry_;
   const ElasticOperator* rows_;
   std::vector<std::pair<Index, Vec3>> symmetry_;  // with the normals
   std::vector<Index> held_;                       // the whole force goes into the cell

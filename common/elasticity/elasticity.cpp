@@ -45,23 +45,26 @@ struct ElasticOperator::Row {
   Part nodes, known;
 };
 
-ElasticOperator::ElasticOperator(const Mesh& mesh, ElasticBoundary boundary, ElasticBody body)
+ElasticOperator::ElasticOperator(const Mesh& mesh, const Geometry& geometry, ElasticBoundary boundary,
+                                 ElasticBody body)
     : mesh_(&mesh),
+      geometry_(&geometry),
       boundary_(std::move(boundary)),
       body_(std::move(body)),
-      vertices_(mesh, stencils_of(boundary_, body_)),
+      vertices_(mesh, geometry, stencils_of(boundary_, body_)),
       constraints_(mesh, boundary_, vertices_) {
   sort_boundary();
   number_ = number_nodes(mesh, unknown_faces_);
 }
 
-ElasticOperator::ElasticOperator(const Mesh& mesh, std::span<const ElasticCondition> conditions,
-                                 const LameConstants& lame)
-    : ElasticOperator(mesh, boundary_of_patches(mesh, conditions), {{lame}, {}}) {}
+ElasticOperator::ElasticOperator(const Mesh& mesh, const Geometry& geometry,
+                                 std::span<const ElasticCondition> conditions, const LameConstants& lame)
+    : ElasticOperator(mesh, geometry, boundary_of_patches(mesh, conditions), {{lame}, {}}) {}
 
-const FaceGradient& ElasticOperator::faces() const {
-  if (!faces_) faces_ = std::make_unique<FaceGradient>(*mesh_);
-  return *faces_;
+ElasticOperator::FaceWeights ElasticOperator::weights_of(Index face) const {
+  FaceWeights here{face_line(*mesh_, *geometry_, face), {}};
+  tangential_weights(*mesh_, geometry_->points, face, here.line, here.tangential.data());
+  return here;
 }
 
 void ElasticOperator::sort_boundary() {
@@ -100,9 +103,11 @@ void ElasticOperator::add_cell(Index cell, std::span<const Index> faces, Row& ro
     switch (here) {
       case ElasticCondition::traction:
         break;
-      case ElasticCondition::symmetry:
-        add_flux(f, out * this->faces().normal[f] * this->faces().normal[f].transpose(), row);
+      case ElasticCondition::symmetry: {
+        const Vec3 n = face_line(*mesh_, *geometry_, f).normal;
+        add_flux(f, out * n * n.transpose(), row);
         break;
+      }
       case ElasticCondition::support: {
         const ElasticSupport& s = support(f);
         if (!s.known.isZero(0)) add_flux(f, out * s.known, row);
@@ -122,23 +127,26 @@ void ElasticOperator::add_cell(Index cell, std::span<const Index> faces, Row& ro
 void ElasticOperator::add_unknown_face(Index face, Row& row) const {
   const LameConstants lame = lame_at(face);
   const double size = area(face), stiffness = (2 * lame.mu + lame.lambda) * size;
+  const FaceWeights here = weights_of(face);
   switch (condition(face)) {
     case ElasticCondition::support: {
       const ElasticSupport& s = support(face);
       const Tensor3 open = Tensor3::Identity() - s.known;
       add_flux(face, size * open, row);
-      const Tensor3 held = size * open * s.spring + stiffness * faces().inverse_dn[face] * s.known;
+      const Tensor3 held = size * open * s.spring + stiffness * here.line.inverse_dn * s.known;
       add_face_node(face, held, row);
       row.known.add(known_of_face(face), -held);
       break;
     }
     case ElasticCondition::zero_gradient: {
-      const Tensor3 across = stiffness * faces().inverse_dn[face] * Tensor3::Identity();
+      const Tensor3 across = stiffness * here.line.inverse_dn * Tensor3::Identity();
       row.nodes.add(mesh_->owner[face], -across);
       add_face_node(face, across, row);
       for (Index e = mesh_->face_points.offset[face]; e < mesh_->face_points.offset[face + 1]; ++e)
         add_vertex(mesh_->face_points.index[e],
-                   stiffness * faces().skew[face].dot(faces().tangential[e]) * Tensor3::Identity(), row);
+                   stiffness * here.line.skew.dot(here.tangential[e - mesh_->face_points.offset[face]]) *
+                       Tensor3::Identity(),
+                   row);
       break;
     }
     case ElasticCondition::bonded: {
@@ -169,10 +177,11 @@ LameConstants ElasticOperator::lame_at(Index face) const {
 //   g = (u_N - u_P) / (d . n) + sum_V (k . c_V) u_V
 void ElasticOperator::add_flux(Index face, const Tensor3& scale, Row& row) const {
   const bool on_boundary = face >= mesh_->n_interior;
-  const Vec3& n = faces().normal[face];
+  const FaceWeights at = weights_of(face);
+  const Vec3& n = at.line.normal;
   const Tensor3 nn = n * n.transpose(), identity = Tensor3::Identity();
   const auto [mu, lambda] = lame_at(face);
-  const Tensor3 across = scale * (mu * (identity + nn) + lambda * nn) * faces().inverse_dn[face];
+  const Tensor3 across = scale * (mu * (identity + nn) + lambda * nn) * at.line.inverse_dn;
   row.nodes.add(mesh_->owner[face], -across);
   if (!on_boundary)
     row.nodes.add(mesh_->neighbour[face], across);
@@ -181,8 +190,8 @@ void ElasticOperator::add_flux(Index face, const Tensor3& scale, Row& row) const
   else if (condition(face) != ElasticCondition::symmetry)
     add_face_node(face, across, row);
   for (Index e = mesh_->face_points.offset[face]; e < mesh_->face_points.offset[face + 1]; ++e) {
-    const Vec3& c = faces().tangential[e];
-    const double kc = faces().skew[face].dot(c);
+    const Vec3& c = at.tangential[e - mesh_->face_points.offset[face]];
+    const double kc = at.line.skew.dot(c);
     add_vertex(
         mesh_->face_points.index[e],
         scale * (mu * (kc * (identity + nn) + c * n.transpose()) + lambda * (kc * nn + n * c.transpose())),
@@ -264,16 +273,18 @@ Tensor3 ElasticOperator::gradient(Index face, std::span<const double> cells, std
     for (int c = 0; c < dim; ++c) u[c] = values[std::size_t(i) * dim + c];
     return u;
   };
+  const auto [line, weights] = weights_of(face);
   Tensor3 tangential = Tensor3::Zero();
   for (Index e = mesh_->face_points.offset[face]; e < mesh_->face_points.offset[face + 1]; ++e)
-    tangential += faces().tangential[e] * at(points, mesh_->face_points.index[e]).transpose();
-  const Vec3& n = faces().normal[face];
+    tangential +=
+        weights[e - mesh_->face_points.offset[face]] * at(points, mesh_->face_points.index[e]).transpose();
+  const Vec3& n = line.normal;
   const Vec3 here = at(cells, mesh_->owner[face]);
   if (face >= mesh_->n_interior && condition(face) == ElasticCondition::symmetry)
-    return n * (-n.dot(here) * faces().inverse_dn[face] * n).transpose() + tangential;
+    return n * (-n.dot(here) * line.inverse_dn * n).transpose() + tangential;
   const Vec3 there =
       face < mesh_->n_interior ? at(cells, mesh_->neighbour[face]) : at(boundary, face - mesh_->n_interior);
-  const Vec3 normal = (there - here) * faces().inverse_dn[face] + tangential.transpose() * faces().skew[face];
+  const Vec3 normal = (there - here) * line.inverse_dn + tangential.transpose() * line.skew;
   return n * normal.transpose() + tangential;
 }
 

@@ -56,16 +56,16 @@ struct ElasticBody {
 /// and in its cell's, (I - P) F of a support likewise (add_forces()).
 class ElasticOperator {
  public:
-  ElasticOperator(const Mesh& mesh, ElasticBoundary boundary, ElasticBody body);
+  /// Mesh and geometry by reference.
+  ElasticOperator(const Mesh& mesh, const Geometry& geometry, ElasticBoundary boundary, ElasticBody body);
   /// One condition a patch, one material. Collective.
-  ElasticOperator(const Mesh& mesh, std::span<const ElasticCondition> conditions, const LameConstants& lame);
+  ElasticOperator(const Mesh& mesh, const Geometry& geometry, std::span<const ElasticCondition> conditions,
+                  const LameConstants& lame);
 
   const VertexInterpolation& vertices() const { return vertices_; }
   const VertexConstraints& constraints() const { return constraints_; }
-  /// Made when first asked for.
-  const FaceGradient& faces() const;
-  /// Gives the memory of faces() back, until it is asked for again.
-  void forget_faces() const { faces_.reset(); }
+  /// Where the body stands that the rows describe.
+  const Geometry& geometry() const { return *geometry_; }
   const ElasticBoundary& boundary() const { return boundary_; }
   /// Faces of owned cells with an unknown of their own (face indices): unknown node n_owned cells + i is
   /// entry i.
@@ -130,20 +130,26 @@ class ElasticOperator {
   void sort_boundary();
   void assemble() const;
   void add_cell(Index cell, std::span<const Index> faces, Row& row) const;
+  /// What the gradient at a face takes from the geometry; c_V as FaceGradient has them.
+  struct FaceWeights {
+    FaceLine line;
+    std::array<Vec3, 4> tangential;
+  };
+  FaceWeights weights_of(Index face) const;
   void add_unknown_face(Index face, Row& row) const;
   void add_flux(Index face, const Tensor3& scale, Row& row) const;
   void add_vertex(Index point, const Tensor3& block, Row& row) const;
   void add_face_node(Index face, const Tensor3& block, Row& row) const;
   void store(Index unknown_node, Row& row) const;
   LameConstants lame_at(Index face) const;
-  double area(Index face) const { return mesh_->reference.face_area[face].norm(); }
+  double area(Index face) const { return geometry_->face_area[face].norm(); }
 
   const Mesh* mesh_;
+  const Geometry* geometry_;
   ElasticBoundary boundary_;
   ElasticBody body_;
   VertexInterpolation vertices_;
   VertexConstraints constraints_;
-  mutable std::unique_ptr<FaceGradient> faces_;
   std::vector<Index> unknown_faces_, known_faces_;
   std::vector<Index> known_of_face_;  // column, -1: none (or not needed) here
   std::vector<GlobalIndex> number_;   // of each local node as unknown, -1: none

@@ -41,7 +41,11 @@ void put(const VertexWeightSums& sums, double* to) {
 }  // namespace
 
 JoinedVertices::JoinedVertices(const Mesh& mesh, const ElasticOperator& rows)
-    : mesh_(mesh), rows_(rows), periodic_(mesh), joined_(mesh.points.n_local(), 0) {
+    : mesh_(mesh),
+      geometry_(rows.geometry()),
+      rows_(rows),
+      periodic_(mesh, rows.geometry()),
+      joined_(mesh.points.n_local(), 0) {
   refuse_unlike();
   for (const Index v : periodic_.points()) {
     joined_[v] = 1;
@@ -76,7 +80,7 @@ void JoinedVertices::refuse_unlike() const {
         const std::size_t at = std::size_t(v) * 9 + a * 3 + b;
         off = std::max(off, std::abs(free[at] - sums[at] / periodic_.copies(i)));
       }
-    if (off > alike) unlike.push_back(mesh_.reference_points[v]);
+    if (off > alike) unlike.push_back(geometry_.points[v]);
   }
   unlike = all_gather(mesh_.comm, unlike);
   if (unlike.empty()) return;
@@ -90,9 +94,9 @@ void JoinedVertices::refuse_unlike() const {
 
 Vec3 JoinedVertices::from_node(Index point, Index node) const {
   const Index n_cells = mesh_.cells.n_local();
-  return mesh_.reference_points[point] -
-         (node < n_cells ? mesh_.reference.cell_centre[node]
-                         : mesh_.reference.face_centre[mesh_.n_interior + node - n_cells]);
+  return geometry_.points[point] - (node < n_cells
+                                        ? geometry_.cell_centre[node]
+                                        : geometry_.face_centre[mesh_.n_interior + node - n_cells]);
 }
 
 const Tensor3* JoinedVertices::within(Index point) const {

@@ -45,6 +45,7 @@ class JoinedVertices {
   const Tensor3* within(Index point) const;
 
   const Mesh& mesh_;
+  const Geometry& geometry_;
   const ElasticOperator& rows_;
   PeriodicPoints periodic_;
   std::vector<std::uint8_t> joined_;  // per local point

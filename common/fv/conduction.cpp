@@ -46,8 +46,12 @@ struct Sums {
 
 }  // namespace
 
-ConductionOperator::ConductionOperator(const Mesh& mesh, std::span<const HeatCondition> conditions)
-    : mesh_(&mesh), vertices_(mesh, stencils_of(mesh, conditions)), faces_(mesh) {
+ConductionOperator::ConductionOperator(const Mesh& mesh, const Geometry& geometry,
+                                       std::span<const HeatCondition> conditions)
+    : mesh_(&mesh),
+      geometry_(&geometry),
+      vertices_(mesh, geometry, stencils_of(mesh, conditions)),
+      faces_(mesh, geometry) {
   sort_boundary(conditions);
   number_ = number_nodes(mesh, flux_faces_);
   build_stencils();
@@ -102,7 +106,7 @@ void ConductionOperator::build_stencils() {
   for (Index f = 0; f < n_faces; ++f) {
     const bool on_boundary = f >= mesh_->n_interior;
     if (needs_stencil(f) && (!on_boundary || condition(f) != HeatCondition::symmetry)) {
-      const double area = mesh_->reference.face_area[f].norm(), across = area * faces_.inverse_dn[f];
+      const double area = geometry_->face_area[f].norm(), across = area * faces_.inverse_dn[f];
       const Index b = f - mesh_->n_interior;
       nodes.add(mesh_->owner[f], -across);
       if (!on_boundary)
@@ -185,7 +189,7 @@ void ConductionOperator::fill(const Weights& weights, SparseMatrix& matrix) cons
       for (auto i = offset_[term.index]; i < offset_[term.index + 1]; ++i)
         values.push_back(k * coefficient_[i]);
     } else if (term.kind == Kind::transfer) {
-      const double area = mesh_->reference.face_area[flux_faces_[term.index]].norm();
+      const double area = geometry_->face_area[flux_faces_[term.index]].norm();
       values.push_back(weights.transfer.empty() ? 0 : scale * weights.transfer[term.index] * area);
     } else {
       values.push_back(weights.capacity.empty() ? 0 : weights.capacity[term.index]);
@@ -254,7 +258,7 @@ double ConductionOperator::face_value(Index face, std::span<const double> cells,
                                       std::span<const double> boundary,
                                       std::span<const double> points) const {
   const Index owner = mesh_->owner[face];
-  const Geometry& g = mesh_->reference;
+  const Geometry& g = *geometry_;
   const Vec3 arm = g.face_centre[face] - g.cell_centre[owner];
   if (face >= mesh_->n_interior) {
     if (condition(face) != HeatCondition::symmetry) return boundary[face - mesh_->n_interior];
@@ -273,7 +277,7 @@ void ConductionOperator::face_heat(std::span<const double> conductivity, std::sp
                                    std::span<const double> boundary, std::span<const double> points,
                                    std::span<double> heat) const {
   for (Index f = 0; f < mesh_->n_flux_faces(); ++f)
-    heat[f] = conductivity[f] * gradient(f, cells, boundary, points).dot(mesh_->reference.face_area[f]);
+    heat[f] = conductivity[f] * gradient(f, cells, boundary, points).dot(geometry_->face_area[f]);
 }
 
 }  // namespace couplet

@@ -35,9 +35,10 @@ enum class HeatCondition {
 class ConductionOperator {
  public:
   /// `conditions`: one a patch. Collective.
-  ConductionOperator(const Mesh& mesh, std::span<const HeatCondition> conditions);
+  ConductionOperator(const Mesh& mesh, const Geometry& geometry, std::span<const HeatCondition> conditions);
 
   const Mesh& mesh() const { return *mesh_; }
+  const Geometry& geometry() const { return *geometry_; }
   const FaceGradient& faces() const { return faces_; }
   const VertexInterpolation& vertices() const { return vertices_; }
   /// Flux faces of owned cells, then first sides of bonded faces: unknown n_owned cells + i is entry i.
@@ -101,6 +102,7 @@ class ConductionOperator {
   void add_term(const Term& term, GlobalIndex row);
 
   const Mesh* mesh_;
+  const Geometry* geometry_;
   std::vector<HeatCondition> condition_of_face_;  // per entry of mesh.boundary
   VertexInterpolation vertices_;
   FaceGradient faces_;

@@ -5,21 +5,21 @@
 
 namespace couplet {
 
-FaceGradient::FaceGradient(const Mesh& mesh)
+FaceGradient::FaceGradient(const Mesh& mesh, const Geometry& geometry)
     : normal(mesh.n_faces()),
       inverse_dn(mesh.n_faces()),
       skew(mesh.n_faces()),
       tangential(mesh.face_points.index.size()) {
-  update(mesh, mesh.reference, mesh.reference_points);
+  update(mesh, geometry);
 }
 
-void FaceGradient::update(const Mesh& mesh, const Geometry& geometry, std::span<const Vec3> points) {
+void FaceGradient::update(const Mesh& mesh, const Geometry& geometry) {
   for (Index f = 0; f < mesh.n_faces(); ++f) {
     const FaceLine line = face_line(mesh, geometry, f);
     normal[f] = line.normal;
     inverse_dn[f] = line.inverse_dn;
     skew[f] = line.skew;
-    tangential_weights(mesh, points, f, line, tangential.data() + mesh.face_points.offset[f]);
+    tangential_weights(mesh, geometry.points, f, line, tangential.data() + mesh.face_points.offset[f]);
   }
 }
 

@@ -27,10 +27,9 @@ void tangential_weights(const Mesh& mesh, std::span<const Vec3> points, Index fa
 /// N is the neighbour cell's centre, on the boundary the face centre. Exact for linear fields on any (also
 /// warped) face.
 struct FaceGradient {
-  /// For the reference geometry.
-  explicit FaceGradient(const Mesh& mesh);
+  FaceGradient(const Mesh& mesh, const Geometry& geometry);
   /// For another placement of the points. Allocates nothing.
-  void update(const Mesh& mesh, const Geometry& geometry, std::span<const Vec3> points);
+  void update(const Mesh& mesh, const Geometry& geometry);
 
   std::vector<Vec3> normal;        ///< per local face: unit vector out of the owner
   std::vector<double> inverse_dn;  ///< per local face: 1 / (d . n) [1/m]

@@ -12,8 +12,9 @@ struct Knot {
   Tensor3 slope = Tensor3::Zero();
 };
 
-Knot knot_at(const Mesh& mesh, Index point, std::span<const double> values, std::span<const Tensor3> slopes) {
-  Knot knot{mesh.reference_points[point], Vec3::Zero(), slopes[point]};
+Knot knot_at(const Mesh& mesh, const Geometry& geometry, Index point, std::span<const double> values,
+             std::span<const Tensor3> slopes) {
+  Knot knot{geometry.points[point], Vec3::Zero(), slopes[point]};
   for (int a = 0; a < mesh.dim; ++a) knot.u[a] = values[std::size_t(point) * mesh.dim + a];
   return knot;
 }
@@ -58,15 +59,15 @@ void add_triangle(const Knot& a, const Knot& b, const Knot& c, const Vec3& origi
   flux.add(0.5 * to_b.cross(to_c), u, (a.x + b.x + c.x) / 3 - origin);
 }
 
-Flux flux_of(const Mesh& mesh, Index face, const Vec3& origin, std::span<const double> values,
-             std::span<const Tensor3> slopes) {
+Flux flux_of(const Mesh& mesh, const Geometry& geometry, Index face, const Vec3& origin,
+             std::span<const double> values, std::span<const Tensor3> slopes) {
   const auto points = mesh.face_points[face];
   const std::size_t n = points.size();
   std::array<Knot, 4> knots;
-  for (std::size_t i = 0; i < n; ++i) knots[i] = knot_at(mesh, points[i], values, slopes);
+  for (std::size_t i = 0; i < n; ++i) knots[i] = knot_at(mesh, geometry, points[i], values, slopes);
   Flux flux;
   if (mesh.dim == 2) {
-    flux.add(mesh.reference.face_area[face], below_chord(knots[0], knots[1], 1.0 / 12),
+    flux.add(geometry.face_area[face], below_chord(knots[0], knots[1], 1.0 / 12),
              0.5 * (knots[0].x + knots[1].x) - origin);
   } else if (n == 3) {
     add_triangle(knots[0], knots[1], knots[2], origin, flux);
@@ -79,22 +80,22 @@ Flux flux_of(const Mesh& mesh, Index face, const Vec3& origin, std::span<const d
 
 }  // namespace
 
-std::vector<Tensor3> gradients_from_points(const Mesh& mesh, std::span<const double> values,
-                                           std::span<const Tensor3> slopes) {
+std::vector<Tensor3> gradients_from_points(const Mesh& mesh, const Geometry& geometry,
+                                           std::span<const double> values, std::span<const Tensor3> slopes) {
   const Index n_owned = mesh.cells.n_owned();
   std::vector<Tensor3> gradient(n_owned, Tensor3::Zero());
   std::vector<double> volume(n_owned, 0);
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
     const Index owner = mesh.owner[f];
-    const Vec3& centre = mesh.reference.cell_centre[owner];
-    const Flux flux = flux_of(mesh, f, centre, values, slopes);
+    const Vec3& centre = geometry.cell_centre[owner];
+    const Flux flux = flux_of(mesh, geometry, f, centre, values, slopes);
     if (owner < n_owned) {
       gradient[owner] += flux.values;
       volume[owner] += flux.volume / mesh.dim;
     }
     if (f >= mesh.n_interior || mesh.neighbour[f] >= n_owned) continue;
     const Index other = mesh.neighbour[f];
-    const Vec3 step = mesh.reference.cell_centre[other] + mesh.shift(f) - centre;
+    const Vec3 step = geometry.cell_centre[other] + mesh.shift(f) - centre;
     gradient[other] -= flux.values;
     volume[other] -= (flux.volume - flux.area.dot(step)) / mesh.dim;
   }

@@ -13,7 +13,7 @@ namespace couplet {
 /// quadratic fields on any (also warped) cell; for linear ones with slopes that are the same everywhere.
 /// `values`: mesh.dim components a local point; `slopes`: their gradients there; ghosts up to date. Entry
 /// (i, j) of a gradient is the derivative of component j along i, in the reference configuration.
-std::vector<Tensor3> gradients_from_points(const Mesh& mesh, std::span<const double> values,
-                                           std::span<const Tensor3> slopes);
+std::vector<Tensor3> gradients_from_points(const Mesh& mesh, const Geometry& geometry,
+                                           std::span<const double> values, std::span<const Tensor3> slopes);
 
 }  // namespace couplet

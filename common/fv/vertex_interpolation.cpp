@@ -67,16 +67,17 @@ struct VertexInterpolation::Around {
   }
 };
 
-VertexInterpolation::VertexInterpolation(const Mesh& mesh, std::span<const PatchStencil> stencils)
-    : VertexInterpolation(mesh, by_face(mesh, stencils)) {}
+VertexInterpolation::VertexInterpolation(const Mesh& mesh, const Geometry& geometry,
+                                         std::span<const PatchStencil> stencils)
+    : VertexInterpolation(mesh, geometry, by_face(mesh, stencils)) {}
 
-VertexInterpolation::VertexInterpolation(const Mesh& mesh, const ByFace& boundary)
+VertexInterpolation::VertexInterpolation(const Mesh& mesh, const Geometry& geometry, const ByFace& boundary)
     : mesh_(&mesh), n_cells_(mesh.cells.n_local()) {
   assert(Index(boundary.stencil.size()) == mesh.boundary.n_local());
   const Around around(mesh);
   gather_rows(around, boundary);
-  find_projectors(around, boundary.stencil);
-  update(mesh.reference, mesh.reference_points);
+  find_projectors(around, geometry, boundary.stencil);
+  update(geometry);
 }
 
 void VertexInterpolation::gather_rows(const Around& around, const ByFace& boundary) {
@@ -142,7 +143,8 @@ void VertexInterpolation::group_by_material(Index point, std::span<const int> ma
   ends_.push_back(std::ssize(node_));
 }
 
-void VertexInterpolation::find_projectors(const Around& around, std::span<const PatchStencil> stencil) {
+void VertexInterpolation::find_projectors(const Around& around, const Geometry& geometry,
+                                          std::span<const PatchStencil> stencil) {
   const Index n_points = mesh_->points.n_local();
   projector_of_.assign(n_points, 0);
   projectors_.assign(1, Tensor3::Identity());
@@ -155,7 +157,7 @@ void VertexInterpolation::find_projectors(const Around& around, std::span<const 
       Tensor3 mean = Tensor3::Zero();
       for (const Index b : around.faces[v]) {
         if (stencil[b] != PatchStencil::symmetry || patch_of_face[b] != Index(p)) continue;
-        const Vec3 n = mesh_->reference.face_area[mesh_->n_interior + b].normalized();
+        const Vec3 n = geometry.face_area[mesh_->n_interior + b].normalized();
         mean += n * n.transpose();
       }
       if (mean.trace() == 0) continue;
@@ -169,7 +171,8 @@ void VertexInterpolation::find_projectors(const Around& around, std::span<const 
   }
 }
 
-void VertexInterpolation::update(const Geometry& geometry, std::span<const Vec3> points) {
+void VertexInterpolation::update(const Geometry& geometry) {
+  const std::vector<Vec3>& points = geometry.points;
   inexact_.clear();
   for (Index v = 0; v < mesh_->points.n_local(); ++v) {
     const auto first = offset_[v], last = offset_[v + 1];

@@ -48,8 +48,8 @@ class VertexInterpolation {
     return double(weights.size()) * squares;
   }
 
-  /// `stencils`: one a patch. The weights are those of the reference geometry.
-  VertexInterpolation(const Mesh& mesh, std::span<const PatchStencil> stencils);
+  /// `stencils`: one a patch. Keeps the mesh by reference, and nothing of the geometry but the weights.
+  VertexInterpolation(const Mesh& mesh, const Geometry& geometry, std::span<const PatchStencil> stencils);
   /// One stencil a local boundary face; `material_of_cell`: per local cell, empty: one material.
   struct ByFace {
     std::vector<PatchStencil> stencil;
@@ -57,10 +57,10 @@ class VertexInterpolation {
     /// Rows of the points of boundary faces (bonded ones, too) alone; those of others depend on no stencil.
     bool surface_only = false;
   };
-  VertexInterpolation(const Mesh& mesh, const ByFace& boundary);
+  VertexInterpolation(const Mesh& mesh, const Geometry& geometry, const ByFace& boundary);
 
   /// The weights for another placement of the points. Allocates nothing.
-  void update(const Geometry& geometry, std::span<const Vec3> points);
+  void update(const Geometry& geometry);
 
   std::span<const Index> nodes(Index point) const {
     return {node_.data() + offset_[point], std::size_t(offset_[point + 1] - offset_[point])};
@@ -105,7 +105,7 @@ class VertexInterpolation {
   void gather_rows(const Around& around, const ByFace& boundary);
   void gather_wide_row(Index point, const Around& around, const ByFace& boundary);
   void group_by_material(Index point, std::span<const int> material_of_cell);
-  void find_projectors(const Around& around, std::span<const PatchStencil> stencil);
+  void find_projectors(const Around& around, const Geometry& geometry, std::span<const PatchStencil> stencil);
   bool fill_weights(Index point, std::int64_t first, std::int64_t last, const Geometry& geometry,
                     const Vec3& at, bool least_squares);
   bool find_weights(Index point, std::int64_t first, std::int64_t last, const Geometry& geometry,

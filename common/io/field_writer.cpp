@@ -96,15 +96,15 @@ struct FieldWriter::State {
     hdf5::write_table(id, path, rows, padded.data());
   }
 
-  void begin(double restart_time);
-  void start();
+  void begin(std::span<const Vec3> places, double restart_time);
+  void start(std::span<const Vec3> places);
   bool continue_from(double restart_time);
   /// What the file of an earlier run holds up to `restart_time`, and the names of the outputs behind it.
   std::vector<std::string> read_index(double restart_time);
   void read_entries(const hdf5::Reader& file, const std::vector<std::string>& steps, double restart_time);
 };
 
-void FieldWriter::State::start() {
+void FieldWriter::State::start(std::span<const Vec3> places) {
   const hdf5::Handle id = hdf5::create_file(mesh.comm, file());
   hdf5::write_attribute(id, "format", format);
   hdf5::write_attribute(id, "ranks", double(comm_size(mesh.comm)));
@@ -114,7 +114,7 @@ void FieldWriter::State::start() {
   hdf5::write_table(id, "mesh/cells", rows, topology.values.data());
   hdf5::write_table(id, "mesh/cell-id", cell_rows, mesh.cell_id.data());
   hdf5::write_table(id, "mesh/point-id", point_rows, mesh.point_id.data());
-  write_points(id, "mesh/coordinates", mesh.reference_points);
+  write_points(id, "mesh/coordinates", places);
   hdf5::write_attribute(id, "kind", double(topology.kind));
   index = {file().filename().string(),
            topology.kind,
@@ -190,7 +190,7 @@ bool FieldWriter::State::continue_from(double restart_time) {
 }
 
 /// Makes the folder; continues the series that is there or begins one. Collective.
-void FieldWriter::State::begin(double restart_time) {
+void FieldWriter::State::begin(std::span<const Vec3> places, double restart_time) {
   point_rows = hdf5::distribute_rows(mesh.comm, mesh.points.n_owned(), 1);
   cell_rows = hdf5::distribute_rows(mesh.comm, mesh.cells.n_owned(), 1);
   std::string trouble;
@@ -201,22 +201,22 @@ void FieldWriter::State::begin(double restart_time) {
       trouble = fmt::format("Cannot create the output folder '{}' ({}).", folder.string(), code.message());
   }
   hdf5::throw_together(mesh.comm, trouble);
-  if (std::isnan(restart_time) || !continue_from(restart_time)) start();
+  if (std::isnan(restart_time) || !continue_from(restart_time)) start(places);
   if (comm_rank(mesh.comm) == 0) xdmf::write(folder / (name + ".xdmf"), index);
 }
 
-FieldWriter::FieldWriter(const Mesh& mesh, std::filesystem::path folder, std::string name, bool moving,
-                         double restart_time)
+FieldWriter::FieldWriter(const Mesh& mesh, std::span<const Vec3> places, std::filesystem::path folder,
+                         std::string name, bool moving, double restart_time)
     : state_(std::make_unique<State>(
           State{mesh, std::move(folder), std::move(name), moving, fields_format, {}, 0, {}, {}})) {
-  state_->begin(restart_time);
+  state_->begin(places, restart_time);
 }
 
 FieldWriter::FieldWriter(const SurfaceMesh& surface, std::filesystem::path folder, std::string name,
                          bool moving, double restart_time)
     : state_(std::make_unique<State>(
           State{surface.mesh, std::move(folder), std::move(name), moving, surface_format, {}, 0, {}, {}})) {
-  state_->begin(restart_time);
+  state_->begin(surface.places, restart_time);
 }
 
 FieldWriter::~FieldWriter() = default;

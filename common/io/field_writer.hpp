@@ -28,8 +28,9 @@ struct OutputField {
 class FieldWriter {
  public:
   /// restart_time: entries later than this in an existing series are dropped; NaN starts a new series.
-  FieldWriter(const Mesh& mesh, std::filesystem::path folder, std::string name, bool moving,
-              double restart_time);
+  /// `places`: of the local points [m], written once; looked at while the writer is made.
+  FieldWriter(const Mesh& mesh, std::span<const Vec3> places, std::filesystem::path folder, std::string name,
+              bool moving, double restart_time);
   /// Of a surface, which `cells` are the faces of.
   FieldWriter(const SurfaceMesh& surface, std::filesystem::path folder, std::string name, bool moving,
               double restart_time);

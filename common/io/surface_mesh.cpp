@@ -42,7 +42,7 @@ IndexMap map_points(const Mesh& body, std::span<const Index> points, std::span<c
 
 }  // namespace
 
-SurfaceMesh make_surface(const Mesh& body, const Patch& patch) {
+SurfaceMesh make_surface(const Mesh& body, std::span<const Vec3> places, const Patch& patch) {
   SurfaceMesh surface;
   Mesh& mesh = surface.mesh;
   mesh.comm = body.comm;
@@ -52,7 +52,7 @@ SurfaceMesh make_surface(const Mesh& body, const Patch& patch) {
   mesh.cells = IndexMap(body.comm, patch.count, {}, {});
   for (const Index v : surface.points) {
     mesh.point_id.push_back(body.point_id[v]);
-    mesh.reference_points.push_back(body.reference_points[v]);
+    surface.places.push_back(places[v]);
   }
   std::vector<Index> corners;
   for (Index f = patch.first; f < patch.first + patch.count; ++f) {

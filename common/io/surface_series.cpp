@@ -57,7 +57,8 @@ struct SurfaceSeries::Surface {
   }
 };
 
-SurfaceSeries::SurfaceSeries(const Mesh& body, const std::vector<std::string>& names, const std::string& key)
+SurfaceSeries::SurfaceSeries(const Mesh& body, std::span<const Vec3> places,
+                             const std::vector<std::string>& names, const std::string& key)
     : body_(body) {
   std::vector<std::string> known;
   const std::vector<const Patch*> there = patches_with_faces(body);
@@ -70,7 +71,7 @@ SurfaceSeries::SurfaceSeries(const Mesh& body, const std::vector<std::string>& n
     for (const std::string& name : names)
       patches_.push_back(there[std::size_t(std::ranges::find(known, name) - known.begin())]);
   for (const Patch* patch : patches_)
-    surfaces_.push_back(std::make_unique<Surface>(make_surface(body, *patch)));
+    surfaces_.push_back(std::make_unique<Surface>(make_surface(body, places, *patch)));
 }
 
 SurfaceSeries::~SurfaceSeries() = default;

@@ -29,9 +29,10 @@ std::string wrong_surfaces(const std::vector<std::string>& names,
 /// Time series of some patches, <folder>/surface-<patch>.h5 with .xdmf as FieldWriter makes them.
 class SurfaceSeries {
  public:
-  /// `names`: patches, or the one word "all". `body` by reference. Throws Error, which names `key`, for
+  /// `places`: per local point of the body [m]. `names`: patches, or the one word "all". `body` by reference. Throws Error, which names `key`, for
   /// wrong_surfaces(). Collective.
-  SurfaceSeries(const Mesh& body, const std::vector<std::string>& names, const std::string& key);
+  SurfaceSeries(const Mesh& body, std::span<const Vec3> places, const std::vector<std::string>& names,
+                const std::string& key);
   ~SurfaceSeries();
   /// Where to write from now on; see FieldWriter.
   void open(std::filesystem::path folder, bool moving, double restart_time);

@@ -93,7 +93,8 @@ class LocalPart {
         cell_material_(whole.cell_material),
         wide_points_(whole.wide_points) {}
 
-  Mesh build() {
+  /// The mesh and its points.
+  std::pair<Mesh, std::vector<Vec3>> build() {
     mesh_.comm = comm_;
     mesh_.dim = raw_.dim;
     mesh_.zones = raw_.zones;
@@ -103,7 +104,7 @@ class LocalPart {
     fill_interior_faces();
     fill_boundary_faces();
     give_back();
-    return std::move(mesh_);
+    return {std::move(mesh_), std::move(points_)};
   }
 
  private:
@@ -195,7 +196,7 @@ class LocalPart {
     point_local_.assign(raw_.points.size(), -1);
     for (std::size_t i = 0; i < mesh_.point_id.size(); ++i) {
       point_local_[mesh_.point_id[i]] = static_cast<Index>(i);
-      mesh_.reference_points.push_back(raw_.points[mesh_.point_id[i]]);
+      points_.push_back(raw_.points[mesh_.point_id[i]]);
     }
     for (const Index p : wide_points_)
       if (point_local_[p] >= 0) mesh_.wide_points.push_back(point_local_[p]);
@@ -273,8 +274,8 @@ class LocalPart {
     const auto shrink = [](auto&... arrays) { (arrays.shrink_to_fit(), ...); };
     shrink(mesh_.cell_id, mesh_.point_id, mesh_.boundary_id, mesh_.cell_type, mesh_.cell_points.offset,
            mesh_.cell_points.index, mesh_.cell_zone, mesh_.cell_material, mesh_.face_points.offset,
-           mesh_.face_points.index, mesh_.owner, mesh_.neighbour, mesh_.neighbour_shift,
-           mesh_.reference_points, mesh_.wide_points);
+           mesh_.face_points.index, mesh_.owner, mesh_.neighbour, mesh_.neighbour_shift, points_,
+           mesh_.wide_points);
   }
 
   void find_twins() {
@@ -297,14 +298,15 @@ class LocalPart {
   const std::vector<Index>& wide_points_;
   std::vector<Index> cell_local_, point_local_;  // -1: not on this rank
   Mesh mesh_;
+  std::vector<Vec3> points_;  // per local point, as read
 };
 
 }  // namespace
 
-Mesh distribute(MPI_Comm comm, const RawMesh& raw) {
-  Mesh mesh = LocalPart(comm, prepare(comm, raw)).build();
-  mesh.reference = compute_geometry(mesh, mesh.reference_points);
-  return mesh;
+LoadedMesh distribute(MPI_Comm comm, const RawMesh& raw) {
+  auto [mesh, points] = LocalPart(comm, prepare(comm, raw)).build();
+  Geometry geometry = compute_geometry(mesh, std::move(points));
+  return {std::move(mesh), std::move(geometry)};
 }
 
 }  // namespace couplet

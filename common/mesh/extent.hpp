@@ -12,11 +12,10 @@ struct Extent {
   double diagonal() const { return (upper - lower).norm(); }
 };
 
-/// Of the undeformed mesh. Collective.
-inline Extent extent_of(const Mesh& mesh) {
+/// Collective.
+inline Extent extent_of(const Mesh& mesh, const Geometry& geometry) {
   Extent box{Vec3::Constant(1e300), Vec3::Constant(-1e300)};
-  for (const Vec3& x : mesh.reference_points)
-    box.lower = box.lower.cwiseMin(x), box.upper = box.upper.cwiseMax(x);
+  for (const Vec3& x : geometry.points) box.lower = box.lower.cwiseMin(x), box.upper = box.upper.cwiseMax(x);
   for (int a = 0; a < 3; ++a)
     box.lower[a] = min(mesh.comm, box.lower[a]), box.upper[a] = max(mesh.comm, box.upper[a]);
   return box;

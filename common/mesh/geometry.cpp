@@ -35,7 +35,8 @@ void add_cone(double sign, const Vec3& apex, const Vec3& a, const Vec3& b, const
   moment += cone / 4 * (u + v + w);
 }
 
-void faces_3d(const Mesh& mesh, std::span<const Vec3> x, const std::vector<Vec3>& apex, Geometry& g) {
+void faces_3d(const Mesh& mesh, const std::vector<Vec3>& apex, Geometry& g) {
+  const std::vector<Vec3>& x = g.points;
   for (Index f = 0; f < mesh.n_faces(); ++f) {
     const Triangles t = triangles_of(mesh, f);
     Vec3 area = Vec3::Zero(), moment = Vec3::Zero(), mean = Vec3::Zero();
@@ -62,7 +63,8 @@ void faces_3d(const Mesh& mesh, std::span<const Vec3> x, const std::vector<Vec3>
   }
 }
 
-void faces_2d(const Mesh& mesh, std::span<const Vec3> x, const std::vector<Vec3>& apex, Geometry& g) {
+void faces_2d(const Mesh& mesh, const std::vector<Vec3>& apex, Geometry& g) {
+  const std::vector<Vec3>& x = g.points;
   const auto add_triangle = [&](double sign, Index cell, const Vec3& centre, const Vec3& a, const Vec3& b) {
     const Vec3 u = a - centre, v = b - centre;
     const double triangle = sign * 0.5 * (u[0] * v[1] - u[1] * v[0]);
@@ -83,9 +85,10 @@ void faces_2d(const Mesh& mesh, std::span<const Vec3> x, const std::vector<Vec3>
 
 }  // namespace
 
-Geometry compute_geometry(const Mesh& mesh, std::span<const Vec3> points) {
+Geometry compute_geometry(const Mesh& mesh, std::vector<Vec3> points) {
   const Index n = mesh.cells.n_local();
   Geometry g;
+  g.points = std::move(points);
   g.volume.assign(n, 0);
   g.cell_centre.assign(n, Vec3::Zero());
   g.face_area.resize(mesh.n_faces());
@@ -93,10 +96,10 @@ Geometry compute_geometry(const Mesh& mesh, std::span<const Vec3> points) {
   // Cones from a point inside each cell keep round-off small far from the origin.
   std::vector<Vec3> apex(n, Vec3::Zero());
   for (Index c = 0; c < n; ++c) {
-    for (const Index p : mesh.cell_points[c]) apex[c] += points[p];
+    for (const Index p : mesh.cell_points[c]) apex[c] += g.points[p];
     apex[c] /= double(mesh.cell_points[c].size());
   }
-  mesh.dim == 2 ? faces_2d(mesh, points, apex, g) : faces_3d(mesh, points, apex, g);
+  mesh.dim == 2 ? faces_2d(mesh, apex, g) : faces_3d(mesh, apex, g);
   for (Index c = 0; c < n; ++c)
     g.cell_centre[c] = g.volume[c] == 0 ? apex[c] : Vec3(apex[c] + g.cell_centre[c] / g.volume[c]);
   // Not all faces of a ghost are here: its owner knows.

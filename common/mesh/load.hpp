@@ -55,16 +55,16 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim,
 /// Mesh::wide_points), owned cells
 /// renumbered by reverse Cuthill-McKee. `raw` is read on rank 0 only. Every boundary face must belong to
 /// exactly one patch; errors name the place. Collective.
-Mesh distribute(MPI_Comm comm, const RawMesh& raw);
+LoadedMesh distribute(MPI_Comm comm, const RawMesh& raw);
 
 /// File (.msh, .inp, .geo, or what convert_mesh() reads) to distributed mesh, `periodic`, `materials` and `find_wide_points` as
 /// in RawMesh; all lengths times `scale`.
 /// Collective; an error on rank 0 is thrown on every rank.
-Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
-               const MeshParameters& parameters = {},
-               const std::vector<std::array<std::string, 2>>& periodic = {},
-               const std::vector<std::vector<std::string>>& materials = {}, bool find_wide_points = false,
-               double scale = 1);
+LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
+                     const MeshParameters& parameters = {},
+                     const std::vector<std::array<std::string, 2>>& periodic = {},
+                     const std::vector<std::vector<std::string>>& materials = {},
+                     bool find_wide_points = false, double scale = 1);
 
 /// Boxes for tests: n cells a side on [lower, upper], patches "xmin" "xmax" "ymin" "ymax" (and "zmin" "zmax"
 /// in 3-D).

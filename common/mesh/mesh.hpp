@@ -40,11 +40,13 @@ struct Patch {
       false;  ///< not on the boundary: the two sides of the faces between two materials, see Mesh::twin
 };
 
-/// Volumes, centres and face vectors of one placement of the points.
-/// volume [m^3] and cell_centre [m] per local cell (ghosts included); face_area [m^2] (vector, out of the
-/// owner) and face_centre [m] per local face. A 2-D mesh has unit depth: volume = area x 1 m, face_area =
-/// length x 1 m.
+/// One placement of the points, and the volumes, centres and face vectors made of it: a value beside the mesh, of
+/// which several can live side by side.
+/// points [m] per local point; volume [m^3] and cell_centre [m] per local cell (ghosts included); face_area [m^2]
+/// (vector, out of the owner) and face_centre [m] per local face. A 2-D mesh has unit depth: volume = area x 1 m,
+/// face_area = length x 1 m.
 struct Geometry {
+  std::vector<Vec3> points;
   std::vector<double> volume;
   std::vector<Vec3> cell_centre, face_centre, face_area;
 };
@@ -54,7 +56,7 @@ struct Geometry {
 /// tetrahedron.
 inline constexpr double longest_reach = 40;
 
-/// The part of a mesh that lives on one rank, with one ring of ghost cells (neighbours by vertex; two
+/// The topology of the part of a mesh that lives on one rank, const after set-up, with one ring of ghost cells (neighbours by vertex; two
 /// rings at `wide_points`).
 ///
 /// Faces: [0, n_interior) lie between two local cells at least one of which is owned; then the boundary faces
@@ -94,12 +96,10 @@ struct Mesh {
   /// there.
   std::vector<Index> twin;
 
-  std::vector<Vec3> reference_points;  ///< per local point, as read [m]
   /// Local points of a boundary or between materials whose surroundings reach too short a way into the body
   /// to tell a value there. Around those of owned cells two rings of cells are on this rank. Ascending.
   std::vector<Index> wide_points;
   bool is_wide(Index point) const { return std::ranges::binary_search(wide_points, point); }
-  Geometry reference;  ///< geometry of the reference points
 
   Vec3 shift(Index interior_face) const {
     return neighbour_shift.empty() ? Vec3(Vec3::Zero()) : neighbour_shift[interior_face];
@@ -125,10 +125,16 @@ struct Mesh {
   }
 };
 
-/// Geometry for these points (per local point). Quadrilateral faces are cut into two triangles by the
+/// A mesh and the geometry of its points as read.
+struct LoadedMesh {
+  Mesh mesh;
+  Geometry geometry;
+};
+
+/// Geometry for these points (per local point), which it keeps. Quadrilateral faces are cut into two triangles by the
 /// diagonal through their point with the smallest point_id, so both sides agree. Collective (ghost cells come
 /// by halo update).
-Geometry compute_geometry(const Mesh& mesh, std::span<const Vec3> points);
+Geometry compute_geometry(const Mesh& mesh, std::vector<Vec3> points);
 
 /// Volume swept by each face when its points go linearly from `from` to `to` [m^3], positive along the face
 /// vector (out of the owner); thesis (4.16)-(4.17), exact, with the same diagonals as compute_geometry. Per

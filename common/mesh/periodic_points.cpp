@@ -13,17 +13,17 @@ namespace couplet {
 namespace {
 
 /// The two sides of each point of the periodic faces that this rank sees.
-std::vector<std::array<GlobalIndex, 2>> pairs_here(const Mesh& mesh) {
+std::vector<std::array<GlobalIndex, 2>> pairs_here(const Mesh& mesh, const Geometry& geometry) {
   std::vector<std::array<GlobalIndex, 2>> pairs;
   for (Index f = 0; f < mesh.n_interior; ++f) {
     const Vec3 shift = mesh.shift(f);
     if (shift.isZero()) continue;
     for (const Index v : mesh.face_points[f]) {
-      const Vec3 wanted = mesh.reference_points[v] - shift;
+      const Vec3 wanted = geometry.points[v] - shift;
       Index nearest = -1;
       double least = std::numeric_limits<double>::infinity();
       for (const Index other : mesh.cell_points[mesh.neighbour[f]]) {
-        const double distance = (mesh.reference_points[other] - wanted).squaredNorm();
+        const double distance = (geometry.points[other] - wanted).squaredNorm();
         if (distance >= least) continue;
         least = distance;
         nearest = other;
@@ -66,9 +66,9 @@ std::vector<std::array<std::string, 2>> periodic_pairs(const std::map<std::strin
   return pairs;
 }
 
-PeriodicPoints::PeriodicPoints(const Mesh& mesh) : mesh_(mesh) {
+PeriodicPoints::PeriodicPoints(const Mesh& mesh, const Geometry& geometry) : mesh_(mesh) {
   if (!any(mesh.comm, !mesh.neighbour_shift.empty())) return;  // a rank without cells has none
-  const auto roots = roots_of(all_gather(mesh.comm, pairs_here(mesh)));
+  const auto roots = roots_of(all_gather(mesh.comm, pairs_here(mesh, geometry)));
   std::map<GlobalIndex, Index> group_of;  // of the roots
   for (const auto& [point, root] : roots)
     if (group_of.try_emplace(root, static_cast<Index>(group_of.size())).second) copies_.push_back(0);

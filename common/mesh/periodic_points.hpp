@@ -19,8 +19,8 @@ std::vector<std::array<std::string, 2>> periodic_pairs(const std::map<std::strin
 /// an edge where two pairs meet).
 class PeriodicPoints {
  public:
-  /// From Mesh::reference_points and the shifts of the faces. Collective.
-  explicit PeriodicPoints(const Mesh& mesh);
+  /// From the points as read and the shifts of the faces. Collective.
+  explicit PeriodicPoints(const Mesh& mesh, const Geometry& geometry);
 
   bool empty() const { return n_groups_ == 0; }
   /// Local points that have copies, ghosts among them.

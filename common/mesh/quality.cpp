@@ -48,20 +48,18 @@ struct Extreme {
   }
 };
 
-double longest_edge(const Mesh& mesh, std::span<const Index> face) {
+double longest_edge(const Geometry& geometry, std::span<const Index> face) {
   double longest = 0;
   for (std::size_t i = 0; i < face.size(); ++i)
-    longest = std::max(
-        longest,
-        (mesh.reference_points[face[i]] - mesh.reference_points[face[(i + 1) % face.size()]]).norm());
+    longest =
+        std::max(longest, (geometry.points[face[i]] - geometry.points[face[(i + 1) % face.size()]]).norm());
   return longest;
 }
 
-/// Of the reference placement: nobody asks for that of another one.
 Extreme largest_aspect_ratio(const Mesh& mesh, const Geometry& geometry) {
   std::vector<double> length(mesh.cells.n_local(), 0.0), area(mesh.cells.n_local(), 0.0);
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
-    const double edge = longest_edge(mesh, mesh.face_points[f]), size = geometry.face_area[f].norm();
+    const double edge = longest_edge(geometry, mesh.face_points[f]), size = geometry.face_area[f].norm();
     for (const Index c : {mesh.owner[f], f < mesh.n_interior ? mesh.neighbour[f] : mesh.owner[f]}) {
       length[c] = std::max(length[c], edge);
       area[c] = std::max(area[c], size);
@@ -143,8 +141,8 @@ bool crosses_itself(const std::array<Vec3, 4>& x) {
 
 }  // namespace
 
-std::optional<CellTrouble> find_crossed(const Mesh& mesh, const Geometry& geometry,
-                                        std::span<const Vec3> points) {
+std::optional<CellTrouble> find_crossed(const Mesh& mesh, const Geometry& geometry) {
+  const std::vector<Vec3>& points = geometry.points;
   std::vector<CellTrouble> found;
   const auto judge = [&](std::span<const Index> corner, Index cell) {
     if (corner.size() != 4 || cell >= mesh.cells.n_owned()) return;
@@ -176,22 +174,22 @@ std::optional<CellTrouble> find_fold(const Mesh& mesh, const Geometry& g) {
   return *std::ranges::min_element(all, {}, &CellTrouble::cell_id);
 }
 
-void check_and_report(const Mesh& mesh) {
+void check_and_report(const Mesh& mesh, const Geometry& geometry) {
   const auto text = [&](const Vec3& x) {
     return mesh.dim == 2 ? fmt::format("({:.4g}, {:.4g})", x.x(), x.y())
                          : fmt::format("({:.4g}, {:.4g}, {:.4g})", x.x(), x.y(), x.z());
   };
-  if (const auto trouble = find_inverted(mesh, mesh.reference))
+  if (const auto trouble = find_inverted(mesh, geometry))
     throw Error(
         "The mesh has an inverted cell: cell {} at {} m has the volume {:.3g} m^3. Its faces intersect; "
         "remesh there, coarser or with another element size.",
         trouble->cell_id, text(trouble->centre), trouble->volume);
-  if (const auto trouble = find_crossed(mesh, mesh.reference, mesh.reference_points))
+  if (const auto trouble = find_crossed(mesh, geometry))
     throw Error(
         "The mesh has a self-intersecting cell: cell {} at {} m. Its points are in the wrong order; remesh "
         "there.",
         trouble->cell_id, text(trouble->centre));
-  const MeshQuality q = measure_quality(mesh, mesh.reference);
+  const MeshQuality q = measure_quality(mesh, geometry);
   if (comm_rank(mesh.comm) != 0) return;
   log::info(
       "mesh: {} cells; smallest volume {:.3g} m^3 at {}, largest angle {:.3g} degrees at {}, skewness {:.3g} "

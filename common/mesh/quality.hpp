@@ -39,8 +39,7 @@ std::optional<CellTrouble> find_inverted(const Mesh& mesh, const Geometry& geome
 /// A cell whose boundary crosses itself though its volume is positive, if there is one: a quadrilateral two
 /// of whose corners turn the other way, or a quadrilateral face both of whose diagonals cut it into triangles
 /// that face each other. Collective; the same answer on all ranks.
-std::optional<CellTrouble> find_crossed(const Mesh& mesh, const Geometry& geometry,
-                                        std::span<const Vec3> points);
+std::optional<CellTrouble> find_crossed(const Mesh& mesh, const Geometry& geometry);
 
 /// A cell that does not lie behind one of its faces, as seen from the cell (or boundary face) across: cells overlap, or one
 /// is bent over. The lowest cell_id; `centre` is that of the face. Collective; the same answer on all ranks.
@@ -48,6 +47,6 @@ std::optional<CellTrouble> find_fold(const Mesh& mesh, const Geometry& geometry)
 
 /// Refuses inverted and crossed cells (Error), then logs one line: cells, smallest volume, largest angle,
 /// skewness and aspect ratio with their places. Collective.
-void check_and_report(const Mesh& mesh);
+void check_and_report(const Mesh& mesh, const Geometry& geometry);
 
 }  // namespace couplet

@@ -30,12 +30,13 @@ void check_names(const Mesh& mesh, const FluidParameters& parameters) {
 }  // namespace
 
 template <int D>
-Boundary<D>::Boundary(const Mesh& mesh, const FluidParameters& parameters)
+Boundary<D>::Boundary(const Mesh& mesh, const Geometry& geometry, const FluidParameters& parameters)
     : comm_(mesh.comm), rows_(mesh.boundary.n_owned()) {
   check_names(mesh, parameters);
   interface_.assign(rows_.pressure.size(), 0);
   convective_ = interface_;
-  for (const Patch& patch : mesh.patches) add_patch(mesh, patch, parameters.boundaries.at(patch.name));
+  for (const Patch& patch : mesh.patches)
+    add_patch(mesh, geometry, patch, parameters.boundaries.at(patch.name));
   add_openings(mesh, parameters);
   rows_.sort();
 }
@@ -79,7 +80,8 @@ void Boundary<D>::add_openings(const Mesh& mesh, const FluidParameters& paramete
 }
 
 template <int D>
-void Boundary<D>::add_patch(const Mesh& mesh, const Patch& patch, const BoundaryParameters& b) {
+void Boundary<D>::add_patch(const Mesh& mesh, const Geometry& geometry, const Patch& patch,
+                            const BoundaryParameters& b) {
   const FaceRange faces{patch.first - mesh.n_interior, patch.count};
   const std::string where = "boundaries." + patch.name;
   const Condition& condition = condition_of(b);
@@ -91,7 +93,7 @@ void Boundary<D>::add_patch(const Mesh& mesh, const Patch& patch, const Boundary
     pressure_patches_.push_back({faces, Expression(b.pressure, where + ".pressure")});
   }
   if (condition.velocity == GivenBy::keys) {
-    velocity_patches_.emplace_back(mesh, patch, b);
+    velocity_patches_.emplace_back(mesh, geometry, patch, b);
     turns_ = turns_ || velocity_patches_.back().turns();
   }
   if (condition.velocity == GivenBy::flow) {

@@ -22,7 +22,7 @@ template <int D>
 class Boundary {
  public:
   /// Throws Error if a patch has no boundary or a boundary names no patch.
-  Boundary(const Mesh& mesh, const FluidParameters& parameters);
+  Boundary(const Mesh& mesh, const Geometry& geometry, const FluidParameters& parameters);
 
   /// What the conditions give to the loops over boundary faces.
   const FaceRows& rows() const { return rows_; }
@@ -78,7 +78,7 @@ class Boundary {
     FaceRange faces;
     Expression value;
   };
-  void add_patch(const Mesh& mesh, const Patch& patch, const BoundaryParameters& b);
+  void add_patch(const Mesh& mesh, const Geometry& geometry, const Patch& patch, const BoundaryParameters& b);
   void add_interface(const Patch& patch, const FaceRange& faces, const BoundaryParameters& b);
   void add_openings(const Mesh& mesh, const FluidParameters& parameters);
   MPI_Comm comm_;

@@ -31,7 +31,8 @@ double ramp_factor(const BoundaryParameters& b, double t) {
 }  // namespace
 
 template <int D>
-GivenVelocity<D>::GivenVelocity(const Mesh& mesh, const Patch& patch, const BoundaryParameters& b)
+GivenVelocity<D>::GivenVelocity(const Mesh& mesh, const Geometry& geometry, const Patch& patch,
+                                const BoundaryParameters& b)
     : faces_{patch.first - mesh.n_interior, patch.count}, patch_(&patch), parameters_(b) {
   const std::string where = "boundaries." + patch.name;
   if (b.rotation) turning_ = turning_of(b, where);
@@ -39,7 +40,7 @@ GivenVelocity<D>::GivenVelocity(const Mesh& mesh, const Patch& patch, const Boun
     table_ = velocity_table(b.table->file, b.table->outside, D);
   } else if (b.mean_speed) {
     mean_speed_ = Expression(*b.mean_speed, where + ".mean-speed");
-    shape_ = inlet_shape<D>(mesh, patch, b.profile);
+    shape_ = inlet_shape<D>(mesh, geometry, patch, b.profile);
   } else if (!b.velocity.empty()) {
     velocity_ = make_expressions(b.velocity, D, where + ".velocity");
   }

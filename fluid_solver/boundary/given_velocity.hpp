@@ -16,7 +16,8 @@ template <int D>
 class GivenVelocity {
  public:
   /// Throws Error if the keys do not fit the patch. Collective.
-  GivenVelocity(const Mesh& mesh, const Patch& patch, const BoundaryParameters& parameters);
+  GivenVelocity(const Mesh& mesh, const Geometry& geometry, const Patch& patch,
+                const BoundaryParameters& parameters);
 
   const FaceRange& faces() const { return faces_; }
   const Patch& patch() const { return *patch_; }

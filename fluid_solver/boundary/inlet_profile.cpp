@@ -19,9 +19,8 @@ struct Extent {
   double size = 0, radius = 0;  // sum of |S|; largest distance of a point from the centre
 };
 
-Extent extent_of(const Mesh& mesh, const Patch& patch) {
+Extent extent_of(const Mesh& mesh, const Geometry& g, const Patch& patch) {
   double sums[7] = {};
-  const Geometry& g = mesh.reference;
   for (Index f = patch.first; f < patch.first + patch.count; ++f) {
     const double size = g.face_area[f].norm();
     for (int c = 0; c < 3; ++c) {
@@ -33,8 +32,7 @@ Extent extent_of(const Mesh& mesh, const Patch& patch) {
   MPI_Allreduce(MPI_IN_PLACE, sums, 7, MPI_DOUBLE, MPI_SUM, mesh.comm);
   Extent e{{sums[0], sums[1], sums[2]}, Vec3(sums[3], sums[4], sums[5]) / sums[6], sums[6], 0};
   for (Index f = patch.first; f < patch.first + patch.count; ++f)
-    for (const Index p : mesh.face_points[f])
-      e.radius = std::max(e.radius, (mesh.reference_points[p] - e.centre).norm());
+    for (const Index p : mesh.face_points[f]) e.radius = std::max(e.radius, (g.points[p] - e.centre).norm());
   e.radius = max(mesh.comm, e.radius);
   return e;
 }
@@ -42,8 +40,9 @@ Extent extent_of(const Mesh& mesh, const Patch& patch) {
 }  // namespace
 
 template <int D>
-InletShape<D> inlet_shape(const Mesh& mesh, const Patch& patch, InletProfile profile) {
-  const Extent e = extent_of(mesh, patch);
+InletShape<D> inlet_shape(const Mesh& mesh, const Geometry& geometry, const Patch& patch,
+                          InletProfile profile) {
+  const Extent e = extent_of(mesh, geometry, patch);
   if (!(e.area.norm() > (1 - flat_enough) * e.size))
     throw Error("boundaries.{}: the patch is not flat, so 'mean-speed' has no direction. Give a 'velocity'.",
                 patch.name);
@@ -56,16 +55,16 @@ InletShape<D> inlet_shape(const Mesh& mesh, const Patch& patch, InletProfile pro
   shape.direction = -e.area.normalized().template head<D>();
   double flow = 0;
   for (Index f = patch.first; f < patch.first + patch.count; ++f) {
-    const double r = (mesh.reference.face_centre[f] - e.centre).norm() / e.radius;
+    const double r = (geometry.face_centre[f] - e.centre).norm() / e.radius;
     shape.speed.push_back(profile == InletProfile::parabolic ? std::max(0.0, 1 - r * r) : 1.0);
-    flow -= shape.speed.back() * shape.direction.dot(mesh.reference.face_area[f].template head<D>());
+    flow -= shape.speed.back() * shape.direction.dot(geometry.face_area[f].template head<D>());
   }
   const double mean = sum(mesh.comm, flow) / e.size;
   for (double& speed : shape.speed) speed /= mean;
   return shape;
 }
 
-template InletShape<2> inlet_shape<2>(const Mesh&, const Patch&, InletProfile);
-template InletShape<3> inlet_shape<3>(const Mesh&, const Patch&, InletProfile);
+template InletShape<2> inlet_shape<2>(const Mesh&, const Geometry&, const Patch&, InletProfile);
+template InletShape<3> inlet_shape<3>(const Mesh&, const Geometry&, const Patch&, InletProfile);
 
 }  // namespace couplet::fluid

@@ -9,17 +9,17 @@
 
 namespace couplet::fluid {
 template <int D>
-double set_body_start(const Mesh& mesh, const Boundary<D>& boundary, const MotionParameters& motion,
-                      double time, Vectors<D>& w, Vectors<D>& turn) {
+double set_body_start(const Mesh& mesh, std::span<const Vec3> points, const Boundary<D>& boundary,
+                      const MotionParameters& motion, double time, Vectors<D>& w, Vectors<D>& turn) {
   const PrescribedMotion prescribed(motion, D);
-  const double length = mesh_size(mesh);
+  const double length = mesh_size(mesh, points);
   double largest = 0;
   for (const Patch* patch : boundary.body_patches()) {
     std::vector<Vec3> corners;
     for (Index f = patch->first; f < patch->first + patch->count; ++f)
-      for (const Index v : mesh.face_points[f]) corners.push_back(mesh.reference_points[v]);
+      for (const Index v : mesh.face_points[f]) corners.push_back(points[v]);
     const std::vector<Vec3> velocities = prescribed.starting_velocities(corners, time, length);
-    if (!turn.empty()) set_turn<D>(mesh, *patch, mesh.reference_points, velocities, turn);
+    if (!turn.empty()) set_turn<D>(mesh, *patch, points, velocities, turn);
     auto next = velocities.begin();
     for (Index f = patch->first; f < patch->first + patch->count; ++f) {
       const auto n = mesh.face_points[f].size();
@@ -32,9 +32,9 @@ double set_body_start(const Mesh& mesh, const Boundary<D>& boundary, const Motio
   return max(mesh.comm, largest);
 }
 
-template double set_body_start<2>(const Mesh&, const Boundary<2>&, const MotionParameters&, double,
-                                  Vectors<2>&, Vectors<2>&);
-template double set_body_start<3>(const Mesh&, const Boundary<3>&, const MotionParameters&, double,
-                                  Vectors<3>&, Vectors<3>&);
+template double set_body_start<2>(const Mesh&, std::span<const Vec3>, const Boundary<2>&,
+                                  const MotionParameters&, double, Vectors<2>&, Vectors<2>&);
+template double set_body_start<3>(const Mesh&, std::span<const Vec3>, const Boundary<3>&,
+                                  const MotionParameters&, double, Vectors<3>&, Vectors<3>&);
 
 }  // namespace couplet::fluid

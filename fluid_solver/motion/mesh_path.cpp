@@ -40,17 +40,21 @@ void refuse_inverted(const Mesh& mesh, const Placement<D>& at, double time) {
 }  // namespace
 
 template <int D>
-MeshPath<D>::MeshPath(const Mesh& mesh, const FluidParameters& parameters, bool moves)
-    : mesh_(mesh), moves_(moves), translates_(parameters.motion && parameters.motion->translates()) {
+MeshPath<D>::MeshPath(const Mesh& mesh, const Geometry& geometry, const FluidParameters& parameters,
+                      bool moves)
+    : mesh_(mesh),
+      points_at_rest_(geometry.points),
+      moves_(moves),
+      translates_(parameters.motion && parameters.motion->translates()) {
   if (moves_ && !translates_ &&
       any(mesh.comm, !mesh.neighbour_shift.empty()))  // a rank without cells has none
-    periodic_.emplace(mesh);
+    periodic_.emplace(mesh, geometry);
 }
 
 template <int D>
-std::shared_ptr<const Placement<D>> MeshPath<D>::start() {
+std::shared_ptr<const Placement<D>> MeshPath<D>::start(const Geometry& geometry) {
   std::shared_ptr<const Placement<D>> first =
-      moves_ ? make_placement<D>(mesh_, mesh_.reference_points) : make_placement<D>(mesh_, mesh_.reference);
+      moves_ ? make_placement<D>(mesh_, geometry.points) : make_placement<D>(mesh_, geometry);
   if (!translates_) return first;
   auto frame = std::make_shared<Placement<D>>(*first);
   frame->shape = std::make_shared<const char>();
@@ -60,8 +64,7 @@ std::shared_ptr<const Placement<D>> MeshPath<D>::start() {
 template <int D>
 std::shared_ptr<const Placement<D>> MeshPath<D>::at(std::span<const Vec3> points) const {
   if (!frame_) return make_placement<D>(mesh_, points);
-  return translated(*frame_,
-                    points.empty() ? Vec3(Vec3::Zero()) : Vec3(points[0] - mesh_.reference_points[0]));
+  return translated(*frame_, points.empty() ? Vec3(Vec3::Zero()) : Vec3(points[0] - points_at_rest_[0]));
 }
 
 template <int D>
@@ -90,7 +93,7 @@ void MeshPath<D>::refuse_torn(std::span<const Vec3> points, double time) const {
   if (!periodic_ || points.empty()) return;
   std::vector<double> moved;
   for (std::size_t v = 0; v < points.size(); ++v)
-    for (int c = 0; c < mesh_.dim; ++c) moved.push_back(points[v][c] - mesh_.reference_points[v][c]);
+    for (int c = 0; c < mesh_.dim; ++c) moved.push_back(points[v][c] - points_at_rest_[v][c]);
   const double gap = periodic_->largest_gap(moved, mesh_.dim);
   double size = 0;
   for (Index f = 0; f < mesh_.n_interior; ++f) size = std::max(size, mesh_.shift(f).norm());

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "common/mesh/periodic_points.hpp"
 #include "fluid_solver/motion/step_work.hpp"
@@ -14,15 +15,17 @@ namespace couplet::fluid {
 template <int D>
 class MeshPath {
  public:
-  /// `moves`: the mesh will. Collective.
-  MeshPath(const Mesh& mesh, const FluidParameters& parameters, bool moves);
+  /// `geometry`: of the mesh at rest, of which the points alone are kept. `moves`: the mesh will. Collective.
+  MeshPath(const Mesh& mesh, const Geometry& geometry, const FluidParameters& parameters, bool moves);
+
+  /// As read, per local point [m].
+  const std::vector<Vec3>& points_at_rest() const { return points_at_rest_; }
 
   bool moves() const { return moves_; }
   /// As a frame that does not turn.
   bool translates() const { return translates_; }
-  /// Of the reference points; a frame that is only translated keeps its shape, and with it the pressure equation and its
-  /// factors.
-  std::shared_ptr<const Placement<D>> start();
+  /// Of the mesh at rest; a frame that is only translated keeps its shape, and with it the pressure equation and its factors.
+  std::shared_ptr<const Placement<D>> start(const Geometry& geometry);
   /// Of other points; empty: of those at rest.
   std::shared_ptr<const Placement<D>> at(std::span<const Vec3> points) const;
   /// What a sub-step of `dt` needs of the mesh that ends at the share `s` of the way from `begin` to `end` (empty: it rests
@@ -35,9 +38,10 @@ class MeshPath {
 
  private:
   const Mesh& mesh_;
+  const std::vector<Vec3> points_at_rest_;
   bool moves_, translates_;
   std::optional<PeriodicPoints> periodic_;     // with patches joined on a mesh that moves
-  std::shared_ptr<const Placement<D>> frame_;  // with translates_: the reference placement
+  std::shared_ptr<const Placement<D>> frame_;  // with translates_: the placement at rest
 };
 
 }  // namespace couplet::fluid

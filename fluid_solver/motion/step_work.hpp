@@ -36,6 +36,7 @@ struct StepStatistics {
 template <int D>
 struct StepWork {
   const Mesh& mesh;
+  const std::vector<Vec3>& points_at_rest;  ///< as read, per local point [m]
   const Boundary<D>& boundary;
   const FluidParameters& parameters;
   double rho, nu;             ///< [kg/m^3], [m^2/s]

@@ -58,7 +58,7 @@ void Fluid<D>::add_turning() {
   if (!boundary_.walls_turn()) return;
   turn_ = given_turn_;
   turn_.resize(viscous_force_.size(), Vec<D>::Zero());
-  const std::vector<Vec3>& points = step_.points().empty() ? mesh_.reference_points : step_.points();
+  const std::vector<Vec3>& points = step_.points().empty() ? points_at_rest() : step_.points();
   boundary_.add_turn(mesh_, points, time_ + dt_, turn_);
   for (std::size_t b = 0; b < turn_.size(); ++b) {
     Vec<D> mean = 0.5 * turn_[b];

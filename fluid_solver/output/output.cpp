@@ -17,9 +17,9 @@
 namespace couplet::fluid {
 
 template <int D>
-FluidOutput<D>::FluidOutput(const Fluid<D>& fluid, FluidContext context)
+FluidOutput<D>::FluidOutput(const Fluid<D>& fluid, const Geometry& geometry, FluidContext context)
     : fluid_(fluid), mesh_(fluid.mesh()), context_(std::move(context)), root_(comm_rank(mesh_.comm) == 0) {
-  set_up_points();
+  set_up_points(geometry);
   for (const Patch& patch : mesh_.patches)
     if (is_wall(fluid.parameters().boundaries.at(patch.name))) walls_.push_back(&patch);
   check_coefficients();
@@ -59,7 +59,8 @@ template <int D>
 void FluidOutput<D>::write_fields(double time, const RunningStatistics<D>* statistics) {
   if (context_.output_folder.empty()) return;
   if (!fields_)
-    fields_.emplace(mesh_, context_.output_folder, context_.name, fluid_.moving(), context_.restart_time);
+    fields_.emplace(mesh_, fluid_.points_at_rest(), context_.output_folder, context_.name, fluid_.moving(),
+                    context_.restart_time);
   using Place = OutputField::Place;
   const State<D>& s = fluid_.state();
   const FluidOutputParameters& wanted = fluid_.parameters().output;
@@ -96,7 +97,7 @@ void FluidOutput<D>::write_fields(double time, const RunningStatistics<D>* stati
         {"pressure-rms", "Pa", Place::cells, 1, std::span<const double>(p_rms).first(statistics->cells())});
     fields.push_back({"reynolds-shear", "m^2/s^2", Place::cells, RunningStatistics<D>::n_shear, shear});
   }
-  fields_->write(time, fluid_.moving() ? s.points : mesh_.reference_points, fields);
+  fields_->write(time, fluid_.moving() ? s.points : fluid_.points_at_rest(), fields);
 }
 
 template <int D>

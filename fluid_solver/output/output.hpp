@@ -28,7 +28,8 @@ struct FluidContext {
 template <int D>
 class FluidOutput {
  public:
-  FluidOutput(const Fluid<D>& fluid, FluidContext context);
+  /// `geometry`: of the mesh at rest, looked at while this is made.
+  FluidOutput(const Fluid<D>& fluid, const Geometry& geometry, FluidContext context);
   /// `statistics` may be null.
   void write_fields(double time, const RunningStatistics<D>* statistics);
   void write_series(double time);
@@ -38,7 +39,7 @@ class FluidOutput {
   void write_samples(double time, const RunningStatistics<D>* statistics);
 
  private:
-  void set_up_points();
+  void set_up_points(const Geometry& geometry);
   void write_forces(double time);
   void write_walls(double time);
   void write_coefficients(double time);

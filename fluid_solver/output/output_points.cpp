@@ -21,16 +21,17 @@ void add_columns(std::vector<std::string>& columns, const std::string& before, c
 }  // namespace
 
 template <int D>
-void FluidOutput<D>::set_up_points() {
+void FluidOutput<D>::set_up_points(const Geometry& geometry) {
   const FluidParameters& p = fluid_.parameters();
   std::vector<Vec3> places;
   for (const auto& [name, probe] : p.probes) {
-    probes_.emplace_back(mesh_, name, probe.point);
+    probes_.emplace_back(mesh_, geometry.points, name, probe.point);
     places.push_back(probe.point);
   }
-  doubt_mesh_scale(mesh_, places);
-  for (const auto& [name, sample] : p.output.samples) samples_.emplace_back(mesh_, name, sample);
-  if (!probes_.empty() || !samples_.empty()) point_values_.emplace(fluid_);
+  doubt_mesh_scale(mesh_, geometry.points, places);
+  for (const auto& [name, sample] : p.output.samples)
+    samples_.emplace_back(mesh_, geometry.points, name, sample);
+  if (!probes_.empty() || !samples_.empty()) point_values_.emplace(fluid_, geometry);
   sample_series_.resize(samples_.size());
 }
 
@@ -57,7 +58,7 @@ template <int D>
 void FluidOutput<D>::write_samples(double time, const RunningStatistics<D>* statistics) {
   if (samples_.empty() || context_.output_folder.empty() || !fluid_.state().pressure[0]) return;
   point_values_->follow();
-  const std::vector<Vec3>& points = fluid_.moving() ? fluid_.state().points : mesh_.reference_points;
+  const std::vector<Vec3>& points = fluid_.moving() ? fluid_.state().points : fluid_.points_at_rest();
   const int means = statistics ? 2 * (D + 1) : 0;
   std::vector<double> now(mesh_.points.n_local() * (D + 1), 0.0),
       of_time(mesh_.points.n_local() * means, 0.0);
@@ -87,8 +88,8 @@ void FluidOutput<D>::write_samples(double time, const RunningStatistics<D>* stat
   }
 }
 
-template void FluidOutput<2>::set_up_points();
-template void FluidOutput<3>::set_up_points();
+template void FluidOutput<2>::set_up_points(const Geometry&);
+template void FluidOutput<3>::set_up_points(const Geometry&);
 template void FluidOutput<2>::write_probes(double);
 template void FluidOutput<3>::write_probes(double);
 template void FluidOutput<2>::write_samples(double, const RunningStatistics<2>*);

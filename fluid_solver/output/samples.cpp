@@ -10,15 +10,15 @@
 namespace couplet::fluid {
 
 template <int D>
-PointValues<D>::PointValues(const Fluid<D>& fluid)
+PointValues<D>::PointValues(const Fluid<D>& fluid, const Geometry& geometry)
     : fluid_(fluid),
-      interpolation_(fluid.mesh(),
+      interpolation_(fluid.mesh(), geometry,
                      std::vector<PatchStencil>(fluid.mesh().patches.size(), PatchStencil::open)) {}
 
 template <int D>
 void PointValues<D>::follow() {
   const State<D>& s = fluid_.state();
-  if (fluid_.moving()) interpolation_.update(compute_geometry(fluid_.mesh(), s.points), s.points);
+  if (fluid_.moving()) interpolation_.update(compute_geometry(fluid_.mesh(), s.points));
 }
 
 template <int D>
@@ -60,9 +60,10 @@ void PointValues<D>::means(const RunningStatistics<D>& statistics, std::span<con
   add(statistics.velocity_rms(), statistics.pressure_rms(), D + 1);
 }
 
-Sample::Sample(const Mesh& mesh, std::string name, const SampleParameters& p) : name_(std::move(name)) {
+Sample::Sample(const Mesh& mesh, std::span<const Vec3> places, std::string name, const SampleParameters& p)
+    : name_(std::move(name)) {
   const int rows = p.type == SampleParameters::Type::plane ? p.rows : 1;
-  const PlaceSearch search(mesh);
+  const PlaceSearch search(mesh, places);
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < p.points; ++i) {
       const double s = double(i) / (p.points - 1), r = rows > 1 ? double(j) / (rows - 1) : 0.0;
@@ -72,7 +73,7 @@ Sample::Sample(const Mesh& mesh, std::string name, const SampleParameters& p) : 
       along_.push_back({s, r});
     }
   if (probes_.empty()) try {
-      Probe(mesh, name_, p.from);
+      Probe(mesh, places, name_, p.from);
     } catch (const Error& outside) {
       throw Error("output.samples.{}: none of its points is in the mesh. {}", name_, outside.what());
     }

@@ -18,7 +18,8 @@ namespace couplet::fluid {
 template <int D>
 class PointValues {
  public:
-  explicit PointValues(const Fluid<D>& fluid);
+  /// `geometry`: of the mesh at rest, looked at while this is made.
+  PointValues(const Fluid<D>& fluid, const Geometry& geometry);
   /// To be called when the mesh may have moved, before the others. Collective.
   void follow();
   /// At the probes' local points: velocity, then pressure of the accepted state. `values`: D + 1 a local point,
@@ -39,8 +40,9 @@ class PointValues {
 /// The places of a line or plane that lie in the mesh.
 class Sample {
  public:
-  /// Throws Error if none does. Collective.
-  Sample(const Mesh& mesh, std::string name, const SampleParameters& parameters);
+  /// `places`: of the local points [m]. Throws Error if none does. Collective.
+  Sample(const Mesh& mesh, std::span<const Vec3> places, std::string name,
+         const SampleParameters& parameters);
   const std::string& name() const { return name_; }
   const std::vector<Probe>& probes() const { return probes_; }
   /// Of each probe: how far along from-to and from-up, 0 to 1.

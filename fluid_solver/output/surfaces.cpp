@@ -16,7 +16,8 @@ struct FluidSurfaces<D>::Faces {
 
 template <int D>
 FluidSurfaces<D>::FluidSurfaces(const Fluid<D>& fluid)
-    : fluid_(fluid), series_(fluid.mesh(), fluid.parameters().output.surfaces, "output.surfaces") {}
+    : fluid_(fluid),
+      series_(fluid.mesh(), fluid.points_at_rest(), fluid.parameters().output.surfaces, "output.surfaces") {}
 
 // The forces are those of forces.csv, so that their sum is.
 template <int D>
@@ -56,7 +57,6 @@ void FluidSurfaces<D>::write(double time, const FluidContext& context) {
   if (!pressure || fluid_.pressure_force().empty()) return;
   if (!is_open_) series_.open(context.output_folder, fluid_.moving(), context.restart_time);
   is_open_ = true;
-  const Mesh& mesh = fluid_.mesh();
   const Faces all = faces();
   using Place = OutputField::Place;
   for (std::size_t i = 0; i < series_.patches().size(); ++i) {
@@ -68,7 +68,7 @@ void FluidSurfaces<D>::write(double time, const FluidContext& context) {
       fields.push_back({"y-plus", "-", Place::cells, 1, all.yplus});
     const std::vector<double> cp = pressure_coefficient(patch, pressure->boundary);
     if (!cp.empty()) fields.push_back({"pressure-coefficient", "-", Place::cells, 1, cp});
-    series_.write(i, time, fluid_.moving() ? fluid_.state().points : mesh.reference_points, fields);
+    series_.write(i, time, fluid_.moving() ? fluid_.state().points : fluid_.points_at_rest(), fields);
   }
 }
 

@@ -14,7 +14,7 @@ constexpr double kept = 1e-6;
 template <int D>
 void PressureProjection<D>::mark_gaps() {
   const Placement<D>& now = *k_.step.to;
-  const bool changed = k_.gaps->mark(k_.step.points.empty() ? k_.mesh.reference_points : k_.step.points, now);
+  const bool changed = k_.gaps->mark(k_.step.points.empty() ? k_.points_at_rest : k_.step.points, now);
   if (changed) {
     k_.assembled = nullptr;
     pressure_.refresh();

@@ -11,12 +11,12 @@ namespace couplet::fluid {
 namespace {
 
 /// Largest extent of the mesh [m]. Collective.
-double size_of(const Mesh& mesh) {
+double size_of(const Mesh& mesh, std::span<const Vec3> points) {
   constexpr double far = std::numeric_limits<double>::max();
   double size = 0;
   for (int c = 0; c < mesh.dim; ++c) {
     double low = far, high = -far;
-    for (const Vec3& x : mesh.reference_points) low = std::min(low, x[c]), high = std::max(high, x[c]);
+    for (const Vec3& x : points) low = std::min(low, x[c]), high = std::max(high, x[c]);
     size = std::max(size, max(mesh.comm, high) - min(mesh.comm, low));
   }
   return size;
@@ -28,7 +28,7 @@ template <int D>
 void PressureProjection<D>::make_waves() {
   compression_ = std::make_unique<Compression<D>>(k_);
   if (!k_.boundary.absorbing_patches().empty())
-    absorbing_ = std::make_unique<AbsorbingBoundaries<D>>(k_, size_of(k_.mesh));
+    absorbing_ = std::make_unique<AbsorbingBoundaries<D>>(k_, size_of(k_.mesh, k_.points_at_rest));
   if (!k_.boundary.upstream_patches().empty()) upstream_ = std::make_unique<UpstreamVolume<D>>(k_);
 }
 

@@ -147,7 +147,7 @@ std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, std::span<c
       return placement;
     }
   }
-  return make_placement<D>(mesh, compute_geometry(mesh, points));
+  return make_placement<D>(mesh, compute_geometry(mesh, {points.begin(), points.end()}));
 }
 
 template <int D>

@@ -8,15 +8,16 @@
 namespace couplet::fluid {
 
 template <int D>
-Fluid<D>::Fluid(const Mesh& mesh, const FluidParameters& parameters, bool moving_mesh, double start_time)
+Fluid<D>::Fluid(const Mesh& mesh, const Geometry& geometry, const FluidParameters& parameters,
+                bool moving_mesh, double start_time)
     : mesh_(mesh),
       parameters_(parameters),
-      path_(mesh, parameters_, moving_mesh),
-      boundary_(mesh, parameters_),
-      step_(mesh, boundary_, parameters_, moving_mesh && !path_.translates()),
+      path_(mesh, geometry, parameters_, moving_mesh),
+      boundary_(mesh, geometry, parameters_),
+      step_(mesh, path_.points_at_rest(), boundary_, parameters_, moving_mesh && !path_.translates()),
       sizes_(mesh, boundary_, parameters_) {
   check_together(mesh_, boundary_, parameters_, moving_mesh);
-  start(start_time);
+  start(geometry, start_time);
 }
 
 /// The first two stages of Heun's scheme, each a step from level n with its own pressure,

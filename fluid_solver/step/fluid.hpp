@@ -31,7 +31,9 @@ struct FluidStatistics {
 template <int D>
 class Fluid {
  public:
-  Fluid(const Mesh& mesh, const FluidParameters& parameters, bool moving_mesh, double start_time = 0);
+  /// `geometry`: of the mesh at rest; of it the points alone are kept.
+  Fluid(const Mesh& mesh, const Geometry& geometry, const FluidParameters& parameters, bool moving_mesh,
+        double start_time = 0);
 
   void begin_step(double time, double dt);
   /// `points`: at t^{n+1}, empty if the mesh rests. `wall_velocity`: per boundary face at t^{n+1} [m/s], only
@@ -79,6 +81,8 @@ class Fluid {
 
   const Boundary<D>& boundary() const { return boundary_; }
   const Mesh& mesh() const { return mesh_; }
+  /// Per local point, as read [m].
+  const std::vector<Vec3>& points_at_rest() const { return path_.points_at_rest(); }
   const FluidParameters& parameters() const { return parameters_; }
   const FluidStatistics& statistics() const { return statistics_; }
   SubStepSize<D>& sizes() { return sizes_; }
@@ -93,7 +97,7 @@ class Fluid {
   /// What the sub-step under way starts from.
   const State<D>& level() const { return split_ ? trial_ : accepted_; }
   void run_stages(SubStep<D>& step, double done, const Vectors<D>& wall_velocity);
-  void start(double time);
+  void start(const Geometry& geometry, double time);
   void check_wall_velocity() const;
   Vectors<D> wall_velocity_at(double done, const Vectors<D>& interface_velocity,
                               const SubStep<D>& step) const;

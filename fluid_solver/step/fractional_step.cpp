@@ -9,9 +9,10 @@
 namespace couplet::fluid {
 
 template <int D>
-FractionalStep<D>::FractionalStep(const Mesh& mesh, const Boundary<D>& boundary,
-                                  const FluidParameters& parameters, bool moving)
+FractionalStep<D>::FractionalStep(const Mesh& mesh, const std::vector<Vec3>& points_at_rest,
+                                  const Boundary<D>& boundary, const FluidParameters& parameters, bool moving)
     : k_{mesh,
+         points_at_rest,
          boundary,
          parameters,
          parameters.density,

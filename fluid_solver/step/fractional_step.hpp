@@ -25,8 +25,8 @@ template <int D>
 class FractionalStep {
  public:
   /// `moving`: the mesh will move.
-  FractionalStep(const Mesh& mesh, const Boundary<D>& boundary, const FluidParameters& parameters,
-                 bool moving);
+  FractionalStep(const Mesh& mesh, const std::vector<Vec3>& points_at_rest, const Boundary<D>& boundary,
+                 const FluidParameters& parameters, bool moving);
 
   /// `by`: how the step sees the level it starts from; `w`: given velocity per boundary face at t^{n+1}, as
   /// far as it is known. Collective.

@@ -6,11 +6,11 @@
 namespace couplet::fluid {
 
 template <int D>
-void Fluid<D>::start(double time) {
+void Fluid<D>::start(const Geometry& geometry, double time) {
   State<D>& s = accepted_;
   s.time = time;
-  if (path_.moves()) s.points = mesh_.reference_points;
-  s.placement = path_.start();
+  if (path_.moves()) s.points = geometry.points;
+  s.placement = path_.start(geometry);
   const Placement<D>& at = *s.placement;
   s.u.assign(mesh_.cells.n_local(), Vec<D>::Zero());
   s.w.assign(mesh_.boundary.n_owned(), Vec<D>::Zero());
@@ -18,7 +18,7 @@ void Fluid<D>::start(double time) {
   if (!parameters_.initial_velocity.empty()) {
     const auto expressions = make_expressions(parameters_.initial_velocity, D, "initial-velocity");
     for (int c = 0; c < D; ++c) {
-      expressions[c].evaluate(mesh_.reference.cell_centre, time, flat<D>(s.u), D, c);
+      expressions[c].evaluate(geometry.cell_centre, time, flat<D>(s.u), D, c);
       expressions[c].evaluate(at.boundary_centre, time, flat<D>(s.u_boundary), D, c);
     }
   }
@@ -30,10 +30,11 @@ void Fluid<D>::start(double time) {
     boundary_.velocity_at(time, at.boundary_centre, s.w);
     if (boundary_.walls_turn()) {
       s.turn.assign(s.w.size(), Vec<D>::Zero());
-      boundary_.add_turn(mesh_, mesh_.reference_points, time, s.turn);
+      boundary_.add_turn(mesh_, geometry.points, time, s.turn);
       s.turns = true;
     }
-    if (parameters_.motion) set_body_start(mesh_, boundary_, *parameters_.motion, time, s.w, s.turn);
+    if (parameters_.motion)
+      set_body_start(mesh_, geometry.points, boundary_, *parameters_.motion, time, s.w, s.turn);
   }
   for (std::size_t b = 0; b < s.w.size(); ++b)
     if (boundary_.is_convective(b)) s.w[b] = s.u_boundary[b];
@@ -48,7 +49,7 @@ void Fluid<D>::start(double time) {
     level->time = time;
     level->p.resize(mesh_.cells.n_local());
     level->boundary.resize(s.w.size());
-    initial_pressure.evaluate(mesh_.reference.cell_centre, time, level->p);
+    initial_pressure.evaluate(geometry.cell_centre, time, level->p);
     initial_pressure.evaluate(at.boundary_centre, time, level->boundary);
     if (step_.frame()) add_centrifugal(*step_.frame(), at, -parameters_.density, *level);
     step_.start_level(at, *level);
@@ -60,7 +61,7 @@ void Fluid<D>::start(double time) {
   step_.keep();
 }
 
-template void Fluid<2>::start(double);
-template void Fluid<3>::start(double);
+template void Fluid<2>::start(const Geometry&, double);
+template void Fluid<3>::start(const Geometry&, double);
 
 }  // namespace couplet::fluid

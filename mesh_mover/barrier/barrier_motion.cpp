@@ -38,14 +38,15 @@ LinearOptions options_of(const Mesh& mesh, const LinearOptions& wanted) {
 
 }  // namespace
 
-BarrierMotion::BarrierMotion(const Mesh& mesh, const Parameters& parameters, std::span<const double> volumes)
+BarrierMotion::BarrierMotion(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters,
+                             std::span<const double> volumes)
     : mesh_(mesh),
       dim_(mesh.dim),
       simplices_(make_simplices(
-          mesh, parameters.stiffening,
-          volumes.empty() ? mesh.reference.volume : std::vector<double>(volumes.begin(), volumes.end()))),
-      held_(find_held_points(mesh, parameters)),
-      system_(mesh, simplices_, held_),
+          mesh, geometry, parameters.stiffening,
+          volumes.empty() ? geometry.volume : std::vector<double>(volumes.begin(), volumes.end()))),
+      held_(find_held_points(mesh, geometry, parameters)),
+      system_(mesh, geometry, simplices_, held_),
       displacement_(std::size_t(mesh.points.n_local()) * mesh.dim, 0.0) {
   solver_ = std::make_unique<LinearSolver>("the mesh displacement", system_.matrix(),
                                            options_of(mesh, parameters.linear));

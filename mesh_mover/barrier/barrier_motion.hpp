@@ -22,7 +22,8 @@ namespace couplet::mesh_mover {
 class BarrierMotion final : public MotionMethod {
  public:
   /// `volumes`: V per local cell; empty: those of the mesh. Throws Error if no patch holds the mesh.
-  BarrierMotion(const Mesh& mesh, const Parameters& parameters, std::span<const double> volumes = {});
+  BarrierMotion(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters,
+                std::span<const double> volumes = {});
 
   std::vector<double> solve(std::span<const double> prescribed) override;
   SolveStatistics last() const override { return last_; }

@@ -18,13 +18,14 @@ template <int D>
 struct SimplexEdges {
   using Matrix = Eigen::Matrix<double, D, D>;
   const Mesh& mesh;
+  const Geometry& geometry;
   const Simplices& simplices;
 
   Matrix placed(Index s, std::span<const double> u) const {
     const Index* p = simplices.points.data() + std::size_t(s) * (D + 1);
     Matrix edges = of(s, u);
     for (int i = 0; i < D; ++i)
-      edges.col(i) += (mesh.reference_points[p[i + 1]] - mesh.reference_points[p[0]]).template head<D>();
+      edges.col(i) += (geometry.points[p[i + 1]] - geometry.points[p[0]]).template head<D>();
     return edges;
   }
   Matrix of(Index s, std::span<const double> u) const {
@@ -94,8 +95,9 @@ double step_here(const SimplexEdges<D>& edges, std::span<const double> u, std::s
 
 }  // namespace
 
-BarrierSystem::BarrierSystem(const Mesh& mesh, const Simplices& simplices, const HeldPoints& held)
-    : mesh_(mesh), simplices_(simplices), held_(held), dim_(mesh.dim) {
+BarrierSystem::BarrierSystem(const Mesh& mesh, const Geometry& geometry, const Simplices& simplices,
+                             const HeldPoints& held)
+    : mesh_(mesh), geometry_(geometry), simplices_(simplices), held_(held), dim_(mesh.dim) {
   make_pattern();
 }
 
@@ -140,14 +142,15 @@ void BarrierSystem::make_pattern() {
 }
 
 double BarrierSystem::energy(std::span<const double> u) const {
-  return sum(mesh_.comm, dim_ == 2 ? energy_here(SimplexEdges<2>{mesh_, simplices_}, u)
-                                   : energy_here(SimplexEdges<3>{mesh_, simplices_}, u));
+  return sum(mesh_.comm, dim_ == 2 ? energy_here(SimplexEdges<2>{mesh_, geometry_, simplices_}, u)
+                                   : energy_here(SimplexEdges<3>{mesh_, geometry_, simplices_}, u));
 }
 
 double BarrierSystem::largest_step(std::span<const double> u, std::span<const double> direction,
                                    double least) const {
-  return min(mesh_.comm, dim_ == 2 ? step_here(SimplexEdges<2>{mesh_, simplices_}, u, direction, least)
-                                   : step_here(SimplexEdges<3>{mesh_, simplices_}, u, direction, least));
+  return min(mesh_.comm, dim_ == 2
+                             ? step_here(SimplexEdges<2>{mesh_, geometry_, simplices_}, u, direction, least)
+                             : step_here(SimplexEdges<3>{mesh_, geometry_, simplices_}, u, direction, least));
 }
 
 // Per simplex with the gradients b_k of its corner functions: g_k = w P b_k, H_kl = w b_k . d2W/dF2 . b_l, in the frame
@@ -157,7 +160,7 @@ void BarrierSystem::add_simplices(std::span<const double> u, std::span<const dou
                                   std::vector<double>& residual, Hessian hessian) {
   using Matrix = Eigen::Matrix<double, D, D>;
   using Vector = Eigen::Matrix<double, D, 1>;
-  const SimplexEdges<D> edges{mesh_, simplices_};
+  const SimplexEdges<D> edges{mesh_, geometry_, simplices_};
   const Index n = mesh_.points.n_owned();
   Matrix h[D + 1][D + 1];
   for (Index s = 0; s < simplices_.size(); ++s) {
@@ -227,8 +230,8 @@ void BarrierSystem::finish_rows(std::vector<double>& residual) {
 }
 
 Vec3 BarrierSystem::worst_place(std::span<const double> u) const {
-  const auto [simplex, energy] = dim_ == 2 ? worst_here(SimplexEdges<2>{mesh_, simplices_}, u)
-                                           : worst_here(SimplexEdges<3>{mesh_, simplices_}, u);
+  const auto [simplex, energy] = dim_ == 2 ? worst_here(SimplexEdges<2>{mesh_, geometry_, simplices_}, u)
+                                           : worst_here(SimplexEdges<3>{mesh_, geometry_, simplices_}, u);
   struct Entry {
     double energy;
     std::array<double, 3> place{};
@@ -236,7 +239,7 @@ Vec3 BarrierSystem::worst_place(std::span<const double> u) const {
   for (int i = 0; simplex >= 0 && i <= dim_; ++i) {
     const Index v = simplices_.points[std::size_t(simplex) * (dim_ + 1) + i];
     for (int c = 0; c < dim_; ++c)
-      here.place[c] += (mesh_.reference_points[v][c] + u[std::size_t(v) * dim_ + c]) / (dim_ + 1);
+      here.place[c] += (geometry_.points[v][c] + u[std::size_t(v) * dim_ + c]) / (dim_ + 1);
   }
   const std::vector<Entry> all = all_gather(mesh_.comm, std::vector<Entry>{here});
   const Entry& worst = *std::ranges::max_element(all, {}, &Entry::energy);

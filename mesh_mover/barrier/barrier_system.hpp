@@ -18,7 +18,8 @@ class BarrierSystem {
  public:
   enum class Hessian { exact, projected };
   /// All by reference. Collective.
-  BarrierSystem(const Mesh& mesh, const Simplices& simplices, const HeldPoints& held);
+  BarrierSystem(const Mesh& mesh, const Geometry& geometry, const Simplices& simplices,
+                const HeldPoints& held);
 
   /// Sum of weight x W; infinite if a simplex is not positive. Collective.
   double energy(std::span<const double> displacement) const;
@@ -43,6 +44,7 @@ class BarrierSystem {
   void make_pattern();
 
   const Mesh& mesh_;
+  const Geometry& geometry_;
   const Simplices& simplices_;
   const HeldPoints& held_;
   int dim_;

@@ -48,7 +48,7 @@ Tensor3 held_by(std::vector<Vec3> areas) {
 
 }  // namespace
 
-HeldPoints find_held_points(const Mesh& mesh, const Parameters& parameters) {
+HeldPoints find_held_points(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters) {
   const Index n = mesh.points.n_local();
   std::vector<char> is_fixed(n, 0), is_moved(n, 0);
   std::vector<std::vector<std::pair<GlobalIndex, Vec3>>> slides(n);
@@ -64,7 +64,7 @@ HeldPoints find_held_points(const Mesh& mesh, const Parameters& parameters) {
         if (motion == BoundaryMotion::fixed) is_fixed[v] = 1;
         if (is_given(motion)) is_moved[v] = 1;
         if (motion == BoundaryMotion::slip)
-          slides[v].emplace_back(mesh.boundary_id[f - mesh.n_interior], mesh.reference.face_area[f]);
+          slides[v].emplace_back(mesh.boundary_id[f - mesh.n_interior], geometry.face_area[f]);
       }
     });
   }

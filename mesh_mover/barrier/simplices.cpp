@@ -20,7 +20,7 @@ std::span<const CellCorner> simplices_of(CellType type) {
 }
 
 template <int D>
-void append(const Mesh& mesh, Index cell, double stiffness, Simplices& s) {
+void append(const Mesh& mesh, const Geometry& geometry, Index cell, double stiffness, Simplices& s) {
   using Matrix = Eigen::Matrix<double, D, D>;
   const auto corner = mesh.cell_points[cell];
   const auto all = simplices_of(mesh.cell_type[cell]);
@@ -29,11 +29,10 @@ void append(const Mesh& mesh, Index cell, double stiffness, Simplices& s) {
   for (const CellCorner& k : all) {
     Matrix edges;
     for (int i = 0; i < D; ++i)
-      edges.col(i) =
-          (mesh.reference_points[corner[k[i + 1]]] - mesh.reference_points[corner[k[0]]]).template head<D>();
+      edges.col(i) = (geometry.points[corner[k[i + 1]]] - geometry.points[corner[k[0]]]).template head<D>();
     const double det = edges.determinant();
     if (!(det > 0)) {
-      const Vec3& x = mesh.reference.cell_centre[cell];
+      const Vec3& x = geometry.cell_centre[cell];
       throw SolveFailure(
           "method: barrier requires cells whose corners are all convex; cell {} at ({:.4g}, {:.4g}, {:.4g}) m has a "
           "flat or re-entrant corner.",
@@ -47,12 +46,13 @@ void append(const Mesh& mesh, Index cell, double stiffness, Simplices& s) {
     sum += det;
   }
   for (std::size_t i = first; i < s.weight.size(); ++i)
-    s.weight[i] *= stiffness * mesh.reference.volume[cell] / sum;
+    s.weight[i] *= stiffness * geometry.volume[cell] / sum;
 }
 
 }  // namespace
 
-Simplices make_simplices(const Mesh& mesh, double stiffening, const std::vector<double>& volumes) {
+Simplices make_simplices(const Mesh& mesh, const Geometry& geometry, double stiffening,
+                         const std::vector<double>& volumes) {
   Simplices s;
   s.dim = mesh.dim;
   double volume = 0;
@@ -60,7 +60,7 @@ Simplices make_simplices(const Mesh& mesh, double stiffening, const std::vector<
   const double mean = sum(mesh.comm, volume) / static_cast<double>(mesh.cells.n_global());
   for (Index c = 0; c < mesh.cells.n_local(); ++c) {
     const double stiffness = std::pow(volumes[c] / mean, -stiffening);
-    mesh.dim == 2 ? append<2>(mesh, c, stiffness, s) : append<3>(mesh, c, stiffness, s);
+    mesh.dim == 2 ? append<2>(mesh, geometry, c, stiffness, s) : append<3>(mesh, geometry, c, stiffness, s);
     if (c + 1 == mesh.cells.n_owned()) s.n_owned = s.size();
   }
   double total = 0;

@@ -139,7 +139,8 @@ Midsurface read(const Parameters& p, const std::filesystem::path& folder) {
   for (Vec3& x : raw.points) x *= p.mesh_scale;
   Midsurface surface = midsurface_of(raw, read_boundary_entities(file));
   for (Vec3& x : raw.points) x.z() = 0;  // what rounding the file left of another plane
-  check_and_report(distribute(MPI_COMM_SELF, raw));
+  const LoadedMesh flat = distribute(MPI_COMM_SELF, raw);
+  check_and_report(flat.mesh, flat.geometry);
   return surface;
 }
 

@@ -38,8 +38,8 @@ std::vector<Tensor3> SolidFields::cell_gradient(std::span<const double> points) 
   body_.visit_gradients(displacement(points), [&](Index f, const Tensor3& here) {
     const auto add = [&](Index c) {
       if (c >= n_owned) return;
-      const Vec3 arm = mesh_.reference.face_centre[f] - mesh_.reference.cell_centre[c];
-      const double pyramid = std::abs(arm.dot(mesh_.reference.face_area[f]));
+      const Vec3 arm = geometry_.face_centre[f] - geometry_.cell_centre[c];
+      const double pyramid = std::abs(arm.dot(geometry_.face_area[f]));
       gradient[c] += pyramid * here;
       weight[c] += pyramid;
     };
@@ -54,7 +54,7 @@ std::vector<Tensor3> SolidFields::cell_gradient(std::span<const double> points) 
   if (!body_.is_corrected()) return gradient;
 
   const std::vector<Tensor3> at_points = point_tensors().interpolate_full(gradient, on_boundary);
-  const std::vector<Tensor3> better = gradients_from_points(mesh_, points, at_points);
+  const std::vector<Tensor3> better = gradients_from_points(mesh_, geometry_, points, at_points);
   const std::vector<bool> uniform = uniform_surroundings(mesh_);
   for (Index c = 0; c < n_owned; ++c)
     if (uniform[c]) gradient[c] = better[c];

@@ -23,10 +23,10 @@ double share_of_vertices(CellType type) {
 
 }  // namespace
 
-Tensor3 cell_moment(const Mesh& mesh, Index cell) {
+Tensor3 cell_moment(const Mesh& mesh, const Geometry& geometry, Index cell) {
   Tensor3 moment = Tensor3::Zero();
   for (const Index v : mesh.cell_points[cell]) {
-    const Vec3 arm = mesh.reference_points[v] - mesh.reference.cell_centre[cell];
+    const Vec3 arm = geometry.points[v] - geometry.cell_centre[cell];
     moment += arm * arm.transpose();
   }
   return moment * (share_of_vertices(mesh.cell_type[cell]) / double(mesh.cell_points[cell].size()));

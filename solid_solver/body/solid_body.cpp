@@ -44,12 +44,13 @@ FaceGradientScheme scheme_for(const Mesh& mesh, const SolidParameters& parameter
 
 }  // namespace
 
-SolidBody::SolidBody(Mesh mesh, SolidParameters parameters)
-    : mesh_(std::move(mesh)),
+SolidBody::SolidBody(LoadedMesh body, SolidParameters parameters)
+    : mesh_(std::move(body.mesh)),
+      geometry_(std::move(body.geometry)),
       parameters_(std::move(parameters)),
       materials_(materials_of(parameters_)),
-      boundaries_(mesh_, parameters_),
-      elastic_(mesh_, boundaries_.elastic(), elastic_body(parameters_, mesh_)),
+      boundaries_(mesh_, geometry_, parameters_),
+      elastic_(mesh_, geometry_, boundaries_.elastic(), elastic_body(parameters_, mesh_, geometry_)),
       kernel_(mesh_, elastic_, scheme_for(mesh_, parameters_, elastic_)),
       prescribed_(mesh_, boundaries_, elastic_),
       rigid_(mesh_, elastic_, boundaries_.rigid_faces()) {
@@ -72,7 +73,7 @@ void SolidBody::make_finite() {
 }
 
 void SolidBody::check_supports() const {
-  check_mesh(mesh_, elastic_.vertices());
+  check_mesh(mesh_, geometry_, elastic_.vertices());
   check_symmetry(parameters_, mesh_, elastic_);
   if (!parameters_.gravity.empty() && std::ssize(parameters_.gravity) != mesh_.dim)
     throw Error("gravity: {} components are given, but the {}-dimensional scene needs {}.",
@@ -125,9 +126,9 @@ std::vector<double> SolidBody::body_forces(double t) const {
   std::vector<double> forces(std::size_t(mesh_.cells.n_owned()) * dim);
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
     for (int a = 0; a < dim; ++a) {
-      double force = body_force_.empty() ? 0 : body_force_[a](mesh_.reference.cell_centre[c], t);
+      double force = body_force_.empty() ? 0 : body_force_[a](geometry_.cell_centre[c], t);
       if (!parameters_.gravity.empty()) force += density(c) * parameters_.gravity[a];
-      forces[std::size_t(c) * dim + a] = force * mesh_.reference.volume[c];  // (2.59)
+      forces[std::size_t(c) * dim + a] = force * geometry_.volume[c];  // (2.59)
     }
   return forces;
 }

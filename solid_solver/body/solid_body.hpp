@@ -28,11 +28,13 @@ struct BodyField {
 class SolidBody final {
  public:
   /// Throws Error for a scene that cannot be. Collective over mesh.comm.
-  SolidBody(Mesh mesh, SolidParameters parameters);
+  SolidBody(LoadedMesh body, SolidParameters parameters);
   SolidBody(const SolidBody&) = delete;
   SolidBody& operator=(const SolidBody&) = delete;
 
   const Mesh& mesh() const { return mesh_; }
+  /// Of the undeformed body.
+  const Geometry& geometry() const { return geometry_; }
   const SolidParameters& parameters() const { return parameters_; }
   const std::vector<SolidMaterial>& materials() const { return materials_; }
   const SolidBoundaries& boundaries() const { return boundaries_; }
@@ -90,6 +92,7 @@ class SolidBody final {
   void find_mass();
 
   const Mesh mesh_;
+  const Geometry geometry_;
   const SolidParameters parameters_;
   const std::vector<SolidMaterial> materials_;
   SolidBoundaries boundaries_;

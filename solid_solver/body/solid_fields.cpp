@@ -16,6 +16,7 @@ SolidFields::SolidFields(const SolidBody& body, const SolidState& state, const L
       state_(state),
       last_(last),
       mesh_(body.mesh()),
+      geometry_(body.geometry()),
       parameters_(body.parameters()),
       elastic_(body.elastic()) {}
 
@@ -85,7 +86,7 @@ const PointTensors& SolidFields::point_tensors() const {
       is_symmetry.push_back(found != parameters_.boundaries.end() && found->second.parts.empty() &&
                             found->second.type == SolidBoundary::Type::symmetry);
     }
-    point_tensors_ = std::make_unique<PointTensors>(mesh_, is_symmetry, elastic_.vertices());
+    point_tensors_ = std::make_unique<PointTensors>(mesh_, geometry_, is_symmetry, elastic_.vertices());
   }
   return *point_tensors_;
 }
@@ -96,7 +97,7 @@ std::vector<SurfaceTraction> SolidFields::known_tractions() const {
   std::vector<SurfaceTraction> result(std::size_t(mesh_.boundary.n_owned()));
   for (std::size_t b = 0; b < result.size(); ++b) {
     const Index f = mesh_.n_interior + Index(b);
-    const double area = mesh_.reference.face_area[f].norm();
+    const double area = geometry_.face_area[f].norm();
     SurfaceTraction& known = result[b];
     switch (elastic_.condition(f)) {
       case ElasticCondition::traction:
@@ -104,7 +105,7 @@ std::vector<SurfaceTraction> SolidFields::known_tractions() const {
         known.projector = Tensor3::Identity();
         break;
       case ElasticCondition::symmetry: {
-        const Vec3 n = mesh_.reference.face_area[f] / area;
+        const Vec3 n = geometry_.face_area[f] / area;
         known.projector = Tensor3::Identity() - n * n.transpose();
         known.symmetry = true;
         continue;

@@ -77,6 +77,7 @@ class SolidFields final {
   const SolidState& state_;
   const LastSolve& last_;
   const Mesh& mesh_;
+  const Geometry& geometry_;
   const SolidParameters& parameters_;
   const ElasticOperator& elastic_;
   mutable std::unique_ptr<PointTensors> point_tensors_;  // made when first asked for

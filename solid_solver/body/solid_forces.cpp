@@ -39,7 +39,7 @@ std::vector<PatchForce> SolidFields::reactions(std::span<const double> points) c
     Wrench held;
     for (Index f = patch.first; f < patch.first + patch.count; ++f)
       held.add(elastic_.holding_force(f, stress[f - first], state_.face_u, state_.known),
-               mesh_.reference.face_centre[f]);
+               geometry_.face_centre[f]);
     forces.push_back({sum_of(held, mesh_.comm), patch.name});
   }
   return forces;

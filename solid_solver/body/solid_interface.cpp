@@ -20,6 +20,7 @@ double speed_in(const SolidMaterial& m) {
 
 /// For `interface: {surface-density: true}`. Collective.
 WallImpedance impedance_of(const SolidBody& body, const Interface& interface) {
+  const Geometry& geometry = body.geometry();
   const Mesh& mesh = body.mesh();
   if (body.boundaries().interface_patches().empty())
     throw Error(
@@ -33,7 +34,7 @@ WallImpedance impedance_of(const SolidBody& body, const Interface& interface) {
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
     densities.push_back(body.density(c));
     speeds.push_back(speed_in(body.materials()[std::size_t(mesh.material_of(c))]));
-    volumes.push_back(mesh.reference.volume[c]);
+    volumes.push_back(geometry.volume[c]);
   }
   return wall_impedance(mesh.comm, densities, speeds, volumes, interface.face_areas);
 }
@@ -45,7 +46,7 @@ SolidInterface::SolidInterface(const SolidBody& body) : body_(body) {
   const SolidParameters& parameters = body.parameters();
   if (!body.boundaries().interface_patches().empty()) {
     map_ = std::make_unique<InterfaceMap>(mesh, body.boundaries().interface_patches());
-    description_ = map_->describe();
+    description_ = map_->describe(body.geometry());
   }
   description_.dim = mesh.dim;
   description_.takes = taken(parameters.interface_data.value_or(InterfaceData{}));

@@ -63,11 +63,13 @@ struct StressRecovery::Patch {
 
 StressRecovery::StressRecovery(const Mesh& mesh, const ElasticOperator& rows)
     : mesh_(mesh),
+      geometry_(rows.geometry()),
       rows_(rows),
       cells_of_point_(transpose(mesh.cell_points, 0, mesh.points.n_local())),
       faces_of_cell_(boundary_faces_of_cells(mesh)),
       moment_(std::size_t(mesh.cells.n_local()), Tensor3::Zero()) {
-  for (Index c = 0; c < mesh.cells.n_local(); ++c) moment_[std::size_t(c)] = cell_moment(mesh, c);
+  const Geometry& geometry = rows.geometry();
+  for (Index c = 0; c < mesh.cells.n_local(); ++c) moment_[std::size_t(c)] = cell_moment(mesh, geometry, c);
 }
 
 StressRecovery::Local StressRecovery::localise(const DiscreteStress& found) const {
@@ -88,7 +90,7 @@ StressRecovery::Local StressRecovery::localise(const DiscreteStress& found) cons
 }
 
 void StressRecovery::gather(Index cell, const Local& local, Patch& patch) const {
-  const Geometry& g = mesh_.reference;
+  const Geometry& g = geometry_;
   patch.cells.clear(), patch.faces.clear(), patch.loaded.clear(), patch.mirrors.clear();
   patch.mark.resize(std::size_t(mesh_.cells.n_local()), -1);
   patch.simplices = true, patch.at_surface = false;
@@ -123,7 +125,7 @@ void StressRecovery::fit_tensors(Index cell, const std::vector<Tensor3>& cells,
                                  const std::vector<Tensor3>& faces,
                                  const std::vector<SurfaceTraction>* surface, Patch& patch,
                                  QuadraticFit& fit) const {
-  const Geometry& g = mesh_.reference;
+  const Geometry& g = geometry_;
   const Vec3 centre = g.cell_centre[cell];
   fit.start(mesh_.dim, tensor_size, centre, patch.reach);
   const auto add = [&](const Vec3& place, const Tensor3& moment, const Tensor3& value) {
@@ -153,7 +155,7 @@ void StressRecovery::fit_tensors(Index cell, const std::vector<Tensor3>& cells,
 }
 
 void StressRecovery::fit_displacement(Index cell, const Local& local, Patch& patch, QuadraticFit& fit) const {
-  const Geometry& g = mesh_.reference;
+  const Geometry& g = geometry_;
   const Vec3 centre = g.cell_centre[cell];
   const int dim = mesh_.dim;
   fit.start(dim, dim, centre, patch.reach);
@@ -235,7 +237,7 @@ std::vector<double> StressRecovery::at_points(const DiscreteStress& found,
   visit(found, wants, [&](Index c, const auto& stress) {
     for (const Index v : mesh_.cell_points[c]) {
       double* at = sums.data() + std::size_t(v) * size;
-      const PackedTensor here = pack(stress(mesh_.reference_points[v]));
+      const PackedTensor here = pack(stress(geometry_.points[v]));
       for (std::size_t k = 0; k < tensor_size; ++k) at[k] += here[k];
       at[tensor_size] += 1;
     }

@@ -58,6 +58,7 @@ class StressRecovery {
   void fit_displacement(Index cell, const Local& local, Patch& patch, QuadraticFit& fit) const;
 
   const Mesh& mesh_;
+  const Geometry& geometry_;
   const ElasticOperator& rows_;
   Csr cells_of_point_, faces_of_cell_;  // boundary faces
   std::vector<Tensor3> moment_;         // of local cells: mean of (x - x_c) (x - x_c)^T [m^2]

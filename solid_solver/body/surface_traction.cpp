@@ -8,14 +8,14 @@ namespace couplet {
 namespace {
 
 /// Unit normal of a boundary face whose points are at `places`, out of the body as the reference one is.
-Vec3 normal_at(const Mesh& mesh, Index face, std::span<const Vec3> places) {
+Vec3 normal_at(const Mesh& mesh, const Geometry& geometry, Index face, std::span<const Vec3> places) {
   const auto corners = mesh.face_points[face];
   if (corners.size() == 2) {
     const auto turned = [&](std::span<const Vec3> x) {
       const Vec3 along = x[corners[1]] - x[corners[0]];
       return Vec3(along.y(), -along.x(), 0);
     };
-    const double side = turned(mesh.reference_points).dot(mesh.reference.face_area[face]) > 0 ? 1 : -1;
+    const double side = turned(geometry.points).dot(geometry.face_area[face]) > 0 ? 1 : -1;
     return side * turned(places).normalized();
   }
   Vec3 area = Vec3::Zero();
@@ -41,7 +41,7 @@ std::vector<double> SolidFields::traction(std::span<const Vec3> places,
   std::vector<double> result(n * dim);
   for (std::size_t b = 0; b < n; ++b) {
     const Index f = mesh_.n_interior + Index(b);
-    const Vec3 normal = finite ? normal_at(mesh_, f, places) : mesh_.reference.face_area[f].normalized();
+    const Vec3 normal = finite ? normal_at(mesh_, geometry_, f, places) : geometry_.face_area[f].normalized();
     const Vec3 here = mean_stress(mesh_.face_points[f], point_stress) * normal;
     const Vec3 value = known[b].traction + here - known[b].projector * here;
     for (std::size_t a = 0; a < dim; ++a) result[b * dim + a] = value[Index(a)];

@@ -21,14 +21,16 @@ constexpr int most_rounds = 20;
 
 }  // namespace
 
-BearingLoad::BearingLoad(const Mesh& mesh, std::vector<Index> faces, const TotalLoad& load, std::string where)
+BearingLoad::BearingLoad(const Mesh& mesh, const Geometry& geometry, std::vector<Index> faces,
+                         const TotalLoad& load, std::string where)
     : mesh_(&mesh),
+      geometry_(&geometry),
       where_(std::move(where)),
       faces_(std::move(faces)),
       force_(make_expressions(load.force, mesh.dim, where_ + ".force")) {
   find_axis();
   for (const Index f : faces_) {
-    const Vec3& n = mesh.reference.face_area[f];
+    const Vec3& n = geometry.face_area[f];
     across_.push_back((n - n.dot(axis_) * axis_).normalized());
   }
 }
@@ -37,7 +39,7 @@ void BearingLoad::find_axis() {
   Tensor3 spread = Tensor3::Zero();
   double area = 0;
   for (const Index f : faces_) {
-    const Vec3& n = mesh_->reference.face_area[f];
+    const Vec3& n = geometry_->face_area[f];
     spread += n * n.transpose() / n.norm();
     area += n.norm();
   }
@@ -76,7 +78,7 @@ BearingLoad::Push BearingLoad::find_push(const Vec3& force) const {
     Tensor3 spread = Tensor3::Zero();
     for (std::size_t i = 0; i < faces_.size(); ++i)
       if (push.dot(across_[i]) < 0)
-        spread += mesh_->reference.face_area[faces_[i]].norm() * across_[i] * across_[i].transpose();
+        spread += geometry_->face_area[faces_[i]].norm() * across_[i] * across_[i].transpose();
     spread = sum_of(mesh_->comm, spread);
     const Eigen::SelfAdjointEigenSolver<Tensor3> axes(spread);
     if (!(axes.eigenvalues()[1] > 1e-3 * area_ * curved))
@@ -104,7 +106,7 @@ void BearingLoad::add_forces(double t, std::span<double> forces) const {
   for (std::size_t i = 0; i < faces_.size(); ++i) {
     Vec3 traction = along;
     if (push.half.dot(across_[i]) < 0) traction += push.q.dot(across_[i]) * across_[i];
-    const double area = mesh_->reference.face_area[faces_[i]].norm();
+    const double area = geometry_->face_area[faces_[i]].norm();
     for (int a = 0; a < dim; ++a)
       forces[std::size_t(faces_[i] - mesh_->n_interior) * dim + a] += area * traction[a];
   }

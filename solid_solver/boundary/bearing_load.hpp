@@ -18,7 +18,8 @@ namespace couplet {
 class BearingLoad {
  public:
   /// `faces`: this rank's. Throws Error, naming `where`, if they are no cylinder. Collective.
-  BearingLoad(const Mesh& mesh, std::vector<Index> faces, const TotalLoad& load, std::string where);
+  BearingLoad(const Mesh& mesh, const Geometry& geometry, std::vector<Index> faces, const TotalLoad& load,
+              std::string where);
 
   /// Adds the forces at time t [N], `dim` values a boundary face of owned cells. Throws Error for a force along the axis and
   /// for one that no face can take. Collective.
@@ -34,6 +35,7 @@ class BearingLoad {
   Push find_push(const Vec3& force) const;
 
   const Mesh* mesh_;
+  const Geometry* geometry_;
   std::string where_;
   std::vector<Index> faces_;
   std::vector<Vec3> across_;  // m, one a face

@@ -38,8 +38,9 @@ void check_names(const Mesh& mesh, const SolidParameters& parameters) {
 
 }  // namespace
 
-SolidBoundaries::SolidBoundaries(const Mesh& mesh, const SolidParameters& parameters)
-    : mesh_(&mesh), condition_of_face_(mesh.boundary.n_local(), -1) {
+SolidBoundaries::SolidBoundaries(const Mesh& mesh, const Geometry& geometry,
+                                 const SolidParameters& parameters)
+    : mesh_(&mesh), geometry_(&geometry), condition_of_face_(mesh.boundary.n_local(), -1) {
   check_names(mesh, parameters);
   for (const Patch& patch : mesh.patches) {
     holds_.push_back(0);
@@ -99,7 +100,7 @@ void SolidBoundaries::choose_faces(const Patch& patch, const SolidBoundary& boun
   const auto choose = [&](Index f) {
     Index chosen = own;
     for (std::size_t i = 0; i < tests.size() && chosen == own; ++i)
-      if (tests[i](mesh_->reference.face_centre[f], 0) != 0) chosen = own + 1 + static_cast<Index>(i);
+      if (tests[i](geometry_->face_centre[f], 0) != 0) chosen = own + 1 + static_cast<Index>(i);
     condition_of_face_[f - mesh_->n_interior] = chosen;
     if (f < mesh_->n_flux_faces()) conditions_[chosen].faces.push_back(f);
   };
@@ -118,10 +119,10 @@ void SolidBoundaries::choose_faces(const Patch& patch, const SolidBoundary& boun
 
 void SolidBoundaries::make_load(Condition& c, const SolidCondition& from, const std::string& where) const {
   if (from.type == Type::force || from.type == Type::remote_load)
-    c.distributed.emplace(*mesh_, c.faces, from.load, from.type == Type::remote_load, where);
+    c.distributed.emplace(*mesh_, *geometry_, c.faces, from.load, from.type == Type::remote_load, where);
   c.is_rigid = from.type == Type::remote_load && from.load.is_rigid;
-  if (from.type == Type::bearing_load) c.bearing.emplace(*mesh_, c.faces, from.load, where);
-  if (from.type == Type::hydrostatic_pressure) c.liquid.emplace(*mesh_, from.load, where);
+  if (from.type == Type::bearing_load) c.bearing.emplace(*mesh_, *geometry_, c.faces, from.load, where);
+  if (from.type == Type::hydrostatic_pressure) c.liquid.emplace(*mesh_, *geometry_, from.load, where);
 }
 
 void SolidBoundaries::make_point_loads(const SolidParameters& parameters) {
@@ -131,8 +132,8 @@ void SolidBoundaries::make_point_loads(const SolidParameters& parameters) {
     open[b] = condition_of_face_[b] >= 0 && is_load(at(static_cast<Index>(b)).type);
   for (const auto& [name, load] : parameters.point_loads) {
     const std::string where = "point-loads." + name;
-    point_loads_.emplace_back(*mesh_, faces_of_point_load(*mesh_, load, open, where), load, load.radius > 0,
-                              where);
+    point_loads_.emplace_back(*mesh_, *geometry_, faces_of_point_load(*mesh_, *geometry_, load, open, where),
+                              load, load.radius > 0, where);
   }
 }
 
@@ -156,7 +157,7 @@ ElasticCondition SolidBoundaries::kind_of(const Condition& c) const {
 
 ElasticSupport SolidBoundaries::support_at(const Condition& c, Index face) const {
   ElasticSupport support;
-  const Vec3 n = mesh_->reference.face_area[face].normalized();
+  const Vec3 n = geometry_->face_area[face].normalized();
   if (c.type == Type::fixed_displacement) support.known = c.known_components.asDiagonal();
   if (c.type == Type::frictionless) support.known = n * n.transpose();
   if (c.type == Type::soft_support || c.type == Type::hard_support)
@@ -167,7 +168,7 @@ ElasticSupport SolidBoundaries::support_at(const Condition& c, Index face) const
     if (along.norm() > 1e-3) support.known += along * along.transpose() / along.squaredNorm();
   }
   if (c.type == Type::spring) {
-    const double stiffness = c.stiffness(mesh_->reference.face_centre[face], 0);
+    const double stiffness = c.stiffness(geometry_->face_centre[face], 0);
     if (stiffness < 0)
       throw Error("boundaries: the spring stiffness '{}' is {:g} N/m^3 at a face; it must not be negative.",
                   c.stiffness.text(), stiffness);
@@ -196,7 +197,7 @@ template <class Take>
 void SolidBoundaries::visit_pressures(const Condition& c, double t, const Take& take) const {
   const double level = c.liquid ? c.liquid->level(t) : 0;
   for (const Index f : c.faces)
-    take(f, c.liquid ? c.liquid->mean(f, level) : c.pressure(mesh_->reference.face_centre[f], t));
+    take(f, c.liquid ? c.liquid->mean(f, level) : c.pressure(geometry_->face_centre[f], t));
 }
 
 std::vector<std::vector<Index>> SolidBoundaries::rigid_faces() const {
@@ -222,13 +223,12 @@ void SolidBoundaries::add_forces(double t, std::span<double> forces, bool with_p
     if (c.bearing) c.bearing->add_forces(t, forces);
     if (c.has_pressure() && with_pressure)
       visit_pressures(c, t, [&](Index f, double p) {
-        for (int a = 0; a < dim; ++a) force_on(f)[a] -= p * mesh_->reference.face_area[f][a];
+        for (int a = 0; a < dim; ++a) force_on(f)[a] -= p * geometry_->face_area[f][a];
       });
     if (c.traction.empty()) continue;
     for (const Index f : c.faces) {
-      const double size = mesh_->reference.face_area[f].norm();
-      for (int a = 0; a < dim; ++a)
-        force_on(f)[a] += c.traction[a](mesh_->reference.face_centre[f], t) * size;
+      const double size = geometry_->face_area[f].norm();
+      for (int a = 0; a < dim; ++a) force_on(f)[a] += c.traction[a](geometry_->face_centre[f], t) * size;
     }
   }
   for (const DistributedForce& load : point_loads_) load.add_forces(t, forces);
@@ -237,6 +237,7 @@ void SolidBoundaries::add_forces(double t, std::span<double> forces, bool with_p
 PrescribedDisplacement::PrescribedDisplacement(const Mesh& mesh, const SolidBoundaries& boundaries,
                                                const ElasticOperator& elastic)
     : dim_(mesh.dim), size_(elastic.n_known()) {
+  const Geometry& geometry = elastic.geometry();
   std::vector<Group> all(boundaries.conditions_.size());
   for (std::size_t c = 0; c < all.size(); ++c) all[c].value = &boundaries.conditions_[c].known;
   const auto group_of = [&](Index entry) -> Group& { return all[boundaries.condition_of_face_[entry]]; };
@@ -244,13 +245,13 @@ PrescribedDisplacement::PrescribedDisplacement(const Mesh& mesh, const SolidBoun
   for (const Index f : elastic.known_faces()) {
     Group& group = group_of(f - mesh.n_interior);
     group.columns.push_back(elastic.known_of_face(f));
-    group.places.push_back(mesh.reference.face_centre[f]);
+    group.places.push_back(geometry.face_centre[f]);
   }
   for (std::size_t i = 0; i < vertices.points().size(); ++i)
     for (const auto& [face, share] : vertices.sources(static_cast<Index>(i))) {
       Group& group = group_of(face);
       group.columns.push_back(static_cast<Index>(i));
-      group.places.push_back(mesh.reference_points[vertices.points()[i]]);
+      group.places.push_back(geometry.points[vertices.points()[i]]);
       group.shares.push_back(share);
     }
   for (Group& group : all) {

@@ -21,7 +21,7 @@ class SolidBoundaries {
  public:
   /// Throws Error if a patch has no boundary, a boundary no patch, a part no face, or an expression is wrong.
   /// Collective.
-  SolidBoundaries(const Mesh& mesh, const SolidParameters& parameters);
+  SolidBoundaries(const Mesh& mesh, const Geometry& geometry, const SolidParameters& parameters);
 
   /// For the operator.
   ElasticBoundary elastic() const;
@@ -73,6 +73,7 @@ class SolidBoundaries {
   const Condition& at(Index entry) const { return conditions_[condition_of_face_[entry]]; }
 
   const Mesh* mesh_;
+  const Geometry* geometry_;
   std::vector<Condition> conditions_;
   std::vector<Index> condition_of_face_;  // per local boundary face, -1: bonded
   std::vector<std::uint8_t> holds_;       // per patch

@@ -35,9 +35,10 @@ Tensor3 sum_of(MPI_Comm comm, const Tensor3& value) {
   return total;
 }
 
-DistributedForce::DistributedForce(const Mesh& mesh, std::vector<Index> faces, const TotalLoad& load,
-                                   bool has_point, const std::string& where)
+DistributedForce::DistributedForce(const Mesh& mesh, const Geometry& geometry, std::vector<Index> faces,
+                                   const TotalLoad& load, bool has_point, const std::string& where)
     : mesh_(&mesh),
+      geometry_(&geometry),
       where_(where),
       faces_(std::move(faces)),
       force_(expressions(load.force, mesh.dim, where)),
@@ -45,9 +46,9 @@ DistributedForce::DistributedForce(const Mesh& mesh, std::vector<Index> faces, c
   Vec3 first = Vec3::Zero();
   double area = 0;
   for (const Index f : faces_) {
-    const double size = mesh.reference.face_area[f].norm();
+    const double size = geometry.face_area[f].norm();
     area += size;
-    first += size * mesh.reference.face_centre[f];
+    first += size * geometry.face_centre[f];
   }
   area_ = sum(mesh.comm, area);
   if (!(area_ > 0)) throw Error("{}: the faces with this load have zero area.", where);
@@ -55,9 +56,8 @@ DistributedForce::DistributedForce(const Mesh& mesh, std::vector<Index> faces, c
   if (!has_point) return;
   Tensor3 inertia = Tensor3::Zero();
   for (const Index f : faces_) {
-    const Vec3 r = mesh.reference.face_centre[f] - centre_;
-    inertia +=
-        mesh.reference.face_area[f].norm() * (r.squaredNorm() * Tensor3::Identity() - r * r.transpose());
+    const Vec3 r = geometry.face_centre[f] - centre_;
+    inertia += geometry.face_area[f].norm() * (r.squaredNorm() * Tensor3::Identity() - r * r.transpose());
   }
   inertia_ = sum_of(mesh.comm, inertia);
   arm_ = load.point - centre_;
@@ -114,8 +114,8 @@ void DistributedForce::add_forces(double t, std::span<double> forces) const {
              turn = spin_ * moment;
   check_taken(moment, total);
   for (const Index f : faces_) {
-    const Vec3 r = mesh_->reference.face_centre[f] - centre_;
-    const Vec3 push = mesh_->reference.face_area[f].norm() * (traction + turn.cross(r));
+    const Vec3 r = geometry_->face_centre[f] - centre_;
+    const Vec3 push = geometry_->face_area[f].norm() * (traction + turn.cross(r));
     for (int a = 0; a < dim; ++a) forces[std::size_t(f - mesh_->n_interior) * dim + a] += push[a];
   }
 }

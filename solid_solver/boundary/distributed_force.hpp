@@ -20,8 +20,8 @@ namespace couplet {
 class DistributedForce {
  public:
   /// `faces`: this rank's. `load.point` counts if `has_point`. Throws Error, naming `where`, if they have no area. Collective.
-  DistributedForce(const Mesh& mesh, std::vector<Index> faces, const TotalLoad& load, bool has_point,
-                   const std::string& where);
+  DistributedForce(const Mesh& mesh, const Geometry& geometry, std::vector<Index> faces,
+                   const TotalLoad& load, bool has_point, const std::string& where);
 
   /// Adds the forces at time t [N], `dim` values a boundary face of owned cells. Throws Error on all ranks where the faces lie
   /// on one line and the load has a moment about it.
@@ -34,6 +34,7 @@ class DistributedForce {
   void check_taken(const Vec3& moment, const Vec3& force) const;
 
   const Mesh* mesh_;
+  const Geometry* geometry_;
   std::string where_;
   std::vector<Index> faces_;
   std::vector<Expression> force_, moment_;

@@ -6,8 +6,9 @@
 
 namespace couplet {
 
-HydrostaticPressure::HydrostaticPressure(const Mesh& mesh, const TotalLoad& load, const std::string& where)
-    : mesh_(&mesh), level_(load.level, where + ".level") {
+HydrostaticPressure::HydrostaticPressure(const Mesh& mesh, const Geometry& geometry, const TotalLoad& load,
+                                         const std::string& where)
+    : mesh_(&mesh), geometry_(&geometry), level_(load.level, where + ".level") {
   Vec3 gravity = Vec3::Zero();
   for (std::size_t a = 0; a < load.gravity.size(); ++a) gravity[Index(a)] = load.gravity[a];
   up_ = -gravity.normalized();
@@ -35,12 +36,12 @@ double mean_positive(double d0, double d1, double d2) {
 
 double HydrostaticPressure::mean(Index face, double level) const {
   const auto points = mesh_->face_points[face];
-  const auto place = [&](std::size_t i) -> const Vec3& { return mesh_->reference_points[points[i]]; };
+  const auto place = [&](std::size_t i) -> const Vec3& { return geometry_->points[points[i]]; };
   const auto depth = [&](const Vec3& x) { return level - up_.dot(x); };
   if (mesh_->dim == 2) return weight_ * mean_positive(depth(place(0)), depth(place(1)));
   if (points.size() == 3) return weight_ * mean_positive(depth(place(0)), depth(place(1)), depth(place(2)));
   // Cut by a diagonal. Areas along the mean normal, as those of the face are.
-  const Vec3 n = mesh_->reference.face_area[face].normalized();
+  const Vec3 n = geometry_->face_area[face].normalized();
   const auto area = [&](std::size_t b, std::size_t c) {
     return n.dot((place(b) - place(0)).cross(place(c) - place(0)));
   };

@@ -14,7 +14,8 @@ namespace couplet {
 class HydrostaticPressure {
  public:
   /// Throws Error, naming `where`.
-  HydrostaticPressure(const Mesh& mesh, const TotalLoad& load, const std::string& where);
+  HydrostaticPressure(const Mesh& mesh, const Geometry& geometry, const TotalLoad& load,
+                      const std::string& where);
 
   /// The free surface at time t [m].
   double level(double t) const { return level_(Vec3::Zero(), t); }
@@ -23,6 +24,7 @@ class HydrostaticPressure {
 
  private:
   const Mesh* mesh_;
+  const Geometry* geometry_;
   Expression level_;
   Vec3 up_ = Vec3::Zero();
   double weight_ = 0;  // rho |g| [N/m^3]

@@ -26,10 +26,10 @@ struct Found {
 };
 
 /// Of points listed on each rank. Collective.
-std::optional<Found> find_any(const Mesh& mesh, const std::vector<Index>& points) {
+std::optional<Found> find_any(const Mesh& mesh, const Geometry& geometry, const std::vector<Index>& points) {
   std::vector<double> first;
   if (!points.empty()) {
-    const Vec3& x = mesh.reference_points[points.front()];
+    const Vec3& x = geometry.points[points.front()];
     first.assign(x.data(), x.data() + 3);
   }
   const std::vector<double> all = all_gather(mesh.comm, first);
@@ -39,24 +39,25 @@ std::optional<Found> find_any(const Mesh& mesh, const std::vector<Index>& points
 
 }  // namespace
 
-void check_mesh(const Mesh& mesh, const VertexInterpolation& vertices) {
-  if (const auto trouble = find_inverted(mesh, mesh.reference))
+void check_mesh(const Mesh& mesh, const Geometry& geometry, const VertexInterpolation& vertices) {
+  if (const auto trouble = find_inverted(mesh, geometry))
     throw Error(
         "The mesh has an inverted cell: cell {} at {} has the volume {:.3g} m^3. Its faces intersect; "
         "remesh there, coarser or with another element size.",
         trouble->cell_id, text_of(trouble->centre, mesh.dim), trouble->volume);
   // Where a cell does not lie behind its face the operator is not elliptic.
-  if (const auto fold = find_fold(mesh, mesh.reference))
+  if (const auto fold = find_fold(mesh, geometry))
     throw Error(
         "The mesh is folded at {}: cell {} (counted from 0 in the file) is not behind its face there. A "
         "cell is inverted or bent over; remesh there.",
         text_of(fold->centre, mesh.dim), fold->cell_id);
-  if (const auto bent = find_any(mesh, vertices.bent_points()))
+  if (const auto bent = find_any(mesh, geometry, vertices.bent_points()))
     throw Error(
         "boundaries: a patch of 'type: symmetry' is not flat at {}. A symmetry plane must be a plane; 'type: "
         "frictionless' also slides along curved surfaces.",
         text_of(bent->first, mesh.dim));
-  if (const auto inexact = find_any(mesh, vertices.inexact_points()); inexact && comm_rank(mesh.comm) == 0)
+  if (const auto inexact = find_any(mesh, geometry, vertices.inexact_points());
+      inexact && comm_rank(mesh.comm) == 0)
     log::warn(
         "at {} vertices, the first at {}, the adjacent cells and faces do not span all directions: values "
         "there are plain means of the neighbours, exact for constant fields only",

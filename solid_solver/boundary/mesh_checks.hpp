@@ -8,6 +8,6 @@ namespace couplet {
 
 /// Throws Error for inverted cells and for bent symmetry planes; warns of vertices whose value cannot be
 /// exact for linear fields. Collective.
-void check_mesh(const Mesh& mesh, const VertexInterpolation& vertices);
+void check_mesh(const Mesh& mesh, const Geometry& geometry, const VertexInterpolation& vertices);
 
 }  // namespace couplet

@@ -24,16 +24,17 @@ struct Nearest {
   int is_open = 0, patch = -1;
 };
 
-Nearest nearest_face(const Mesh& mesh, const Vec3& point, std::span<const std::uint8_t> open) {
+Nearest nearest_face(const Mesh& mesh, const Geometry& geometry, const Vec3& point,
+                     std::span<const std::uint8_t> open) {
   Nearest mine;
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
     const Patch& patch = mesh.patches[p];
     if (patch.bonded) continue;
     for (Index f = patch.first; f < patch.first + patch.count; ++f) {
-      const double distance = (mesh.reference.face_centre[f] - point).norm();
+      const double distance = (geometry.face_centre[f] - point).norm();
       const GlobalIndex id = mesh.boundary_id[f - mesh.n_interior];
       if (distance > mine.distance || (distance == mine.distance && id > mine.id)) continue;
-      const double area = mesh.reference.face_area[f].norm();
+      const double area = geometry.face_area[f].norm();
       mine = {distance,
               id,
               mesh.dim == 3 ? std::sqrt(area) : area,
@@ -56,10 +57,10 @@ std::string place_of(const Vec3& x, int dim) {
 
 }  // namespace
 
-std::vector<Index> faces_of_point_load(const Mesh& mesh, const PointLoad& load,
+std::vector<Index> faces_of_point_load(const Mesh& mesh, const Geometry& geometry, const PointLoad& load,
                                        std::span<const std::uint8_t> open, const std::string& where) {
   std::vector<Index> faces;
-  const Nearest nearest = nearest_face(mesh, load.point, open);
+  const Nearest nearest = nearest_face(mesh, geometry, load.point, open);
   if (load.radius == 0) {
     if (nearest.distance > widths * nearest.width)
       throw Error(
@@ -76,7 +77,7 @@ std::vector<Index> faces_of_point_load(const Mesh& mesh, const PointLoad& load,
   }
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
     if (open[std::size_t(f - mesh.n_interior)] &&
-        (mesh.reference.face_centre[f] - load.point).norm() <= load.radius)
+        (geometry.face_centre[f] - load.point).norm() <= load.radius)
       faces.push_back(f);
   if (!any(mesh.comm, !faces.empty()))
     throw Error(

@@ -73,12 +73,13 @@ struct Body {
   Resistance resistance = Resistance::Zero();
 };
 
-std::vector<Body> place_bodies(const Mesh& mesh, std::span<const Index> body_of_cell, Index n_bodies) {
+std::vector<Body> place_bodies(const Mesh& mesh, const Geometry& geometry,
+                               std::span<const Index> body_of_cell, Index n_bodies) {
   std::vector<double> sums(std::size_t(n_bodies) * 4, 0);
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
     double* at = sums.data() + 4 * body_of_cell[c];
-    at[0] += mesh.reference.volume[c];
-    for (int a = 0; a < 3; ++a) at[a + 1] += mesh.reference.volume[c] * mesh.reference.cell_centre[c][a];
+    at[0] += geometry.volume[c];
+    for (int a = 0; a < 3; ++a) at[a + 1] += geometry.volume[c] * geometry.cell_centre[c][a];
   }
   add_over_ranks(mesh.comm, sums);
   std::vector<Body> bodies(n_bodies);
@@ -87,7 +88,7 @@ std::vector<Body> place_bodies(const Mesh& mesh, std::span<const Index> body_of_
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
     for (const Index v : mesh.cell_points[c]) {
       Body& body = bodies[body_of_cell[c]];
-      body.size = std::max(body.size, (mesh.reference_points[v] - body.centre).norm());
+      body.size = std::max(body.size, (geometry.points[v] - body.centre).norm());
     }
   for (Body& body : bodies) body.size = max(mesh.comm, body.size);
   return bodies;
@@ -110,11 +111,12 @@ Eigen::Matrix<double, 3, 6> normal_gradients(const Vec3& n) {
 }
 
 void add_face(const Mesh& mesh, const ElasticOperator& elastic, Index face, Body& body) {
+  const Geometry& geometry = elastic.geometry();
   const auto resist = [&](const Eigen::Matrix<double, 3, 6>& d, const Tensor3& by) {
     body.resistance += d.transpose() * by * d;
   };
-  const auto at_centre = displacements(body, mesh.reference.face_centre[face]);
-  const Vec3 n = mesh.reference.face_area[face].normalized();
+  const auto at_centre = displacements(body, geometry.face_centre[face]);
+  const Vec3 n = geometry.face_area[face].normalized();
   switch (elastic.condition(face)) {
     case ElasticCondition::prescribed:
       resist(at_centre, Tensor3::Identity());
@@ -137,7 +139,7 @@ void add_face(const Mesh& mesh, const ElasticOperator& elastic, Index face, Body
   }
   for (const Index v : mesh.face_points[face])
     if (elastic.constraints().is_constrained(v))
-      resist(displacements(body, mesh.reference_points[v]),
+      resist(displacements(body, geometry.points[v]),
              Tensor3::Identity() - elastic.constraints().free_part(v));
 }
 
@@ -203,9 +205,10 @@ std::vector<std::string> free_modes(const Body& body, int dim) {
 }  // namespace
 
 std::vector<FreeMotion> free_motions(const Mesh& mesh, const ElasticOperator& elastic) {
+  const Geometry& geometry = elastic.geometry();
   Index n_bodies = 0;
   const std::vector<Index> body_of_cell = bodies_of_cells(mesh, n_bodies);
-  std::vector<Body> bodies = place_bodies(mesh, body_of_cell, n_bodies);
+  std::vector<Body> bodies = place_bodies(mesh, geometry, body_of_cell, n_bodies);
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
     add_face(mesh, elastic, f, bodies[body_of_cell[mesh.owner[f]]]);
   std::vector<double> sums;

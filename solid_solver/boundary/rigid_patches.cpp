@@ -21,13 +21,14 @@ constexpr std::size_t motions = 6;
 RigidPatches::RigidPatches(const Mesh& mesh, const ElasticOperator& elastic,
                            const std::vector<std::vector<Index>>& faces)
     : mesh_(&mesh) {
+  const Geometry& geometry = elastic.geometry();
   const std::vector<Index>& unknown = elastic.unknown_faces();
   for (const std::vector<Index>& of_patch : faces) {
     Patch patch;
     for (const Index f : of_patch) {
       const auto found = std::ranges::lower_bound(unknown, f);
       patch.node.push_back(std::size_t(mesh.cells.n_owned()) + std::size_t(found - unknown.begin()));
-      patch.arm.push_back(mesh.reference.face_centre[f]);
+      patch.arm.push_back(geometry.face_centre[f]);
     }
     make(patch);
     patches_.push_back(std::move(patch));

@@ -23,19 +23,21 @@ constexpr double most_bound = 0.5;
 SolidErrorEstimate::SolidErrorEstimate(const SolidBody& body, const SolidStepper& stepper,
                                        const SolidFields& fields, const SolidJudge& judge)
     : body_(body), stepper_(stepper), fields_(fields), judge_(judge), steps_(body.parameters().time_scheme) {
+  const Geometry& geometry = body.geometry();
   const Mesh& mesh = body.mesh();
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume_ += mesh.reference.volume[c];
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume_ += geometry.volume[c];
   volume_ = sum(mesh.comm, volume_);
 }
 
 /// Over the volume; `dim` values a cell.
 double SolidErrorEstimate::mean_square(std::span<const double> cells) const {
   const Mesh& mesh = body_.mesh();
+  const Geometry& geometry = body_.geometry();
   double squares = 0;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
     for (int a = 0; a < mesh.dim; ++a) {
       const double value = cells[std::size_t(c) * mesh.dim + a];
-      squares += mesh.reference.volume[c] * value * value;
+      squares += geometry.volume[c] * value * value;
     }
   return sum(mesh.comm, squares) / volume_;
 }
@@ -91,13 +93,14 @@ void SolidErrorEstimate::add_loads(ErrorParts& parts) const {
 double SolidErrorEstimate::missed_of_large_strain(const SolidState& state,
                                                   std::span<const double> unknowns) const {
   const Mesh& mesh = body_.mesh();
+  const Geometry& geometry = body_.geometry();
   const ElasticOperator& rows = body_.elastic();
   const std::vector<double> known =
       body_.known_of({state.cell_u, state.face_u, fields_.point_displacement()});
   const auto strain = [](const Tensor3& h) { return Tensor3(0.5 * (h + h.transpose() + h.transpose() * h)); };
   const auto weight = [&](Index f) {
     if (mesh.owner[f] >= mesh.cells.n_owned()) return 0.0;
-    const auto [here, there] = pyramids(mesh, f);
+    const auto [here, there] = pyramids(mesh, geometry, f);
     return (here + there) * rows.lame(mesh.owner[f]).mu;
   };
   std::optional<InnerVariation> inner;

@@ -17,6 +17,7 @@ double twice_energy(const ElasticOperator& rows, Index cell, const Tensor3& stra
 
 InnerVariation::InnerVariation(const Mesh& mesh, const ElasticOperator& rows)
     : mesh_(mesh),
+      geometry_(rows.geometry()),
       rows_(rows),
       energy_(std::size_t(mesh.cells.n_owned()), 0),
       strain_(energy_.size(), Tensor3::Zero()),
@@ -33,7 +34,7 @@ void InnerVariation::add_to(Index cell, double volume, const Tensor3& strain) {
 }
 
 void InnerVariation::add(Index face, const Tensor3& strain) {
-  const auto [here, there] = pyramids(mesh_, face);
+  const auto [here, there] = pyramids(mesh_, geometry_, face);
   if (mesh_.owner[face] < mesh_.cells.n_owned()) add_to(mesh_.owner[face], here, strain);
   if (face < mesh_.n_interior && mesh_.neighbour[face] < mesh_.cells.n_owned())
     add_to(mesh_.neighbour[face], there, strain);

@@ -27,6 +27,7 @@ class InnerVariation {
   void add_to(Index cell, double volume, const Tensor3& strain);
 
   const Mesh& mesh_;
+  const Geometry& geometry_;
   const ElasticOperator& rows_;
   std::vector<double> energy_;   // of owned cells: sum V_fP e : C : e
   std::vector<Tensor3> strain_;  // sum V_fP e

@@ -14,7 +14,7 @@
 namespace couplet {
 
 SolidJudge::SolidJudge(const SolidBody& body, const SolidStepper& stepper, const SolidFields& fields)
-    : body_(body), stepper_(stepper), fields_(fields), mesh_(body.mesh()) {}
+    : body_(body), stepper_(stepper), fields_(fields), mesh_(body.mesh()), geometry_(body.geometry()) {}
 
 /// Of the accepted state; a doubtful one is told once, loudly. Collective.
 void SolidJudge::look() {
@@ -104,7 +104,7 @@ void SolidJudge::see_inertia() {
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
     for (int a = 0; a < dim; ++a) {
       const std::size_t i = std::size_t(c) * dim + a;
-      inertia[a] += body_.density(c) * mesh_.reference.volume[c] * (trial.cell_v[i] - state.cell_v[i]) /
+      inertia[a] += body_.density(c) * geometry_.volume[c] * (trial.cell_v[i] - state.cell_v[i]) /
                     (0.5 * (trial.dt + state.dt));
     }
   for (int a = 0; a < dim; ++a) inertia[a] = sum(mesh_.comm, inertia[a]);

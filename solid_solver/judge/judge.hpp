@@ -59,6 +59,7 @@ class SolidJudge final {
   const SolidStepper& stepper_;
   const SolidFields& fields_;
   const Mesh& mesh_;
+  const Geometry& geometry_;
   double largest_gradient_ = 0, inertia_over_load_ = 0;
   double largest_kinetic_ = 0, largest_strain_energy_ = 0;  // of a dynamic run [J]
   std::optional<StrainAudit> audit_, latest_;

@@ -100,12 +100,12 @@ double amplitude(double a) {
 }
 
 /// See LargeStrainEstimate.
-LargeStrainEstimate summed(const Mesh& mesh, const Values& u1, const Values& u2, const Values& u3) {
+LargeStrainEstimate summed(const Mesh& mesh, const Geometry& geometry, const Values& u1, const Values& u2,
+                           const Values& u3) {
   const std::size_t n = std::size_t(mesh.cells.n_owned()) * mesh.dim;
   const auto dot = [&](const auto& a, const auto& b) {
     double local = 0;
-    for (std::size_t i = 0; i < n; ++i)
-      local += mesh.reference.volume[i / std::size_t(mesh.dim)] * a(i) * b(i);
+    for (std::size_t i = 0; i < n; ++i) local += geometry.volume[i / std::size_t(mesh.dim)] * a(i) * b(i);
     return sum(mesh.comm, local);
   };
   const auto first = [&](std::size_t i) { return u1[i]; };
@@ -135,6 +135,7 @@ std::string LargeStrainEstimate::text() const {
 
 LargeStrainEstimate estimate_large_strain(const SolidBody& body, std::span<const double> unknowns,
                                           std::span<const double> known) {
+  const Geometry& geometry = body.geometry();
   const Mesh& mesh = body.mesh();
   const Displacement u1{{unknowns.begin(), unknowns.end()}, {known.begin(), known.end()}};
   double steepest = 0;
@@ -166,7 +167,7 @@ LargeStrainEstimate estimate_large_strain(const SolidBody& body, std::span<const
                without = forces.part(s, combined(1, u1, -t, u2), 1);
   Values r(n);
   for (std::size_t i = 0; i < n; ++i) r[i] = -(with[i] - without[i]) / (2 * s * s * t) - c[i];
-  return summed(mesh, u1.unknowns, u2.unknowns, stiffness.solve(r));
+  return summed(mesh, geometry, u1.unknowns, u2.unknowns, stiffness.solve(r));
 }
 
 }  // namespace couplet

@@ -29,7 +29,7 @@ struct SmoothEnergy::Patch {
 };
 
 SmoothEnergy::SmoothEnergy(const Mesh& mesh, const ElasticOperator& rows)
-    : mesh_(mesh), rows_(rows), counted_(std::size_t(mesh.cells.n_owned()), 0) {}
+    : mesh_(mesh), geometry_(rows.geometry()), rows_(rows), counted_(std::size_t(mesh.cells.n_owned()), 0) {}
 
 bool SmoothEnergy::is_of_use(const Mesh& mesh) {
   const auto is_other = [](CellType t) { return t != CellType::triangle && t != CellType::tetrahedron; };
@@ -37,7 +37,7 @@ bool SmoothEnergy::is_of_use(const Mesh& mesh) {
 }
 
 void SmoothEnergy::add(Index face, const Tensor3& gradient) {
-  const auto [here, there] = pyramids(mesh_, face);
+  const auto [here, there] = pyramids(mesh_, geometry_, face);
   const auto add_to = [&](Index cell, double volume) {
     if (cell < mesh_.cells.n_owned())
       counted_[std::size_t(cell)] += volume * contraction(rows_.stress(cell, gradient), gradient);
@@ -47,7 +47,7 @@ void SmoothEnergy::add(Index face, const Tensor3& gradient) {
 }
 
 void SmoothEnergy::gather(Index cell, Patch& patch) const {
-  const Geometry& g = mesh_.reference;
+  const Geometry& g = geometry_;
   const Vec3 centre = g.cell_centre[cell];
   patch.cells.clear(), patch.points.clear(), patch.mirrors.clear();
   patch.reach = 0;
@@ -61,7 +61,7 @@ void SmoothEnergy::gather(Index cell, Patch& patch) const {
   std::ranges::sort(patch.points);
   patch.points.erase(std::unique(patch.points.begin(), patch.points.end()), patch.points.end());
   for (const Index v : patch.points)
-    patch.reach = std::max(patch.reach, (mesh_.reference_points[v] - centre).norm());
+    patch.reach = std::max(patch.reach, (geometry_.points[v] - centre).norm());
   for (const Index c : patch.cells)
     for (const Index f : patch.faces_of_cell[c]) {
       if (rows_.condition(f) != ElasticCondition::symmetry) continue;
@@ -73,7 +73,7 @@ void SmoothEnergy::gather(Index cell, Patch& patch) const {
 
 /// Twice its energy [J]: of a strain that is linear in the cell.
 double SmoothEnergy::smooth_energy(Index cell, const Patch& patch, std::span<const double> point_u) const {
-  const Geometry& g = mesh_.reference;
+  const Geometry& g = geometry_;
   const int dim = mesh_.dim;
   const Vec3 centre = g.cell_centre[cell];
   QuadraticFit fit;
@@ -88,14 +88,14 @@ double SmoothEnergy::smooth_energy(Index cell, const Patch& patch, std::span<con
                      weight);
     }
   };
-  for (const Index v : patch.points) add(mesh_.reference_points[v], vector_at(point_u, v, dim));
+  for (const Index v : patch.points) add(geometry_.points[v], vector_at(point_u, v, dim));
   fit.solve();
   const auto strain_at = [&](const Vec3& place) {
     Tensor3 gradient = Tensor3::Zero();
     gradient.leftCols(dim) = fit.slopes(place).transpose() * fit.coefficients();
     return Tensor3(0.5 * (gradient + gradient.transpose()));
   };
-  const Tensor3 mean = strain_at(centre), moment = cell_moment(mesh_, cell);
+  const Tensor3 mean = strain_at(centre), moment = cell_moment(mesh_, geometry_, cell);
   double density = contraction(rows_.stress(cell, mean), mean);
   std::array<Tensor3, 3> slope;
   for (int a = 0; a < dim; ++a)

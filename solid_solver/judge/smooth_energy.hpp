@@ -40,6 +40,7 @@ class SmoothEnergy {
   double smooth_energy(Index cell, const Patch& patch, std::span<const double> point_u) const;
 
   const Mesh& mesh_;
+  const Geometry& geometry_;
   const ElasticOperator& rows_;
   std::vector<double> counted_;  // of owned cells: sum V_fP G : C : G
 };

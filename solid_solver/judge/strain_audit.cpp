@@ -19,8 +19,8 @@ namespace couplet {
 namespace {
 
 /// From the owner to the node across.
-Vec3 line_of(const Mesh& mesh, Index f) {
-  const Geometry& g = mesh.reference;
+Vec3 line_of(const Mesh& mesh, const Geometry& geometry, Index f) {
+  const Geometry& g = geometry;
   const Vec3 across =
       f < mesh.n_interior ? Vec3(g.cell_centre[mesh.neighbour[f]] + mesh.shift(f)) : g.face_centre[f];
   return across - g.cell_centre[mesh.owner[f]];
@@ -92,7 +92,7 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
     smooth.emplace(mesh_, rows);
   const auto is_mine = [&](Index f) { return mesh_.owner[f] < mesh_.cells.n_owned(); };
   const auto volume = [&](Index f) {
-    return std::abs(mesh_.reference.face_area[f].dot(line_of(mesh_, f))) / dim;
+    return std::abs(geometry_.face_area[f].dot(line_of(mesh_, geometry_, f))) / dim;
   };
   double energy = 0, work = 0, difference = 0, size = 0;
   const auto own = [&](Index f, const Tensor3& gradient) {
@@ -102,13 +102,13 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
     const Index owner = mesh_.owner[f];
     const Tensor3 stress = rows.stress(owner, gradient);
     energy += 0.5 * volume(f) * contraction(stress, gradient);
-    Vec3 force = stress * mesh_.reference.face_area[f];
+    Vec3 force = stress * geometry_.face_area[f];
     const Vec3 here = vector_at(state.cell_u, owner, dim);
     if (f < mesh_.n_interior)
       work += 0.5 * force.dot(vector_at(state.cell_u, mesh_.neighbour[f], dim) - here);
     else if (rows.condition(f) == ElasticCondition::symmetry)
-      work -= 0.5 * mesh_.reference.face_area[f].dot(force) * mesh_.reference.face_area[f].dot(here) /
-              mesh_.reference.face_area[f].squaredNorm();
+      work -= 0.5 * geometry_.face_area[f].dot(force) * geometry_.face_area[f].dot(here) /
+              geometry_.face_area[f].squaredNorm();
     else
       work += 0.5 * force.dot(vector_at(state.face_u, f - mesh_.n_interior, dim) - here);
     if (!compare) return;

@@ -46,10 +46,10 @@ Strains strains(const ElasticKernel& kernel, const Mesh& mesh, std::span<const d
 }
 
 /// V u of the owned cells, nothing on faces.
-Values weight_of(const Mesh& mesh, std::span<const double> unknowns) {
+Values weight_of(const Mesh& mesh, const Geometry& geometry, std::span<const double> unknowns) {
   const std::size_t dim = std::size_t(mesh.dim), n = std::size_t(mesh.cells.n_owned()) * dim;
   Values weight(unknowns.size(), 0);
-  for (std::size_t i = 0; i < n; ++i) weight[i] = mesh.reference.volume[i / dim] * unknowns[i];
+  for (std::size_t i = 0; i < n; ++i) weight[i] = geometry.volume[i / dim] * unknowns[i];
   return weight;
 }
 
@@ -65,10 +65,10 @@ Values sensitivity(const SolidBody& body, std::span<const double> weight) {
 
 /// Both sides of a face with the volumes of their pyramids, those of this rank.
 template <class Take>
-void visit_sides(const Mesh& mesh, const Take& take) {
+void visit_sides(const Mesh& mesh, const Geometry& geometry, const Take& take) {
   const Index n = mesh.cells.n_owned();
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
-    const auto [here, there] = pyramids(mesh, f);
+    const auto [here, there] = pyramids(mesh, geometry, f);
     if (mesh.owner[f] < n) take(mesh.owner[f], f, here);
     if (f < mesh.n_interior && mesh.neighbour[f] < n) take(mesh.neighbour[f], f, there);
   }
@@ -80,7 +80,7 @@ double variation_in_cells(const SolidBody& body, const Strains& of_u, const Stra
   const auto n = std::size_t(body.mesh().cells.n_owned());
   std::vector<Tensor3> stress(n, Tensor3::Zero()), strain(stress);
   Values volume(n, 0), varies(n, 0);
-  visit_sides(body.mesh(), [&](Index c, Index f, double v) {
+  visit_sides(body.mesh(), body.geometry(), [&](Index c, Index f, double v) {
     const Tensor3 s = body.elastic().stress(c, unpacked(of_u[f])) - pressure[f] * Tensor3::Identity();
     const Tensor3 e = unpacked(of_z[f]);
     stress[c] += v * s, strain[c] += v * e, volume[c] += v, varies[c] += v * contraction(s, e);
@@ -95,7 +95,7 @@ double variation_in_cells(const SolidBody& body, const Strains& of_u, const Stra
 double gap_of_gradients(const SolidBody& body, const std::array<const Strains*, 2>& of_u,
                         const std::array<const Strains*, 2>& of_z) {
   double all = 0;
-  visit_sides(body.mesh(), [&](Index c, Index f, double v) {
+  visit_sides(body.mesh(), body.geometry(), [&](Index c, Index f, double v) {
     const auto gap = [&](const auto& of) { return Tensor3(unpacked((*of[1])[f]) - unpacked((*of[0])[f])); };
     all += v * 2 * body.elastic().lame(c).mu * std::abs(contraction(gap(of_u), gap(of_z)));
   });
@@ -109,9 +109,10 @@ ElasticKernel other_kernel(const SolidBody& body) {
 }
 
 double energy_missed(const SolidBody& body, const Strains& used, const Strains& compared) {
+  const Geometry& geometry = body.geometry();
   const Mesh& mesh = body.mesh();
   double gap = 0, size = 0;
-  visit_sides(mesh, [&](Index c, Index f, double v) {
+  visit_sides(mesh, geometry, [&](Index c, Index f, double v) {
     const Tensor3 e = unpacked(used[f]);
     const double weight = v * body.elastic().lame(c).mu;
     gap += weight * (unpacked(compared[f]) - e).squaredNorm(), size += weight * e.squaredNorm();
@@ -128,8 +129,9 @@ double energy_missed(const SolidBody& body, const Strains& used, const Strains& 
 
 double weighted_mesh_error(const SolidBody& body, std::span<const double> unknowns,
                            std::span<const double> known, std::span<const double> pressure) {
+  const Geometry& geometry = body.geometry();
   const Mesh& mesh = body.mesh();
-  const Values weight = weight_of(mesh, unknowns);
+  const Values weight = weight_of(mesh, geometry, unknowns);
   double size = 0;
   for (std::size_t i = 0; i < weight.size(); ++i) size += weight[i] * unknowns[i];
   size = sum(mesh.comm, size);

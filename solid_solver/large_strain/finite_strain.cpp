@@ -50,9 +50,11 @@ constexpr double drowned = 0.01;
 
 FiniteStrain::FiniteStrain(const Mesh& mesh, const ElasticOperator& rows, const SolidParameters& parameters)
     : mesh_(mesh),
+      geometry_(rows.geometry()),
       rows_(rows),
       tolerance_(parameters.method.relative_tolerance),
       most_linear_(parameters.method.max_iterations) {
+  const Geometry& geometry = rows.geometry();
   std::vector<const FiniteLaw*> all;
   for (const SolidMaterial& material : materials_of(parameters)) {
     const laws::Entry& law = *laws::of(material.law);
@@ -71,7 +73,7 @@ FiniteStrain::FiniteStrain(const Mesh& mesh, const ElasticOperator& rows, const 
   const double ratio = largest_poissons_ratio(parameters);
   const bool is_dynamic = parameters.analysis == SolidParameters::Analysis::dynamic;
   const bool is_slender = !is_dynamic && (mesh.dim == 2 || cells <= slender_up_to_3d) &&
-                          slenderness(mesh) > (mesh.dim == 2 ? slender_2d : slender_3d);
+                          slenderness(mesh, geometry) > (mesh.dim == 2 ? slender_2d : slender_3d);
   const bool wants_factors =
       is_slender ||
       (rows.volume_by_cells() && ratio >= (is_dynamic ? factors_from_dynamic : factors_from_ratio));
@@ -172,7 +174,7 @@ void FiniteStrain::follow_known(const Load& load, TangentSolver& solver, std::sp
 
 std::string FiniteStrain::where_worst() const {
   const FiniteKernel::Worst worst = kernel_->worst();
-  return worst_cell(mesh_, worst.ratio, worst.face);
+  return worst_cell(mesh_, geometry_, worst.ratio, worst.face);
 }
 
 /// u + s du with the largest s of 1, 1/2, ... that leaves det F positive and the residual below `most`.

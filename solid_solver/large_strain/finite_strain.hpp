@@ -75,6 +75,7 @@ class FiniteStrain final : public LargeStrain {
   bool is_symmetric(std::span<const double> x, std::span<const double> y);
 
   const Mesh& mesh_;
+  const Geometry& geometry_;
   const ElasticOperator& rows_;
   TangentSolver::By by_ = TangentSolver::By::frames;
   bool mixed_ = false;       // pressures of their own on the way to equilibrium

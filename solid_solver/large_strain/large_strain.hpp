@@ -65,6 +65,6 @@ double rounding_of_forces(const Mesh& mesh, const ElasticOperator& rows);
 /// of its cells, and no equilibrium is nearer than the numbers are. Collective.
 double rounding_of_motion(const Mesh& mesh, const ElasticOperator& rows);
 /// The face with the smallest det F of all ranks, in words; `face` of this rank, -1: none is below 1. Collective.
-std::string worst_cell(const Mesh& mesh, double ratio, Index face);
+std::string worst_cell(const Mesh& mesh, const Geometry& geometry, double ratio, Index face);
 
 }  // namespace couplet

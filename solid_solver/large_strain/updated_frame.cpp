@@ -13,19 +13,13 @@ namespace {
 // Of a first guess.
 constexpr double loose = 1e-3;
 
-Mesh moved(const Mesh& mesh, std::vector<Vec3> points) {
-  Mesh result = mesh;
-  result.reference = compute_geometry(mesh, points);
-  result.reference_points = std::move(points);
-  return result;
-}
-
 }  // namespace
 
 UpdatedFrame::UpdatedFrame(const Mesh& mesh, const ElasticOperator& rows, std::vector<Vec3> points)
-    : mesh_(moved(mesh, std::move(points))),
-      rows_(mesh_, rows.boundary(), ElasticBody{{rows.lame(0)}, {}}),
-      kernel_(mesh_, rows_, FaceGradientScheme::thesis) {}
+    : mesh_(mesh),
+      geometry_(compute_geometry(mesh, std::move(points))),
+      rows_(mesh, geometry_, rows.boundary(), ElasticBody{{rows.lame(0)}, {}}),
+      kernel_(mesh, rows_, FaceGradientScheme::thesis) {}
 
 ScalarSystems& UpdatedFrame::systems(double mass_factor, std::span<const double> inertia) {
   if (!systems_ || mass_factor != mass_factor_)

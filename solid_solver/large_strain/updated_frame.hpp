@@ -11,22 +11,23 @@
 
 namespace couplet {
 
-/// The thesis's operators on a body that stands elsewhere: the same mesh with its vertices moved, steps 5 to 7 of the
+/// The thesis's operators on a body that stands elsewhere: the same mesh in the geometry of its moved vertices, steps 5 to 7 of the
 /// algorithm in thesis 2.7.1.
 class UpdatedFrame {
  public:
-  /// `rows`: conditions and constants, of the undeformed body. Collective.
+  /// `rows`: conditions and constants, of the undeformed body. Keeps the mesh by reference. Collective.
   UpdatedFrame(const Mesh& mesh, const ElasticOperator& rows, std::vector<Vec3> points);
   const ElasticKernel& kernel() const { return kernel_; }
   /// S_u of local faces [m^2], out of the owner.
-  const std::vector<Vec3>& area() const { return mesh_.reference.face_area; }
+  const std::vector<Vec3>& area() const { return geometry_.face_area; }
   /// For this inertia, made anew when the factor is another one. Collective.
   ScalarSystems& systems(double mass_factor, std::span<const double> inertia);
   /// Displacement of a linear body whose known columns move by `change`, loosely solved. Collective.
   std::vector<double> linear_answer(std::span<const double> change, MethodParameters method);
 
  private:
-  Mesh mesh_;
+  const Mesh& mesh_;
+  const Geometry geometry_;
   ElasticOperator rows_;
   ElasticKernel kernel_;
   double mass_factor_ = 0;

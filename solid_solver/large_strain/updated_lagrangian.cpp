@@ -33,9 +33,11 @@ const char* name_of(ElasticCondition condition) {
 UpdatedLagrangian::UpdatedLagrangian(const Mesh& mesh, const ElasticOperator& rows,
                                      const SolidParameters& parameters)
     : mesh_(mesh),
+      geometry_(rows.geometry()),
       rows_(rows),
       method_(parameters.method),
       accelerator_(mesh.comm, rows.n_unknowns(), acceleration_of(parameters.method)) {
+  const Geometry& geometry = rows.geometry();
   int unknown_condition = -1;
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
     if (name_of(rows.condition(f))) unknown_condition = static_cast<int>(rows.condition(f));
@@ -49,7 +51,7 @@ UpdatedLagrangian::UpdatedLagrangian(const Mesh& mesh, const ElasticOperator& ro
   const SolidMaterial material = materials_of(parameters).front();
   law_ = laws::of(material.law)->make(lame_constants(parameters, material), material.law_coefficients);
   noise_ = rounding_of_forces(mesh, rows);
-  now_.points = mesh.reference_points;
+  now_.points = geometry.points;
   now_.gradient.assign(mesh.n_flux_faces(), Tensor3::Identity());
   now_.u.assign(rows.n_unknowns(), 0);
   now_.known.assign(rows.n_known() * mesh.dim, 0);
@@ -159,7 +161,7 @@ double UpdatedLagrangian::residual(const LargeStrainLoad& load, std::span<const 
   return norm(mesh_.comm, r);
 }
 
-std::string UpdatedLagrangian::where_worst() const { return worst_cell(mesh_, least_, worst_); }
+std::string UpdatedLagrangian::where_worst() const { return worst_cell(mesh_, geometry_, least_, worst_); }
 
 /// What is known has moved: the body goes with it as a linear one would. Left to the first guess it would be a jump in
 /// the cells beside it.

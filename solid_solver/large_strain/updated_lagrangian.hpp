@@ -64,6 +64,7 @@ class UpdatedLagrangian final : public LargeStrain {
   std::string where_worst() const;
 
   const Mesh& mesh_;
+  const Geometry& geometry_;
   const ElasticOperator& rows_;
   const MethodParameters method_;
   double noise_ = 0;

@@ -29,7 +29,7 @@ double UpdatedLagrangian::energy(std::span<const double> unknowns, std::span<con
   const Index n = mesh_.cells.n_owned();
   double here = 0;
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    const auto [behind, ahead] = pyramids(mesh_, f);
+    const auto [behind, ahead] = pyramids(mesh_, geometry_, f);
     if (mesh_.owner[f] < n) here += behind * energy_[f];
     if (f < mesh_.n_interior && mesh_.neighbour[f] < n) here += ahead * energy_[f];
   }

@@ -50,9 +50,9 @@ std::array<double, 3> principal_stresses(const Tensor3& stress) {
   return {values[2], values[1], values[0]};
 }
 
-PointTensors::PointTensors(const Mesh& mesh, const std::vector<bool>& is_symmetry,
+PointTensors::PointTensors(const Mesh& mesh, const Geometry& geometry, const std::vector<bool>& is_symmetry,
                            const VertexInterpolation& inside)
-    : mesh_(&mesh), inside_(&inside), surface_(mesh, stencils_of(mesh, is_symmetry)) {
+    : mesh_(&mesh), inside_(&inside), surface_(mesh, geometry, stencils_of(mesh, is_symmetry)) {
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
     if (!is_symmetry[p]) continue;
     const Patch& patch = mesh.patches[p];
@@ -62,7 +62,7 @@ PointTensors::PointTensors(const Mesh& mesh, const std::vector<bool>& is_symmetr
       for (Index f = first; f < first + count; ++f)
         for (const Index v : mesh.face_points[f]) mirror.points.push_back(v);
     };
-    for (Index f = patch.first; f < patch.first + patch.count; ++f) area += mesh.reference.face_area[f];
+    for (Index f = patch.first; f < patch.first + patch.count; ++f) area += geometry.face_area[f];
     take(patch.first, patch.count);
     take(patch.ghost_first, patch.ghost_count);
     std::ranges::sort(mirror.points);

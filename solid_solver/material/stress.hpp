@@ -28,7 +28,8 @@ std::array<double, 3> principal_stresses(const Tensor3& stress);
 class PointTensors {
  public:
   /// `is_symmetry`: one a patch; `inside`: any interpolation on the mesh, kept by reference. Collective.
-  PointTensors(const Mesh& mesh, const std::vector<bool>& is_symmetry, const VertexInterpolation& inside);
+  PointTensors(const Mesh& mesh, const Geometry& geometry, const std::vector<bool>& is_symmetry,
+               const VertexInterpolation& inside);
   /// `cells`: of owned cells; `faces`: of boundary faces of owned cells. Packed, all local points.
   /// Collective.
   std::vector<double> interpolate(std::span<const Tensor3> cells, std::span<const Tensor3> faces) const;

@@ -41,7 +41,7 @@ class Matrices {
 };
 
 /// A matrix a material where its axes are the same everywhere, else one a cell.
-void add_matrices(const SolidParameters& p, const Mesh& mesh, ElasticBody& body) {
+void add_matrices(const SolidParameters& p, const Mesh& mesh, const Geometry& geometry, ElasticBody& body) {
   const Matrices matrices(p);
   if (matrices.is_constant()) {
     for (std::size_t m = 0; m < matrices.size(); ++m) body.matrix.push_back(matrices.at(m, Vec3::Zero()));
@@ -49,7 +49,7 @@ void add_matrices(const SolidParameters& p, const Mesh& mesh, ElasticBody& body)
     return;
   }
   for (Index c = 0; c < mesh.cells.n_local(); ++c) {
-    body.matrix.push_back(matrices.at(std::size_t(mesh.material_of(c)), mesh.reference.cell_centre[c]));
+    body.matrix.push_back(matrices.at(std::size_t(mesh.material_of(c)), geometry.cell_centre[c]));
     body.matrix_of_cell.push_back(c);
   }
 }
@@ -125,25 +125,26 @@ VolumeStrain volume_strain_of(const SolidParameters& p) {
   return has_bulk ? VolumeStrain::cells : VolumeStrain::faces;
 }
 
-ElasticBody elastic_body(const SolidParameters& p, const Mesh& mesh) {
+ElasticBody elastic_body(const SolidParameters& p, const Mesh& mesh, const Geometry& geometry) {
   std::vector<LameConstants> of_material;
   for (const SolidMaterial& material : materials_of(p)) of_material.push_back(lame_constants(p, material));
   ElasticBody body{{}, mesh.cell_material, volume_strain_of(p)};
   if (mesh.cell_material.empty()) body.lame = {of_material.front()};
   for (const int material : mesh.cell_material) body.lame.push_back(of_material[material]);
-  if (has_orthotropic(p)) add_matrices(p, mesh, body);
+  if (has_orthotropic(p)) add_matrices(p, mesh, geometry, body);
   return body;
 }
 
 void check_symmetry(const SolidParameters& p, const Mesh& mesh, const ElasticOperator& rows) {
+  const Geometry& geometry = rows.geometry();
   if (!rows.is_anisotropic()) return;
   const Matrices matrices(p);
   double worst = 0;
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
     if (rows.condition(f) != ElasticCondition::symmetry) continue;
-    const Vec3 n = mesh.reference.face_area[f].normalized();
+    const Vec3 n = geometry.face_area[f].normalized();
     const ElasticMatrix here =
-        matrices.at(std::size_t(mesh.material_of(mesh.owner[f])), mesh.reference.face_centre[f]);
+        matrices.at(std::size_t(mesh.material_of(mesh.owner[f])), geometry.face_centre[f]);
     const ElasticMatrix mirrored = turned(here, Tensor3::Identity() - 2 * n * n.transpose());
     worst = std::max(worst, (mirrored - here).norm() / here.norm());
   }

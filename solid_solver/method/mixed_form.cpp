@@ -47,7 +47,7 @@ MixedForm::MixedForm(const SolidProblem& problem, const MethodParameters& parame
 /// mu / h, by which both kinds of unknowns and rows are of one size; larger where the tolerance leaves so much of the
 /// volumes that K_P / mu of it would be forces.
 void MixedForm::find_scales() {
-  const std::vector<double> volume = pyramid_volumes(problem_.mesh);
+  const std::vector<double> volume = pyramid_volumes(problem_.mesh, problem_.geometry());
   for (std::size_t c = 0; c < n_p_; ++c) {
     const LameConstants lame = problem_.elastic.lame(Index(c));
     const double bulk = bulk_of_cells(lame, problem_.elastic.volume_strain());

@@ -35,14 +35,14 @@ constexpr double finest_tolerance = 1e-15;
 
 }  // namespace
 
-double slenderness(const Mesh& mesh) {
+double slenderness(const Mesh& mesh, const Geometry& geometry) {
   double volume = 0, surface = 0;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += mesh.reference.volume[c];
-  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) surface += mesh.reference.face_area[f].norm();
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += geometry.volume[c];
+  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) surface += geometry.face_area[f].norm();
   double longest = 0;
   for (int a = 0; a < mesh.dim; ++a) {
     double lower = 1e300, upper = -1e300;
-    for (const Vec3& x : mesh.reference_points) {
+    for (const Vec3& x : geometry.points) {
       lower = std::min(lower, x[a]);
       upper = std::max(upper, x[a]);
     }
@@ -52,13 +52,14 @@ double slenderness(const Mesh& mesh) {
 }
 
 double heaviness(const SolidProblem& problem) {
+  const Geometry& geometry = problem.geometry();
   if (problem.is_static()) return 0;
   const Mesh& mesh = problem.mesh;
   double inertia = 0, stiffness = 0;
   for (const double m : problem.inertia) inertia += m;
   for (Index f = 0; f < mesh.n_interior; ++f) {
     const LameConstants lame = problem.elastic.lame(mesh.owner[f]);
-    const FaceLine line = face_line(mesh, mesh.reference, f);
+    const FaceLine line = face_line(mesh, geometry, f);
     stiffness += 2 * (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn;
   }
   return sum(mesh.comm, inertia) / sum(mesh.comm, stiffness);
@@ -120,6 +121,7 @@ bool NewtonKrylov::approximate_inverse(std::span<const double> r, std::span<doub
 
 void NewtonKrylov::choose_multigrid(const MethodParameters&) {
   const Mesh& mesh = problem_.mesh;
+  const Geometry& geometry = problem_.geometry();
   const double heavy_here = heaviness(problem_);
   ElasticPreconditioner::Options options;
   options.scheme = problem_.kernel.scheme();
@@ -127,7 +129,7 @@ void NewtonKrylov::choose_multigrid(const MethodParameters&) {
     const std::vector<double> inertia = node_inertia(problem_);
     options.node_inertia = inertia;
     multigrid_ = std::make_unique<ElasticPreconditioner>(mesh, problem_.elastic, problem_.inertia, options);
-    const double length = slenderness(mesh);
+    const double length = slenderness(mesh, geometry);
     const bool is_slender = length > very_slender || (length > slender && mesh.cells.n_global() > many_cells);
     if (heavy_here <= heavy && is_slender) add_rigid_motions(inertia, length);
     name_ = modes_ ? fmt::format(
@@ -144,7 +146,7 @@ void NewtonKrylov::choose_multigrid(const MethodParameters&) {
   if (options.n_aggregates > 0) {
     if (options.scheme == FaceGradientScheme::thesis) {
       options.between = &problem_.kernel;
-    } else if (slenderness(mesh) > slender) {
+    } else if (slenderness(mesh, geometry) > slender) {
       between_ = std::make_unique<ElasticKernel>(mesh, problem_.elastic, FaceGradientScheme::thesis);
       options.between = between_.get();
     }

@@ -43,7 +43,7 @@ class NewtonKrylov final : public SolutionMethod {
 DeformedBody at_rest(const Mesh& mesh);
 
 /// Largest extent of a body over its mean thickness 2 V / S: a beam in the plane L/h, one of square section 2 L/h, a cube 3. Collective.
-double slenderness(const Mesh& mesh);
+double slenderness(const Mesh& mesh, const Geometry& geometry);
 
 /// Mean of inertia over (2 mu + lambda) |S| / (d . n) summed over the faces of a cell; static: 0. On squares with the trapezoidal
 /// rule it is one over the elastic Courant number squared. Collective.

@@ -61,10 +61,11 @@ class PressureSchur::Rows {
 };
 
 PressureSchur::PressureSchur(const SolidProblem& problem) {
+  const Geometry& geometry = problem.geometry();
   const Mesh& mesh = problem.mesh;
   const Index n = mesh.cells.n_owned();
   if (n == 0) return;
-  const std::vector<double> volume = pyramid_volumes(mesh);
+  const std::vector<double> volume = pyramid_volumes(mesh, geometry);
   unit_ = problem.elastic.lame(0).mu;
   double inertia = 0, stiffness = 0;
   for (Index c = 0; c < n; ++c) {
@@ -82,6 +83,7 @@ PressureSchur::PressureSchur(const SolidProblem& problem) {
 }
 
 void PressureSchur::by_gradients(const SolidProblem& problem, std::span<const double> volume) {
+  const Geometry& geometry = problem.geometry();
   const Mesh& mesh = problem.mesh;
   const ElasticOperator& rows = problem.elastic;
   const Index n = mesh.cells.n_owned();
@@ -98,12 +100,12 @@ void PressureSchur::by_gradients(const SolidProblem& problem, std::span<const do
   }
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
     const Index p = mesh.owner[f], q = f < mesh.n_interior ? mesh.neighbour[f] : n;
-    const Vec3& area = mesh.reference.face_area[f];
-    const FaceLine line = face_line(mesh, mesh.reference, f);
+    const Vec3& area = geometry.face_area[f];
+    const FaceLine line = face_line(mesh, geometry, f);
     const double k = line.area * line.inverse_dn;
     const double elastic = elastic_of_gradients(mesh.dim) * face_lame(mesh, rows, f).mu / unit_ * k;
     if (p < n && q < n) {
-      const auto [here, there] = pyramids(mesh, f);
+      const auto [here, there] = pyramids(mesh, geometry, f);
       const double a = here / (here + there), softness = 2 * unit_ / (bulk(p) + bulk(q));
       gradient[p].insert(gradient[p].end(), {{p, a * area}, {q, (1 - a) * area}});
       gradient[q].insert(gradient[q].end(), {{p, -a * area}, {q, (a - 1) * area}});
@@ -128,6 +130,7 @@ void PressureSchur::by_gradients(const SolidProblem& problem, std::span<const do
 }
 
 void PressureSchur::by_faces(const SolidProblem& problem, std::span<const double> volume) {
+  const Geometry& geometry = problem.geometry();
   const Mesh& mesh = problem.mesh;
   const ElasticOperator& rows = problem.elastic;
   const Index n = mesh.cells.n_owned();
@@ -139,7 +142,7 @@ void PressureSchur::by_faces(const SolidProblem& problem, std::span<const double
     faces.add(c, c, volume[c] / mean * unit_ / bulk_of_cells(rows.lame(c), rows.volume_strain()));
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
     const Index p = mesh.owner[f], q = f < mesh.n_interior ? mesh.neighbour[f] : n;
-    const auto [here, there] = pyramids(mesh, f);
+    const auto [here, there] = pyramids(mesh, geometry, f);
     const double whole = here + there;
     double weight = whole / mean * unit_ / (elastic_of_faces(mesh.dim) * face_lame(mesh, rows, f).mu);
     if (f >= mesh.n_interior && rows.condition(f) == ElasticCondition::traction) weight *= free_face;

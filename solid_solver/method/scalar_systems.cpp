@@ -12,14 +12,16 @@ namespace {
 constexpr double inner_tolerance = 1e-2;
 
 double stiffness(const Mesh& mesh, const ElasticOperator& rows, Index f) {
+  const Geometry& geometry = rows.geometry();
   const LameConstants lame = rows.lame(mesh.owner[f]);
-  const FaceLine line = face_line(mesh, mesh.reference, f);
+  const FaceLine line = face_line(mesh, geometry, f);
   return (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn;
 }
 
 /// What a boundary face adds on the diagonal of its cell.
 double boundary_diagonal(const Mesh& mesh, const ElasticOperator& rows, Index f, int component) {
-  const double k = stiffness(mesh, rows, f), n = mesh.reference.face_area[f].normalized()[component];
+  const Geometry& geometry = rows.geometry();
+  const double k = stiffness(mesh, rows, f), n = geometry.face_area[f].normalized()[component];
   switch (rows.condition(f)) {
     case ElasticCondition::prescribed:
       return k;
@@ -28,7 +30,7 @@ double boundary_diagonal(const Mesh& mesh, const ElasticOperator& rows, Index f,
     case ElasticCondition::support: {
       const ElasticSupport& s = rows.support(f);
       const double known = s.known(component, component);
-      const double spring = mesh.reference.face_area[f].norm() * s.spring(component, component);
+      const double spring = geometry.face_area[f].norm() * s.spring(component, component);
       return k * (known + (1 - known) * spring / (k + spring));
     }
     case ElasticCondition::bonded: {
@@ -64,13 +66,14 @@ std::string segregated_name(const MethodParameters& parameters) {
 
 ScalarSystems::ScalarSystems(const Mesh& mesh, const ElasticOperator& rows, std::span<const double> inertia)
     : mesh_(mesh), rows_(rows), b_(mesh.cells.n_owned()), u_(mesh.cells.n_owned()) {
+  const Geometry& geometry = rows.geometry();
   for (int c = 0; c < mesh.dim; ++c) assemble(c, inertia);
   for (const Index f : rows.unknown_faces()) {
     double own = stiffness(mesh, rows, f);
     if (rows.condition(f) == ElasticCondition::bonded)
       own += stiffness(mesh, rows, mesh.n_interior + mesh.twin[f - mesh.n_interior]);
     if (rows.condition(f) == ElasticCondition::support)
-      own += mesh.reference.face_area[f].norm() * rows.support(f).spring.trace();
+      own += geometry.face_area[f].norm() * rows.support(f).spring.trace();
     own_.push_back(own);
   }
 }

@@ -24,6 +24,8 @@ struct SolidProblem {
   const ElasticKernel& kernel;          ///< A, with the face gradient that was chosen
   double mass_factor = 0;               ///< of the kernel's own mass [1/s^2], where it has one
   const RigidPatches* rigid = nullptr;  ///< null: no patch moves as a rigid body
+  /// Where the body stands.
+  const Geometry& geometry() const { return elastic.geometry(); }
   bool is_static() const { return inertia.empty(); }
   bool is_symmetric() const { return kernel.is_symmetric(); }
   bool is_corrected() const { return kernel.scheme() == FaceGradientScheme::corrected; }

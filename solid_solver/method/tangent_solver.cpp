@@ -40,6 +40,7 @@ Tensor3 rotation_of(const Tensor3& f) {
 TangentSolver::TangentSolver(const Mesh& mesh, const ElasticOperator& rows, FiniteKernel& kernel,
                              double mass_factor, std::span<const double> node_inertia, By by)
     : mesh_(mesh),
+      geometry_(rows.geometry()),
       rows_(rows),
       kernel_(kernel),
       mass_factor_(mass_factor),
@@ -77,7 +78,7 @@ void TangentSolver::find_frames(std::span<const Tensor3> gradient) {
   std::vector<double> weight(n, 0);
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
     if (mesh_.owner[f] >= n) continue;  // another rank's, which knows its F
-    const auto [here, there] = pyramids(mesh_, f);
+    const auto [here, there] = pyramids(mesh_, geometry_, f);
     mean[mesh_.owner[f]] += here * gradient[f];
     weight[mesh_.owner[f]] += here;
     if (f < mesh_.n_interior && mesh_.neighbour[f] < n) {

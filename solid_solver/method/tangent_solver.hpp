@@ -47,6 +47,7 @@ class TangentSolver {
   void turn(std::span<const double> from, bool back, std::span<double> to) const;
 
   const Mesh& mesh_;
+  const Geometry& geometry_;
   const ElasticOperator& rows_;
   FiniteKernel& kernel_;
   double mass_factor_;

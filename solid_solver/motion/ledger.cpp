@@ -41,6 +41,7 @@ Placed place_unknowns(const SolidBody& body, const StageWork& work, std::span<co
 SolidLedger::SolidLedger(const SolidBody& body)
     : body_(body),
       mesh_(body.mesh()),
+      geometry_(body.geometry()),
       parameters_(body.parameters()),
       elastic_(body.elastic()),
       kernel_(body.kernel()) {}
@@ -56,7 +57,7 @@ double SolidLedger::stress_work(const BodyField& stressed, const BodyField& chan
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
     const Index owner = mesh_.owner[f];
     if (owner >= n_owned) continue;  // another rank's
-    const Vec3& area = mesh_.reference.face_area[f];
+    const Vec3& area = geometry_.face_area[f];
     Vec3 force = elastic_.stress(owner, gradients[f]) * area;
     const Vec3 here = vector_at(change.cells, owner, dim);
     if (f < mesh_.n_interior) {
@@ -89,8 +90,7 @@ double SolidLedger::kinetic(const SolidState& state, std::span<const double> kno
   }
   double energy = 0;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
-    energy +=
-        0.5 * body_.density(c) * mesh_.reference.volume[c] * vector_at(state.cell_v, c, dim).squaredNorm();
+    energy += 0.5 * body_.density(c) * geometry_.volume[c] * vector_at(state.cell_v, c, dim).squaredNorm();
   return energy;
 }
 
@@ -138,8 +138,8 @@ void SolidLedger::add_face_work(const SolvedStage& stage) const {
   SolidEnergies& energies = after.energies;
   energies.internal_work += inside - loss;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
-    loss += damping.mass / dt * body_.density(c) * mesh_.reference.volume[c] *
-            vector_at(cells, c, dim).squaredNorm();
+    loss +=
+        damping.mass / dt * body_.density(c) * geometry_.volume[c] * vector_at(cells, c, dim).squaredNorm();
   energies.damping_loss += loss;
   energies.external_work += outside;
   energies.kinetic = kinetic(after);

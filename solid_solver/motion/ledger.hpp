@@ -51,6 +51,7 @@ class SolidLedger final {
 
   const SolidBody& body_;
   const Mesh& mesh_;
+  const Geometry& geometry_;
   const SolidParameters& parameters_;
   const ElasticOperator& elastic_;
   const ElasticKernel& kernel_;

@@ -14,6 +14,7 @@ namespace couplet {
 SolidStepper::SolidStepper(SolidBody& body)
     : body_(body),
       mesh_(body.mesh()),
+      geometry_(body.geometry()),
       parameters_(body.parameters()),
       elastic_(body.elastic()),
       kernel_(body.kernel()),
@@ -43,10 +44,10 @@ void SolidStepper::start_from_rest() {
   }
   if (!parameters_.initial_velocity.empty()) {
     const auto velocity = make_expressions(parameters_.initial_velocity, dim, "initial-velocity");
-    const std::span<const Vec3> faces(mesh_.reference.face_centre.data() + mesh_.n_interior,
+    const std::span<const Vec3> faces(geometry_.face_centre.data() + mesh_.n_interior,
                                       mesh_.boundary.n_local());
     for (int c = 0; c < dim; ++c) {
-      velocity[c].evaluate(mesh_.reference.cell_centre, 0, state_.cell_v, dim, c);
+      velocity[c].evaluate(geometry_.cell_centre, 0, state_.cell_v, dim, c);
       velocity[c].evaluate(faces, 0, state_.face_v, dim, c);
     }
   }

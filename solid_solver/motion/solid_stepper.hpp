@@ -83,6 +83,7 @@ class SolidStepper final {
 
   SolidBody& body_;
   const Mesh& mesh_;
+  const Geometry& geometry_;
   const SolidParameters& parameters_;
   const ElasticOperator& elastic_;
   const ElasticKernel& kernel_;

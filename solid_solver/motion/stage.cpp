@@ -41,12 +41,11 @@ SolidSystem& SolidStepper::system_for(double mass_factor) {
   system->mass_factor = mass_factor;
   if (mass_factor > 0)
     for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
-      system->inertia.push_back(mass_factor * body_.density(c) * mesh_.reference.volume[c]);
+      system->inertia.push_back(mass_factor * body_.density(c) * geometry_.volume[c]);
   if (body_.newton()) {
     system->node_inertia = node_inertia(problem_of(*system));
   } else if (!body_.finite()) {
     system->method = make_solution_method(problem_of(*system), parameters_.method);
-    elastic_.forget_faces();  // what the method needs of them it has by now
   }
   announce(*system);
   systems_.insert(systems_.begin(), std::move(system));
@@ -183,7 +182,7 @@ void SolidStepper::add_inertia(const StageWork& work, const SolidState& now) {
   const History levels(now, state_, false);
   const int dim = mesh_.dim;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    const double mass = body_.density(c) * mesh_.reference.volume[c];
+    const double mass = body_.density(c) * geometry_.volume[c];
     for (int a = 0; a < dim; ++a) {
       const std::size_t i = std::size_t(c) * dim + a;
       last_.rhs[i] -= mass * levels(known, i);

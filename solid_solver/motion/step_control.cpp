@@ -26,7 +26,7 @@ void SolidStepper::judge_step() {
   const double dt = step_.dt, apart = 0.5 * (dt + state_.dt);
   double error = 0, volume = 0;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    const double v = mesh_.reference.volume[c];
+    const double v = geometry_.volume[c];
     for (int a = 0; a < mesh_.dim; ++a) {
       const std::size_t i = std::size_t(c) * mesh_.dim + a;
       const double derivative = local.order == 1

@@ -23,11 +23,12 @@ constexpr double rigid_part = 1e-8;
 
 /// mu / (rho L^2) of the slowest cell, with L the diagonal of the body's box [1/s^2].
 double slowest_scale(const SolidProblem& problem, std::span<const double> cell_mass) {
+  const Geometry& geometry = problem.geometry();
   const Mesh& mesh = problem.mesh;
   double slowest = 1e300;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-    slowest = std::min(slowest, problem.elastic.lame(c).mu * mesh.reference.volume[c] / cell_mass[c]);
-  const double length = extent_of(mesh).diagonal();
+    slowest = std::min(slowest, problem.elastic.lame(c).mu * geometry.volume[c] / cell_mass[c]);
+  const double length = extent_of(mesh, geometry).diagonal();
   return min(mesh.comm, slowest) / (length * length);
 }
 
@@ -84,10 +85,11 @@ bool goes_by_factors(const SolidProblem& problem, const MethodParameters& method
 /// The search with factors of the shifted stiffness.
 EigenModes search_by_factors(const SolidProblem& problem, std::span<const double> cell_mass, int n,
                              double shift) {
+  const Geometry& geometry = problem.geometry();
   const Mesh& mesh = problem.mesh;
   std::vector<double> density;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-    density.push_back(cell_mass[std::size_t(c)] / mesh.reference.volume[std::size_t(c)]);
+    density.push_back(cell_mass[std::size_t(c)] / geometry.volume[std::size_t(c)]);
   const SlepcEnvironment slepc;
   TiedMatrix shifted(mesh, problem.elastic, {.mass = shift, .density = density});
   check_factors(problem, shifted, shift);
@@ -151,6 +153,7 @@ EigenModes solid_modes(const SolidProblem& problem, MethodParameters method,
 }
 
 ModalModel modal_model(const SolidProblem& problem, const EigenModes& modes) {
+  const Geometry& geometry = problem.geometry();
   const Mesh& mesh = problem.mesh;
   const std::size_t dim = mesh.dim, count = modes.shape.size();
   std::vector<Index> points;
@@ -168,7 +171,7 @@ ModalModel modal_model(const SolidProblem& problem, const EigenModes& modes) {
     }
   std::vector<SurfacePoint> places;
   for (const Index v : points) {
-    const Vec3& x = mesh.reference_points[v];
+    const Vec3& x = geometry.points[v];
     places.push_back({mesh.point_id[v], {x[0], x[1], x[2]}});
   }
   std::vector<double> shapes(points.size() * 3 * count, 0),

@@ -23,7 +23,7 @@ namespace {
 std::vector<double> cell_masses(const SolidBody& body) {
   std::vector<double> mass;
   for (Index c = 0; c < body.mesh().cells.n_owned(); ++c)
-    mass.push_back(body.density(c) * body.mesh().reference.volume[c]);
+    mass.push_back(body.density(c) * body.geometry().volume[c]);
   return mass;
 }
 
@@ -96,6 +96,7 @@ void SolidOutput::write_preloaded_modes() {
 void SolidOutput::write_buckling() {
   if (context_.output_folder.empty()) return;
   const Mesh& mesh = body_.mesh();
+  const Geometry& geometry = body_.geometry();
   const int asked = body_.parameters().output.buckling;
   Buckling found;
   try {
@@ -115,8 +116,9 @@ void SolidOutput::write_buckling() {
     fields.push_back(
         {fmt::format("buckling-{}", m + 1), "-", OutputField::Place::points, mesh.dim, points[m]});
   if (!fields.empty())
-    FieldWriter(mesh, context_.output_folder, "buckling", false, std::numeric_limits<double>::quiet_NaN())
-        .write(stepper_.state().time, mesh.reference_points, fields);
+    FieldWriter(mesh, geometry.points, context_.output_folder, "buckling", false,
+                std::numeric_limits<double>::quiet_NaN())
+        .write(stepper_.state().time, geometry.points, fields);
   if (comm_rank(mesh.comm) == 0) {
     Series series(context_.output_folder / "buckling.csv", {"number", "load factor [-]"});
     for (std::size_t m = 0; m < found.factor.size(); ++m)

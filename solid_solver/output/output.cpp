@@ -62,12 +62,14 @@ SolidOutput::SolidOutput(const SolidFields& derived, const SolidStepper& stepper
 void SolidOutput::write_fields(double time, std::span<const double> points) {
   if (context_.output_folder.empty()) return;
   const Mesh& mesh = body_.mesh();
+  const Geometry& geometry = body_.geometry();
   const SolidOutputParameters& chosen = body_.parameters().output;
   const SolidState& state = stepper_.state();
   const int dim = mesh.dim;
   if (!fields_)
-    fields_.emplace(mesh, context_.output_folder, context_.name, chosen.deformed, context_.restart_time);
-  std::vector<Vec3> places = mesh.reference_points;
+    fields_.emplace(mesh, geometry.points, context_.output_folder, context_.name, chosen.deformed,
+                    context_.restart_time);
+  std::vector<Vec3> places = geometry.points;
   for (std::size_t v = 0; v < places.size(); ++v)
     for (int a = 0; a < dim; ++a) places[v][a] += points[v * dim + a];
   FieldList fields;

@@ -31,10 +31,10 @@ SolidProbes::SolidProbes(const SolidBody& body, const SolidFields& derived) : bo
   std::vector<Vec3> places;
   for (const auto& [name, chosen] : body.parameters().probes) {
     places.push_back(chosen.point);
-    probes_.push_back({Probe(body.mesh(), name, chosen.point), chosen.fields});
+    probes_.push_back({Probe(body.mesh(), body.geometry().points, name, chosen.point), chosen.fields});
     for (const std::string& field : chosen.fields) add_columns(name, field);
   }
-  doubt_mesh_scale(body.mesh(), places);
+  doubt_mesh_scale(body.mesh(), body.geometry().points, places);
   if (watches_stress()) stressed_ = points_with_stress();
 }
 

@@ -85,6 +85,7 @@ std::vector<std::complex<double>> spectrum(const Mesh& mesh, std::span<const dou
 }
 
 std::vector<std::complex<double>> eigenvalues(const SolidBody& body) {
+  const Geometry& geometry = body.geometry();
   const Mesh& mesh = body.mesh();
   const ElasticKernel& kernel = body.kernel();
   if (body.has_mass())
@@ -93,7 +94,7 @@ std::vector<std::complex<double>> eigenvalues(const SolidBody& body) {
         [&](std::span<const double> x, std::span<double> y) { kernel.apply(x, {}, y); },
         [&](std::span<const double> x, std::span<double> y) { kernel.apply_with_mass(x, {}, 1, false, y); });
   std::vector<double> mass;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) mass.push_back(body.density(c) * mesh.reference.volume[c]);
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) mass.push_back(body.density(c) * geometry.volume[c]);
   const std::vector<double> still(body.prescribed().size() * mesh.dim, 0);
   return spectrum(mesh, mass, body.elastic().n_unknowns(),
                   [&](std::span<const double> x, std::span<double> y) { kernel.apply(x, still, y); });

@@ -12,7 +12,7 @@ SolidSurfaces::SolidSurfaces(const SolidFields& derived, const SolidBody& body, 
     : derived_(derived),
       body_(body),
       context_(context),
-      series_(body.mesh(), body.parameters().output.surfaces, "output.surfaces"),
+      series_(body.mesh(), body.geometry().points, body.parameters().output.surfaces, "output.surfaces"),
       wanted_(series_.points()) {}
 
 void SolidSurfaces::write(double time, std::span<const double> points, std::span<const Vec3> places) {

@@ -89,7 +89,7 @@ VolumeStrain volume_strain_of(const SolidParameters& parameters);
 bool symmetric_suits(const SolidParameters& parameters);
 
 /// For ElasticOperator: the constants of the cells.
-ElasticBody elastic_body(const SolidParameters& parameters, const Mesh& mesh);
+ElasticBody elastic_body(const SolidParameters& parameters, const Mesh& mesh, const Geometry& geometry);
 /// Throws Error where a symmetry plane does not mirror an orthotropic material into itself: it would be no plane of
 /// symmetry. Collective.
 void check_symmetry(const SolidParameters& parameters, const Mesh& mesh, const ElasticOperator& rows);

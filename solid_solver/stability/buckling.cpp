@@ -105,6 +105,7 @@ Buckling find_buckling(const SolidBody& body, const Prestress& prestress, int n)
 }
 
 EigenModes preloaded_modes(const SolidBody& body, const Prestress& prestress, int n) {
+  const Geometry& geometry = body.geometry();
   check_buckling_of(body);
   const Mesh& mesh = body.mesh();
   const ElasticKernel& kernel = body.kernel();
@@ -114,7 +115,7 @@ EigenModes preloaded_modes(const SolidBody& body, const Prestress& prestress, in
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
     slowest = std::min(slowest, body.elastic().lame(c).mu / density[std::size_t(c)]);
   kernel.set_density(density);
-  const double length = extent_of(mesh).diagonal();
+  const double length = extent_of(mesh, geometry).diagonal();
   const double shift = loaded_shift_part * min(mesh.comm, slowest) / (length * length);
   TiedMatrix loaded(mesh, body.elastic(), {.stress = 1, .prestress = &prestress});
   loaded.factorise();

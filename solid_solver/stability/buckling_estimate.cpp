@@ -51,6 +51,7 @@ void tell_buckling(MPI_Comm comm, double factor, const char* how) {
 
 BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fields, double time,
                                    SolutionMethod& method, double& compression_seen) {
+  const Geometry& geometry = body.geometry();
   const Mesh& mesh = body.mesh();
   Prestress prestress = prestress_of(body, fields, time);
   double softest = 1e300;
@@ -58,7 +59,7 @@ BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fie
     const LameConstants lame = body.elastic().lame(c);
     softest = std::min(softest, lame.mu * (3 * lame.lambda + 2 * lame.mu) / (lame.lambda + lame.mu));
   }
-  const double here = compression(mesh, prestress), ratio = slenderness(mesh);
+  const double here = compression(mesh, prestress), ratio = slenderness(mesh, geometry);
   if (!(here > more_compression * compression_seen)) return {};
   if (!(here / min(mesh.comm, softest) * ratio * ratio >= least_strain)) return {};
   // As forces, which soft motions answer to: what stiff ones leave would end the iteration before.

@@ -11,9 +11,10 @@
 namespace couplet {
 
 Prestress prestress_of(const SolidBody& body, const SolidFields& fields, double time) {
+  const Geometry& geometry = body.geometry();
   const Mesh& mesh = body.mesh();
   return {fields.face_stress(0, mesh.n_flux_faces(), fields.point_displacement()),
-          pressure_stiffness(mesh, body.boundaries().pressures(time))};
+          pressure_stiffness(mesh, geometry, body.boundaries().pressures(time))};
 }
 
 double compression(const Mesh& mesh, const Prestress& prestress) {
@@ -29,8 +30,9 @@ double compression(const Mesh& mesh, const Prestress& prestress) {
 }
 
 std::vector<double> any_start(const SolidBody& body) {
+  const Geometry& geometry = body.geometry();
   const Mesh& mesh = body.mesh();
-  const Extent box = extent_of(mesh);
+  const Extent box = extent_of(mesh, geometry);
   const double size = box.diagonal();
   std::vector<double> start;
   const auto add = [&](const Vec3& x) {
@@ -42,8 +44,8 @@ std::vector<double> any_start(const SolidBody& body) {
       start.push_back(value);
     }
   };
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) add(mesh.reference.cell_centre[c]);
-  for (const Index f : body.elastic().unknown_faces()) add(mesh.reference.face_centre[f]);
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) add(geometry.cell_centre[c]);
+  for (const Index f : body.elastic().unknown_faces()) add(geometry.face_centre[f]);
   return start;
 }
 

@@ -35,13 +35,14 @@ struct Heat::Coefficients {
   double next = 0, now = 0, before = 0, theta = 1;
 };
 
-Heat::Heat(const Mesh& mesh, std::vector<HeatProperties> materials, const HeatParameters& parameters,
-           const std::vector<std::string>& symmetry_patches)
+Heat::Heat(const Mesh& mesh, const Geometry& geometry, std::vector<HeatProperties> materials,
+           const HeatParameters& parameters, const std::vector<std::string>& symmetry_patches)
     : mesh_(&mesh),
+      geometry_(&geometry),
       materials_(std::move(materials)),
       parameters_(parameters),
-      boundaries_(mesh, parameters_, symmetry_patches),
-      conduction_(mesh, boundaries_.conditions()),
+      boundaries_(mesh, geometry, parameters_, symmetry_patches),
+      conduction_(mesh, geometry, boundaries_.conditions()),
       source_(parameters_.source, "heat.source"),
       matrix_(conduction_.make_matrix()) {
   if (is_steady() && !boundaries_.fix_the_level())
@@ -64,8 +65,8 @@ void Heat::start() {
   const Index n_owned = mesh_->cells.n_owned();
   state_.cells.resize(mesh_->cells.n_local());
   state_.boundary.resize(mesh_->boundary.n_local());
-  initial.evaluate(mesh_->reference.cell_centre, 0, state_.cells);
-  initial.evaluate({mesh_->reference.face_centre.data() + mesh_->n_interior, state_.boundary.size()}, 0,
+  initial.evaluate(geometry_->cell_centre, 0, state_.cells);
+  initial.evaluate({geometry_->face_centre.data() + mesh_->n_interior, state_.boundary.size()}, 0,
                    state_.boundary);
   state_.known.resize(conduction_.n_known());
   boundaries_.known(conduction_, 0, state_.known);
@@ -107,7 +108,7 @@ Heat::Coefficients Heat::coefficients(double dt) const {
 // for layers along the face: k = d . n / (d_P / k_P + d_N / k_N).
 void Heat::set_conductivity(const HeatState& state, std::span<double> conductivity) const {
   const std::vector<double> at_faces = face_temperature(state);
-  const Geometry& g = mesh_->reference;
+  const Geometry& g = *geometry_;
   const FaceGradient& faces = conduction_.faces();
   for (Index f = 0; f < mesh_->n_flux_faces(); ++f) {
     const Index owner = mesh_->owner[f];
@@ -129,9 +130,9 @@ std::vector<double> Heat::sources(double t, std::span<const double> further) con
   if (source_.is_zero() && further.empty()) return source;
   const std::size_t n_owned = mesh_->cells.n_owned();
   source.assign(n_owned, 0);
-  if (!source_.is_zero()) source_.evaluate({mesh_->reference.cell_centre.data(), n_owned}, t, source);
+  if (!source_.is_zero()) source_.evaluate({geometry_->cell_centre.data(), n_owned}, t, source);
   for (std::size_t c = 0; c < further.size(); ++c) source[c] += further[c];
-  for (std::size_t c = 0; c < n_owned; ++c) source[c] *= mesh_->reference.volume[c];
+  for (std::size_t c = 0; c < n_owned; ++c) source[c] *= geometry_->volume[c];
   return source;
 }
 
@@ -175,7 +176,7 @@ void Heat::assemble(const Coefficients& c, std::span<const double> source) {
     if (properties_vary_) set_conductivity(trial_, conductivity_);
     for (Index i = 0; i < std::ssize(capacity_); ++i) {
       const HeatProperties& m = materials_[mesh_->cell_zone[i]];
-      capacity_[i] = c.next * m.density * mesh_->reference.volume[i] * m.specific_heat(trial_.cells[i]);
+      capacity_[i] = c.next * m.density * geometry_->volume[i] * m.specific_heat(trial_.cells[i]);
     }
   }
   const ConductionOperator::Weights weights{conductivity_, transfer_, capacity_, c.theta};
@@ -188,7 +189,7 @@ void Heat::assemble(const Coefficients& c, std::span<const double> source) {
   // Newton for the stored heat: h(T) = h(T^k) + c(T^k) (T - T^k).
   for (Index i = 0; i < std::ssize(capacity_); ++i) {
     const HeatProperties& m = materials_[mesh_->cell_zone[i]];
-    const double mass = m.density * mesh_->reference.volume[i];
+    const double mass = m.density * geometry_->volume[i];
     const double level = state_.enthalpy[i], now = m.specific_heat.antiderivative(trial_.cells[i]) - level;
     const double before = state_.enthalpy_before[i] - level;  // sum of the weights is zero
     rhs_[i] = capacity_[i] * trial_.cells[i] - mass * (c.next * now + c.before * before);
@@ -244,7 +245,7 @@ void Heat::set_inflow(std::span<const double> source) {
   for (std::size_t i = 0; i < faces.size(); ++i) {
     if (conduction_.condition(faces[i]) == HeatCondition::bonded) continue;
     const double h = transfer_.empty() ? 0 : transfer_[i];
-    heat[faces[i]] = face_heat_[i] - h * mesh_->reference.face_area[faces[i]].norm() *
+    heat[faces[i]] = face_heat_[i] - h * geometry_->face_area[faces[i]].norm() *
                                          trial_.boundary[faces[i] - mesh_->n_interior];
   }
   std::ranges::fill(trial_.inflow, 0.0);
@@ -256,7 +257,7 @@ void Heat::set_inflow(std::span<const double> source) {
 }
 
 void Heat::accept_step() {
-  if (swing_) swing_->accepted(*mesh_, state_.cells, trial_.cells, trial_.time);
+  if (swing_) swing_->accepted(*mesh_, *geometry_, state_.cells, trial_.cells, trial_.time);
   std::swap(state_, trial_);
 }
 
@@ -287,7 +288,7 @@ std::vector<double> Heat::boundary_inflow() const {
   for (std::size_t b = 0; b < inflow.size(); ++b) {
     const Index f = mesh_->n_interior + Index(b);
     if (conduction_.condition(f) != HeatCondition::symmetry)
-      inflow[b] = heat[f] / mesh_->reference.face_area[f].norm();
+      inflow[b] = heat[f] / geometry_->face_area[f].norm();
   }
   return inflow;
 }
@@ -308,7 +309,7 @@ std::vector<PatchHeat> Heat::patch_heat() const {
 double Heat::stored_heat() const {
   double heat = 0;
   for (Index c = 0; c < mesh_->cells.n_owned(); ++c)
-    heat += materials_[mesh_->cell_zone[c]].density * mesh_->reference.volume[c] * state_.enthalpy[c];
+    heat += materials_[mesh_->cell_zone[c]].density * geometry_->volume[c] * state_.enthalpy[c];
   return sum(mesh_->comm, heat);
 }
 
@@ -318,13 +319,13 @@ void Heat::judge(std::vector<std::string>& sentences) const {
   const HeatProperties& m = materials_.front();
   double volume = 0, surface = 0, level = 0;
   for (Index c = 0; c < mesh_->cells.n_owned(); ++c) {
-    volume += mesh_->reference.volume[c];
-    level += mesh_->reference.volume[c] * state_.cells[c];
+    volume += geometry_->volume[c];
+    level += geometry_->volume[c] * state_.cells[c];
   }
   for (Index f = mesh_->n_interior; f < mesh_->n_flux_faces(); ++f)
     if (conduction_.condition(f) != HeatCondition::symmetry &&
         conduction_.condition(f) != HeatCondition::bonded)
-      surface += mesh_->reference.face_area[f].norm();
+      surface += geometry_->face_area[f].norm();
   volume = sum(mesh_->comm, volume);
   level = sum(mesh_->comm, level) / volume;
   const double size = volume / sum(mesh_->comm, surface);

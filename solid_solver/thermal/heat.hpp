@@ -50,8 +50,8 @@ struct PatchHeat {
 class Heat final {
  public:
   /// `materials`: one a zone of the mesh. Collective. Throws Error.
-  Heat(const Mesh& mesh, std::vector<HeatProperties> materials, const HeatParameters& parameters,
-       const std::vector<std::string>& symmetry_patches);
+  Heat(const Mesh& mesh, const Geometry& geometry, std::vector<HeatProperties> materials,
+       const HeatParameters& parameters, const std::vector<std::string>& symmetry_patches);
   ~Heat();
 
   /// Solves for the temperature at the end of the step; `source`: further heat per owned cell [W/m^3] or
@@ -90,6 +90,7 @@ class Heat final {
   void set_inflow(std::span<const double> source);
 
   const Mesh* mesh_;
+  const Geometry* geometry_;
   std::vector<HeatProperties> materials_;
   HeatParameters parameters_;
   HeatBoundaries boundaries_;

@@ -18,9 +18,9 @@ HeatCondition condition_of(Kind type) {
 
 }  // namespace
 
-HeatBoundaries::HeatBoundaries(const Mesh& mesh, const HeatParameters& parameters,
+HeatBoundaries::HeatBoundaries(const Mesh& mesh, const Geometry& geometry, const HeatParameters& parameters,
                                const std::vector<std::string>& symmetry_patches)
-    : mesh_(&mesh) {
+    : mesh_(&mesh), geometry_(&geometry) {
   std::vector<std::string> names;
   for (const Patch& patch : mesh.patches)
     if (!patch.bonded) names.push_back(patch.name);
@@ -78,7 +78,7 @@ void HeatBoundaries::known(const ConductionOperator& conduction, double t, std::
       for (Index f = first; f < first + count; ++f)
         for (const Index v : mesh_->face_points[f]) {
           if (column[v] < 0) continue;
-          values[column[v]] = on_patch_[p].value(mesh_->reference_points[v], t);
+          values[column[v]] = on_patch_[p].value(geometry_->points[v], t);
           column[v] = -1;
         }
     };
@@ -89,7 +89,7 @@ void HeatBoundaries::known(const ConductionOperator& conduction, double t, std::
     if (conditions_[p] != HeatCondition::temperature) continue;
     const Patch& patch = mesh_->patches[p];
     for (Index f = patch.first; f < patch.first + patch.count; ++f)
-      values[next++] = on_patch_[p].value(mesh_->reference.face_centre[f], t);
+      values[next++] = on_patch_[p].value(geometry_->face_centre[f], t);
   }
 }
 
@@ -100,8 +100,8 @@ void HeatBoundaries::fluxes(double t, std::span<double> heat, std::span<double> 
     const OnPatch& here = on_patch_[p];
     const Patch& patch = mesh_->patches[p];
     for (Index f = patch.first; f < patch.first + patch.count; ++f, ++next) {
-      const Vec3& x = mesh_->reference.face_centre[f];
-      const double area = mesh_->reference.face_area[f].norm();
+      const Vec3& x = geometry_->face_centre[f];
+      const double area = geometry_->face_area[f].norm();
       heat[next] = 0;
       if (!transfer.empty()) transfer[next] = 0;
       if (here.type == Kind::flux) heat[next] = area * here.value(x, t);

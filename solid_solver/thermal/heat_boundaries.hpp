@@ -15,7 +15,7 @@ namespace couplet {
 class HeatBoundaries final {
  public:
   /// `symmetry_patches`: patches that are symmetry planes unless the YAML says otherwise. Throws Error.
-  HeatBoundaries(const Mesh& mesh, const HeatParameters& parameters,
+  HeatBoundaries(const Mesh& mesh, const Geometry& geometry, const HeatParameters& parameters,
                  const std::vector<std::string>& symmetry_patches);
 
   /// One a patch.
@@ -37,6 +37,7 @@ class HeatBoundaries final {
     Expression value, coefficient, ambient;
   };
   const Mesh* mesh_;
+  const Geometry* geometry_;
   std::vector<OnPatch> on_patch_;
   std::vector<HeatCondition> conditions_;
 };

@@ -35,24 +35,24 @@ struct Fit {
 
 }  // namespace
 
-HeatErrors::HeatErrors(const Mesh& mesh, const HeatParameters& parameters)
+HeatErrors::HeatErrors(const Mesh& mesh, const Geometry& geometry, const HeatParameters& parameters)
     : mesh_(mesh),
+      geometry_(geometry),
       steady_(parameters.analysis == HeatParameters::Analysis::steady),
       steps_(scheme_of(parameters.scheme)) {
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume_ += mesh.reference.volume[c];
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume_ += geometry.volume[c];
   volume_ = sum(mesh.comm, volume_);
 }
 
 double HeatErrors::root_mean_square(std::span<const double> cells) const {
   double squares = 0;
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
-    squares += mesh_.reference.volume[c] * cells[c] * cells[c];
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) squares += geometry_.volume[c] * cells[c] * cells[c];
   return std::sqrt(sum(mesh_.comm, squares) / volume_);
 }
 
 double HeatErrors::mean(std::span<const double> cells) const {
   double whole = 0;
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) whole += mesh_.reference.volume[c] * cells[c];
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) whole += geometry_.volume[c] * cells[c];
   return sum(mesh_.comm, whole) / volume_;
 }
 
@@ -82,7 +82,7 @@ void HeatErrors::see_step(const HeatState& before, const HeatState& now) {
 std::vector<double> HeatErrors::gaps(const Heat& heat) const {
   const HeatState& now = heat.accepted();
   const std::vector<double> faces = heat.face_temperature(now);  // also where nothing is solved for
-  const Geometry& at = mesh_.reference;
+  const Geometry& at = geometry_;
   std::vector<Fit> fits(std::size_t(mesh_.cells.n_local()));
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
     const Index owner = mesh_.owner[f];

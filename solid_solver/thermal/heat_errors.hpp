@@ -20,7 +20,7 @@ namespace couplet {
 class HeatErrors {
  public:
   /// `mesh` by reference.
-  HeatErrors(const Mesh& mesh, const HeatParameters& parameters);
+  HeatErrors(const Mesh& mesh, const Geometry& geometry, const HeatParameters& parameters);
   /// Between solve and acceptance of a transient.
   void see_step(const HeatState& before, const HeatState& now);
   /// Of what was accepted; with `reference` [K] over the distance from that.
@@ -36,6 +36,7 @@ class HeatErrors {
   std::vector<double> gaps(const Heat& heat) const;
 
   const Mesh& mesh_;
+  const Geometry& geometry_;
   bool steady_;
   double volume_ = 0, level_ = 0;  // of the body [m^3], before the first step [K]
   bool begun_ = false;

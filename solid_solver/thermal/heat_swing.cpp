@@ -18,7 +18,7 @@ constexpr double noticeable = 1e-3;      // root mean square of a step's change 
 
 }  // namespace
 
-void HeatSwing::accepted(const Mesh& mesh, const std::vector<double>& before,
+void HeatSwing::accepted(const Mesh& mesh, const Geometry& geometry, const std::vector<double>& before,
                          const std::vector<double>& after, double time) {
   if (told_) return;
   const bool first = !begun_;  // the same on all ranks, also on one without cells
@@ -27,7 +27,7 @@ void HeatSwing::accepted(const Mesh& mesh, const std::vector<double>& before,
   double sums[4] = {};  // change.change, last.last, change.last, volume
   double range[2] = {-1e300, -1e300};
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
-    const double volume = mesh.reference.volume[c], change = after[c] - before[c];
+    const double volume = geometry.volume[c], change = after[c] - before[c];
     sums[0] += volume * change * change;
     sums[1] += volume * change_[c] * change_[c];
     sums[2] += volume * change * change_[c];

@@ -13,8 +13,8 @@ namespace couplet {
 class HeatSwing {
  public:
   /// Of an accepted step that ends at `time` [s], temperatures of local cells [K]. Collective.
-  void accepted(const Mesh& mesh, const std::vector<double>& before, const std::vector<double>& after,
-                double time);
+  void accepted(const Mesh& mesh, const Geometry& geometry, const std::vector<double>& before,
+                const std::vector<double>& after, double time);
 
  private:
   std::vector<double> change_;       // of the last step [K]

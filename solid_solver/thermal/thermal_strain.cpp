@@ -27,7 +27,8 @@ Property property(const std::optional<config::ExpressionText>& text, const std::
 
 }  // namespace
 
-std::unique_ptr<Heat> make_heat(const Mesh& mesh, const SolidParameters& parameters) {
+std::unique_ptr<Heat> make_heat(const Mesh& mesh, const Geometry& geometry,
+                                const SolidParameters& parameters) {
   const auto properties = [&](const SolidMaterial& material) {
     const HeatMaterial& m = material.heat;
     HeatProperties result{material.density, property(m.conductivity, "conductivity", "'heat'"), 0};
@@ -43,17 +44,20 @@ std::unique_ptr<Heat> make_heat(const Mesh& mesh, const SolidParameters& paramet
     while (i + 1 < zones.size() && std::ranges::find(zones[i], zone) == zones[i].end()) ++i;
     of_zone.push_back(properties(materials[i]));
   }
-  return std::make_unique<Heat>(mesh, std::move(of_zone), *parameters.heat, symmetry_patches(parameters));
+  return std::make_unique<Heat>(mesh, geometry, std::move(of_zone), *parameters.heat,
+                                symmetry_patches(parameters));
 }
 
 ThermalStrain::ThermalStrain(const Mesh& mesh, const ElasticOperator& elastic,
                              const SolidParameters& parameters)
     : mesh_(&mesh),
+      geometry_(&elastic.geometry()),
       elastic_(&elastic),
       parameters_(parameters),
       materials_(materials_of(parameters)),
       coupled_(parameters.thermoelastic_coupling) {
-  if (parameters.heat) heat_ = make_heat(mesh, parameters);
+  const Geometry& geometry = elastic.geometry();
+  if (parameters.heat) heat_ = make_heat(mesh, geometry, parameters);
   given_ = parameters.interface_data && parameters.interface_data->temperature;
   if (parameters.temperature) prescribed_.emplace(*parameters.temperature, "temperature");
   if (parameters.expansion) {
@@ -100,7 +104,7 @@ std::vector<double> ThermalStrain::cell_temperature(double t, bool trial) const 
   if (interface_) return given_at(at_cells, trial);
   std::vector<double> values(mesh_->cells.n_local(), reference_);
   if (given_) return values;  // set_interface() comes later
-  prescribed_->evaluate(mesh_->reference.cell_centre, t, values);
+  prescribed_->evaluate(geometry_->cell_centre, t, values);
   return values;
 }
 
@@ -144,7 +148,7 @@ std::vector<double> ThermalStrain::face_temperature(double t, bool trial) const 
   if (heat_) return heat_->face_temperature(trial ? heat_->trial() : heat_->accepted());
   if (given_) return given_at(at_faces, trial);
   std::vector<double> values(mesh_->n_flux_faces());
-  prescribed_->evaluate({mesh_->reference.face_centre.data(), values.size()}, t, values);
+  prescribed_->evaluate({geometry_->face_centre.data(), values.size()}, t, values);
   return values;
 }
 
@@ -158,10 +162,10 @@ std::vector<double> ThermalStrain::given_at(Places places, bool trial) const {
 }
 
 void ThermalStrain::set_interface(const std::vector<Vec3>& face_centres) {
-  const auto& g = mesh_->reference;
+  const auto& g = *geometry_;
   const std::span flux_faces(g.face_centre.data(), std::size_t(mesh_->n_flux_faces()));
   interface_.emplace(mesh_->comm, face_centres,
-                     std::vector<std::span<const Vec3>>{flux_faces, mesh_->reference_points, g.cell_centre});
+                     std::vector<std::span<const Vec3>>{flux_faces, geometry_->points, g.cell_centre});
   start_ = face_temperature(0, false);
   set_accepted();
 }
@@ -204,7 +208,7 @@ std::vector<double> ThermalStrain::stress_of(const std::vector<double>& strain) 
       continue;
     }
     const Index neighbour = mesh_->neighbour[f];
-    const auto [here, there] = pyramids(*mesh_, f);
+    const auto [here, there] = pyramids(*mesh_, *geometry_, f);
     stress[f] += (here * of_cells[owner] + there * of_cells[neighbour]) / (here + there) -
                  0.5 * (bulk(owner) + bulk(neighbour)) * strain[f];
   }
@@ -280,7 +284,7 @@ std::vector<double> ThermalStrain::pyramid_means(const std::vector<double>& of_f
       total[c] += pyramid * of_faces[f];
       weight[c] += pyramid;
     };
-    const auto [here, there] = pyramids(*mesh_, f);
+    const auto [here, there] = pyramids(*mesh_, *geometry_, f);
     add(mesh_->owner[f], here);
     if (f < mesh_->n_interior) add(mesh_->neighbour[f], there);
   }
@@ -333,7 +337,7 @@ std::vector<double> ThermalStrain::point_temperature() const {
   if (heat_) return heat_->point_temperature(heat_->accepted());
   if (given_) return given_at(at_points, false);
   std::vector<double> values(mesh_->points.n_local());
-  prescribed_->evaluate(mesh_->reference_points, time_, values);
+  prescribed_->evaluate(geometry_->points, time_, values);
   return values;
 }
 
@@ -345,7 +349,7 @@ void ThermalStrain::add_fields(std::vector<OutputField>& fields) {
     cells_ = given_at(at_cells, false);
   } else {
     cells_.resize(mesh_->cells.n_local());
-    prescribed_->evaluate(mesh_->reference.cell_centre, time_, cells_);
+    prescribed_->evaluate(geometry_->cell_centre, time_, cells_);
   }
   fields.push_back({"temperature", "K", OutputField::Place::points, 1, points_});
   fields.push_back({"cell-temperature", "K", OutputField::Place::cells, 1, cells_});
@@ -402,7 +406,7 @@ void ThermalStrain::load(CheckpointReader& file) {
 }
 
 void ThermalStrain::collect_errors() {
-  if (heat_ && expands()) errors_.emplace(*mesh_, parameters_.heat.value());
+  if (heat_ && expands()) errors_.emplace(*mesh_, *geometry_, parameters_.heat.value());
 }
 
 ErrorParts ThermalStrain::error_parts() const {

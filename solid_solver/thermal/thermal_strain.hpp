@@ -16,7 +16,8 @@
 namespace couplet {
 
 /// Conduction for this mesh and these parameters (`parameters.heat` must be there). Collective.
-std::unique_ptr<Heat> make_heat(const Mesh& mesh, const SolidParameters& parameters);
+std::unique_ptr<Heat> make_heat(const Mesh& mesh, const Geometry& geometry,
+                                const SolidParameters& parameters);
 
 /// Temperature in the solid, solved for or prescribed, and the stress it makes, thesis (2.21), (2.60):
 ///   sigma = sigma(grad u) - B epsilon I,   epsilon = integral of alpha dT from T_ref on,   B = 3 lambda + 2 mu
@@ -84,6 +85,7 @@ class ThermalStrain final : public SolidEffect {
   void choose_stiffness(double t);
 
   const Mesh* mesh_;
+  const Geometry* geometry_;
   const ElasticOperator* elastic_;
   std::unique_ptr<Heat> heat_;        // none: prescribed
   std::optional<HeatErrors> errors_;  // none: not wanted

@@ -39,8 +39,8 @@ namespace couplet::contract {
 /// One mesh for all participants of a factory on one communicator: a second partitioning within a process may
 /// differ from the first, and a checkpoint belongs to its partition.
 template <class Factory>
-const Mesh& mesh_of(MPI_Comm comm) {
-  static std::map<bool, Mesh> meshes;
+const LoadedMesh& mesh_of(MPI_Comm comm) {
+  static std::map<bool, LoadedMesh> meshes;
   const auto [place, is_new] = meshes.try_emplace(comm == MPI_COMM_SELF);
   if (is_new) place->second = distribute(comm, comm_rank(comm) == 0 ? Factory::raw_mesh() : RawMesh{});
   return place->second;

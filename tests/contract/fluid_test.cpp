@@ -11,10 +11,10 @@ namespace {
 double moved_by = 0;  // NOLINT: the link between an input and the motion that goes with it
 class Motion final : public MeshMotionSource {
  public:
-  explicit Motion(const Mesh& mesh) : mesh_(mesh) {}
+  Motion(const Mesh& mesh, std::span<const Vec3> points) : mesh_(mesh), points_(points) {}
   std::vector<double> receive() override {
     std::vector<double> displacement;
-    for (const Vec3& x : mesh_.reference_points)
+    for (const Vec3& x : points_)
       for (int c = 0; c < mesh_.dim; ++c)
         displacement.push_back(c == 1 ? moved_by * x.x() * (2 - x.x()) * (1 - x.y()) : 0);
     return displacement;
@@ -23,6 +23,7 @@ class Motion final : public MeshMotionSource {
 
  private:
   const Mesh& mesh_;
+  std::span<const Vec3> points_;
   std::vector<double> none_;
 };
 
@@ -52,7 +53,10 @@ struct FluidFactory {
     using namespace fluid;
     const FluidParameters p = parameters();
     MotionLink link;
-    if (Moving) link = [](const Mesh& mesh) { return std::make_unique<Motion>(mesh); };
+    if (Moving)
+      link = [](const Mesh& mesh, std::span<const Vec3> points) {
+        return std::make_unique<Motion>(mesh, points);
+      };
     return make_participant(mesh_of<FluidFactory>(comm), p, FluidContext{}, link);
   }
   static Exchange input(const Interface& interface, double factor) {
@@ -84,7 +88,9 @@ struct MovingDuct : FluidFactory<Scheme::implicit, true> {
     p.boundaries["xmin"].velocity = {{"1"}, {"0"}, {"0"}};
     p.boundaries["zmin"].type = p.boundaries["zmax"].type = BoundaryType::slip;
     p.initial_velocity = p.boundaries["xmin"].velocity;
-    const MotionLink link = [](const Mesh& mesh) { return std::make_unique<Motion>(mesh); };
+    const MotionLink link = [](const Mesh& mesh, std::span<const Vec3> points) {
+      return std::make_unique<Motion>(mesh, points);
+    };
     return make_participant(mesh_of<MovingDuct>(comm), p, FluidContext{}, link);
   }
 };
@@ -205,8 +211,8 @@ TEST(ClosedFluid, that_is_pumped_up_is_refused_with_the_flow) {
   p.boundaries["xmin"].type = BoundaryType::inlet;
   p.boundaries["xmin"].velocity = {{"1"}, {"0"}};
   using Factory = FluidFactory<Scheme::semi_implicit, false>;
-  const Mesh& mesh = mesh_of<Factory>(MPI_COMM_WORLD);
-  Fluid<2> fluid(mesh, p, false);
+  const auto& [mesh, geometry] = mesh_of<Factory>(MPI_COMM_WORLD);
+  Fluid<2> fluid(mesh, geometry, p, false);
   fluid.begin_step(0, 0.01);
   const Vectors<2> rest(mesh.boundary.n_owned(), Vec<2>::Zero());
   EXPECT_THROW(fluid.solve({}, rest), Error);

@@ -52,9 +52,10 @@ finite::FiniteBlock<D>& place(std::vector<finite::FiniteBlock<D>>& blocks, std::
 template <int D>
 void add_face(const Mesh& mesh, const ElasticOperator& rows, Index f, std::size_t k, bool is_filling,
               finite::FiniteBlock<D>& block) {
+  const Geometry& geometry = rows.geometry();
   const SymmetricFace<D> face = symmetric_face<D>(mesh, rows, f);
   set_geometry<D>(mesh, face, f, k, is_filling, block);
-  const auto [here, there] = pyramids(mesh, f);
+  const auto [here, there] = pyramids(mesh, geometry, f);
   block.inverse[k] = is_filling ? 0 : face.inverse;
   block.volume[k] = is_filling ? 0 : face.volume;
   block.weight[k] = is_filling ? 0 : face.volume * face.inverse;
@@ -69,6 +70,7 @@ template <int D>
 FiniteKernelOf<D>::FiniteKernelOf(const Mesh& mesh, const ElasticOperator& rows,
                                   std::vector<const FiniteLaw*> laws)
     : mesh_(mesh), rows_(rows), space_(mesh, rows), laws_(std::move(laws)) {
+  const Geometry& geometry = rows.geometry();
   std::vector<Index> edge_index;
   make_edges(edge_index);
   for (std::size_t m = 0; m < laws_.size(); ++m) {
@@ -77,7 +79,7 @@ FiniteKernelOf<D>::FiniteKernelOf(const Mesh& mesh, const ElasticOperator& rows,
   }
   if (!rows.volume_by_cells()) return;
   of_cells_.assign(space_.n_nodes(), 0);
-  volume_ = pyramid_volumes(mesh);
+  volume_ = pyramid_volumes(mesh, geometry);
   modulus_.assign(volume_.size(), 0);
   bulk_pressure_ = modulus_;
   make_elsewhere();

@@ -21,7 +21,9 @@ class FiniteKernelOf final : public FiniteKernel {
 
   void set_start(std::span<const double> unknowns, std::span<const double> known) override;
   void forget_start() override { has_start_ = false; }
-  void set_pressure(std::span<const double> of_faces) override { pressure_.set(mesh_, of_faces); }
+  void set_pressure(std::span<const double> of_faces) override {
+    pressure_.set(mesh_, rows_.geometry(), of_faces);
+  }
   bool has_pressure() const override { return !pressure_.empty(); }
   Vec3 pressure_force() const override { return pressure_force_; }
   void set_density(std::span<const double> of_cells) override {

@@ -11,11 +11,12 @@ namespace {
 template <int D>
 void add_face(const Mesh& mesh, const ElasticOperator& rows, const FiniteKernel::FaceTangent& tangent,
               NodeAssembly& to) {
+  const Geometry& geometry = rows.geometry();
   const Index f = tangent.face;
   const SymmetricFace<D> face = symmetric_face<D>(mesh, rows, f);
   const std::vector<FaceStencil::Term>& terms = to.stencil().of<D>(face, f);
   if (rows.volume_by_cells()) {
-    const auto [here, there] = pyramids(mesh, f);
+    const auto [here, there] = pyramids(mesh, geometry, f);
     for (const FaceStencil::Term& t : terms) {
       const Vec3 g = t.turn.transpose() * (tangent.cofactors * t.b);
       to.add_volume_term(mesh.owner[f], t.node, here * g);

@@ -29,21 +29,21 @@ std::array<int, 3> corners_of(int piece, std::size_t corners) {
 }  // namespace
 
 template <int D>
-void FollowerPressure<D>::set(const Mesh& mesh, std::span<const double> pressure) {
+void FollowerPressure<D>::set(const Mesh& mesh, const Geometry& geometry, std::span<const double> pressure) {
   faces_.clear();
   for (std::size_t i = 0; i < pressure.size(); ++i) {
     if (pressure[i] == 0) continue;
     const Index f = mesh.n_interior + Index(i);
     Loaded loaded{f, pressure[i], 1, {}};
-    loaded.place[0] = mesh.reference.face_centre[f];
+    loaded.place[0] = geometry.face_centre[f];
     const auto points = mesh.face_points[f];
-    for (std::size_t k = 0; k < points.size(); ++k) loaded.place[k + 1] = mesh.reference_points[points[k]];
+    for (std::size_t k = 0; k < points.size(); ++k) loaded.place[k + 1] = geometry.points[points[k]];
     Vec3 sum = Vec3::Zero();
     for (int t = 0; t < pieces<D>(points.size()); ++t) {
       const auto c = corners_of<D>(t, points.size());
       sum += area<D>(loaded.place[c[0]], loaded.place[c[1]], loaded.place[c[2]]);
     }
-    if (sum.dot(mesh.reference.face_area[f]) < 0) loaded.orientation = -1;
+    if (sum.dot(geometry.face_area[f]) < 0) loaded.orientation = -1;
     faces_.push_back(loaded);
   }
 }
@@ -58,11 +58,12 @@ void FollowerPressure<D>::gather(const SymmetricSpace<D>& space, const Loaded& l
     return v;
   };
   const Mesh& mesh = space.mesh();
+  const Geometry& geometry = space.rows().geometry();
   to[0] = read(space.nodes() + std::size_t(space.node_of_face(loaded.face)) * stride,
-               mesh.reference.face_centre[loaded.face]);
+               geometry.face_centre[loaded.face]);
   const auto points = mesh.face_points[loaded.face];
   for (std::size_t k = 0; k < points.size(); ++k)
-    to[k + 1] = read(space.points() + std::size_t(points[k]) * stride, mesh.reference_points[points[k]]);
+    to[k + 1] = read(space.points() + std::size_t(points[k]) * stride, geometry.points[points[k]]);
 }
 
 template <int D>

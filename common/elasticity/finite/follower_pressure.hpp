@@ -16,7 +16,7 @@ template <int D>
 class FollowerPressure {
  public:
   /// `pressure` [Pa]: one a boundary face of owned cells; takes those that are not zero.
-  void set(const Mesh& mesh, std::span<const double> pressure);
+  void set(const Mesh& mesh, const Geometry& geometry, std::span<const double> pressure);
   bool empty() const { return faces_.empty(); }
   /// Adds -`sign` times the forces [N] at the present displacements, and keeps the places. Gives their sum, this
   /// rank's.

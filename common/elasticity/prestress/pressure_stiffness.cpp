@@ -25,7 +25,8 @@ void add_triangle(const Places& at, const std::array<Vec3, 3>& x, double p, std:
 
 }  // namespace
 
-std::vector<PlaceBlock> pressure_stiffness(const Mesh& mesh, std::span<const double> pressure) {
+std::vector<PlaceBlock> pressure_stiffness(const Mesh& mesh, const Geometry& geometry,
+                                           std::span<const double> pressure) {
   std::vector<PlaceBlock> blocks;
   const Index n_nodes = mesh.cells.n_local() + mesh.boundary.n_local();
   for (Index b = 0; b < Index(pressure.size()); ++b) {
@@ -33,8 +34,8 @@ std::vector<PlaceBlock> pressure_stiffness(const Mesh& mesh, std::span<const dou
     if (p == 0) continue;
     const Index f = mesh.n_interior + b;
     const auto points = mesh.face_points[f];
-    const Vec3 centre = mesh.reference.face_centre[f], normal = mesh.reference.face_area[f];
-    const auto place = [&](std::size_t k) { return mesh.reference_points[points[k % points.size()]]; };
+    const Vec3 centre = geometry.face_centre[f], normal = geometry.face_area[f];
+    const auto place = [&](std::size_t k) { return geometry.points[points[k % points.size()]]; };
     const Index node = mesh.cells.n_local() + b;
     if (mesh.dim == 3) {
       const bool turns = (place(0) - centre).cross(place(1) - centre).dot(normal) > 0;

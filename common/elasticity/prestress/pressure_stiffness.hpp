@@ -19,6 +19,7 @@ struct PlaceBlock {
 ///   K_rs = p / 6 [e_s]x,   e_s the side opposite to corner s;   in the plane K_rs = p / 2 da/du_s.
 /// The symmetric part: all of it where the loaded surface is closed or its rim is held. `pressure` [Pa]: one a boundary
 /// face of owned cells.
-std::vector<PlaceBlock> pressure_stiffness(const Mesh& mesh, std::span<const double> pressure);
+std::vector<PlaceBlock> pressure_stiffness(const Mesh& mesh, const Geometry& geometry,
+                                           std::span<const double> pressure);
 
 }  // namespace couplet

@@ -35,13 +35,15 @@ void sum_over_ranks(MPI_Comm comm, std::span<double> values) {
 CurrentRigidModes::CurrentRigidModes(const Mesh& mesh, const ElasticOperator& rows, int n_aggregates,
                                      std::vector<double> node_inertia)
     : mesh_(mesh),
+      geometry_(rows.geometry()),
       rows_(rows),
       modes_(mesh.dim == 2 ? 3 : 6),
       inertia_(std::move(node_inertia)),
       number_(number_nodes(mesh, rows.unknown_faces())) {
+  const Geometry& geometry = rows.geometry();
   const double share = double(mesh.cells.n_owned()) / double(mesh.cells.n_global());
   const int n_here = std::max(1, int(share * n_aggregates + 0.5));
-  const std::span<const Vec3> places(mesh.reference.cell_centre.data(), std::size_t(mesh.cells.n_owned()));
+  const std::span<const Vec3> places(geometry.cell_centre.data(), std::size_t(mesh.cells.n_owned()));
   const std::vector<Index> local = bisect(places, n_here);
   const std::vector<int> all = all_gather(mesh.comm, std::vector<int>{n_here});
   int before = 0, total = 0;
@@ -63,8 +65,8 @@ Index CurrentRigidModes::aggregate_of(Index node) const {
 
 Vec3 CurrentRigidModes::place(Index node, const DeformedBody& body) const {
   const Vec3& x = node < mesh_.cells.n_local()
-                      ? mesh_.reference.cell_centre[node]
-                      : mesh_.reference.face_centre[node - mesh_.cells.n_local() + mesh_.n_interior];
+                      ? geometry_.cell_centre[node]
+                      : geometry_.face_centre[node - mesh_.cells.n_local() + mesh_.n_interior];
   return x + body.displacement[node];
 }
 
@@ -79,8 +81,8 @@ void CurrentRigidModes::find_arms(const DeformedBody& body) {
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
     double* at = sums.data() + std::size_t(aggregate_[c]) * 4;
     const Vec3 x = place(c, body);
-    for (int a = 0; a < 3; ++a) at[a] += mesh_.reference.volume[c] * x[a];
-    at[3] += mesh_.reference.volume[c];
+    for (int a = 0; a < 3; ++a) at[a] += geometry_.volume[c] * x[a];
+    at[3] += geometry_.volume[c];
   }
   sum_over_ranks(mesh_.comm, sums);
   for (std::size_t a = 0; a < centre_.size(); ++a)
@@ -149,7 +151,7 @@ void CurrentRigidModes::add_springs(const DeformedBody& body, std::vector<double
     const ElasticSupport& s = rows_.support(f);
     if (s.spring.isZero(0)) continue;
     const Tensor3 open = Tensor3::Identity() - s.known;
-    const Tensor3 spring = mesh_.reference.face_area[f].norm() * open * s.spring * open;
+    const Tensor3 spring = geometry_.face_area[f].norm() * open * s.spring * open;
     std::map<Index, Eigen::Matrix<double, 3, 6>> motion;  // of the face by the modes of each aggregate
     for (const FaceStencil::Term& t : stencil.of_mean<D>(f)) {
       const Index a = aggregate_of(t.node);

@@ -48,6 +48,7 @@ class CurrentRigidModes {
   void find_arms(const DeformedBody& body);
 
   const Mesh& mesh_;
+  const Geometry& geometry_;
   const ElasticOperator& rows_;
   int modes_;
   std::vector<double> inertia_;

@@ -24,7 +24,11 @@ constexpr double of_cells = 0.8, of_faces = 0.85;
 class CompactRows {
  public:
   CompactRows(const Mesh& mesh, const ElasticOperator& rows, double boundary_factor, VolumeStrain left_out)
-      : mesh_(mesh), rows_(rows), boundary_factor_(boundary_factor), left_out_(left_out) {}
+      : mesh_(mesh),
+        geometry_(rows.geometry()),
+        rows_(rows),
+        boundary_factor_(boundary_factor),
+        left_out_(left_out) {}
 
   ComponentMultigrid::Rows make(std::span<const double> inertia);
 
@@ -40,6 +44,7 @@ class CompactRows {
   void visit_couplings(const Take& take) const;
 
   const Mesh& mesh_;
+  const Geometry& geometry_;
   const ElasticOperator& rows_;
   double boundary_factor_;
   VolumeStrain left_out_;
@@ -47,7 +52,7 @@ class CompactRows {
 
 Lanes CompactRows::coefficient(Index f) const {
   const LameConstants lame = part_of_faces(face_lame(mesh_, rows_, f), left_out_);
-  const FaceLine line = face_line(mesh_, mesh_.reference, f);
+  const FaceLine line = face_line(mesh_, geometry_, f);
   const double scale = line.area * line.inverse_dn;
   Lanes k{};
   for (int c = 0; c < mesh_.dim; ++c) {
@@ -67,7 +72,7 @@ Lanes CompactRows::bond(Index f) const {
 
 Lanes CompactRows::boundary_diagonal(Index f) const {
   Lanes k = coefficient(f);
-  const FaceLine line = face_line(mesh_, mesh_.reference, f);
+  const FaceLine line = face_line(mesh_, geometry_, f);
   for (int c = 0; c < mesh_.dim; ++c) {
     const double nc = line.normal[c], whole = boundary_factor_ * k[c];
     double value = 0;
@@ -161,6 +166,7 @@ double stiffness_across(const LameConstants& lame, const FaceLine& line) {
 ElasticPreconditioner::ElasticPreconditioner(const Mesh& mesh, const ElasticOperator& rows,
                                              std::span<const double> inertia, const Options& options)
     : mesh_(&mesh),
+      geometry_(&rows.geometry()),
       rows_(&rows),
       inertia_(inertia.begin(), inertia.end()),
       between_(options.between),
@@ -185,16 +191,17 @@ ElasticPreconditioner::ElasticPreconditioner(const Mesh& mesh, const ElasticOper
 
 void ElasticPreconditioner::find_face_rows(double boundary_factor, std::span<const double> node_inertia) {
   const Mesh& mesh = *mesh_;
+  const Geometry& geometry = *geometry_;
   const auto stiffness = [&](Index f) {
     const LameConstants lame = part_of_faces(rows_->lame(mesh.owner[f]), left_out_);
-    const FaceLine line = face_line(mesh, mesh.reference, f);
+    const FaceLine line = face_line(mesh, geometry, f);
     const Vec3& n = line.normal;
     const double scale = boundary_factor * line.area * line.inverse_dn;
     return Tensor3(scale * (lame.mu * Tensor3::Identity() + (lame.mu + lame.lambda) * n * n.transpose()));
   };
   for (const Index f : rows_->unknown_faces()) {
     const LameConstants lame = rows_->lame(mesh.owner[f]);
-    const FaceLine line = face_line(mesh, mesh.reference, f);
+    const FaceLine line = face_line(mesh, geometry, f);
     const double whole = stiffness_across(lame, line);
     Tensor3 own = stiffness(f), cell = own;
     FaceRow row{Tensor3::Zero(), Tensor3::Zero(), Tensor3::Zero(), mesh.owner[f], -1};
@@ -241,6 +248,7 @@ void ElasticPreconditioner::find_face_rows(double boundary_factor, std::span<con
 /// as much at cells and faces that many vertices lean on.
 void ElasticPreconditioner::add_true_diagonal(std::span<const double> node_inertia) {
   const Mesh& mesh = *mesh_;
+  const Geometry& geometry = *geometry_;
   const SymmetricDiagonal diagonal = symmetric_diagonal(mesh, *rows_, left_out_);
   const std::size_t dim = mesh.dim, n_cells = std::size_t(mesh.cells.n_owned());
   gathered_.resize(n_cells * dim);
@@ -251,7 +259,7 @@ void ElasticPreconditioner::add_true_diagonal(std::span<const double> node_inert
     const Index f = rows_->unknown_faces()[i];
     Tensor3 own = diagonal.faces[i] + inertia(n_cells + i) * Tensor3::Identity();
     if (rows_->condition(f) == ElasticCondition::support) {
-      const FaceLine line = face_line(mesh, mesh.reference, f);
+      const FaceLine line = face_line(mesh, geometry, f);
       own = supported(own, rows_->support(f), line.area, stiffness_across(rows_->lame(mesh.owner[f]), line));
     }
     face_rows_[i].inverse = of_faces * own.inverse();

@@ -54,6 +54,7 @@ class ElasticPreconditioner {
   void smooth_symmetric(std::span<const double> r, std::span<double> z);
 
   const Mesh* mesh_;
+  const Geometry* geometry_;
   const ElasticOperator* rows_;
   std::vector<double> inertia_;
   const ElasticKernel* between_;

@@ -73,6 +73,7 @@ struct RigidCoarseSpace::Assembly {
   };
   const RigidCoarseSpace& space;
   const Mesh& mesh;
+  const Geometry& geometry;
   const ElasticOperator& rows;
   std::vector<std::int64_t> offset{0};
   std::vector<Share> shares;                                 // of each vertex
@@ -80,7 +81,7 @@ struct RigidCoarseSpace::Assembly {
   Index first_row;
 
   Assembly(const RigidCoarseSpace& s, const Mesh& m, const ElasticOperator& r, Index first, int n_here)
-      : space(s), mesh(m), rows(r), blocks(n_here), first_row(first) {
+      : space(s), mesh(m), geometry(r.geometry()), rows(r), blocks(n_here), first_row(first) {
     for (Index v = 0; v < mesh.points.n_local(); ++v) {
       add_vertex(v);
       offset.push_back(std::ssize(shares));
@@ -96,7 +97,7 @@ struct RigidCoarseSpace::Assembly {
       const bool is_cell = nodes[i] < mesh.cells.n_local();
       const Index face = nodes[i] - mesh.cells.n_local() + mesh.n_interior;
       const Index a = space.aggregate_[is_cell ? nodes[i] : mesh.owner[face]];
-      const Vec3& x = is_cell ? mesh.reference.cell_centre[nodes[i]] : mesh.reference.face_centre[face];
+      const Vec3& x = is_cell ? geometry.cell_centre[nodes[i]] : geometry.face_centre[face];
       std::size_t s = first;
       while (s < shares.size() && shares[s].aggregate != a) ++s;
       if (s == shares.size()) shares.push_back({a, 0, Vec3::Zero()});
@@ -121,9 +122,9 @@ struct RigidCoarseSpace::Assembly {
   void add_face(Index f) {
     const bool on_boundary = f >= mesh.n_interior;
     const ElasticCondition condition = on_boundary ? rows.condition(f) : ElasticCondition::bonded;
-    const FaceLine line = face_line(mesh, mesh.reference, f);
+    const FaceLine line = face_line(mesh, geometry, f);
     std::array<Vec3, 4> weights;
-    tangential_weights(mesh, mesh.reference_points, f, line, weights.data());
+    tangential_weights(mesh, geometry.points, f, line, weights.data());
     const auto [mu, lambda] = face_lame(mesh, rows, f);
     const Vec3& n = line.normal;
     const Tensor3 nn = n * n.transpose(), identity = Tensor3::Identity();
@@ -168,7 +169,7 @@ struct RigidCoarseSpace::Assembly {
 
   // Bonded: the mean of both sides, for want of the true balance.
   void add_face_node(Index f, ElasticCondition condition, const Tensor3& across) {
-    const Vec3& x = mesh.reference.face_centre[f];
+    const Vec3& x = geometry.face_centre[f];
     const auto follow = [&](Index cell, const Tensor3& block, double share) {
       const Index a = space.aggregate_[cell];
       add(a, block, share, share * (x - space.centre_[a]));
@@ -180,7 +181,7 @@ struct RigidCoarseSpace::Assembly {
     if (condition != ElasticCondition::support) return follow(mesh.owner[f], across, 1);
     const ElasticSupport& s = rows.support(f);
     const Tensor3 open = Tensor3::Identity() - s.known;
-    follow(mesh.owner[f], (across - mesh.reference.face_area[f].norm() * open * s.spring) * open, 1);
+    follow(mesh.owner[f], (across - geometry.face_area[f].norm() * open * s.spring) * open, 1);
   }
 
   // block u with u = weight t + spin x arm.
@@ -208,11 +209,12 @@ struct RigidCoarseSpace::Assembly {
 
 RigidCoarseSpace::RigidCoarseSpace(const Mesh& mesh, const ElasticOperator& rows,
                                    std::span<const double> inertia, int n_aggregates)
-    : mesh_(&mesh), rows_(&rows), modes_(mesh.dim == 2 ? 3 : 6) {
+    : mesh_(&mesh), geometry_(&rows.geometry()), rows_(&rows), modes_(mesh.dim == 2 ? 3 : 6) {
+  const Geometry& geometry = rows.geometry();
   const Index n_owned = mesh.cells.n_owned();
   const double share = double(n_aggregates) * n_owned / static_cast<double>(mesh.cells.n_global());
   const int n_here = n_owned == 0 ? 0 : std::clamp<int>(static_cast<int>(std::lround(share)), 1, n_owned);
-  number_aggregates(bisect({mesh.reference.cell_centre.data(), std::size_t(n_owned)}, n_here), n_here);
+  number_aggregates(bisect({geometry.cell_centre.data(), std::size_t(n_owned)}, n_here), n_here);
   const auto first = static_cast<Index>(exclusive_scan(mesh.comm, n_here));
 
   Assembly assembly(*this, mesh, rows, first, n_here);
@@ -254,7 +256,7 @@ void RigidCoarseSpace::number_aggregates(std::span<const Index> local, int n_her
   std::vector<double> count(n_here, 0);
   std::vector<GlobalIndex> global(mesh_->cells.n_local(), 0);
   for (Index c = 0; c < mesh_->cells.n_owned(); ++c) {
-    sum[local[c]] += mesh_->reference.cell_centre[c];
+    sum[local[c]] += geometry_->cell_centre[c];
     count[local[c]] += 1;
     global[c] = first + local[c];
   }
@@ -297,7 +299,7 @@ void RigidCoarseSpace::add_correction(std::span<const double> r, std::span<doubl
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const Index a = aggregate_[mesh_->owner[faces[i]]];
     Vec3 u = Vec3::Zero();
-    move(a, mesh_->reference.face_centre[faces[i]] - centre_[a], u.data());
+    move(a, geometry_->face_centre[faces[i]] - centre_[a], u.data());
     if (rows_->condition(faces[i]) == ElasticCondition::support)
       u -= (rows_->support(faces[i]).known * u).eval();
     for (int c = 0; c < dim; ++c) z[(std::size_t(mesh_->cells.n_owned()) + i) * dim + c] += u[c];

@@ -36,9 +36,10 @@ class RigidCoarseSpace {
  private:
   struct Assembly;
   void number_aggregates(std::span<const Index> local, int n_here);
-  Vec3 arm(Index cell) const { return mesh_->reference.cell_centre[cell] - centre_[aggregate_[cell]]; }
+  Vec3 arm(Index cell) const { return geometry_->cell_centre[cell] - centre_[aggregate_[cell]]; }
 
   const Mesh* mesh_;
+  const Geometry* geometry_;
   const ElasticOperator* rows_;
   int modes_;
   std::vector<Index> aggregate_;  // of each local cell, over all ranks

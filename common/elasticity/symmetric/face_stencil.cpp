@@ -48,7 +48,7 @@ const std::vector<FaceStencil::Term>& FaceStencil::of(const SymmetricFace<D>& fa
   if (f < mesh_.n_interior) {
     take(mesh_.neighbour[f], s, identity);
   } else if (rows_.condition(f) == ElasticCondition::symmetry) {
-    const Vec3 n = mesh_.reference.face_area[f].normalized();
+    const Vec3 n = geometry_.face_area[f].normalized();
     take(mesh_.owner[f], s, identity - 2 * n * n.transpose());
   } else {
     take_boundary(f, s);
@@ -64,7 +64,7 @@ template <int D>
 const std::vector<FaceStencil::Term>& FaceStencil::of_mean(Index f) {
   terms_.clear();
   take_boundary(f, Vec3(1.0 / D, 0, 0));
-  const auto shares = point_shares(mesh_, f);
+  const auto shares = point_shares(mesh_, geometry_, f);
   const auto points = mesh_.face_points[f];
   for (std::size_t i = 0; i < points.size(); ++i)
     take_point(points[i], Vec3((1 - 1.0 / D) * shares[i], 0, 0));

@@ -20,7 +20,7 @@ class FaceStencil {
 
   /// `number`: of each local node as unknown, negative: known. All by reference.
   FaceStencil(const Mesh& mesh, const ElasticOperator& rows, const std::vector<GlobalIndex>& number)
-      : mesh_(mesh), rows_(rows), number_(number) {}
+      : mesh_(mesh), geometry_(rows.geometry()), rows_(rows), number_(number) {}
 
   /// Of a flux face; valid until the next call.
   template <int D>
@@ -36,6 +36,7 @@ class FaceStencil {
   void take_point(Index v, const Vec3& b);
 
   const Mesh& mesh_;
+  const Geometry& geometry_;
   const ElasticOperator& rows_;
   const std::vector<GlobalIndex>& number_;
   std::vector<Term> terms_;

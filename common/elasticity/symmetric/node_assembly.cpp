@@ -10,6 +10,7 @@ namespace couplet {
 
 NodeAssembly::NodeAssembly(const Mesh& mesh, const ElasticOperator& rows)
     : mesh_(mesh),
+      geometry_(rows.geometry()),
       rows_(rows),
       number_(number_nodes(mesh, rows.unknown_faces())),
       stencil_(mesh, rows, number_) {}
@@ -24,7 +25,7 @@ void NodeAssembly::add_supports() {
     if (rows_.condition(f) != ElasticCondition::support) continue;
     const ElasticSupport& s = rows_.support(f);
     const LameConstants lame = rows_.lame(mesh_.owner[f]);
-    const FaceLine line = face_line(mesh_, mesh_.reference, f);
+    const FaceLine line = face_line(mesh_, geometry_, f);
     const Tensor3 open = Tensor3::Identity() - s.known;
     add_block(node_of(f), node_of(f),
               (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn * s.known +

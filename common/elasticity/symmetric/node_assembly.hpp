@@ -38,6 +38,7 @@ class NodeAssembly {
   void add_diagonal(Index node, double value) { add_block(node, node, value * Tensor3::Identity()); }
 
   const Mesh& mesh_;
+  const Geometry& geometry_;
   const ElasticOperator& rows_;
   std::vector<GlobalIndex> number_;
   FaceStencil stencil_;

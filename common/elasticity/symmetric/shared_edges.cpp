@@ -22,9 +22,9 @@ struct SharedEdges::Key {
 namespace {
 
 /// What a point is told by in the edges' names: on periodic patches by the point that all copies are.
-std::vector<GlobalIndex> names_of_points(const Mesh& mesh) {
+std::vector<GlobalIndex> names_of_points(const Mesh& mesh, const Geometry& geometry) {
   std::vector<GlobalIndex> names = mesh.point_id;
-  const PeriodicPoints periodic(mesh);
+  const PeriodicPoints periodic(mesh, geometry);
   for (std::size_t i = 0; i < periodic.points().size(); ++i)
     names[periodic.points()[i]] = -1 - GlobalIndex(periodic.group(i));
   return names;
@@ -34,7 +34,9 @@ std::vector<GlobalIndex> names_of_points(const Mesh& mesh) {
 
 SharedEdges::SharedEdges(const Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
                          std::span<const double> volume)
-    : edges_of_(faces.size()), parallel_(comm_size(mesh.comm) > 1), names_(names_of_points(mesh)) {
+    : edges_of_(faces.size()),
+      parallel_(comm_size(mesh.comm) > 1),
+      names_(names_of_points(mesh, rows.geometry())) {
   number(mesh, faces);
   const std::size_t n = end_points_.size();
   value_.assign(n * stride, 0);
@@ -144,6 +146,7 @@ void SharedEdges::number(const Mesh& mesh, std::span<const Index> faces) {
 }
 
 void SharedEdges::find_mirrors(const Mesh& mesh, const ElasticOperator& rows) {
+  const Geometry& geometry = rows.geometry();
   // Symmetry faces of ghosts count: an edge of the plane may have its faces here elsewhere.
   std::map<std::array<GlobalIndex, 2>, std::vector<Index>> by_ends;
   for (std::size_t e = 0; e < end_points_.size(); ++e)
@@ -151,7 +154,7 @@ void SharedEdges::find_mirrors(const Mesh& mesh, const ElasticOperator& rows) {
   std::map<Index, std::vector<Vec3>> normals;
   for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f) {
     if (rows.condition(f) != ElasticCondition::symmetry) continue;
-    const Vec3 n = mesh.reference.face_area[f].normalized();
+    const Vec3 n = geometry.face_area[f].normalized();
     const auto p = mesh.face_points[f];
     for (std::size_t i = 0; i < p.size(); ++i) {
       const GlobalIndex a = names_[p[i]], b = names_[p[(i + 1) % p.size()]];

@@ -8,21 +8,21 @@ namespace couplet {
 namespace {
 
 /// From the owner to the node across; the mirror image of the owner at a symmetry plane.
-Vec3 line_across(const Mesh& mesh, Index f, bool mirrored) {
-  const Geometry& g = mesh.reference;
-  const Vec3& here = g.cell_centre[mesh.owner[f]];
-  if (f < mesh.n_interior) return g.cell_centre[mesh.neighbour[f]] + mesh.shift(f) - here;
-  if (!mirrored) return g.face_centre[f] - here;
-  const Vec3 n = g.face_area[f].normalized();
-  return 2 * n.dot(g.face_centre[f] - here) * n;
+Vec3 line_across(const Mesh& mesh, const Geometry& geometry, Index f, bool mirrored) {
+  const Vec3& here = geometry.cell_centre[mesh.owner[f]];
+  if (f < mesh.n_interior) return geometry.cell_centre[mesh.neighbour[f]] + mesh.shift(f) - here;
+  if (!mirrored) return geometry.face_centre[f] - here;
+  const Vec3 n = geometry.face_area[f].normalized();
+  return 2 * n.dot(geometry.face_centre[f] - here) * n;
 }
 
 }  // namespace
 
 template <int D>
 SymmetricFace<D> symmetric_face(const Mesh& mesh, const ElasticOperator& rows, Index f) {
+  const Geometry& geometry = rows.geometry();
   const bool mirrored = f >= mesh.n_interior && rows.condition(f) == ElasticCondition::symmetry;
-  const Vec3 d = line_across(mesh, f, mirrored);
+  const Vec3 d = line_across(mesh, geometry, f, mirrored);
   const auto point = mesh.face_points[f];
   const bool diagonals = point.size() == 4;
   SymmetricFace<D> face;
@@ -30,7 +30,7 @@ SymmetricFace<D> symmetric_face(const Mesh& mesh, const ElasticOperator& rows, I
   for (int i = 0; i < D - 1; ++i) {
     face.plus[i] = point[diagonals ? i : i + 1];
     face.minus[i] = point[diagonals ? i + 2 : 0];
-    side[i] = mesh.reference_points[face.plus[i]] - mesh.reference_points[face.minus[i]];
+    side[i] = geometry.points[face.plus[i]] - geometry.points[face.minus[i]];
   }
   Vec3 area, c[2];
   if constexpr (D == 3) {
@@ -39,7 +39,7 @@ SymmetricFace<D> symmetric_face(const Mesh& mesh, const ElasticOperator& rows, I
     c[1] = 0.5 * d.cross(side[0]);
   } else {
     const Vec3& e = side[0];
-    const double turn = mesh.reference.face_area[f].dot(Vec3(e[1], -e[0], 0)) > 0 ? 1 : -1;
+    const double turn = geometry.face_area[f].dot(Vec3(e[1], -e[0], 0)) > 0 ? 1 : -1;
     area = turn * Vec3(e[1], -e[0], 0);
     c[0] = turn * Vec3(-d[1], d[0], 0);
   }
@@ -56,16 +56,15 @@ SymmetricFace<D> symmetric_face(const Mesh& mesh, const ElasticOperator& rows, I
 template SymmetricFace<2> symmetric_face<2>(const Mesh&, const ElasticOperator&, Index);
 template SymmetricFace<3> symmetric_face<3>(const Mesh&, const ElasticOperator&, Index);
 
-std::array<double, 4> point_shares(const Mesh& mesh, Index f) {
+std::array<double, 4> point_shares(const Mesh& mesh, const Geometry& geometry, Index f) {
   std::array<double, 4> shares{};
   const auto point = mesh.face_points[f];
   if (mesh.dim == 2) return {0.5, 0.5};
   double whole = 0;
   for (std::size_t i = 0; i < point.size(); ++i) {
     const std::size_t j = (i + 1) % point.size();
-    const Vec3& centre = mesh.reference.face_centre[f];
-    const double area =
-        (mesh.reference_points[point[i]] - centre).cross(mesh.reference_points[point[j]] - centre).norm();
+    const Vec3& centre = geometry.face_centre[f];
+    const double area = (geometry.points[point[i]] - centre).cross(geometry.points[point[j]] - centre).norm();
     whole += area;
     shares[i] += 0.5 * area;
     shares[j] += 0.5 * area;
@@ -74,13 +73,12 @@ std::array<double, 4> point_shares(const Mesh& mesh, Index f) {
   return shares;
 }
 
-std::array<double, 2> pyramids(const Mesh& mesh, Index f) {
-  const Geometry& g = mesh.reference;
-  const Vec3& s = g.face_area[f];
-  const double here = s.dot(g.face_centre[f] - g.cell_centre[mesh.owner[f]]) / mesh.dim;
+std::array<double, 2> pyramids(const Mesh& mesh, const Geometry& geometry, Index f) {
+  const Vec3& s = geometry.face_area[f];
+  const double here = s.dot(geometry.face_centre[f] - geometry.cell_centre[mesh.owner[f]]) / mesh.dim;
   if (f >= mesh.n_interior) return {here, 0};
-  const Vec3 there = g.cell_centre[mesh.neighbour[f]] + mesh.shift(f);
-  return {here, s.dot(there - g.face_centre[f]) / mesh.dim};
+  const Vec3 there = geometry.cell_centre[mesh.neighbour[f]] + mesh.shift(f);
+  return {here, s.dot(there - geometry.face_centre[f]) / mesh.dim};
 }
 
 }  // namespace couplet

@@ -33,10 +33,10 @@ SymmetricFace<D> symmetric_face(const Mesh& mesh, const ElasticOperator& rows, I
 
 /// Shares with which the points around a face, in their order, take what acts on it evenly: they add up to 1
 /// and their mean place is the face centre. By the triangles between the centre and the edges.
-std::array<double, 4> point_shares(const Mesh& mesh, Index f);
+std::array<double, 4> point_shares(const Mesh& mesh, const Geometry& geometry, Index f);
 
 /// V_fP of the two sides [m^3]: pyramids from the cell's centre over the face; the second is 0 on the
 /// boundary.
-std::array<double, 2> pyramids(const Mesh& mesh, Index f);
+std::array<double, 2> pyramids(const Mesh& mesh, const Geometry& geometry, Index f);
 
 }  // namespace couplet

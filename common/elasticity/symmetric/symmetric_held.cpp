@@ -13,15 +13,14 @@ Vec3 SymmetricSpace<D>::place_of(const double* force, bool moved) const {
   const auto entry = [force](const std::vector<double>& all) { return Index((force - all.data()) / stride); };
   if (force < force_.data() || force >= force_.data() + force_.size()) {
     const Index v = entry(point_force_);
-    const Vec3& at = mesh_.reference_points[v];
+    const Vec3& at = geometry_.points[v];
     return moved ? Vec3(at + vector(points_.data() + std::size_t(v) * stride)) : at;
   }
   const Index node = entry(force_), f = mesh_.n_interior + node - mesh_.cells.n_local();
   const bool is_cell = node < mesh_.cells.n_local();
-  Vec3 at = is_cell ? mesh_.reference.cell_centre[node] : mesh_.reference.face_centre[f];
+  Vec3 at = is_cell ? geometry_.cell_centre[node] : geometry_.face_centre[f];
   if (!is_cell && rows_.condition(f) == ElasticCondition::symmetry) {
-    const Vec3 n = mesh_.reference.face_area[f].normalized(),
-               &cell = mesh_.reference.cell_centre[mesh_.owner[f]];
+    const Vec3 n = geometry_.face_area[f].normalized(), &cell = geometry_.cell_centre[mesh_.owner[f]];
     at = cell - 2 * n.dot(cell - at) * n;
   }
   return moved ? Vec3(at + vector(nodes_[node])) : at;
@@ -35,7 +34,7 @@ void SymmetricSpace<D>::held_at_points(std::span<const Index> patch_of, bool mov
   std::vector<std::vector<std::pair<Index, Vec3>>> planes(mesh_.points.n_local());
   for (Index f = mesh_.n_interior; f < mesh_.n_faces(); ++f) {
     if (rows_.condition(f) != ElasticCondition::symmetry) continue;
-    const Vec3 n = mesh_.reference.face_area[f].normalized();
+    const Vec3 n = geometry_.face_area[f].normalized();
     for (const Index v : mesh_.face_points[f]) {
       const auto same = [&](const auto& plane) { return std::abs(plane.second.dot(n)) > 0.9994; };
       if (std::ranges::none_of(planes[v], same)) planes[v].emplace_back(patch_of[f - mesh_.n_interior], n);
@@ -86,8 +85,8 @@ std::vector<Wrench> SymmetricSpace<D>::held(std::span<const double> known, bool 
         patch.add(rows_.support(f).known * here, place_of(node, moved));
         break;
       case ElasticCondition::symmetry: {
-        const Vec3 n = mesh_.reference.face_area[f].normalized();
-        Vec3 cell = mesh_.reference.cell_centre[mesh_.owner[f]];
+        const Vec3 n = geometry_.face_area[f].normalized();
+        Vec3 cell = geometry_.cell_centre[mesh_.owner[f]];
         if (moved) cell += vector(nodes_[mesh_.owner[f]]);
         patch.force += 2 * n.dot(here) * n;
         patch.moment += place_of(node, moved).cross(here) - cell.cross(here - 2 * n.dot(here) * n);

@@ -10,13 +10,13 @@ namespace couplet {
 
 template <int D>
 SymmetricKernel<D>::SymmetricKernel(const Mesh& mesh, const ElasticOperator& rows)
-    : mesh_(mesh), rows_(rows), space_(mesh, rows) {
+    : mesh_(mesh), geometry_(rows.geometry()), rows_(rows), space_(mesh, rows) {
   make_faces();
   if (!rows.volume_by_cells()) return;
   volumes_ = make_volumes(mine_);
   shared_volumes_ = make_volumes(shared_mine_);
   pressure_.assign(space_.n_nodes(), 0);
-  const std::vector<double> volume = pyramid_volumes(mesh);
+  const std::vector<double> volume = pyramid_volumes(mesh, geometry_);
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
     bulk_.push_back(bulk_of_cells(rows.lame(c), rows.volume_strain()) / volume[c]);
 }
@@ -29,7 +29,7 @@ std::vector<typename SymmetricKernel<D>::VolumeBlock> SymmetricKernel<D>::make_v
     VolumeBlock& block = result[i / 4];
     block.from[i % 4] = block.to[i % 4] = 0;
     if (i >= faces.size()) continue;
-    const auto [here, there] = pyramids(mesh_, faces[i]);
+    const auto [here, there] = pyramids(mesh_, geometry_, faces[i]);
     const double inverse = symmetric_face<D>(mesh_, rows_, faces[i]).inverse;
     block.from[i % 4] = here * inverse;
     block.to[i % 4] = there * inverse;
@@ -288,7 +288,7 @@ void SymmetricKernel<D>::face_gradients(std::span<const double> unknowns, std::s
     }
     if (!pressure_.empty()) {
       // What Hooke's law then makes of it is 2 mu dev(e) + p I.
-      const auto [here, there] = pyramids(mesh_, f);
+      const auto [here, there] = pyramids(mesh_, geometry_, f);
       const LameConstants lame = face_lame(mesh_, rows_, f);
       double mean = here * pressure_[std::size_t(mesh_.owner[f])];
       if (f < mesh_.n_interior) mean += there * pressure_[std::size_t(mesh_.neighbour[f])];

@@ -78,6 +78,7 @@ class SymmetricKernel final : public ElasticKernel::Implementation {
   void spread_pressure(std::span<const double> pressure);
 
   const Mesh& mesh_;
+  const Geometry& geometry_;
   const ElasticOperator& rows_;
   SymmetricSpace<D> space_;
   std::vector<Index> mine_;          // faces that this rank computes, in the order of the blocks

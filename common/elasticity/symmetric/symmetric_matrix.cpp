@@ -29,13 +29,14 @@ void add_anisotropic(NodeAssembly& to, const std::vector<FaceStencil::Term>& ter
 // V [lambda b_i b_j^T + mu (b_i . b_j I + b_j b_i^T)] between each two nodes.
 template <int D>
 void add_face(const Mesh& mesh, const ElasticOperator& rows, Index f, NodeAssembly& to) {
+  const Geometry& geometry = rows.geometry();
   const SymmetricFace<D> face = symmetric_face<D>(mesh, rows, f);
   const Tensor3 identity = Tensor3::Identity();
   const std::vector<FaceStencil::Term>& terms = to.stencil().of<D>(face, f);
   const LameConstants whole = face_lame(mesh, rows, f);
   const auto [mu, lambda] = part_of_faces(whole, rows.volume_strain());
   if (rows.volume_by_cells()) {
-    const auto [here, there] = pyramids(mesh, f);
+    const auto [here, there] = pyramids(mesh, geometry, f);
     for (const FaceStencil::Term& t : terms) {
       to.add_volume_term(mesh.owner[f], t.node, here * (t.turn.transpose() * t.b));
       if (f < mesh.n_interior)
@@ -56,6 +57,7 @@ void add_face(const Mesh& mesh, const ElasticOperator& rows, Index f, NodeAssemb
 
 SparseMatrix symmetric_matrix(const Mesh& mesh, const ElasticOperator& rows,
                               std::span<const double> of_nodes) {
+  const Geometry& geometry = rows.geometry();
   NodeAssembly assembly(mesh, rows);
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
     if (mesh.owner[f] >= mesh.cells.n_owned() && !rows.volume_by_cells()) continue;
@@ -64,7 +66,7 @@ SparseMatrix symmetric_matrix(const Mesh& mesh, const ElasticOperator& rows,
     else
       add_face<3>(mesh, rows, f, assembly);
   }
-  const std::vector<double> volume = pyramid_volumes(mesh);
+  const std::vector<double> volume = pyramid_volumes(mesh, geometry);
   assembly.finish_volumes(
       [&](Index c) { return bulk_of_cells(rows.lame(c), rows.volume_strain()) / volume[std::size_t(c)]; });
   assembly.add_supports();

@@ -9,10 +9,10 @@
 
 namespace couplet {
 
-std::vector<double> pyramid_volumes(const Mesh& mesh) {
+std::vector<double> pyramid_volumes(const Mesh& mesh, const Geometry& geometry) {
   std::vector<double> volume(mesh.cells.n_owned(), 0);
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
-    const auto [here, there] = pyramids(mesh, f);
+    const auto [here, there] = pyramids(mesh, geometry, f);
     if (mesh.owner[f] < mesh.cells.n_owned()) volume[mesh.owner[f]] += here;
     if (f < mesh.n_interior && mesh.neighbour[f] < mesh.cells.n_owned()) volume[mesh.neighbour[f]] += there;
   }
@@ -22,16 +22,18 @@ std::vector<double> pyramid_volumes(const Mesh& mesh) {
 template <int D>
 SymmetricSpace<D>::SymmetricSpace(const Mesh& mesh, const ElasticOperator& rows)
     : mesh_(mesh),
+      geometry_(rows.geometry()),
       rows_(rows),
       nodes_(mesh, rows),
       vertices_(mesh, rows),
       points_(std::size_t(mesh.points.n_local()) * stride, 0.0),
       force_(std::size_t(mesh.cells.n_local() + mesh.boundary.n_local()) * stride, 0.0),
       point_force_(points_.size(), 0.0),
-      volume_(pyramid_volumes(mesh)) {
+      volume_(pyramid_volumes(mesh, rows.geometry())) {
+  const Geometry& geometry = rows.geometry();
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
     if (rows.condition(f) == ElasticCondition::symmetry)
-      symmetry_.emplace_back(f, mesh.reference.face_area[f].normalized());
+      symmetry_.emplace_back(f, geometry.face_area[f].normalized());
   if (!any(mesh.comm, !mesh.neighbour_shift.empty())) return;
   joined_ = std::make_unique<JoinedVertices>(mesh, rows);
   std::erase_if(vertices_.free, [&](Index v) { return joined_->has(v); });
@@ -165,7 +167,7 @@ void SymmetricSpace<D>::take_rows(std::span<const double> unknowns, std::span<co
           jump[a] =
               unknowns[row + a] - (known.empty() ? 0 : known[std::size_t(rows_.known_of_face(f)) * D + a]);
         const LameConstants lame = rows_.lame(mesh_.owner[f]);
-        const FaceLine line = face_line(mesh_, mesh_.reference, f);
+        const FaceLine line = face_line(mesh_, geometry_, f);
         own += (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn * (s.known * jump);
       }
     }
@@ -185,7 +187,7 @@ void SymmetricSpace<D>::spread_over_base(Index f, const Vec3& force_on_base) {
   const bool has_node = f >= mesh_.n_interior && rows_.condition(f) != ElasticCondition::symmetry;
   if (has_node) add(force(node_of_face(f)), force_on_base / D);
   const double part = has_node ? 1 - 1.0 / D : 1;
-  const auto shares = point_shares(mesh_, f);
+  const auto shares = point_shares(mesh_, geometry_, f);
   const auto points = mesh_.face_points[f];
   for (std::size_t i = 0; i < points.size(); ++i)
     add(point_force(points[i]), part * shares[i] * force_on_base);
@@ -213,7 +215,7 @@ void SymmetricSpace<D>::spread_cell_forces(std::span<const double> forces) {
     spread_over_base(f, (1 - 1.0 / D) * here);
   };
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    const auto [here, there] = pyramids(mesh_, f);
+    const auto [here, there] = pyramids(mesh_, geometry_, f);
     add_pyramid(f, mesh_.owner[f], here);
     if (f < mesh_.n_interior) add_pyramid(f, mesh_.neighbour[f], there);
   }
@@ -247,7 +249,7 @@ template <int D>
 void SymmetricSpace<D>::set_density(std::span<const double> of_cells) {
   std::vector<double> mass(std::size_t(mesh_.cells.n_owned()) * D, 0);
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
-    mass[std::size_t(c) * D] = of_cells[c] * mesh_.reference.volume[c];
+    mass[std::size_t(c) * D] = of_cells[c] * geometry_.volume[c];
   clear_forces();
   spread_cell_forces(mass);
   node_mass_.resize(force_.size() / stride);

@@ -100,6 +100,7 @@ class SymmetricSpace {
   }
 
   const Mesh& mesh_;
+  const Geometry& geometry_;
   const ElasticOperator& rows_;
   ElasticNodes<D> nodes_;
   ElasticVertices vertices_;
@@ -111,7 +112,7 @@ class SymmetricSpace {
 };
 
 /// Sum of the pyramids of each owned cell: warped faces fill it only nearly.
-std::vector<double> pyramid_volumes(const Mesh& mesh);
+std::vector<double> pyramid_volumes(const Mesh& mesh, const Geometry& geometry);
 
 template <int D>
 template <class Take>
@@ -122,12 +123,12 @@ void SymmetricSpace<D>::visit_spring(Index f, std::span<const double> known, con
   Vec3 g = Vec3::Zero();
   if (!known.empty()) g = vector(known.data() + std::size_t(rows_.known_of_face(f)) * D);
   const Index node = node_of_face(f);
-  const auto shares = point_shares(mesh_, f);
+  const auto shares = point_shares(mesh_, geometry_, f);
   const auto points = mesh_.face_points[f];
   Vec3 mean = vector(nodes_[node]) / D;
   for (std::size_t i = 0; i < points.size(); ++i)
     mean += (1 - 1.0 / D) * shares[i] * vector(points_.data() + std::size_t(points[i]) * stride);
-  const Vec3 pull = mesh_.reference.face_area[f].norm() * (spring * (mean - g));
+  const Vec3 pull = geometry_.face_area[f].norm() * (spring * (mean - g));
   take(force(node), pull / D);
   for (std::size_t i = 0; i < points.size(); ++i)
     take(point_force(points[i]), (1 - 1.0 / D) * shares[i] * pull);

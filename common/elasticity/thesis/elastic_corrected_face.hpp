@@ -31,17 +31,17 @@ inline bool alike(const Mesh& mesh, Index f) {
 
 // Far off the cells' line the correction outweighs the difference that it corrects, and the operator loses
 // its positive eigenvalues (on tetrahedra of an isosurface). Lines of cells that stretch stay below one half.
-inline bool near_line(const Mesh& mesh, Index f) {
+inline bool near_line(const Mesh& mesh, const Geometry& geometry, Index f) {
   constexpr double farthest = 0.5;
-  const Geometry& g = mesh.reference;
-  const Vec3 &from = g.cell_centre[mesh.owner[f]], &to = g.cell_centre[mesh.neighbour[f]];
-  const double across = (to - from).dot(g.face_area[f].normalized());
-  return (g.face_centre[f] - 0.5 * (from + to)).norm() <= farthest * across;
+  const Vec3 &from = geometry.cell_centre[mesh.owner[f]], &to = geometry.cell_centre[mesh.neighbour[f]];
+  const double across = (to - from).dot(geometry.face_area[f].normalized());
+  return (geometry.face_centre[f] - 0.5 * (from + to)).norm() <= farthest * across;
 }
 
-inline CorrectedFace make_face(const Mesh& mesh, Index f) {
-  const FaceLine line = face_line(mesh, mesh.reference, f);
-  return {line.inverse_dn, 1 / line.area, 0, f < mesh.n_interior && alike(mesh, f) && near_line(mesh, f)};
+inline CorrectedFace make_face(const Mesh& mesh, const Geometry& geometry, Index f) {
+  const FaceLine line = face_line(mesh, geometry, f);
+  return {line.inverse_dn, 1 / line.area, 0,
+          f < mesh.n_interior && alike(mesh, f) && near_line(mesh, geometry, f)};
 }
 
 /// Rows i of a gradient: d u / d x_i.

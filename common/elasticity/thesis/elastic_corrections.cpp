@@ -20,8 +20,8 @@ constexpr double most_magnified = 10;
 }  // namespace
 
 CellGradients::CellGradients(const Mesh& mesh, const ElasticOperator& rows) {
+  const Geometry& geometry = rows.geometry();
   const Csr faces = flux_faces_of_cells(mesh);
-  const Geometry& g = mesh.reference;
   offset.reserve(faces.offset.size());
   node.reserve(faces.index.size());
   weight.reserve(faces.index.size());
@@ -31,17 +31,17 @@ CellGradients::CellGradients(const Mesh& mesh, const ElasticOperator& rows) {
     std::vector<Vec3> line;
     double shortest = std::numeric_limits<double>::max();
     const auto mirrored = [&](Index f) {
-      const Vec3 n = g.face_area[f].normalized();
-      return Vec3(2 * n.dot(g.face_centre[f] - g.cell_centre[c]) * n);
+      const Vec3 n = geometry.face_area[f].normalized();
+      return Vec3(2 * n.dot(geometry.face_centre[f] - geometry.cell_centre[c]) * n);
     };
     for (const Index f : faces[c]) {
       if (f < mesh.n_interior)
-        line.push_back(g.cell_centre[mesh.owner[f] == c ? mesh.neighbour[f] : mesh.owner[f]] -
-                       g.cell_centre[c]);
+        line.push_back(geometry.cell_centre[mesh.owner[f] == c ? mesh.neighbour[f] : mesh.owner[f]] -
+                       geometry.cell_centre[c]);
       else if (rows.condition(f) == ElasticCondition::symmetry)
         line.push_back(mirrored(f));
       else
-        line.push_back(g.face_centre[f] - g.cell_centre[c]);
+        line.push_back(geometry.face_centre[f] - geometry.cell_centre[c]);
       shortest = std::min(shortest, line.back().norm());
     }
     Tensor3 m = Tensor3::Zero();
@@ -50,7 +50,7 @@ CellGradients::CellGradients(const Mesh& mesh, const ElasticOperator& rows) {
       const auto w = static_cast<float>(std::pow(shortest / line[i].norm(), 3));
       m += w * line[i] * line[i].transpose();
       if (f >= mesh.n_interior && rows.condition(f) == ElasticCondition::symmetry) {
-        mirrors.push_back({c, w * line[i], g.face_area[f].normalized()});
+        mirrors.push_back({c, w * line[i], geometry.face_area[f].normalized()});
         continue;
       }
       node.push_back(f >= mesh.n_interior ? mesh.cells.n_local() + f - mesh.n_interior
@@ -97,6 +97,7 @@ std::vector<Index> plain_points(const Mesh& mesh, const ElasticOperator& rows,
 
 std::vector<MirrorVertex> mirror_vertices(const Mesh& mesh, const ElasticOperator& rows,
                                           const std::vector<Index>& points) {
+  const Geometry& geometry = rows.geometry();
   std::vector<Index> place(mesh.points.n_local(), -1);
   std::vector<MirrorVertex> result;
   for (const Index v : points) {
@@ -106,7 +107,7 @@ std::vector<MirrorVertex> mirror_vertices(const Mesh& mesh, const ElasticOperato
   }
   for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f) {
     if (rows.condition(f) != ElasticCondition::symmetry) continue;
-    const Vec3 n = mesh.reference.face_area[f].normalized();
+    const Vec3 n = geometry.face_area[f].normalized();
     for (const Index v : mesh.face_points[f]) {
       if (place[v] < 0) continue;
       auto& normals = result[place[v]].normals;

@@ -49,6 +49,7 @@ class CorrectedKernel final : public ElasticKernel::Implementation {
   [[gnu::always_inline]] inline void set_record(Index node, const Vec3& place, const Take& row);
 
   const Mesh& mesh_;
+  const Geometry& geometry_;
   const ElasticOperator& rows_;
   ElasticNodes<D> nodes_;
   ElasticRows boundary_;
@@ -68,6 +69,7 @@ class CorrectedKernel final : public ElasticKernel::Implementation {
 template <int D>
 CorrectedKernel<D>::CorrectedKernel(const Mesh& mesh, const ElasticOperator& rows)
     : mesh_(mesh),
+      geometry_(rows.geometry()),
       rows_(rows),
       nodes_(mesh, rows),
       boundary_(mesh, rows),
@@ -78,8 +80,9 @@ CorrectedKernel<D>::CorrectedKernel(const Mesh& mesh, const ElasticOperator& row
       lame_(mesh, rows),
       records_(record_space<D>(mesh.cells.n_local() + mesh.boundary.n_local()), 0.0),
       points_(record_space<D>(mesh.points.n_local()), 0.0) {
+  const Geometry& geometry = rows.geometry();
   faces_.reserve(n_faces_with_force(mesh));
-  for (Index f = 0; f < n_faces_with_force(mesh); ++f) faces_.push_back(make_face(mesh, f));
+  for (Index f = 0; f < n_faces_with_force(mesh); ++f) faces_.push_back(make_face(mesh, geometry, f));
   if constexpr (D == 3) {
     const std::vector<std::uint32_t> kinds = edge_kinds(mesh, rows);
     for (std::size_t f = 0; f < kinds.size(); ++f) faces_[f].edges = kinds[f];
@@ -96,7 +99,7 @@ CorrectedKernel<D>::CorrectedKernel(const Mesh& mesh, const ElasticOperator& row
   // Any place near the mesh will do, the same on all ranks: it only keeps x . G small beside u.
   for (int a = 0; a < D; ++a) {
     double lowest = std::numeric_limits<double>::max();
-    for (const Vec3& x : mesh.reference_points) lowest = std::min(lowest, x[a]);
+    for (const Vec3& x : geometry.points) lowest = std::min(lowest, x[a]);
     origin_[a] = min(mesh.comm, lowest);
   }
 }
@@ -119,9 +122,9 @@ inline void CorrectedKernel<D>::find_cell_gradients() {
   const Index* offset = gradients_.offset.data();
   const Index* node = gradients_.node.data();
   const float* weight = gradients_.weight.data();
-  const Vec3* centre = mesh_.reference.cell_centre.data();
+  const Vec3* centre = geometry_.cell_centre.data();
   const Index n_cells = mesh_.cells.n_local();
-  const Vec3* outside = mesh_.reference.face_centre.data() + mesh_.n_interior;
+  const Vec3* outside = geometry_.face_centre.data() + mesh_.n_interior;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
     const Lane<D> here = load<D>(nodes_[c]);
     Rows<D> sum;
@@ -149,7 +152,7 @@ inline void CorrectedKernel<D>::find_cell_gradients() {
     double normal = 0, reach = 0;
     for (int a = 0; a < D; ++a) {
       normal += mirror.normal[a] * u[a];
-      reach += mirror.weight[a] * (mesh_.reference.cell_centre[mirror.cell][a] - origin_[a]);
+      reach += mirror.weight[a] * (geometry_.cell_centre[mirror.cell][a] - origin_[a]);
     }
     for (int b = 0; b < D; ++b) {
       const double difference = -2 * normal * mirror.normal[b];
@@ -172,7 +175,7 @@ inline void CorrectedKernel<D>::find_vertices(std::span<const Index> points) {
       u += w * load<D>(node);
       for (int a = 0; a < D; ++a) g.row[a] += w * row_of<D>(node, a);
     }
-    const Vec3& x = mesh_.reference_points[v];
+    const Vec3& x = geometry_.points[v];
     for (int a = 0; a < D; ++a) u += 0.5 * (x[a] - origin_[a]) * g.row[a];
     store_record<D>(vertex(v), u, g);
   }
@@ -227,18 +230,18 @@ inline Surface<D> CorrectedKernel<D>::around(Index f) {
       return here;
     }
   };
-  return surface<D>(face, corners, mesh_.reference_points.data(), value);
+  return surface<D>(face, corners, geometry_.points.data(), value);
 }
 
 template <int D>
 inline Lane<D> CorrectedKernel<D>::inner(Index f, const Rows<D>& grad) {
   const CorrectedFace& face = faces_[f];
   const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
-  const Vec3 &from = mesh_.reference.cell_centre[p], &to = mesh_.reference.cell_centre[n];
+  const Vec3 &from = geometry_.cell_centre[p], &to = geometry_.cell_centre[n];
   Lane<D> along = load<D>(nodes_[n]) - load<D>(nodes_[p]);
   if (face.curved != 0) {
     const double *here = cell(p), *there = cell(n);
-    const Vec3& centre = mesh_.reference.face_centre[f];
+    const Vec3& centre = geometry_.face_centre[f];
     for (int i = 0; i < D; ++i)
       along += (centre[i] - 0.5 * (from[i] + to[i])) * (row_of<D>(there, i) - row_of<D>(here, i));
   }
@@ -249,7 +252,7 @@ inline Lane<D> CorrectedKernel<D>::inner(Index f, const Rows<D>& grad) {
 template <int D>
 inline Lane<D> CorrectedKernel<D>::outer(Index f, const Rows<D>& grad) {
   const Index p = mesh_.owner[f];
-  const Vec3 d = mesh_.reference.face_centre[f] - mesh_.reference.cell_centre[p];
+  const Vec3 d = geometry_.face_centre[f] - geometry_.cell_centre[p];
   const Lane<D> across = load<D>(nodes_.of_face(f)) - load<D>(nodes_[p]);
   return normal_derivative<D>(faces_[f], d, 2 * across - contract<D>(d, cell(p) + D), grad);
 }
@@ -258,7 +261,7 @@ inline Lane<D> CorrectedKernel<D>::outer(Index f, const Rows<D>& grad) {
 template <int D>
 inline Lane<D> CorrectedKernel<D>::at_symmetry(Index f, const Rows<D>& grad) {
   const Index p = mesh_.owner[f];
-  const Vec3 d = mesh_.reference.face_centre[f] - mesh_.reference.cell_centre[p];
+  const Vec3 d = geometry_.face_centre[f] - geometry_.cell_centre[p];
   return normal_derivative<D>(faces_[f], d, -load<D>(nodes_[p]), grad);
 }
 
@@ -271,8 +274,7 @@ inline void CorrectedKernel<D>::find_boundary_gradients() {
     const auto n_points = static_cast<int>(point.size());
     // In 3-D means of the edges' end points.
     const Surface<D> here = surface<D>(
-        face, point,
-        mesh_.reference_points.data(), [&](int e, const Lane<D>&) __attribute__((always_inline)) {
+        face, point, geometry_.points.data(), [&](int e, const Lane<D>&) __attribute__((always_inline)) {
           const Lane<D> first = load<D>(vertex(point[e]));
           if (D == 2) return first;
           return 0.5 * (first + load<D>(vertex(point[e + 1 < n_points ? e + 1 : 0])));
@@ -280,7 +282,7 @@ inline void CorrectedKernel<D>::find_boundary_gradients() {
     const Lane<D> g = outer(f, here.grad);
     set_record(
         mesh_.cells.n_local() + f - mesh_.n_interior,
-        mesh_.reference.face_centre[f], [&](int a) __attribute__((always_inline)) {
+        geometry_.face_centre[f], [&](int a) __attribute__((always_inline)) {
           return here.grad.row[a] + here.n[a] * g;
         });
   }
@@ -339,7 +341,7 @@ void CorrectedKernel<D>::prepare(std::span<const double> unknowns, std::span<con
   // Boundary nodes begin with their cell's gradient; its error is the same for neighbours where cells are.
   for (const Index f : open_faces_) {
     const double* owner = cell(mesh_.owner[f]);
-    set_record(static_cast<Index>(n_cells) + f - mesh_.n_interior, mesh_.reference.face_centre[f],
+    set_record(static_cast<Index>(n_cells) + f - mesh_.n_interior, geometry_.face_centre[f],
                [&](int a) { return row_of<D>(owner, a); });
   }
   vertices_pass(*this, open_points_);

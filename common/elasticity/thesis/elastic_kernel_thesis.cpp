@@ -76,10 +76,10 @@ constexpr int record = D == 2 ? lanes::width<D> : 2 * lanes::width<D>;
 }
 
 template <int D>
-ThesisFace<D> make_face(const Mesh& mesh, Index f) {
-  const FaceLine line = face_line(mesh, mesh.reference, f);
+ThesisFace<D> make_face(const Mesh& mesh, const Geometry& geometry, Index f) {
+  const FaceLine line = face_line(mesh, geometry, f);
   std::array<Vec3, 4> weights;
-  tangential_weights(mesh, mesh.reference_points, f, line, weights.data());
+  tangential_weights(mesh, geometry.points, f, line, weights.data());
   ThesisFace<D> face;
   const auto point = mesh.face_points[f];
   for (int i = 0; i < D - 1; ++i) {
@@ -139,6 +139,7 @@ class ThesisKernel final : public ElasticKernel::Implementation {
  public:
   ThesisKernel(const Mesh& mesh, const ElasticOperator& rows)
       : mesh_(mesh),
+        geometry_(rows.geometry()),
         rows_(rows),
         nodes_(mesh, rows),
         boundary_(mesh, rows),
@@ -146,10 +147,10 @@ class ThesisKernel final : public ElasticKernel::Implementation {
         lame_(mesh, rows),
         points_(std::size_t(mesh.points.n_local()) * record<D>, 0.0) {
     faces_.reserve(n_faces_with_force(mesh));
-    for (Index f = 0; f < n_faces_with_force(mesh); ++f) faces_.push_back(make_face<D>(mesh, f));
+    for (Index f = 0; f < n_faces_with_force(mesh); ++f) faces_.push_back(make_face<D>(mesh, geometry_, f));
     if constexpr (D == 3)
       for (Index v = 0; v < mesh.points.n_local(); ++v)
-        std::copy_n(mesh.reference_points[v].data(), 3,
+        std::copy_n(geometry_.points[v].data(), 3,
                     points_.begin() + std::ptrdiff_t(v) * record<3> + lanes::width<3>);
     if (D == 3 && n_faces_with_force(mesh) <= most_kept) keep_vectors();
   }
@@ -174,6 +175,7 @@ class ThesisKernel final : public ElasticKernel::Implementation {
   void fill(std::span<const double> unknowns, std::span<const double> known);
 
   const Mesh& mesh_;
+  const Geometry& geometry_;
   const ElasticOperator& rows_;
   ElasticNodes<D> nodes_;
   ElasticRows boundary_;

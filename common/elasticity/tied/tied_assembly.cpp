@@ -35,7 +35,7 @@ GradientStiffness stiffness_of_stress(const Tensor3& stress) {
 }
 
 TiedAssembly::TiedAssembly(const Mesh& mesh, const ElasticOperator& rows, const TiedUnknowns& unknowns)
-    : mesh_(mesh), rows_(rows), unknowns_(unknowns) {
+    : mesh_(mesh), geometry_(rows.geometry()), rows_(rows), unknowns_(unknowns) {
   pairs_.reserve(std::size_t(mesh.n_flux_faces()) * (mesh.dim == 2 ? 8 : 40));
 }
 
@@ -58,12 +58,12 @@ void TiedAssembly::add_supports() {
     if (rows_.condition(f) != ElasticCondition::support) continue;
     const ElasticSupport& s = rows_.support(f);
     const LameConstants lame = rows_.lame(mesh_.owner[f]);
-    const FaceLine line = face_line(mesh_, mesh_.reference, f);
+    const FaceLine line = face_line(mesh_, geometry_, f);
     const GlobalIndex node = unknowns_.node(mesh_.cells.n_local() + f - mesh_.n_interior);
     add_block(node, node, (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn * s.known);
     if (s.spring.isZero(0)) continue;
     const Tensor3 open = Tensor3::Identity() - s.known,
-                  spring = mesh_.reference.face_area[f].norm() * (open * s.spring * open);
+                  spring = geometry_.face_area[f].norm() * (open * s.spring * open);
     const std::vector<TiedTerm> mean = mean_terms(mesh_, rows_, unknowns_, f);
     for (const TiedTerm& i : mean)
       for (const TiedTerm& j : mean)

@@ -55,6 +55,7 @@ class TiedAssembly {
   double mean_diagonal() const;
 
   const Mesh& mesh_;
+  const Geometry& geometry_;
   const ElasticOperator& rows_;
   const TiedUnknowns& unknowns_;
   BlockPairs<GlobalIndex> pairs_;

@@ -15,7 +15,7 @@ class Parts {
  public:
   Parts(const Mesh& mesh, const ElasticOperator& rows, const TiedUnknowns& unknowns, const TiedParts& parts,
         TiedAssembly& to)
-      : mesh_(mesh), rows_(rows), unknowns_(unknowns), parts_(parts), to_(to) {}
+      : mesh_(mesh), geometry_(rows.geometry()), rows_(rows), unknowns_(unknowns), parts_(parts), to_(to) {}
 
   void add_faces();
   void add_edges();
@@ -41,6 +41,7 @@ class Parts {
   }
 
   const Mesh& mesh_;
+  const Geometry& geometry_;
   const ElasticOperator& rows_;
   const TiedUnknowns& unknowns_;
   const TiedParts& parts_;
@@ -79,7 +80,7 @@ void Parts::add_volumes() {
   if (!rows_.volume_by_cells() || parts_.stiffness == 0) return;
   const Index n_owned = mesh_.cells.n_owned();
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    const auto [here, there] = pyramids(mesh_, f);
+    const auto [here, there] = pyramids(mesh_, geometry_, f);
     for (const TiedTerm& t : face_terms(mesh_, rows_, unknowns_, f)) {
       const Vec3 g = t.turn.transpose() * t.b;
       if (mesh_.owner[f] < n_owned) to_.add_volume_term(mesh_.owner[f], t.block, here * g);
@@ -87,7 +88,7 @@ void Parts::add_volumes() {
         to_.add_volume_term(mesh_.neighbour[f], t.block, there * g);
     }
   }
-  const std::vector<double> volume = pyramid_volumes(mesh_);
+  const std::vector<double> volume = pyramid_volumes(mesh_, geometry_);
   to_.finish_volumes([&](Index c) {
     return parts_.stiffness * bulk_of_cells(rows_.lame(c), rows_.volume_strain()) / volume[std::size_t(c)];
   });

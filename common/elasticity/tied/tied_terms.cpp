@@ -28,6 +28,7 @@ Tensor3 open_part(const ElasticOperator& rows, Index f) {
 template <int D>
 std::vector<TiedTerm> terms_of(const Mesh& mesh, const ElasticOperator& rows, const TiedUnknowns& unknowns,
                                Index f) {
+  const Geometry& geometry = rows.geometry();
   const SymmetricFace<D> face = symmetric_face<D>(mesh, rows, f);
   const auto scaled = [&](const std::array<double, D>& from) {
     Vec3 b = Vec3::Zero();
@@ -41,7 +42,7 @@ std::vector<TiedTerm> terms_of(const Mesh& mesh, const ElasticOperator& rows, co
   if (f < mesh.n_interior) {
     take(terms, unknowns.node(mesh.neighbour[f]), s, identity);
   } else if (rows.condition(f) == ElasticCondition::symmetry) {
-    const Vec3 n = mesh.reference.face_area[f].normalized();
+    const Vec3 n = geometry.face_area[f].normalized();
     take(terms, unknowns.node(mesh.owner[f]), s, identity - 2 * n * n.transpose());
   } else {
     take(terms, unknowns.node(node_of(mesh, f)), s, open_part(rows, f));
@@ -68,10 +69,11 @@ std::vector<TiedTerm> face_terms(const Mesh& mesh, const ElasticOperator& rows, 
 
 std::vector<TiedTerm> mean_terms(const Mesh& mesh, const ElasticOperator& rows, const TiedUnknowns& unknowns,
                                  Index f) {
+  const Geometry& geometry = rows.geometry();
   const double of_node = 1.0 / mesh.dim;
   std::vector<TiedTerm> terms;
   take(terms, unknowns.node(node_of(mesh, f)), Vec3(of_node, 0, 0), open_part(rows, f));
-  const auto shares = point_shares(mesh, f);
+  const auto shares = point_shares(mesh, geometry, f);
   const auto points = mesh.face_points[f];
   for (std::size_t i = 0; i < points.size(); ++i)
     take(terms, unknowns.point(points[i]), Vec3((1 - of_node) * shares[i], 0, 0), Tensor3::Identity());

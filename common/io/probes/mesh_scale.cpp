@@ -11,10 +11,10 @@
 
 namespace couplet {
 
-void doubt_mesh_scale(const Mesh& mesh, std::span<const Vec3> places) {
+void doubt_mesh_scale(const Mesh& mesh, std::span<const Vec3> points, std::span<const Vec3> places) {
   constexpr double smallest = 1e-6, largest = 2e3;  // [m]
   constexpr double corner = 1.0 / 300;  // between sizes that occur in one scene and millimetres for metres
-  const double size = mesh_size(mesh);
+  const double size = mesh_size(mesh, points);
   if (size < smallest || size > largest)
     log::finding(comm_rank(mesh.comm),
                  {.id = "questionable-mesh-scale",

@@ -48,53 +48,54 @@ std::vector<Index> Balls::near(const Vec3& x, double slack) const {
 namespace {
 
 /// About the mean of some points.
-void add_ball(const Mesh& mesh, std::span<const Index> points, std::vector<Vec3>& centres,
+void add_ball(std::span<const Vec3> places, std::span<const Index> points, std::vector<Vec3>& centres,
               std::vector<double>& radii) {
   Vec3 centre = Vec3::Zero();
-  for (const Index p : points) centre += mesh.reference_points[p] / double(points.size());
+  for (const Index p : points) centre += places[p] / double(points.size());
   double radius = 0;
-  for (const Index p : points) radius = std::max(radius, (mesh.reference_points[p] - centre).norm());
+  for (const Index p : points) radius = std::max(radius, (places[p] - centre).norm());
   centres.push_back(centre);
   radii.push_back(radius);
 }
 
-Balls point_balls(const Mesh& mesh) {
+Balls point_balls(const Mesh& mesh, std::span<const Vec3> places) {
   const auto n = mesh.points.n_owned();
-  return {{mesh.reference_points.begin(), mesh.reference_points.begin() + n}, std::vector<double>(n, 0.0)};
+  return {{places.begin(), places.begin() + n}, std::vector<double>(n, 0.0)};
 }
 
-Balls cell_balls(const Mesh& mesh) {
+Balls cell_balls(const Mesh& mesh, std::span<const Vec3> places) {
   std::vector<Vec3> centres;
   std::vector<double> radii;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) add_ball(mesh, mesh.cell_points[c], centres, radii);
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) add_ball(places, mesh.cell_points[c], centres, radii);
   return {std::move(centres), std::move(radii)};
 }
 
-Balls face_balls(const Mesh& mesh) {
+Balls face_balls(const Mesh& mesh, std::span<const Vec3> places) {
   std::vector<Vec3> centres;
   std::vector<double> radii;
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
-    add_ball(mesh, mesh.face_points[f], centres, radii);
+    add_ball(places, mesh.face_points[f], centres, radii);
   return {std::move(centres), std::move(radii)};
 }
 
 }  // namespace
 
-double mesh_size(const Mesh& mesh) {
+double mesh_size(const Mesh& mesh, std::span<const Vec3> places) {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()),
        high = Vec3::Constant(-std::numeric_limits<double>::infinity());
-  for (const Vec3& p : mesh.reference_points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  for (const Vec3& p : places) low = low.cwiseMin(p), high = high.cwiseMax(p);
   MPI_Allreduce(MPI_IN_PLACE, low.data(), 3, MPI_DOUBLE, MPI_MIN, mesh.comm);
   MPI_Allreduce(MPI_IN_PLACE, high.data(), 3, MPI_DOUBLE, MPI_MAX, mesh.comm);
   return (high - low).norm();
 }
 
-PlaceSearch::PlaceSearch(const Mesh& mesh)
+PlaceSearch::PlaceSearch(const Mesh& mesh, std::span<const Vec3> places)
     : mesh_(mesh),
-      size_(mesh_size(mesh)),
-      points_(point_balls(mesh)),
-      cells_(cell_balls(mesh)),
-      faces_(face_balls(mesh)) {}
+      places_(places),
+      size_(mesh_size(mesh, places)),
+      points_(point_balls(mesh, places)),
+      cells_(cell_balls(mesh, places)),
+      faces_(face_balls(mesh, places)) {}
 
 std::vector<Index> PlaceSearch::faces(const Vec3& x, double slack) const {
   std::vector<Index> faces = faces_.near(x, slack);

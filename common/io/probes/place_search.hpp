@@ -24,14 +24,15 @@ class Balls {
 };
 
 /// Diagonal of the box around the reference mesh [m]. Collective.
-double mesh_size(const Mesh& mesh);
+double mesh_size(const Mesh& mesh, std::span<const Vec3> places);
 
 /// What of a mesh in its reference configuration may hold a place, for many places: owned points, owned cells,
 /// boundary faces of this rank. The mesh must outlive it. Making one is collective.
 class PlaceSearch {
  public:
-  explicit PlaceSearch(const Mesh& mesh);
+  PlaceSearch(const Mesh& mesh, std::span<const Vec3> places);
   const Mesh& mesh() const { return mesh_; }
+  std::span<const Vec3> places() const { return places_; }
   double size() const { return size_; }  ///< [m]
   /// Within `slack` [m] of x, ascending, and perhaps some more.
   std::vector<Index> points(const Vec3& x, double slack) const { return points_.near(x, slack); }
@@ -40,6 +41,7 @@ class PlaceSearch {
 
  private:
   const Mesh& mesh_;
+  std::span<const Vec3> places_;
   double size_;
   Balls points_, cells_, faces_;
 };

@@ -28,16 +28,17 @@ struct Candidate {
 };
 
 // Of those that are looked at, here as below: all, or those that a search found.
-Candidate nearest_point(const Mesh& mesh, const auto& candidates, const Vec3& place) {
+Candidate nearest_point(std::span<const Vec3> places, const auto& candidates, const Vec3& place) {
   Candidate best;
   for (const Index p : candidates) {
-    const double distance = (mesh.reference_points[p] - place).norm();
-    if (distance < best.key) best = {distance, mesh.reference_points[p], {p}, {1.0}};
+    const double distance = (places[p] - place).norm();
+    if (distance < best.key) best = {distance, places[p], {p}, {1.0}};
   }
   return best;
 }
 
-Candidate containing_cell(const Mesh& mesh, const auto& candidates, const Vec3& place) {
+Candidate containing_cell(const Mesh& mesh, std::span<const Vec3> places, const auto& candidates,
+                          const Vec3& place) {
   constexpr double slack = 1e-9;
   Candidate best;
   std::vector<Vec3> corners;
@@ -47,7 +48,7 @@ Candidate containing_cell(const Mesh& mesh, const auto& candidates, const Vec3& 
     if (double(mesh.cell_id[c]) > best.key) continue;
     const auto points = mesh.cell_points[c];
     corners.clear();
-    for (const Index p : points) corners.push_back(mesh.reference_points[p]);
+    for (const Index p : points) corners.push_back(places[p]);
     const auto weights = weights_in_cell(mesh.cell_type[c], corners, place, slack);
     if (!weights) continue;
     best = {double(mesh.cell_id[c]),
@@ -58,7 +59,7 @@ Candidate containing_cell(const Mesh& mesh, const auto& candidates, const Vec3& 
   return best;
 }
 
-Candidate nearest_on_face(const Mesh& mesh, std::span<const Index> points, const Vec3& place) {
+Candidate nearest_on_face(std::span<const Vec3> places, std::span<const Index> points, const Vec3& place) {
   Candidate best;
   const auto consider = [&](std::initializer_list<int> corners, std::span<const double> weights) {
     Candidate one;
@@ -66,12 +67,12 @@ Candidate nearest_on_face(const Mesh& mesh, std::span<const Index> points, const
     for (const int corner : corners) {
       one.points.push_back(points[corner]);
       one.weights.push_back(weights[i]);
-      one.place += weights[i++] * mesh.reference_points[points[corner]];
+      one.place += weights[i++] * places[points[corner]];
     }
     one.key = (one.place - place).norm();
     if (one.key < best.key) best = std::move(one);
   };
-  const auto x = [&](int i) -> const Vec3& { return mesh.reference_points[points[i]]; };
+  const auto x = [&](int i) -> const Vec3& { return places[points[i]]; };
   if (points.size() == 2) {
     consider({0, 1}, nearest_on_segment(x(0), x(1), place).weights);
   } else {
@@ -81,10 +82,11 @@ Candidate nearest_on_face(const Mesh& mesh, std::span<const Index> points, const
   return best;
 }
 
-Candidate nearest_on_boundary(const Mesh& mesh, const auto& candidates, const Vec3& place) {
+Candidate nearest_on_boundary(const Mesh& mesh, std::span<const Vec3> places, const auto& candidates,
+                              const Vec3& place) {
   Candidate best;
   for (const Index f : candidates) {
-    Candidate one = nearest_on_face(mesh, mesh.face_points[f], place);
+    Candidate one = nearest_on_face(places, mesh.face_points[f], place);
     if (one.key < best.key) best = std::move(one);
   }
   return best;
@@ -108,15 +110,16 @@ struct Chosen {
   int rank = 0;
   bool outside = false;
 };
-Chosen choose(const Mesh& mesh, const Vec3& place, double size, const auto& look) {
+Chosen choose(const Mesh& mesh, std::span<const Vec3> places, const Vec3& place, double size,
+              const auto& look) {
   Chosen chosen;
-  chosen.candidate = nearest_point(mesh, look.points(place, on_point * size), place);
+  chosen.candidate = nearest_point(places, look.points(place, on_point * size), place);
   std::tie(chosen.key, chosen.rank) = agree(mesh.comm, chosen.candidate.key);
   if (chosen.key <= on_point * size) return chosen;
-  chosen.candidate = containing_cell(mesh, look.cells(place, on_point * size), place);
+  chosen.candidate = containing_cell(mesh, places, look.cells(place, on_point * size), place);
   std::tie(chosen.key, chosen.rank) = agree(mesh.comm, chosen.candidate.key);
   if (chosen.key != none) return chosen;
-  chosen.candidate = nearest_on_boundary(mesh, look.faces(place, on_boundary * size), place);
+  chosen.candidate = nearest_on_boundary(mesh, places, look.faces(place, on_boundary * size), place);
   std::tie(chosen.key, chosen.rank) = agree(mesh.comm, chosen.candidate.key);
   chosen.outside = true;
   return chosen;
@@ -140,10 +143,11 @@ void Probe::take(const Vec3& place, int rank, std::vector<Index>&& points, std::
   weights_ = std::move(weights);
 }
 
-Probe::Probe(const Mesh& mesh, const std::string& name, const Vec3& place, std::optional<double> tolerance)
+Probe::Probe(const Mesh& mesh, std::span<const Vec3> places, const std::string& name, const Vec3& place,
+             std::optional<double> tolerance)
     : comm_(mesh.comm) {
-  const double size = mesh_size(mesh);
-  Chosen chosen = choose(mesh, place, size, Everything{mesh});
+  const double size = mesh_size(mesh, places);
+  Chosen chosen = choose(mesh, places, place, size, Everything{mesh});
   take(chosen.candidate.place, chosen.rank, std::move(chosen.candidate.points),
        std::move(chosen.candidate.weights));
   if (chosen.outside && chosen.key > tolerance.value_or(on_boundary * size))
@@ -156,7 +160,7 @@ Probe::Probe(const Mesh& mesh, const std::string& name, const Vec3& place, std::
 std::optional<Probe> Probe::in(const PlaceSearch& search, const Vec3& place) {
   const Mesh& mesh = search.mesh();
   const double size = search.size();
-  Chosen chosen = choose(mesh, place, size, search);
+  Chosen chosen = choose(mesh, search.places(), place, size, search);
   if (chosen.outside && !(chosen.key <= on_boundary * size)) return {};
   Probe probe(mesh.comm);
   probe.take(chosen.candidate.place, chosen.rank, std::move(chosen.candidate.points),

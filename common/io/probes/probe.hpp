@@ -20,7 +20,8 @@ namespace couplet {
 class Probe {
  public:
   /// Collective over mesh.comm. `name` is for messages; tolerance [m], by default 1e-6 of the mesh's size.
-  Probe(const Mesh& mesh, const std::string& name, const Vec3& place, std::optional<double> tolerance = {});
+  Probe(const Mesh& mesh, std::span<const Vec3> places, const std::string& name, const Vec3& place,
+        std::optional<double> tolerance = {});
   /// One of many in a mesh: nothing if the place lies outside it. Collective.
   static std::optional<Probe> in(const PlaceSearch& search, const Vec3& place);
 

@@ -35,9 +35,11 @@ RawMesh read_finished_mesh(const std::filesystem::path& file) {
   return read_msh(convert_mesh(file));
 }
 
-Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const MeshParameters& parameters,
-               const std::vector<std::array<std::string, 2>>& periodic,
-               const std::vector<std::vector<std::string>>& materials, bool find_wide_points, double scale) {
+LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
+                     const MeshParameters& parameters,
+                     const std::vector<std::array<std::string, 2>>& periodic,
+                     const std::vector<std::vector<std::string>>& materials, bool find_wide_points,
+                     double scale) {
   RawMesh raw;
   on_root(comm, [&] {
     if (!std::filesystem::is_regular_file(file))
@@ -77,11 +79,11 @@ Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const 
     raw.find_wide_points = find_wide_points;
   });
   try {
-    Mesh mesh = distribute(comm, raw);
+    LoadedMesh loaded = distribute(comm, raw);
     raw = {};
     malloc_trim(0);  // the whole mesh has left holes that nothing else fills
-    check_and_report(mesh);
-    return mesh;
+    check_and_report(loaded.mesh, loaded.geometry);
+    return loaded;
   } catch (const Error& e) {
     throw Error("Cannot use the mesh '{}'. {}", file.string(), e.what());
   }

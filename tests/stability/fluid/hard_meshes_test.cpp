@@ -42,7 +42,7 @@ Outcome channel_on(RawMesh raw, ViscousTreatment viscous) {
   Outcome outcome;
   try {
     FluidCase<D> c(MPI_COMM_WORLD, raw, p);
-    outcome.non_orthogonality = measure_quality(c.mesh(), c.mesh().reference).max_non_orthogonality;
+    outcome.non_orthogonality = measure_quality(c.mesh(), c.geometry()).max_non_orthogonality;
     c.run(0.4, 8);
     outcome.error = c.velocity_error([](const Vec3& x) { return Vec3(4 * x.y() * (1 - x.y()), 0, 0); });
     outcome.solved = true;

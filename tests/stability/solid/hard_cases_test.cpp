@@ -53,9 +53,10 @@ Plate plate(FaceGradient gradient, double aspect, bool pull) {
   step(*solid, 1);
   const std::vector<double> moved = solid->fields().point_displacement();
   const Mesh& mesh = solid->body().mesh();
+  const Geometry& geometry = solid->body().geometry();
   double end = 0;
-  for (std::size_t i = 0; i < mesh.reference_points.size(); ++i)
-    if (mesh.reference_points[i][0] > length - 1e-6) end = moved[2 * i + (pull ? 0 : 1)];
+  for (std::size_t i = 0; i < geometry.points.size(); ++i)
+    if (geometry.points[i][0] > length - 1e-6) end = moved[2 * i + (pull ? 0 : 1)];
   const double beam = pull ? length / modulus
                            : 1e-3 * height * std::pow(length, 3) / (3 * modulus * std::pow(height, 3) / 12);
   return {end / beam, solid->judge().last_audit()->is_doubtful()};
@@ -137,8 +138,9 @@ TEST(StiffnessThatJumpsByAMillion, is_stretched_as_two_springs_in_a_row) {
     step(*solid, 1);
     const std::vector<double> moved = solid->fields().point_displacement();
     const Mesh& mesh = solid->body().mesh();
-    for (std::size_t i = 0; i < mesh.reference_points.size(); ++i) {
-      const double x = mesh.reference_points[i][0];
+    const Geometry& geometry = solid->body().geometry();
+    for (std::size_t i = 0; i < geometry.points.size(); ++i) {
+      const double x = geometry.points[i][0];
       EXPECT_NEAR(moved[2 * i], x < 0.5 ? 1e-4 * x : 5e-5 + 1e-10 * (x - 0.5), 1e-10) << x;
     }
   }

@@ -19,10 +19,12 @@ class InterfaceMapOf : public ::testing::TestWithParam<BoxCells> {
   InterfaceMapOf() {
     raw = make_box(GetParam(), {4, 5, 3}, Vec3::Zero(), Vec3(2, 1, 1));
     perturb_interior(raw, 0.2, 3);
-    mesh = distribute(MPI_COMM_WORLD, raw);
+    loaded = distribute(MPI_COMM_WORLD, raw);
   }
   RawMesh raw;
-  Mesh mesh;
+  LoadedMesh loaded;
+  const Mesh& mesh = loaded.mesh;
+  const Geometry& geometry = loaded.geometry;
 };
 
 const char* name_of_box(const ::testing::TestParamInfo<BoxCells>& info) {
@@ -53,7 +55,7 @@ std::map<GlobalIndex, T> together(const std::vector<GlobalIndex>& ids, const std
 
 TEST_P(InterfaceMapOf, description_holds_every_vertex_and_face_once) {
   const InterfaceMap map(mesh, {"xmax", "ymin"});
-  const Interface interface = map.describe();
+  const Interface interface = map.describe(geometry);
   const auto all_vertices = together(interface.vertex_ids, interface.vertices),
              all_centres = together(interface.face_ids, interface.face_centres),
              all_areas = together(interface.face_ids, interface.face_areas);
@@ -86,7 +88,7 @@ TEST_P(InterfaceMapOf, description_holds_every_vertex_and_face_once) {
 }
 
 TEST_P(InterfaceMapOf, faces_name_their_vertices_by_their_places_in_the_list_of_all_ranks) {
-  const Interface interface = InterfaceMap(mesh, {"xmax", "ymin"}).describe();
+  const Interface interface = InterfaceMap(mesh, {"xmax", "ymin"}).describe(geometry);
   const std::vector<Vec3> all = all_gather(MPI_COMM_WORLD, interface.vertices);
   ASSERT_EQ(interface.face_offset.size(), interface.face_centres.size() + 1);
   EXPECT_EQ(interface.parts, (std::vector<std::string>{"xmax", "ymin"}));
@@ -104,12 +106,12 @@ TEST_P(InterfaceMapOf, values_come_back_from_their_owners_as_they_were_sent) {
   const InterfaceMap map(mesh, {"xmax", "ymin"});
   std::vector<double> at_points, at_faces;
   for (const Index p : map.points())
-    for (int c = 0; c < 2; ++c) at_points.push_back(f(mesh.reference_points[p], c));
-  for (const Index face : map.faces()) at_faces.push_back(f(mesh.reference.face_centre[face], 0));
+    for (int c = 0; c < 2; ++c) at_points.push_back(f(geometry.points[p], c));
+  for (const Index face : map.faces()) at_faces.push_back(f(geometry.face_centre[face], 0));
 
   const std::vector<double> vertices = map.gather_vertices(at_points, 2),
                             faces = map.gather_faces(at_faces, 1);
-  const Interface interface = map.describe();
+  const Interface interface = map.describe(geometry);
   EXPECT_EQ(vertices.size(), 2 * interface.vertices.size());
   for (std::size_t v = 0; v < interface.vertices.size(); ++v)
     for (int c = 0; c < 2; ++c) EXPECT_EQ(vertices[2 * v + c], f(interface.vertices[v], c));
@@ -124,14 +126,14 @@ TEST_P(InterfaceMapOf, points_are_all_local_points_that_lie_on_the_patches) {
   const InterfaceMap map(mesh, {"xmax"});
   std::vector<Index> expected;
   for (Index p = 0; p < mesh.points.n_local(); ++p)
-    if (mesh.reference_points[p][0] == 2) expected.push_back(p);
+    if (geometry.points[p][0] == 2) expected.push_back(p);
   EXPECT_EQ(map.points(), expected);
 }
 
 TEST_P(InterfaceMapOf, patch_named_twice_counts_once) {
   const InterfaceMap once(mesh, {"ymax"}), twice(mesh, {"ymax", "ymax"});
   EXPECT_EQ(once.faces(), twice.faces());
-  EXPECT_EQ(once.describe().vertices, twice.describe().vertices);
+  EXPECT_EQ(once.describe(geometry).vertices, twice.describe(geometry).vertices);
 }
 
 TEST_P(InterfaceMapOf, nothing_given_stands_for_zeros) {
@@ -141,7 +143,7 @@ TEST_P(InterfaceMapOf, nothing_given_stands_for_zeros) {
 }
 
 TEST(InterfaceMapErrors, data_of_another_size_is_refused) {
-  const Mesh mesh =
+  const auto [mesh, geometry] =
       distribute(MPI_COMM_SELF, make_box(BoxCells::quadrilaterals, {3, 3, 0}, Vec3::Zero(), Vec3::Ones()));
   try {
     InterfaceMap(mesh, {"xmax"}).scatter_faces(std::vector<double>(5), 2);
@@ -155,7 +157,7 @@ TEST(InterfaceMapErrors, data_of_another_size_is_refused) {
 }
 
 TEST(InterfaceMapErrors, unknown_patch_is_named_with_those_that_exist) {
-  const Mesh mesh =
+  const auto [mesh, geometry] =
       distribute(MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {3, 3, 0}, Vec3::Zero(), Vec3::Ones()));
   try {
     InterfaceMap(mesh, {"xmax", "wet"});

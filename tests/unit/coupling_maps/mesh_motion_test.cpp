@@ -27,12 +27,12 @@ class TwoPrograms : public ::testing::Test {
     MPI_Comm_free(&peers);
     MPI_Comm_free(&own);
   }
-  std::string set_up_error(const Mesh& mesh) const {
+  std::string set_up_error(const Mesh& mesh, const Geometry& geometry) const {
     try {
       if (is_mover)
-        make_mesh_motion_sink(peers, mesh);
+        make_mesh_motion_sink(peers, mesh, geometry.points);
       else
-        make_mesh_motion_source(peers, mesh);
+        make_mesh_motion_source(peers, mesh, geometry.points);
     } catch (const Error& e) {
       return e.what();
     }
@@ -53,7 +53,7 @@ INSTANTIATE_TEST_SUITE_P(Boxes, MeshMotion, ::testing::Values(BoxCells::triangle
                          });
 
 TEST_P(MeshMotion, every_local_point_of_the_fluid_gets_its_own_displacement) {
-  const Mesh mesh = distribute(own, make_box(GetParam(), {5, 4, 3}, Vec3::Zero(), Vec3::Ones()));
+  const auto [mesh, geometry] = distribute(own, make_box(GetParam(), {5, 4, 3}, Vec3::Zero(), Vec3::Ones()));
   const auto expected = [&](int step) {
     std::vector<double> values;
     for (const GlobalIndex p : mesh.point_id)
@@ -61,11 +61,11 @@ TEST_P(MeshMotion, every_local_point_of_the_fluid_gets_its_own_displacement) {
     return values;
   };
   if (is_mover) {
-    const auto sink = make_mesh_motion_sink(peers, mesh);
+    const auto sink = make_mesh_motion_sink(peers, mesh, geometry.points);
     for (int step = 0; step < 3; ++step) sink->send(expected(step));
     sink->send(expected(3), expected(4));
   } else {
-    const auto source = make_mesh_motion_source(peers, mesh);
+    const auto source = make_mesh_motion_source(peers, mesh, geometry.points);
     for (int step = 0; step < 3; ++step) EXPECT_EQ(source->receive(), expected(step)) << "step " << step;
     EXPECT_TRUE(source->velocity().empty());
     EXPECT_EQ(source->receive(), expected(3));
@@ -74,14 +74,15 @@ TEST_P(MeshMotion, every_local_point_of_the_fluid_gets_its_own_displacement) {
 }
 
 TEST_F(TwoPrograms, failure_of_the_mover_is_a_failed_step_for_the_fluid_and_the_next_motion_arrives) {
-  const Mesh mesh = distribute(own, make_box(BoxCells::hexahedra, {3, 3, 3}, Vec3::Zero(), Vec3::Ones()));
+  const auto [mesh, geometry] =
+      distribute(own, make_box(BoxCells::hexahedra, {3, 3, 3}, Vec3::Zero(), Vec3::Ones()));
   const std::vector<double> ones(3 * std::size_t(mesh.points.n_local()), 1.0);
   if (is_mover) {
-    const auto sink = make_mesh_motion_sink(peers, mesh);
+    const auto sink = make_mesh_motion_sink(peers, mesh, geometry.points);
     sink->send_failure();
     sink->send(ones);
   } else {
-    const auto source = make_mesh_motion_source(peers, mesh);
+    const auto source = make_mesh_motion_source(peers, mesh, geometry.points);
     EXPECT_THROW(source->receive(), SolveFailure);
     EXPECT_EQ(source->receive(), ones);
   }
@@ -89,16 +90,16 @@ TEST_F(TwoPrograms, failure_of_the_mover_is_a_failed_step_for_the_fluid_and_the_
 
 TEST_F(TwoPrograms, large_motion_is_sent_without_waiting_for_the_fluid) {
   // Larger than what MPI buffers: the mover must get on although the fluid takes it later.
-  const Mesh mesh =
+  const auto [mesh, geometry] =
       distribute(own, make_box(BoxCells::quadrilaterals, {200, 100, 0}, Vec3::Zero(), Vec3::Ones()));
   const std::vector<double> ones(2 * std::size_t(mesh.points.n_local()), 1.0);
   if (is_mover) {
-    const auto sink = make_mesh_motion_sink(peers, mesh);
+    const auto sink = make_mesh_motion_sink(peers, mesh, geometry.points);
     sink->send(ones);
     MPI_Barrier(MPI_COMM_WORLD);
     sink->send_failure();
   } else {
-    const auto source = make_mesh_motion_source(peers, mesh);
+    const auto source = make_mesh_motion_source(peers, mesh, geometry.points);
     MPI_Barrier(MPI_COMM_WORLD);
     EXPECT_EQ(source->receive(), ones);
     EXPECT_THROW(source->receive(), SolveFailure);
@@ -107,10 +108,10 @@ TEST_F(TwoPrograms, large_motion_is_sent_without_waiting_for_the_fluid) {
 
 TEST_F(TwoPrograms, meshes_with_other_numbers_of_points_are_refused_on_both_sides) {
   const int n = is_mover ? 3 : 4;
-  const Mesh mesh =
+  const auto [mesh, geometry] =
       distribute(own, make_box(BoxCells::quadrilaterals, {n, 3, 0}, Vec3::Zero(), Vec3::Ones()));
   EXPECT_EQ(
-      set_up_error(mesh),
+      set_up_error(mesh, geometry),
       fmt::format(
           "The meshes of the fluid and the mesh mover differ: {} points in 2-D on this side, {} points in "
           "2-D on the other. Both participants must read the same mesh file.",
@@ -118,9 +119,9 @@ TEST_F(TwoPrograms, meshes_with_other_numbers_of_points_are_refused_on_both_side
 }
 
 TEST_F(TwoPrograms, meshes_with_other_places_of_the_points_are_refused_on_both_sides) {
-  const Mesh mesh = distribute(
+  const auto [mesh, geometry] = distribute(
       own, make_box(BoxCells::quadrilaterals, {3, 3, 0}, Vec3::Zero(), Vec3(is_mover ? 1.001 : 1, 1, 0)));
-  EXPECT_THAT(set_up_error(mesh),
+  EXPECT_THAT(set_up_error(mesh, geometry),
               ::testing::HasSubstr("mesh mover differ: their points have different coordinates."));
 }
 

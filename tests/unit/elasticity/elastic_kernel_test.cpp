@@ -24,7 +24,7 @@ const std::vector<Case> all_cases = {{BoxCells::quadrilaterals, 0}, {BoxCells::q
                                      {BoxCells::prisms, 0.2},       {BoxCells::mixed, 0.2}};
 
 /// With `materials`: two zones, left and right of a plane in the middle.
-Mesh make_mesh(const Case& c, int n = 4, bool materials = false) {
+LoadedMesh make_mesh(const Case& c, int n = 4, bool materials = false) {
   RawMesh raw = make_box(c.cells, {n + 1, n, n}, Vec3(0.1, 0.2, 0.3), Vec3(1.1, 1.0, 1.4));
   if (materials) {
     raw.zones = {"left", "right"};
@@ -42,10 +42,12 @@ Mesh make_mesh(const Case& c, int n = 4, bool materials = false) {
 /// An operator and its kernel; the first patches get the conditions given, the others are open.
 struct Setting {
   Setting(const Case& c, FaceGradientScheme scheme, std::vector<ElasticCondition> first, int n = 4)
-      : mesh(make_mesh(c, n)), rows(mesh, padded(first), {mu, lambda}), kernel(mesh, rows, scheme) {}
+      : loaded(make_mesh(c, n)),
+        rows(mesh, geometry, padded(first), {mu, lambda}),
+        kernel(mesh, rows, scheme) {}
   Setting(const Case& c, FaceGradientScheme scheme, bool materials)
-      : mesh(make_mesh(c, 4, materials)),
-        rows(mesh, all_conditions(), {lame(), materials ? mesh.cell_zone : std::vector<int>{}}),
+      : loaded(make_mesh(c, 4, materials)),
+        rows(mesh, geometry, all_conditions(), {lame(), materials ? mesh.cell_zone : std::vector<int>{}}),
         kernel(mesh, rows, scheme) {}
 
   /// xmin known, xmax held along an oblique direction and by springs, ymin a plane of symmetry, ymax without
@@ -82,13 +84,15 @@ struct Setting {
       const Vec3 u = field(x);
       to.insert(to.end(), u.data(), u.data() + mesh.dim);
     };
-    for (Index c = 0; c < mesh.cells.n_owned(); ++c) put(mesh.reference.cell_centre[c], unknowns);
-    for (const Index f : rows.unknown_faces()) put(mesh.reference.face_centre[f], unknowns);
-    for (const Index v : rows.constraints().points()) put(mesh.reference_points[v], known);
-    for (const Index f : rows.known_faces()) put(mesh.reference.face_centre[f], known);
+    for (Index c = 0; c < mesh.cells.n_owned(); ++c) put(geometry.cell_centre[c], unknowns);
+    for (const Index f : rows.unknown_faces()) put(geometry.face_centre[f], unknowns);
+    for (const Index v : rows.constraints().points()) put(geometry.points[v], known);
+    for (const Index f : rows.known_faces()) put(geometry.face_centre[f], known);
   }
 
-  Mesh mesh;
+  LoadedMesh loaded;
+  const Mesh& mesh = loaded.mesh;
+  const Geometry& geometry = loaded.geometry;
   ElasticOperator rows;
   ElasticKernel kernel;
 };
@@ -142,9 +146,9 @@ TEST(ElasticKernel, thesis_rows_between_materials_are_those_of_the_assembled_mat
 TEST(ElasticKernel, linear_fields_pass_from_one_material_into_the_next) {
   for (const FaceGradientScheme scheme : {FaceGradientScheme::thesis, FaceGradientScheme::corrected})
     for (const Case& c : all_cases) {
-      const Mesh mesh = make_mesh(c, 4, true);
+      const auto [mesh, geometry] = make_mesh(c, 4, true);
       std::vector<ElasticCondition> conditions(mesh.patches.size(), ElasticCondition::prescribed);
-      const ElasticOperator rows(mesh, boundary_of_patches(mesh, conditions),
+      const ElasticOperator rows(mesh, geometry, boundary_of_patches(mesh, conditions),
                                  {{{mu, lambda}}, mesh.cell_zone});
       const ElasticKernel kernel(mesh, rows, scheme);
       const auto field = [&](const Vec3& x) {
@@ -155,10 +159,10 @@ TEST(ElasticKernel, linear_fields_pass_from_one_material_into_the_next) {
         const Vec3 value = field(x);
         to.insert(to.end(), value.data(), value.data() + mesh.dim);
       };
-      for (Index i = 0; i < mesh.cells.n_owned(); ++i) put(mesh.reference.cell_centre[i], u);
-      for (const Index f : rows.unknown_faces()) put(mesh.reference.face_centre[f], u);
-      for (const Index v : rows.constraints().points()) put(mesh.reference_points[v], known);
-      for (const Index f : rows.known_faces()) put(mesh.reference.face_centre[f], known);
+      for (Index i = 0; i < mesh.cells.n_owned(); ++i) put(geometry.cell_centre[i], u);
+      for (const Index f : rows.unknown_faces()) put(geometry.face_centre[f], u);
+      for (const Index v : rows.constraints().points()) put(geometry.points[v], known);
+      for (const Index f : rows.known_faces()) put(geometry.face_centre[f], known);
       EXPECT_GT(sum(MPI_COMM_WORLD, GlobalIndex(rows.unknown_faces().size())), 0);
       std::vector<double> force(u.size());
       kernel.apply(u, known, force);
@@ -192,7 +196,7 @@ TEST(ElasticKernel, linear_fields_have_their_exact_constant_stress_in_both_schem
       for (std::size_t i = 0; i < s.rows.unknown_faces().size(); ++i)
         for (int a = 0; a < s.mesh.dim; ++a)
           ASSERT_NEAR(force[(n_cells + i) * s.mesh.dim + a],
-                      (stress * s.mesh.reference.face_area[s.rows.unknown_faces()[i]])[a], 1e-11);
+                      (stress * s.geometry.face_area[s.rows.unknown_faces()[i]])[a], 1e-11);
     }
 }
 
@@ -246,8 +250,8 @@ TEST(ElasticKernel, corrected_gradients_are_exact_for_quadratic_fields_on_even_b
       return planes > 1;
     };
     for (Index f = 0; f < s.mesh.n_flux_faces(); ++f) {
-      if (near_edge(s.mesh.reference.face_centre[f])) continue;
-      ASSERT_LT((found[f] - exact(s.mesh.reference.face_centre[f])).topLeftCorner(dim, dim).norm(), 1e-10)
+      if (near_edge(s.geometry.face_centre[f])) continue;
+      ASSERT_LT((found[f] - exact(s.geometry.face_centre[f])).topLeftCorner(dim, dim).norm(), 1e-10)
           << f << " of " << s.mesh.n_interior;
     }
   }

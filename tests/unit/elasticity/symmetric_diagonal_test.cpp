@@ -18,11 +18,11 @@ constexpr LameConstants lame{1.1, 1.7};
 std::pair<double, double> beside_the_matrix(BoxCells cells, ElasticCondition second) {
   RawMesh raw = make_box(cells, {5, 4, 4}, Vec3(0.1, 0.2, 0.3), Vec3(1.1, 1.0, 1.4));
   perturb_interior(raw, 0.2, 7);
-  const Mesh mesh = distribute(MPI_COMM_WORLD, raw);
+  const auto [mesh, geometry] = distribute(MPI_COMM_WORLD, raw);
   std::vector<ElasticCondition> conditions(mesh.patches.size(), ElasticCondition::traction);
   conditions[0] = ElasticCondition::prescribed;
   conditions[1] = second;
-  const ElasticOperator rows(mesh, conditions, lame);
+  const ElasticOperator rows(mesh, geometry, conditions, lame);
   const SymmetricDiagonal diagonal = symmetric_diagonal(mesh, rows, VolumeStrain::faces);
   const SparseMatrix matrix = symmetric_matrix(mesh, rows, {});
 

@@ -20,22 +20,21 @@ INSTANTIATE_TEST_SUITE_P(Cells, Conduction,
 TEST_P(Conduction, gradients_values_and_heat_of_a_linear_temperature_are_exact_at_every_face) {
   RawMesh raw = make_box(GetParam(), {4, 3, 3}, Vec3::Zero(), Vec3(1, 0.7, 0.4));
   perturb_interior(raw, 0.25, 7);
-  const Mesh mesh = distribute(MPI_COMM_SELF, raw);
+  const auto [mesh, geometry] = distribute(MPI_COMM_SELF, raw);
   const ConductionOperator conduction(
-      mesh, std::vector<HeatCondition>(mesh.patches.size(), HeatCondition::temperature));
+      mesh, geometry, std::vector<HeatCondition>(mesh.patches.size(), HeatCondition::temperature));
   const Vec3 slope(2, -3, mesh.dim == 3 ? 5 : 0);
   const auto at = [&](const Vec3& x) { return 1 + slope.dot(x); };
   std::vector<double> cells, boundary, points, conductivity(std::size_t(mesh.n_faces()), 1.5),
       heat(std::size_t(mesh.n_flux_faces()));
-  for (const Vec3& x : mesh.reference.cell_centre) cells.push_back(at(x));
-  for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f)
-    boundary.push_back(at(mesh.reference.face_centre[f]));
-  for (const Vec3& x : mesh.reference_points) points.push_back(at(x));
+  for (const Vec3& x : geometry.cell_centre) cells.push_back(at(x));
+  for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f) boundary.push_back(at(geometry.face_centre[f]));
+  for (const Vec3& x : geometry.points) points.push_back(at(x));
   conduction.face_heat(conductivity, cells, boundary, points, heat);
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
     EXPECT_LT((conduction.gradient(f, cells, boundary, points) - slope).norm(), 1e-10);
-    EXPECT_NEAR(conduction.face_value(f, cells, boundary, points), at(mesh.reference.face_centre[f]), 1e-11);
-    EXPECT_NEAR(heat[std::size_t(f)], 1.5 * slope.dot(mesh.reference.face_area[f]), 1e-11);
+    EXPECT_NEAR(conduction.face_value(f, cells, boundary, points), at(geometry.face_centre[f]), 1e-11);
+    EXPECT_NEAR(heat[std::size_t(f)], 1.5 * slope.dot(geometry.face_area[f]), 1e-11);
   }
 }
 

@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 
 const double nan_time = std::numeric_limits<double>::quiet_NaN();
 
-Mesh make_mesh(BoxCells cells, int n = 4) {
+LoadedMesh make_mesh(BoxCells cells, int n = 4) {
   const bool flat = cells == BoxCells::quadrilaterals || cells == BoxCells::triangles;
   RawMesh raw;
   if (comm_rank(world) == 0)
@@ -26,13 +26,13 @@ Mesh make_mesh(BoxCells cells, int n = 4) {
   return distribute(world, raw);
 }
 
-void write(FieldWriter& writer, const Mesh& mesh, double time) {
+void write(FieldWriter& writer, const Mesh& mesh, const Geometry& geometry, double time) {
   std::vector<double> pressure, velocity;
   for (const GlobalIndex id : mesh.cell_id) {
     pressure.push_back(double(id) + time);
     for (int d = 0; d < mesh.dim; ++d) velocity.push_back(double(10 * id + d));
   }
-  std::vector<Vec3> points = mesh.reference_points;
+  std::vector<Vec3> points = geometry.points;
   for (Vec3& x : points) x[0] += time * x[1];
   writer.write(time, points,
                {{"pressure", "Pa", OutputField::Place::cells, 1, pressure},
@@ -54,9 +54,9 @@ int count(const std::string& text, const std::string& word) {
 TEST(FieldWriter, every_cell_and_point_is_written_once_with_its_own_values) {
   const Scratch scratch;
   for (const BoxCells cells : {BoxCells::quadrilaterals, BoxCells::mixed}) {
-    const Mesh mesh = make_mesh(cells);
-    FieldWriter writer(mesh, scratch / "", "fluid", true, nan_time);
-    write(writer, mesh, 0.5);
+    const auto [mesh, geometry] = make_mesh(cells);
+    FieldWriter writer(mesh, geometry.points, scratch / "", "fluid", true, nan_time);
+    write(writer, mesh, geometry, 0.5);
     const hdf5::Reader file(scratch / "fluid.h5", "output");
     const std::uint64_t n = file.rows("mesh/cell-id", 1), np = file.rows("mesh/point-id", 1);
     EXPECT_EQ(n, std::uint64_t(mesh.cells.n_global()));
@@ -81,10 +81,10 @@ TEST(FieldWriter, every_cell_and_point_is_written_once_with_its_own_values) {
 
 TEST(FieldWriter, the_index_lists_each_time_after_it_was_written) {
   const Scratch scratch;
-  const Mesh mesh = make_mesh(BoxCells::triangles);
-  FieldWriter writer(mesh, scratch / "", "fluid", true, nan_time);
+  const auto [mesh, geometry] = make_mesh(BoxCells::triangles);
+  FieldWriter writer(mesh, geometry.points, scratch / "", "fluid", true, nan_time);
   for (int i = 0; i < 3; ++i) {
-    write(writer, mesh, 0.25 * i);
+    write(writer, mesh, geometry, 0.25 * i);
     MPI_Barrier(world);
     const std::string index = index_of(scratch);
     EXPECT_EQ(count(index, "<Time "), i + 1);
@@ -96,9 +96,9 @@ TEST(FieldWriter, the_index_lists_each_time_after_it_was_written) {
 
 TEST(FieldWriter, a_fixed_mesh_writes_its_points_once) {
   const Scratch scratch;
-  const Mesh mesh = make_mesh(BoxCells::quadrilaterals);
-  FieldWriter writer(mesh, scratch / "", "fluid", false, nan_time);
-  write(writer, mesh, 0);
+  const auto [mesh, geometry] = make_mesh(BoxCells::quadrilaterals);
+  FieldWriter writer(mesh, geometry.points, scratch / "", "fluid", false, nan_time);
+  write(writer, mesh, geometry, 0);
   const hdf5::Reader file(scratch / "fluid.h5", "output");
   EXPECT_FALSE(file.has("steps/000000/coordinates"));
   EXPECT_EQ(count(index_of(scratch), "fluid.h5:/mesh/coordinates"), 1);
@@ -106,16 +106,16 @@ TEST(FieldWriter, a_fixed_mesh_writes_its_points_once) {
 
 TEST(FieldWriter, a_restart_drops_the_later_times_and_goes_on) {
   const Scratch scratch;
-  const Mesh mesh = make_mesh(BoxCells::quadrilaterals);
+  const auto [mesh, geometry] = make_mesh(BoxCells::quadrilaterals);
   {
-    FieldWriter writer(mesh, scratch / "", "fluid", true, nan_time);
-    for (int i = 0; i < 5; ++i) write(writer, mesh, 0.25 * i);
+    FieldWriter writer(mesh, geometry.points, scratch / "", "fluid", true, nan_time);
+    for (int i = 0; i < 5; ++i) write(writer, mesh, geometry, 0.25 * i);
   }
-  FieldWriter writer(mesh, scratch / "", "fluid", true, 0.5);
+  FieldWriter writer(mesh, geometry.points, scratch / "", "fluid", true, 0.5);
   MPI_Barrier(world);
   EXPECT_EQ(count(index_of(scratch), "<Time "), 3);
   MPI_Barrier(world);
-  write(writer, mesh, 0.6);
+  write(writer, mesh, geometry, 0.6);
   MPI_Barrier(world);
   EXPECT_EQ(count(index_of(scratch), "<Time "), 4);
   const hdf5::Reader file(scratch / "fluid.h5", "output");
@@ -125,19 +125,21 @@ TEST(FieldWriter, a_restart_drops_the_later_times_and_goes_on) {
 
 TEST(FieldWriter, a_restart_on_another_mesh_is_refused_on_every_rank) {
   const Scratch scratch;
-  const Mesh mesh = make_mesh(BoxCells::quadrilaterals), other = make_mesh(BoxCells::quadrilaterals, 5);
-  { FieldWriter writer(mesh, scratch / "", "fluid", true, nan_time); }
-  EXPECT_THAT(error_of([&] { FieldWriter(other, scratch / "", "fluid", true, 0.5); }),
-              HasSubstr("written on another mesh or another number of ranks"));
+  const auto [mesh, geometry] = make_mesh(BoxCells::quadrilaterals);
+  const LoadedMesh other = make_mesh(BoxCells::quadrilaterals, 5);
+  { FieldWriter writer(mesh, geometry.points, scratch / "", "fluid", true, nan_time); }
+  EXPECT_THAT(
+      error_of([&] { FieldWriter(other.mesh, other.geometry.points, scratch / "", "fluid", true, 0.5); }),
+      HasSubstr("written on another mesh or another number of ranks"));
 }
 
 TEST(FieldWriter, a_field_of_the_wrong_size_is_refused) {
   const Scratch scratch;
-  const Mesh mesh = make_mesh(BoxCells::quadrilaterals);
-  FieldWriter writer(mesh, scratch / "", "fluid", true, nan_time);
+  const auto [mesh, geometry] = make_mesh(BoxCells::quadrilaterals);
+  FieldWriter writer(mesh, geometry.points, scratch / "", "fluid", true, nan_time);
   const std::vector<double> values(1);
   EXPECT_THAT(error_of([&] {
-                writer.write(0, mesh.reference_points, {{"p", "Pa", OutputField::Place::points, 3, values}});
+                writer.write(0, geometry.points, {{"p", "Pa", OutputField::Place::points, 3, values}});
               }),
               HasSubstr("The output field 'p' has 1 values"));
 }

@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-Mesh make_stretched(BoxCells cells, double distortion = 0.2) {
+LoadedMesh make_stretched(BoxCells cells, double distortion = 0.2) {
   const bool flat = cells == BoxCells::quadrilaterals || cells == BoxCells::triangles;
   RawMesh raw;
   if (comm_rank(world) == 0) {
@@ -25,9 +25,9 @@ Mesh make_stretched(BoxCells cells, double distortion = 0.2) {
 
 double linear(const Vec3& x) { return 3 + 2 * x[0] - 5 * x[1] + 0.5 * x[2]; }
 
-std::vector<double> linear_values(const Mesh& mesh) {
+std::vector<double> linear_values(const Geometry& geometry) {
   std::vector<double> values;
-  for (const Vec3& x : mesh.reference_points) {
+  for (const Vec3& x : geometry.points) {
     values.push_back(linear(x));
     values.push_back(-2 * linear(x));
   }
@@ -37,11 +37,11 @@ std::vector<double> linear_values(const Mesh& mesh) {
 class ProbeIn : public ::testing::TestWithParam<BoxCells> {};
 
 TEST_P(ProbeIn, a_cell_is_exact_for_linear_fields) {
-  const Mesh mesh = make_stretched(GetParam());
-  const std::vector<double> values = linear_values(mesh);
+  const auto [mesh, geometry] = make_stretched(GetParam());
+  const std::vector<double> values = linear_values(geometry);
   for (const double s : {0.13, 0.31, 0.52, 0.77, 0.99}) {
     const Vec3 x(0.5 + 2 * s, 1 - s * s, mesh.dim == 2 ? 0 : 0.75 * s * (1.3 - s));
-    const Probe probe(mesh, "p", x);
+    const Probe probe(mesh, geometry.points, "p", x);
     const auto got = probe.sample(values, 2);
     EXPECT_EQ(got.size(), comm_rank(world) == 0 ? 2u : 0u);
     if (got.empty()) continue;
@@ -51,17 +51,17 @@ TEST_P(ProbeIn, a_cell_is_exact_for_linear_fields) {
 }
 
 TEST_P(ProbeIn, a_mesh_point_is_exactly_that_point) {
-  const Mesh mesh = make_stretched(GetParam());
+  const auto [mesh, geometry] = make_stretched(GetParam());
   // A value per point that no interpolation of neighbours would give.
   std::vector<double> values;
   for (const GlobalIndex id : mesh.point_id) values.push_back(double((id * 7919) % 101) + 1.0 / 3);
   for (const Vec3& corner : {Vec3(0.5, 0, 0), Vec3(2.5, 1, 0), Vec3(0.9, 0.25, 0)}) {
     double wanted = 0;
     for (Index p = 0; p < mesh.points.n_owned(); ++p)
-      if ((mesh.reference_points[p] - corner).norm() < 1e-12) wanted = values[p];
+      if ((geometry.points[p] - corner).norm() < 1e-12) wanted = values[p];
     wanted = sum(world, wanted);
     if (wanted == 0) continue;  // the interior point was moved by the distortion
-    const auto got = Probe(mesh, "p", corner).sample(values, 1);
+    const auto got = Probe(mesh, geometry.points, "p", corner).sample(values, 1);
     if (!got.empty()) {
       EXPECT_EQ(got[0], wanted);
     }
@@ -73,10 +73,10 @@ INSTANTIATE_TEST_SUITE_P(every_cell_type, ProbeIn,
                                            BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed));
 
 TEST(Probe, just_outside_goes_to_the_nearest_place_of_the_boundary) {
-  const Mesh mesh = make_stretched(BoxCells::quadrilaterals);
-  const Probe probe(mesh, "tip", Vec3(1.03, 1.01, 0), 0.02);
+  const auto [mesh, geometry] = make_stretched(BoxCells::quadrilaterals);
+  const Probe probe(mesh, geometry.points, "tip", Vec3(1.03, 1.01, 0), 0.02);
   EXPECT_NEAR((probe.place() - Vec3(1.03, 1, 0)).norm(), 0, 1e-14);
-  const auto got = probe.sample(linear_values(mesh), 2);
+  const auto got = probe.sample(linear_values(geometry), 2);
   if (!got.empty()) {
     EXPECT_NEAR(got[0], linear(Vec3(1.03, 1, 0)), 1e-12);
   }
@@ -84,10 +84,10 @@ TEST(Probe, just_outside_goes_to_the_nearest_place_of_the_boundary) {
 
 TEST(Probe, just_outside_of_a_solid_body_goes_to_its_surface) {
   for (const BoxCells cells : {BoxCells::hexahedra, BoxCells::tetrahedra, BoxCells::prisms}) {
-    const Mesh mesh = make_stretched(cells, 0);
-    const Probe probe(mesh, "tip", Vec3(1.03, 0.37, 0.76), 0.02);
+    const auto [mesh, geometry] = make_stretched(cells, 0);
+    const Probe probe(mesh, geometry.points, "tip", Vec3(1.03, 0.37, 0.76), 0.02);
     EXPECT_NEAR((probe.place() - Vec3(1.03, 0.37, 0.75)).norm(), 0, 1e-13);
-    const auto got = probe.sample(linear_values(mesh), 2);
+    const auto got = probe.sample(linear_values(geometry), 2);
     if (!got.empty()) {
       EXPECT_NEAR(got[0], linear(Vec3(1.03, 0.37, 0.75)), 1e-12);
     }
@@ -95,17 +95,17 @@ TEST(Probe, just_outside_of_a_solid_body_goes_to_its_surface) {
 }
 
 TEST(Probe, far_outside_is_an_error_with_the_distance_on_every_rank) {
-  const Mesh mesh = make_stretched(BoxCells::quadrilaterals);
+  const auto [mesh, geometry] = make_stretched(BoxCells::quadrilaterals);
   EXPECT_EQ(
-      error_of([&] { Probe(mesh, "tip", Vec3(1.5, 1.25, 0)); }),
+      error_of([&] { Probe(mesh, geometry.points, "tip", Vec3(1.5, 1.25, 0)); }),
       "The probe 'tip' at (1.5, 1.25, 0) is outside the mesh: the nearest point of the mesh is (1.5, 1, 0), "
       "0.25 m away. Move the probe there or into the mesh.");
 }
 
 TEST(Probe, lives_on_exactly_one_rank) {
-  const Mesh mesh = make_stretched(BoxCells::triangles, 0);
+  const auto [mesh, geometry] = make_stretched(BoxCells::triangles, 0);
   // On a face between cells: several ranks could claim it.
-  const Probe probe(mesh, "p", Vec3(1.3, 0.6, 0));
+  const Probe probe(mesh, geometry.points, "p", Vec3(1.3, 0.6, 0));
   double total = 0;
   for (const double w : probe.weights()) total += w;
   EXPECT_NEAR(sum(world, total), 1, 1e-14);

@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 
 const double from_start = std::numeric_limits<double>::quiet_NaN();
 
-Mesh box_of(BoxCells cells) {
+LoadedMesh box_of(BoxCells cells) {
   const bool flat = cells == BoxCells::quadrilaterals || cells == BoxCells::triangles;
   RawMesh raw;
   if (comm_rank(world) == 0)
@@ -29,11 +29,11 @@ Mesh box_of(BoxCells cells) {
 }
 
 /// "height": the face's centre times (1, 10, 100); "place": of the points.
-void write(SurfaceSeries& series, const Mesh& mesh, double time) {
+void write(SurfaceSeries& series, const Mesh& mesh, const Geometry& geometry, double time) {
   std::vector<double> height, place;
   for (Index b = 0; b < mesh.boundary.n_owned(); ++b)
-    height.push_back(mesh.reference.face_centre[mesh.n_interior + b].dot(Vec3(1, 10, 100)) + time);
-  std::vector<Vec3> points = mesh.reference_points;
+    height.push_back(geometry.face_centre[mesh.n_interior + b].dot(Vec3(1, 10, 100)) + time);
+  std::vector<Vec3> points = geometry.points;
   for (Vec3& x : points) {
     x[0] += time * x[1];
     for (int d = 0; d < mesh.dim; ++d) place.push_back(x[d]);
@@ -70,10 +70,10 @@ TEST(SurfaceSeries, each_face_and_point_of_a_patch_is_written_once_where_it_is) 
                                                 {BoxCells::hexahedra, 4},
                                                 {BoxCells::tetrahedra, 3}};
   for (const auto& [cells, corners] : width) {
-    const Mesh mesh = box_of(cells);
-    SurfaceSeries series(mesh, {"xmax", "ymin"}, "output.surfaces");
+    const auto [mesh, geometry] = box_of(cells);
+    SurfaceSeries series(mesh, geometry.points, {"xmax", "ymin"}, "output.surfaces");
     series.open(scratch / "", true, from_start);
-    write(series, mesh, 0.5);
+    write(series, mesh, geometry, 0.5);
     const Read floor(scratch / "surface-ymin.h5", corners);
     const std::size_t along = mesh.dim == 2 ? 5 : 5 * 2 * (corners == 3 ? 2 : 1),
                       points = mesh.dim == 2 ? 6 : 6 * 3;
@@ -97,10 +97,10 @@ TEST(SurfaceSeries, each_face_and_point_of_a_patch_is_written_once_where_it_is) 
 
 TEST(SurfaceSeries, the_index_of_a_plane_scene_holds_edges) {
   const Scratch scratch;
-  const Mesh mesh = box_of(BoxCells::triangles);
-  SurfaceSeries series(mesh, {"ymin"}, "output.surfaces");
+  const auto [mesh, geometry] = box_of(BoxCells::triangles);
+  SurfaceSeries series(mesh, geometry.points, {"ymin"}, "output.surfaces");
   series.open(scratch / "", false, from_start);
-  write(series, mesh, 0);
+  write(series, mesh, geometry, 0);
   std::ifstream in(scratch / "surface-ymin.xdmf");
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   EXPECT_THAT(text, HasSubstr("TopologyType=\"Polyline\" NumberOfElements=\"5\" NodesPerElement=\"2\""));
@@ -109,25 +109,25 @@ TEST(SurfaceSeries, the_index_of_a_plane_scene_holds_edges) {
 }
 
 TEST(SurfaceSeries, all_stands_for_every_patch_and_points_are_flagged_on_all_ranks) {
-  const Mesh mesh = box_of(BoxCells::hexahedra);
-  EXPECT_EQ(SurfaceSeries(mesh, {"all"}, "output.surfaces").patches().size(), 6u);
-  const SurfaceSeries series(mesh, {"zmin"}, "output.surfaces");
+  const auto [mesh, geometry] = box_of(BoxCells::hexahedra);
+  EXPECT_EQ(SurfaceSeries(mesh, geometry.points, {"all"}, "output.surfaces").patches().size(), 6u);
+  const SurfaceSeries series(mesh, geometry.points, {"zmin"}, "output.surfaces");
   const auto flags = series.points();
   for (Index v = 0; v < mesh.points.n_local(); ++v)
-    EXPECT_EQ(flags[std::size_t(v)], mesh.reference_points[std::size_t(v)].z() == 0 ? 1 : 0) << v;
+    EXPECT_EQ(flags[std::size_t(v)], geometry.points[std::size_t(v)].z() == 0 ? 1 : 0) << v;
 }
 
 TEST(SurfaceSeries, a_restart_drops_the_later_times_and_goes_on) {
   const Scratch scratch;
-  const Mesh mesh = box_of(BoxCells::hexahedra);
+  const auto [mesh, geometry] = box_of(BoxCells::hexahedra);
   {
-    SurfaceSeries series(mesh, {"ymin"}, "output.surfaces");
+    SurfaceSeries series(mesh, geometry.points, {"ymin"}, "output.surfaces");
     series.open(scratch / "", true, from_start);
-    for (int i = 0; i < 4; ++i) write(series, mesh, 0.25 * i);
+    for (int i = 0; i < 4; ++i) write(series, mesh, geometry, 0.25 * i);
   }
-  SurfaceSeries series(mesh, {"ymin"}, "output.surfaces");
+  SurfaceSeries series(mesh, geometry.points, {"ymin"}, "output.surfaces");
   series.open(scratch / "", true, 0.25);
-  write(series, mesh, 0.4);
+  write(series, mesh, geometry, 0.4);
   const hdf5::Reader file(scratch / "surface-ymin.h5", "output");
   EXPECT_EQ(file.members("steps").size(), 3u);
   EXPECT_EQ(file.number("steps/000002", "time"), 0.4);
@@ -135,9 +135,9 @@ TEST(SurfaceSeries, a_restart_drops_the_later_times_and_goes_on) {
 }
 
 TEST(SurfaceSeries, a_name_that_is_no_patch_or_comes_twice_is_refused) {
-  const Mesh mesh = box_of(BoxCells::quadrilaterals);
+  const auto [mesh, geometry] = box_of(BoxCells::quadrilaterals);
   const auto refused = [&](std::vector<std::string> names) {
-    return error_of([&] { SurfaceSeries(mesh, names, "output.surfaces"); });
+    return error_of([&] { SurfaceSeries(mesh, geometry.points, names, "output.surfaces"); });
   };
   EXPECT_THAT(refused({"ymin", "xmx"}),
               HasSubstr("output.surfaces: 'xmx' is not a patch of the boundary. Did you mean 'xmax'?"));
@@ -146,9 +146,9 @@ TEST(SurfaceSeries, a_name_that_is_no_patch_or_comes_twice_is_refused) {
 
 TEST(SurfaceSeries, a_file_of_another_kind_is_not_continued) {
   const Scratch scratch;
-  const Mesh mesh = box_of(BoxCells::quadrilaterals);
-  { FieldWriter writer(mesh, scratch / "", "surface-ymin", true, from_start); }
-  SurfaceSeries series(mesh, {"ymin"}, "output.surfaces");
+  const auto [mesh, geometry] = box_of(BoxCells::quadrilaterals);
+  { FieldWriter writer(mesh, geometry.points, scratch / "", "surface-ymin", true, from_start); }
+  SurfaceSeries series(mesh, geometry.points, {"ymin"}, "output.surfaces");
   EXPECT_THAT(error_of([&] { series.open(scratch / "", true, 0.5); }),
               HasSubstr("not a surface output file"));
 }

@@ -19,11 +19,11 @@ void write_series(const std::string& folder, const std::string& name, BoxCells c
   RawMesh raw;
   if (comm_rank(MPI_COMM_WORLD) == 0)
     raw = make_box(cells, {6, 4, flat ? 1 : 2}, Vec3::Zero(), Vec3(2, 1, flat ? 0 : 1));
-  const Mesh mesh = distribute(MPI_COMM_WORLD, raw);
-  FieldWriter writer(mesh, folder, name, true, std::numeric_limits<double>::quiet_NaN());
+  const auto [mesh, geometry] = distribute(MPI_COMM_WORLD, raw);
+  FieldWriter writer(mesh, geometry.points, folder, name, true, std::numeric_limits<double>::quiet_NaN());
   for (int i = 0; i < 4; ++i) {
     const double time = 0.1 * i;
-    std::vector<Vec3> points = mesh.reference_points;
+    std::vector<Vec3> points = geometry.points;
     std::vector<double> displacement, pressure, velocity;
     for (Vec3& x : points) {
       displacement.push_back(time * x[1]);
@@ -31,8 +31,8 @@ void write_series(const std::string& folder, const std::string& name, BoxCells c
       if (!flat) displacement.push_back(0);
       x[0] += time * x[1];
     }
-    const Geometry geometry = compute_geometry(mesh, points);
-    for (const Vec3& x : geometry.cell_centre) {
+    const Geometry moved = compute_geometry(mesh, points);
+    for (const Vec3& x : moved.cell_centre) {
       pressure.push_back(x[0] + time);
       for (int d = 0; d < mesh.dim; ++d) velocity.push_back(x[d]);
     }

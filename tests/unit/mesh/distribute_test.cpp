@@ -15,7 +15,9 @@ namespace {
 class Distribute : public ::testing::TestWithParam<test::Box> {
  protected:
   RawMesh raw = test::distorted_box(GetParam().cells);
-  Mesh mesh = distribute(MPI_COMM_WORLD, raw);
+  const LoadedMesh loaded = distribute(MPI_COMM_WORLD, raw);
+  const Mesh& mesh = loaded.mesh;
+  const Geometry& geometry = loaded.geometry;
 };
 
 INSTANTIATE_TEST_SUITE_P(Boxes, Distribute, ::testing::ValuesIn(test::boxes()),
@@ -82,7 +84,7 @@ TEST_P(Distribute, cells_keep_their_points_and_type) {
     std::multiset<GlobalIndex> here, there(raw.cell_points[whole].begin(), raw.cell_points[whole].end());
     for (const Index p : mesh.cell_points[c]) {
       here.insert(mesh.point_id[p]);
-      EXPECT_EQ(mesh.reference_points[p], raw.points[mesh.point_id[p]]);
+      EXPECT_EQ(geometry.points[p], raw.points[mesh.point_id[p]]);
     }
     EXPECT_EQ(here, there);
   }
@@ -119,7 +121,7 @@ TEST_P(Distribute, patches_are_complete_and_in_the_order_of_the_file) {
     const double plane = patch.name.substr(1) == "min" ? test::lower[axis] : test::upper[axis];
     for (Index i = 0; i < patch.count + patch.ghost_count; ++i) {
       const Index f = i < patch.count ? patch.first + i : patch.ghost_first + i - patch.count;
-      EXPECT_NEAR(mesh.reference.face_centre[f][axis], plane, 1e-14);
+      EXPECT_NEAR(geometry.face_centre[f][axis], plane, 1e-14);
       EXPECT_EQ(mesh.owner[f] < mesh.cells.n_owned(), i < patch.count);
     }
   }
@@ -130,7 +132,7 @@ TEST_P(Distribute, every_boundary_face_of_a_ghost_is_there) {
   std::size_t expected = 0;
   const std::set<GlobalIndex> ghosts(mesh.cell_id.begin() + mesh.cells.n_owned(), mesh.cell_id.end());
   // Boundary faces per cell of the whole mesh, counted on one rank's own copy.
-  const Mesh whole = distribute(MPI_COMM_SELF, raw);
+  const Mesh whole = distribute(MPI_COMM_SELF, raw).mesh;
   for (Index f = whole.n_interior; f < whole.n_faces(); ++f)
     expected += ghosts.count(whole.cell_id[whole.owner[f]]);
   EXPECT_EQ(std::size_t(mesh.boundary.n_ghost()), expected);
@@ -138,10 +140,10 @@ TEST_P(Distribute, every_boundary_face_of_a_ghost_is_there) {
 
 TEST(DistributeTiny, mesh_of_one_cell_a_rank_is_whole) {
   const int size = comm_size(MPI_COMM_WORLD);
-  const Mesh mesh = distribute(
+  const auto [mesh, geometry] = distribute(
       MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {size, 1, 0}, Vec3::Zero(), Vec3(size, 1, 0)));
   double volume = 0;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += mesh.reference.volume[c];
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += geometry.volume[c];
   EXPECT_NEAR(sum(MPI_COMM_WORLD, volume), size, 1e-14);
   EXPECT_EQ(mesh.cells.n_global(), size);
   EXPECT_EQ(mesh.points.n_global(), 2 * (size + 1));

@@ -13,7 +13,9 @@ namespace {
 class GeometryOf : public ::testing::TestWithParam<test::Box> {
  protected:
   RawMesh raw = test::distorted_box(GetParam().cells);
-  Mesh mesh = distribute(MPI_COMM_WORLD, raw);
+  const LoadedMesh loaded = distribute(MPI_COMM_WORLD, raw);
+  const Mesh& mesh = loaded.mesh;
+  const Geometry& geometry = loaded.geometry;
 };
 
 INSTANTIATE_TEST_SUITE_P(Boxes, GeometryOf, ::testing::ValuesIn(test::boxes()),
@@ -32,8 +34,8 @@ std::vector<T> outward_sums(const Mesh& mesh, const std::vector<T>& per_face, co
 }
 
 /// The same random displacement of a point on every rank.
-std::vector<Vec3> shaken(const Mesh& mesh, double amount, unsigned seed) {
-  std::vector<Vec3> moved(mesh.reference_points);
+std::vector<Vec3> shaken(const Mesh& mesh, const Geometry& geometry, double amount, unsigned seed) {
+  std::vector<Vec3> moved(geometry.points);
   for (std::size_t p = 0; p < moved.size(); ++p) {
     std::mt19937 random(seed + 1000 * unsigned(mesh.point_id[p]));
     for (int axis = 0; axis < mesh.dim; ++axis)
@@ -43,7 +45,7 @@ std::vector<Vec3> shaken(const Mesh& mesh, double amount, unsigned seed) {
 }
 
 TEST_P(GeometryOf, cells_are_closed) {
-  const auto points = shaken(mesh, 0.1, 3);
+  const auto points = shaken(mesh, geometry, 0.1, 3);
   const Geometry g = compute_geometry(mesh, points);
   for (const Vec3& s : outward_sums<Vec3>(mesh, g.face_area, Vec3::Zero())) EXPECT_LT(s.norm(), 1e-14);
 }
@@ -51,8 +53,8 @@ TEST_P(GeometryOf, cells_are_closed) {
 TEST_P(GeometryOf, volumes_are_positive_and_add_up) {
   double total = 0;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
-    EXPECT_GT(mesh.reference.volume[c], 0);
-    total += mesh.reference.volume[c];
+    EXPECT_GT(geometry.volume[c], 0);
+    total += geometry.volume[c];
   }
   const double exact = test::box_volume(mesh.dim);
   EXPECT_NEAR(sum(mesh.comm, total), exact, 1e-13 * exact);
@@ -60,39 +62,38 @@ TEST_P(GeometryOf, volumes_are_positive_and_add_up) {
 
 TEST_P(GeometryOf, first_moments_add_up_to_those_of_the_box) {
   Vec3 moment = Vec3::Zero();
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-    moment += mesh.reference.volume[c] * mesh.reference.cell_centre[c];
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) moment += geometry.volume[c] * geometry.cell_centre[c];
   const Vec3 exact = test::box_volume(mesh.dim) * 0.5 * (test::lower + test::upper);
   for (int axis = 0; axis < mesh.dim; ++axis) EXPECT_NEAR(sum(mesh.comm, moment[axis]), exact[axis], 1e-12);
 }
 
 TEST_P(GeometryOf, face_vectors_point_out_of_the_owner) {
   for (Index f = 0; f < mesh.n_faces(); ++f) {
-    const Vec3 out = mesh.reference.face_centre[f] - mesh.reference.cell_centre[mesh.owner[f]];
-    EXPECT_GT(out.dot(mesh.reference.face_area[f]), 0);
+    const Vec3 out = geometry.face_centre[f] - geometry.cell_centre[mesh.owner[f]];
+    EXPECT_GT(out.dot(geometry.face_area[f]), 0);
   }
 }
 
 TEST_P(GeometryOf, does_not_depend_on_the_partition) {
-  const Mesh whole = distribute(MPI_COMM_SELF, raw);
+  const auto [whole, there] = distribute(MPI_COMM_SELF, raw);
   std::vector<Index> cell_of(whole.cell_id.size()), face_of(whole.boundary_id.size());
   for (std::size_t c = 0; c < cell_of.size(); ++c) cell_of[whole.cell_id[c]] = Index(c);
   for (std::size_t b = 0; b < face_of.size(); ++b)
     face_of[whole.boundary_id[b]] = whole.n_interior + Index(b);
   for (Index c = 0; c < mesh.cells.n_local(); ++c) {
     const Index w = cell_of[mesh.cell_id[c]];
-    EXPECT_NEAR(mesh.reference.volume[c], whole.reference.volume[w], 1e-15);
-    EXPECT_LT((mesh.reference.cell_centre[c] - whole.reference.cell_centre[w]).norm(), 1e-14);
+    EXPECT_NEAR(geometry.volume[c], there.volume[w], 1e-15);
+    EXPECT_LT((geometry.cell_centre[c] - there.cell_centre[w]).norm(), 1e-14);
   }
   for (Index b = 0; b < mesh.boundary.n_local(); ++b) {
     const Index f = mesh.n_interior + b, w = face_of[mesh.boundary_id[b]];
-    EXPECT_EQ(mesh.reference.face_area[f], whole.reference.face_area[w]);
-    EXPECT_EQ(mesh.reference.face_centre[f], whole.reference.face_centre[w]);
+    EXPECT_EQ(geometry.face_area[f], there.face_area[w]);
+    EXPECT_EQ(geometry.face_centre[f], there.face_centre[w]);
   }
 }
 
 TEST_P(GeometryOf, swept_volumes_add_up_to_the_change_of_volume) {
-  const auto from = shaken(mesh, 0.15, 11), to = shaken(mesh, 0.15, 12);
+  const auto from = shaken(mesh, geometry, 0.15, 11), to = shaken(mesh, geometry, 0.15, 12);
   const Geometry before = compute_geometry(mesh, from), after = compute_geometry(mesh, to);
   const auto change = outward_sums(mesh, swept_volumes(mesh, from, to), 0.0);
   double largest = 0;
@@ -106,10 +107,10 @@ TEST_P(GeometryOf, swept_volumes_add_up_to_the_change_of_volume) {
 
 TEST_P(GeometryOf, translation_sweeps_face_vector_times_distance) {
   const Vec3 d(0.3, -0.2, mesh.dim == 3 ? 0.7 : 0);
-  std::vector<Vec3> to(mesh.reference_points);
+  std::vector<Vec3> to(geometry.points);
   for (Vec3& x : to) x += d;
-  const auto swept = swept_volumes(mesh, mesh.reference_points, to);
-  for (Index f = 0; f < mesh.n_faces(); ++f) EXPECT_NEAR(swept[f], d.dot(mesh.reference.face_area[f]), 1e-14);
+  const auto swept = swept_volumes(mesh, geometry.points, to);
+  for (Index f = 0; f < mesh.n_faces(); ++f) EXPECT_NEAR(swept[f], d.dot(geometry.face_area[f]), 1e-14);
 }
 
 }  // namespace

@@ -50,9 +50,9 @@ const std::string square =
     "Physical Curve(\"around\") = {1,2,3,4}; Physical Surface(\"inside\") = {1};\n";
 
 TEST_F(LoadMesh, reads_a_file_on_any_number_of_ranks) {
-  const Mesh mesh = load_mesh(MPI_COMM_WORLD, test::data / "solid_41_binary.msh", 3);
+  const auto [mesh, geometry] = load_mesh(MPI_COMM_WORLD, test::data / "solid_41_binary.msh", 3);
   double volume = 0;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += mesh.reference.volume[c];
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += geometry.volume[c];
   EXPECT_NEAR(sum(MPI_COMM_WORLD, volume), 2.5, 1e-13);
   EXPECT_EQ(mesh.zones, (std::vector<std::string>{"lower", "upper"}));
 }
@@ -66,21 +66,21 @@ TEST_F(LoadMesh, meshes_a_geo_once_even_if_all_ask_at_the_same_time) {
   EXPECT_EQ(mesh_geo(geo, 2), first);
   EXPECT_EQ(std::filesystem::last_write_time(first), time) << "not meshed again";
   EXPECT_THAT(first.filename().string(), ::testing::MatchesRegex("square\\.[0-9a-f]+\\.cache\\.msh"));
-  const Mesh mesh = load_mesh(MPI_COMM_WORLD, geo, 2);
+  const auto [mesh, geometry] = load_mesh(MPI_COMM_WORLD, geo, 2);
   EXPECT_NE(mesh.find_patch("around"), nullptr);
 }
 
 /// A machine that went down while it wrote: no fault of the user's, who has nothing to mend.
 TEST_F(LoadMesh, a_truncated_cache_is_made_anew) {
   const auto geo = write("square.geo", "h = 0.3;\n" + square);
-  const GlobalIndex cells = load_mesh(MPI_COMM_WORLD, geo, 2).cells.n_global();
+  const GlobalIndex cells = load_mesh(MPI_COMM_WORLD, geo, 2).mesh.cells.n_global();
   const auto cache = mesh_geo(geo, 2);
   const auto size = std::filesystem::file_size(cache);
   for (const auto kept : {std::uintmax_t(0), size / 3, size - 20}) {
     MPI_Barrier(MPI_COMM_WORLD);
     if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::resize_file(cache, kept);
     MPI_Barrier(MPI_COMM_WORLD);
-    EXPECT_EQ(load_mesh(MPI_COMM_WORLD, geo, 2).cells.n_global(), cells)
+    EXPECT_EQ(load_mesh(MPI_COMM_WORLD, geo, 2).mesh.cells.n_global(), cells)
         << kept << " of " << size << " bytes left";
     EXPECT_EQ(std::filesystem::file_size(cache), size);
   }
@@ -90,7 +90,7 @@ TEST_F(LoadMesh, a_truncated_cache_is_made_anew) {
 TEST_F(LoadMesh, a_cache_with_another_digest_is_made_anew) {
   const auto geo = write("square.geo", "h = 0.3;\n" + square),
              other = write("other.geo", "h = 0.6;\n" + square);
-  const GlobalIndex cells = load_mesh(MPI_COMM_WORLD, geo, 2).cells.n_global();
+  const GlobalIndex cells = load_mesh(MPI_COMM_WORLD, geo, 2).mesh.cells.n_global();
   load_mesh(MPI_COMM_WORLD, other, 2);
   const auto cache = mesh_geo(geo, 2);
   const auto content = [](const std::filesystem::path& file) {
@@ -108,7 +108,7 @@ TEST_F(LoadMesh, a_cache_with_another_digest_is_made_anew) {
       ::testing::internal::CaptureStdout();
     }
     MPI_Barrier(MPI_COMM_WORLD);
-    EXPECT_EQ(load_mesh(MPI_COMM_WORLD, geo, 2).cells.n_global(), cells);
+    EXPECT_EQ(load_mesh(MPI_COMM_WORLD, geo, 2).mesh.cells.n_global(), cells);
     if (comm_rank(MPI_COMM_WORLD) == 0) {
       const std::string log = ::testing::internal::GetCapturedStdout();
       EXPECT_THAT(log, HasSubstr("is damaged, or not written by Couplet"));
@@ -120,9 +120,9 @@ TEST_F(LoadMesh, a_cache_with_another_digest_is_made_anew) {
 TEST_F(LoadMesh, meshes_again_when_the_geo_or_a_file_it_includes_changed) {
   write("size.geo", "h = 0.5;\n");
   const auto geo = write("square.geo", "Include \"size.geo\";\n" + square);
-  const GlobalIndex coarse = load_mesh(MPI_COMM_WORLD, geo, 2).cells.n_global();
+  const GlobalIndex coarse = load_mesh(MPI_COMM_WORLD, geo, 2).mesh.cells.n_global();
   write("size.geo", "h = 0.2;\n");
-  EXPECT_GT(load_mesh(MPI_COMM_WORLD, geo, 2).cells.n_global(), 2 * coarse);
+  EXPECT_GT(load_mesh(MPI_COMM_WORLD, geo, 2).mesh.cells.n_global(), 2 * coarse);
 }
 
 TEST_F(LoadMesh, a_parameter_replaces_the_constant_of_the_geo) {
@@ -131,10 +131,10 @@ TEST_F(LoadMesh, a_parameter_replaces_the_constant_of_the_geo) {
             "/* DefineConstant [ no = 1 ]; */ DefineConstant [ h = {0.5, Name \"size\"}, k = 1 ]; "
             "// DefineConstant [ nor = 1 ]\n" +
                 square);
-  const GlobalIndex coarse = load_mesh(MPI_COMM_WORLD, geo, 2).cells.n_global();
-  EXPECT_EQ(load_mesh(MPI_COMM_WORLD, geo, 2, {{"h", 0.5}}).cells.n_global(), coarse);
-  EXPECT_GT(load_mesh(MPI_COMM_WORLD, geo, 2, {{"h", 0.2}}).cells.n_global(), 2 * coarse);
-  EXPECT_EQ(load_mesh(MPI_COMM_WORLD, geo, 2).cells.n_global(), coarse) << "the cache keeps them apart";
+  const GlobalIndex coarse = load_mesh(MPI_COMM_WORLD, geo, 2).mesh.cells.n_global();
+  EXPECT_EQ(load_mesh(MPI_COMM_WORLD, geo, 2, {{"h", 0.5}}).mesh.cells.n_global(), coarse);
+  EXPECT_GT(load_mesh(MPI_COMM_WORLD, geo, 2, {{"h", 0.2}}).mesh.cells.n_global(), 2 * coarse);
+  EXPECT_EQ(load_mesh(MPI_COMM_WORLD, geo, 2).mesh.cells.n_global(), coarse) << "the cache keeps them apart";
 }
 
 TEST_F(LoadMesh, a_parameter_that_nobody_takes_is_an_error) {
@@ -195,13 +195,13 @@ TEST_F(LoadMesh, reads_unv_by_gmsh_with_its_groups_as_patches_and_scales_lengths
   const std::filesystem::path copy = folder / "millimetres.unv";
   if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::copy(test::data / "millimetres.unv", copy);
   MPI_Barrier(MPI_COMM_WORLD);
-  const Mesh mesh = load_mesh(MPI_COMM_WORLD, copy, 2, {}, {}, {}, false, 0.001);
+  const auto [mesh, geometry] = load_mesh(MPI_COMM_WORLD, copy, 2, {}, {}, {}, false, 0.001);
   EXPECT_EQ(mesh.cells.n_global(), 4);
   ASSERT_EQ(mesh.patches.size(), 2u);
   EXPECT_NE(mesh.find_patch("floor"), nullptr);
   EXPECT_NE(mesh.find_patch("sides"), nullptr);
   double volume = 0;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += mesh.reference.volume[c];
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += geometry.volume[c];
   EXPECT_NEAR(sum(MPI_COMM_WORLD, volume), 1, 1e-12);  // 1000 mm x 1000 mm x 1 m
   EXPECT_THAT(test::error_of([&] {
                 load_mesh(MPI_COMM_WORLD, copy, 2, {{"h", 1}});

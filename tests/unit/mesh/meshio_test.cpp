@@ -35,7 +35,7 @@ TEST(Meshio, med_groups_are_zones_and_patches) {
   EXPECT_THAT(raw.zones, ElementsAre("lower", "upper"));
   EXPECT_THAT(raw.patches, ElementsAre("bottom", "top", "side_s"));
   EXPECT_EQ(raw.points.size(), 12u);
-  EXPECT_EQ(distribute(MPI_COMM_SELF, raw).cells.n_global(), 2);
+  EXPECT_EQ(distribute(MPI_COMM_SELF, raw).mesh.cells.n_global(), 2);
 }
 
 TEST(Meshio, exodus_sets_of_nodes_are_patches) {
@@ -47,7 +47,7 @@ TEST(Meshio, exodus_sets_of_nodes_are_patches) {
   }
   const RawMesh raw = read_finished_mesh(file);
   EXPECT_THAT(raw.patches, ElementsAre("bottom", "top", "rest"));
-  EXPECT_EQ(distribute(MPI_COMM_SELF, raw).cells.n_global(), 2);
+  EXPECT_EQ(distribute(MPI_COMM_SELF, raw).mesh.cells.n_global(), 2);
 }
 
 TEST(Meshio, what_it_cannot_read_is_told_with_its_words) {

@@ -45,11 +45,11 @@ const std::string cubes =
     "*ELEMENT, TYPE=C3D8, ELSET=low\n10, 1,2,3,4,5,6,7,8\n*ELEMENT, TYPE=C3D8I, ELSET=high\n20, 5,6,7,8,15,16,17,18\n";
 
 Vec3 area_of(const RawMesh& raw, const std::string& patch) {
-  const Mesh mesh = distribute(MPI_COMM_SELF, raw);
+  const auto [mesh, geometry] = distribute(MPI_COMM_SELF, raw);
   Vec3 area = Vec3::Zero();
   const Patch* found = mesh.find_patch(patch);
   if (!found) return Vec3::Constant(-1);
-  for (Index f = found->first; f < found->first + found->count; ++f) area += mesh.reference.face_area[f];
+  for (Index f = found->first; f < found->first + found->count; ++f) area += geometry.face_area[f];
   return area;
 }
 

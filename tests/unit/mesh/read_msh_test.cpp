@@ -17,17 +17,17 @@ INSTANTIATE_TEST_SUITE_P(Versions, ReadMsh,
                          ::testing::Values("22_ascii", "22_binary", "41_ascii", "41_binary"),
                          [](const auto& info) { return info.param; });
 
-double volume_of_zone(const Mesh& mesh, const std::string& zone) {
+double volume_of_zone(const Mesh& mesh, const Geometry& geometry, const std::string& zone) {
   double volume = 0;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-    if (mesh.zones[mesh.cell_zone[c]] == zone) volume += mesh.reference.volume[c];
+    if (mesh.zones[mesh.cell_zone[c]] == zone) volume += geometry.volume[c];
   return volume;
 }
 
-Vec3 area_of_patch(const Mesh& mesh, const std::string& name) {
+Vec3 area_of_patch(const Mesh& mesh, const Geometry& geometry, const std::string& name) {
   const Patch* patch = mesh.find_patch(name);
   Vec3 area = Vec3::Zero();
-  for (Index f = patch->first; f < patch->first + patch->count; ++f) area += mesh.reference.face_area[f];
+  for (Index f = patch->first; f < patch->first + patch->count; ++f) area += geometry.face_area[f];
   return area;
 }
 
@@ -39,12 +39,12 @@ TEST_P(ReadMsh, plane_mesh_has_its_cells_zones_and_patches) {
   EXPECT_EQ(raw.zones, (std::vector<std::string>{"stiff", "soft"}));
   EXPECT_EQ(raw.patches, (std::vector<std::string>{"inlet", "outlet", "wall"}));
 
-  const Mesh mesh = distribute(MPI_COMM_SELF, raw);
-  EXPECT_NEAR(volume_of_zone(mesh, "stiff"), 1, 1e-14);
-  EXPECT_NEAR(volume_of_zone(mesh, "soft"), 1, 1e-14);
-  for (const double v : mesh.reference.volume) EXPECT_GT(v, 0);
-  EXPECT_LT((area_of_patch(mesh, "inlet") - Vec3(-1, 0, 0)).norm(), 1e-14);
-  EXPECT_LT((area_of_patch(mesh, "outlet") - Vec3(1, 0, 0)).norm(), 1e-14);
+  const auto [mesh, geometry] = distribute(MPI_COMM_SELF, raw);
+  EXPECT_NEAR(volume_of_zone(mesh, geometry, "stiff"), 1, 1e-14);
+  EXPECT_NEAR(volume_of_zone(mesh, geometry, "soft"), 1, 1e-14);
+  for (const double v : geometry.volume) EXPECT_GT(v, 0);
+  EXPECT_LT((area_of_patch(mesh, geometry, "inlet") - Vec3(-1, 0, 0)).norm(), 1e-14);
+  EXPECT_LT((area_of_patch(mesh, geometry, "outlet") - Vec3(1, 0, 0)).norm(), 1e-14);
   EXPECT_EQ(mesh.find_patch("wall")->count, 8);
 }
 
@@ -61,12 +61,12 @@ TEST_P(ReadMsh, solid_mesh_of_four_cell_types_has_its_cells_zones_and_patches) {
   EXPECT_EQ(raw.zones, (std::vector<std::string>{"lower", "upper"}));
   EXPECT_EQ(raw.patches, (std::vector<std::string>{"bottom", "top", "sides"}));
 
-  const Mesh mesh = distribute(MPI_COMM_SELF, raw);
-  EXPECT_NEAR(volume_of_zone(mesh, "lower"), 1, 1e-13);
-  EXPECT_NEAR(volume_of_zone(mesh, "upper"), 1.5, 1e-13);
-  for (const double v : mesh.reference.volume) EXPECT_GT(v, 0);
-  EXPECT_LT((area_of_patch(mesh, "bottom") - Vec3(0, 0, -1)).norm(), 1e-14);
-  EXPECT_LT((area_of_patch(mesh, "top") - Vec3(0, 0, 1)).norm(), 1e-14);
+  const auto [mesh, geometry] = distribute(MPI_COMM_SELF, raw);
+  EXPECT_NEAR(volume_of_zone(mesh, geometry, "lower"), 1, 1e-13);
+  EXPECT_NEAR(volume_of_zone(mesh, geometry, "upper"), 1.5, 1e-13);
+  for (const double v : geometry.volume) EXPECT_GT(v, 0);
+  EXPECT_LT((area_of_patch(mesh, geometry, "bottom") - Vec3(0, 0, -1)).norm(), 1e-14);
+  EXPECT_LT((area_of_patch(mesh, geometry, "top") - Vec3(0, 0, 1)).norm(), 1e-14);
 }
 
 TEST_P(ReadMsh, all_versions_of_a_mesh_are_the_same) {
@@ -109,9 +109,9 @@ $EndElements
 )"));
   EXPECT_EQ(raw.patches, (std::vector<std::string>{"physical_7", "physical_9"}));
   EXPECT_EQ(raw.zones, (std::vector<std::string>{"default"}));
-  const Mesh mesh = distribute(MPI_COMM_SELF, raw);
+  const auto [mesh, geometry] = distribute(MPI_COMM_SELF, raw);
   EXPECT_EQ(mesh.points.n_local(), 3) << "the point that no cell uses is dropped";
-  EXPECT_NEAR(mesh.reference.volume[0], 0.5, 1e-15) << "the clockwise triangle is turned";
+  EXPECT_NEAR(geometry.volume[0], 0.5, 1e-15) << "the clockwise triangle is turned";
 }
 
 }  // namespace

@@ -13,9 +13,9 @@ namespace {
 template <int D>
 struct LinearFlow {
   explicit LinearFlow(BoxCells cells)
-      : mesh(distribute(MPI_COMM_WORLD, sheared(cells))),
-        boundary_(mesh, walls()),
-        at(make_placement<D>(mesh, mesh.reference)) {
+      : loaded(distribute(MPI_COMM_WORLD, sheared(cells))),
+        boundary_(mesh, geometry, walls()),
+        at(make_placement<D>(mesh, geometry)) {
     slope << Tensor<D>::NullaryExpr(
         [](Eigen::Index i, Eigen::Index j) { return 0.3 + 0.7 * double(i) - 1.1 * double(j * i); });
     slope(0, 0) -= slope.trace();
@@ -42,7 +42,9 @@ struct LinearFlow {
     for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f) is_inner[mesh.owner[f]] = 0;
     return is_inner;
   }
-  const Mesh mesh;
+  const LoadedMesh loaded;
+  const Mesh& mesh = loaded.mesh;
+  const Geometry& geometry = loaded.geometry;
   const Boundary<D> boundary_;
   const std::shared_ptr<const Placement<D>> at;
   Tensor<D> slope = Tensor<D>::Zero();
@@ -120,7 +122,7 @@ void check_flux(BoxCells cells) {
   for (Index c = 0; c < flow.mesh.cells.n_local(); ++c) EXPECT_LT((gradient[c] - flow.slope).norm(), 1e-11);
   double skew = 0;
   for (Index f = 0; f < flow.mesh.n_interior; ++f) {
-    const Vec<D> centre = flow.mesh.reference.face_centre[f].template head<D>();
+    const Vec<D> centre = flow.geometry.face_centre[f].template head<D>();
     EXPECT_NEAR(flux[f], flow.velocity(centre).dot(flow.at->area[f]), 1e-13);
     const Vec<D> middle = 0.5 * (flow.u[flow.mesh.owner[f]] + flow.u[flow.mesh.neighbour[f]]);
     skew = std::max(skew, std::abs(flux[f] - middle.dot(flow.at->area[f])));
@@ -140,9 +142,9 @@ struct Loaded {
   explicit Loaded(BoxCells cells)
       : flow(cells),
         parameters(LinearFlow<D>::walls()),
-        work{flow.mesh, flow.boundary_, parameters, 1.3, 0.4 / 1.3} {
-    for (std::size_t i = 0; i < flow.mesh.reference_points.size(); ++i) {
-      const Vec3& x = flow.mesh.reference_points[i];
+        work{flow.mesh, flow.geometry.points, flow.boundary_, parameters, 1.3, 0.4 / 1.3} {
+    for (std::size_t i = 0; i < flow.geometry.points.size(); ++i) {
+      const Vec3& x = flow.geometry.points[i];
       after.push_back(x + 0.1 * Vec3(x.x() * x.y(), 0.5 * x.x() - x.y(), D == 3 ? 0.3 * x.x() * x.z() : 0));
     }
     from.placement = flow.at;
@@ -177,8 +179,7 @@ TEST(FaceLoops, load_of_a_uniform_pressure_works_by_the_volume_that_its_walls_sw
   for (std::size_t b = 0; b < c.work.w.size(); ++b) {
     const Index f = c.flow.mesh.n_interior + Index(b);
     Vec3 moved = Vec3::Zero();
-    for (const Index v : c.flow.mesh.face_points[f])
-      moved += (c.after[v] - c.flow.mesh.reference_points[v]) / 2;
+    for (const Index v : c.flow.mesh.face_points[f]) moved += (c.after[v] - c.flow.geometry.points[v]) / 2;
     done += loads.pressure_force()[b].dot(moved.head<2>());
   }
   for (Index k = 0; k < c.flow.mesh.cells.n_owned(); ++k)
@@ -213,8 +214,8 @@ TEST(FaceLoops, load_is_the_momentum_flux_and_follows_the_velocity_of_the_wall) 
   Loaded<2> c(BoxCells::quadrilaterals);
   FluidParameters sliding = LinearFlow<2>::walls();
   all_sides(sliding, 2, boundary(BoundaryType::interface));
-  const Boundary<2> given(c.flow.mesh, sliding);
-  StepWork<2> work{c.flow.mesh, given, sliding, 1.3, 0.4 / 1.3};
+  const Boundary<2> given(c.flow.mesh, c.flow.geometry, sliding);
+  StepWork<2> work{c.flow.mesh, c.flow.geometry.points, given, sliding, 1.3, 0.4 / 1.3};
   work.step = c.work.step;
   Loads<2> loads(work);
   const Vec<2> guess(0.3, -0.2), later(0.5, 0.4);

@@ -36,20 +36,20 @@ template <int D>
 class FluidCase {
  public:
   FluidCase(MPI_Comm comm, const RawMesh& raw, FluidParameters parameters, PointMotion motion = {})
-      : mesh_(std::make_unique<Mesh>(distribute(comm, raw))), motion_(std::move(motion)) {
+      : loaded_(std::make_unique<LoadedMesh>(distribute(comm, raw))), motion_(std::move(motion)) {
     parameters.dimension = D;
-    fluid_ = std::make_unique<Fluid<D>>(*mesh_, parameters, bool(motion_));
+    fluid_ = std::make_unique<Fluid<D>>(mesh(), geometry(), parameters, bool(motion_));
   }
 
   std::vector<Vec3> points(double t) const {
     std::vector<Vec3> moved;
     if (!motion_) return moved;
-    for (std::size_t i = 0; i < mesh_->reference_points.size(); ++i)
-      moved.push_back(motion_(mesh_->reference_points[i], mesh_->point_id[i], t));
+    for (std::size_t i = 0; i < geometry().points.size(); ++i)
+      moved.push_back(motion_(geometry().points[i], mesh().point_id[i], t));
     return moved;
   }
   Vectors<D> wall(const WallVelocity& w, double t) const {
-    Vectors<D> values(mesh_->boundary.n_owned(), Vec<D>::Zero());
+    Vectors<D> values(mesh().boundary.n_owned(), Vec<D>::Zero());
     if (!w) return values;
     for (std::size_t b = 0; b < values.size(); ++b)
       values[b] = w(fluid_->state().placement->boundary_centre[b], t).template head<D>();
@@ -70,49 +70,50 @@ class FluidCase {
   double velocity_error(const std::function<Vec3(const Vec3&)>& exact) const {
     const State<D>& s = fluid_->state();
     double square = 0, volume = 0;
-    for (Index c = 0; c < mesh_->cells.n_owned(); ++c) {
+    for (Index c = 0; c < mesh().cells.n_owned(); ++c) {
       Vec3 x = Vec3::Zero();
       x.head<D>() = s.placement->centre[c];
       square += s.placement->volume[c] * (s.u[c] - exact(x).template head<D>()).squaredNorm();
       volume += s.placement->volume[c];
     }
-    return std::sqrt(sum(mesh_->comm, square) / sum(mesh_->comm, volume));
+    return std::sqrt(sum(mesh().comm, square) / sum(mesh().comm, volume));
   }
   double largest_velocity_error(const std::function<Vec3(const Vec3&)>& exact) const {
     const State<D>& s = fluid_->state();
     double largest = 0;
-    for (Index c = 0; c < mesh_->cells.n_owned(); ++c) {
+    for (Index c = 0; c < mesh().cells.n_owned(); ++c) {
       Vec3 x = Vec3::Zero();
       x.head<D>() = s.placement->centre[c];
       largest = std::max(largest, (s.u[c] - exact(x).template head<D>()).norm());
     }
-    return max(mesh_->comm, largest);
+    return max(mesh().comm, largest);
   }
   /// Root mean square of p - exact after both lost their means.
   double pressure_error(const std::function<double(const Vec3&)>& exact) const {
     const State<D>& s = fluid_->state();
     double mean = 0, square = 0, volume = 0;
-    std::vector<double> difference(mesh_->cells.n_owned());
-    for (Index c = 0; c < mesh_->cells.n_owned(); ++c) {
+    std::vector<double> difference(mesh().cells.n_owned());
+    for (Index c = 0; c < mesh().cells.n_owned(); ++c) {
       Vec3 x = Vec3::Zero();
       x.head<D>() = s.placement->centre[c];
       difference[c] = s.pressure[0]->p[c] - exact(x);
       mean += s.placement->volume[c] * difference[c];
       volume += s.placement->volume[c];
     }
-    volume = sum(mesh_->comm, volume);
-    mean = sum(mesh_->comm, mean) / volume;
-    for (Index c = 0; c < mesh_->cells.n_owned(); ++c)
+    volume = sum(mesh().comm, volume);
+    mean = sum(mesh().comm, mean) / volume;
+    for (Index c = 0; c < mesh().cells.n_owned(); ++c)
       square += s.placement->volume[c] * std::pow(difference[c] - mean, 2);
-    return std::sqrt(sum(mesh_->comm, square) / volume);
+    return std::sqrt(sum(mesh().comm, square) / volume);
   }
 
   Fluid<D>& fluid() { return *fluid_; }
   const State<D>& state() const { return fluid_->state(); }
-  const Mesh& mesh() const { return *mesh_; }
+  const Mesh& mesh() const { return loaded_->mesh; }
+  const Geometry& geometry() const { return loaded_->geometry; }
 
  private:
-  std::unique_ptr<Mesh> mesh_;
+  std::unique_ptr<LoadedMesh> loaded_;
   PointMotion motion_;
   std::unique_ptr<Fluid<D>> fluid_;
 };

@@ -121,7 +121,7 @@ TEST(Gaps, a_checkpoint_of_a_closed_valve_goes_on_bit_for_bit) {
   Valve v(valve(true));
   v.run(1.2);
   const double t = v.c.state().time;
-  Fluid<2> other(v.c.mesh(), v.c.fluid().parameters(), true);
+  Fluid<2> other(v.c.mesh(), v.c.geometry(), v.c.fluid().parameters(), true);
   StateInMemory memory;
   {
     CheckpointWriter writer(memory);
@@ -133,7 +133,7 @@ TEST(Gaps, a_checkpoint_of_a_closed_valve_goes_on_bit_for_bit) {
   other.solvers().load(reader);
   const auto points = [&](double at) {
     std::vector<Vec3> moved;
-    for (const Vec3& x : v.c.mesh().reference_points) moved.push_back(pinched(x, at));
+    for (const Vec3& x : v.c.geometry().points) moved.push_back(pinched(x, at));
     return moved;
   };
   for (Fluid<2>* fluid : {&v.c.fluid(), &other}) {

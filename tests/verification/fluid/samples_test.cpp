@@ -74,9 +74,9 @@ TEST(VelocityTable, is_linear_in_space_and_time_between_its_places) {
   write(folder / "in.csv", "# u = y (1 + t)\nt [s],y [m],v,u [m/s]\n0,1,0,1\n0,0,0,0\n2,0,0,0\n2,1,0,3\n");
   FluidParameters p = couette();
   p.boundaries["xmin"].table->file = folder / "in.csv";
-  const Mesh mesh = distribute(MPI_COMM_WORLD, box({4, 10, 1}));
-  const Boundary<2> boundary(mesh, p);
-  const auto at = make_placement<2>(mesh, mesh.reference);
+  const auto [mesh, geometry] = distribute(MPI_COMM_WORLD, box({4, 10, 1}));
+  const Boundary<2> boundary(mesh, geometry, p);
+  const auto at = make_placement<2>(mesh, geometry);
   Vectors<2> w(mesh.boundary.n_owned(), Vec<2>::Zero());
   boundary.velocity_at(0.5, at->boundary_centre, w);
   const Patch& inlet = *mesh.find_patch("xmin");
@@ -126,9 +126,9 @@ TEST(RotatingInlet, adds_omega_cross_r_and_a_ring_between_turning_walls_carries_
   p.boundaries["xmin"].table.reset();
   p.boundaries["xmin"].velocity = {{"3"}, {"0"}};
   p.boundaries["xmin"].rotation = RotationParameters{{"2*t"}, Vec3(0.5, 0.25, 0), Vec3::UnitZ()};
-  const Mesh mesh = distribute(MPI_COMM_WORLD, box({4, 10, 1}));
-  const Boundary<2> boundary(mesh, p);
-  const auto at = make_placement<2>(mesh, mesh.reference);
+  const auto [mesh, geometry] = distribute(MPI_COMM_WORLD, box({4, 10, 1}));
+  const Boundary<2> boundary(mesh, geometry, p);
+  const auto at = make_placement<2>(mesh, geometry);
   Vectors<2> w(mesh.boundary.n_owned(), Vec<2>::Zero());
   boundary.velocity_at(0.5, at->boundary_centre, w);
   const Patch& inlet = *mesh.find_patch("xmin");
@@ -138,7 +138,7 @@ TEST(RotatingInlet, adds_omega_cross_r_and_a_ring_between_turning_walls_carries_
     EXPECT_NEAR(w[b][1], 0 - 0.5, 1e-14);
   }
   p.boundaries["xmin"].rotation->speed = {"x"};
-  EXPECT_THROW(Boundary<2>(mesh, p), Error);
+  EXPECT_THROW(Boundary<2>(mesh, geometry, p), Error);
 }
 
 /// What passes a wall that turns about the middle of a box is round-off on faces whose normals are no axes: it was
@@ -185,8 +185,8 @@ TEST(RotatingInlet, walls_that_turn_by_rotation_do_what_the_expression_of_it_doe
 }
 
 /// Distributed once: a second time in one process PT-Scotch may part it in another way, and no checkpoint would fit.
-const Mesh& the_mesh() {
-  static const Mesh mesh = distribute(MPI_COMM_WORLD, box({20, 10, 1}));
+const LoadedMesh& the_mesh() {
+  static const LoadedMesh mesh = distribute(MPI_COMM_WORLD, box({20, 10, 1}));
   return mesh;
 }
 
@@ -200,7 +200,7 @@ fs::path run(FluidParameters p, const std::string& name, int begin = 0, int end 
   p.boundaries["xmin"].table->file = folder / "in.csv";
   FluidContext context{"fluid", folder};
   if (begin > 0) context.restart_time = 0.01 * begin;
-  FluidParticipant<2> fluid(Mesh(the_mesh()), p, context, MotionLink{});
+  FluidParticipant<2> fluid(the_mesh(), p, context, MotionLink{});
   fluid.initialise();
   if (begin > 0) {
     CheckpointReader file(MPI_COMM_WORLD, folder / "state.h5");

@@ -271,7 +271,7 @@ TEST_P(Pulse, goes_on_bit_for_bit_from_a_checkpoint) {
       d.fluid().solvers().save(writer);
       writer.close();
     }
-    Fluid<2> other(d.mesh(), d.fluid().parameters(), false);
+    Fluid<2> other(d.mesh(), d.geometry(), d.fluid().parameters(), false);
     CheckpointReader reader(memory);
     other.restore(read_state<2>(reader, d.mesh(), other.state().placement, true));
     other.solvers().load(reader);

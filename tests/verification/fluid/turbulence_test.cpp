@@ -55,8 +55,8 @@ TEST(Wale, goes_to_walls_as_the_third_power_of_the_distance) {
     return Vec3(y * (2 + std::sin(a) * std::cos(b)), y * y * std::cos(a + b),
                 y * (1 + std::cos(a) * std::sin(b)));
   };
-  const Mesh mesh = distribute(MPI_COMM_SELF, raw);
-  const auto at = make_placement<3>(mesh, mesh.reference);
+  const auto [mesh, geometry] = distribute(MPI_COMM_SELF, raw);
+  const auto at = make_placement<3>(mesh, geometry);
   Vectors<3> u, u_boundary;
   for (const Vec3& x : at->centre) u.push_back(field(x));
   for (const Vec3& x : at->boundary_centre) u_boundary.push_back(field(x));

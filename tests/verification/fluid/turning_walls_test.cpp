@@ -27,17 +27,16 @@ RawMesh box(BoxCells cells) {
 }
 
 TEST(TurningWalls, stokes_theorem_gives_minus_omega_cross_the_area) {
-  const Mesh mesh = distribute(MPI_COMM_WORLD, box<3>(BoxCells::tetrahedra));
+  const auto [mesh, geometry] = distribute(MPI_COMM_WORLD, box<3>(BoxCells::tetrahedra));
   const Vec3 omega(0.3, -1.1, 0.7), shift(2, 1, -1);
   for (const Patch& patch : mesh.patches) {
     std::vector<Vec3> velocities;
     for (Index f = patch.first; f < patch.first + patch.count; ++f)
-      for (const Index v : mesh.face_points[f])
-        velocities.push_back(shift + omega.cross(mesh.reference_points[v]));
+      for (const Index v : mesh.face_points[f]) velocities.push_back(shift + omega.cross(geometry.points[v]));
     Vectors<3> turn(mesh.boundary.n_owned(), Vec3::Zero());
-    set_turn<3>(mesh, patch, mesh.reference_points, velocities, turn);
+    set_turn<3>(mesh, patch, geometry.points, velocities, turn);
     for (Index f = patch.first; f < patch.first + patch.count; ++f) {
-      const Vec3& area = mesh.reference.face_area[f];
+      const Vec3& area = geometry.face_area[f];
       EXPECT_LT((turn[f - mesh.n_interior] + omega.cross(area)).norm(), 1e-14);
       EXPECT_NEAR(turning_force<3>(mu, turn[f - mesh.n_interior]).dot(area), 0, 1e-16);
     }

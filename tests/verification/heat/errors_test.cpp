@@ -36,7 +36,7 @@ Outcome slab(int n, int steps, HeatScheme scheme, bool again = false) {
   const HeatParameters p = cooling(scheme);
   HeatCase scene(make_box(BoxCells::quadrilaterals, {n, 4, 1}, Vec3::Zero(), Vec3(1, 0.4, 0)),
                  {{1, 1.0, 1.0}}, p);
-  auto errors = std::make_unique<HeatErrors>(*scene.mesh, p);
+  auto errors = std::make_unique<HeatErrors>(scene.mesh(), scene.geometry(), p);
   for (int i = 0; i < steps; ++i) {
     const HeatState& now = scene.heat->accepted();
     scene.heat->solve({now.time, 0.5 / steps, Scheme::standalone, now.steps});
@@ -44,7 +44,7 @@ Outcome slab(int n, int steps, HeatScheme scheme, bool again = false) {
     scene.heat->accept_step();
     if (!again) continue;
     const std::vector<double> state = errors->state();
-    errors = std::make_unique<HeatErrors>(*scene.mesh, p);
+    errors = std::make_unique<HeatErrors>(scene.mesh(), scene.geometry(), p);
     errors->restore(state);
   }
   const double size = scene.error([](const Vec3&) { return mean_before; });
@@ -102,7 +102,7 @@ TEST(HeatErrors, a_linear_field_errs_nowhere_and_one_temperature_says_nothing) {
     if (level) p.boundaries["xmax"].value = {"300"};
     HeatCase scene(make_box(BoxCells::quadrilaterals, {6, 3, 1}, Vec3::Zero(), Vec3(1, 1, 0)),
                    {{1, 1.0, 1.0}}, p);
-    const HeatErrors errors(*scene.mesh, p);
+    const HeatErrors errors(scene.mesh(), scene.geometry(), p);
     scene.step(1);
     const ErrorParts parts = errors.parts(*scene.heat);
     if (level) {

@@ -88,12 +88,12 @@ TEST_P(Exactness, ranks_agree_with_one_rank) {
   HeatCase together(distorted_box(GetParam()), {varying}, p);
   HeatCase alone(distorted_box(GetParam()), {varying}, p, MPI_COMM_SELF);
   for (int i = 0; i < 3; ++i) together.step(20), alone.step(20);
-  std::vector<double> by_id(alone.mesh->cells.n_owned());
-  for (Index c = 0; c < alone.mesh->cells.n_owned(); ++c)
-    by_id[alone.mesh->cell_id[c]] = alone.temperature(c);
+  std::vector<double> by_id(alone.mesh().cells.n_owned());
+  for (Index c = 0; c < alone.mesh().cells.n_owned(); ++c)
+    by_id[alone.mesh().cell_id[c]] = alone.temperature(c);
   double gap = 0;
-  for (Index c = 0; c < together.mesh->cells.n_owned(); ++c)
-    gap = std::max(gap, std::abs(together.temperature(c) - by_id[together.mesh->cell_id[c]]));
+  for (Index c = 0; c < together.mesh().cells.n_owned(); ++c)
+    gap = std::max(gap, std::abs(together.temperature(c) - by_id[together.mesh().cell_id[c]]));
   gap = max(MPI_COMM_WORLD, gap) / 350;
   ::testing::Test::RecordProperty("gap", fmt::format("{:.3e}", gap));
   EXPECT_LT(gap, 1e-10);
@@ -132,7 +132,7 @@ TEST_P(Exactness, a_piecewise_linear_temperature_is_exact_across_an_oblique_inte
                       fmt::format("300 + ({} > 0 ? {} : {})", linear(n), linear(right), linear(left)));
   p.boundaries["xmax"] = heat_boundary(HeatType::flux, fmt::format("{:.17g}", k_right * n.dot(right)));
   HeatCase scene(raw, {{1000, k_left, 800.0}, {7850, k_right, 480.0}}, p);
-  ASSERT_FALSE(scene.mesh->twin.empty());
+  ASSERT_FALSE(scene.mesh().twin.empty());
   scene.step(1);
   const double error = scene.largest_error(exact) / 30;
   ::testing::Test::RecordProperty("relative_error", fmt::format("{:.3e}", error));

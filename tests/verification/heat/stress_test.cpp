@@ -32,14 +32,14 @@ Shrunk shrunk(int cells, int steps, const char* pull, bool again = false) {
   p.heat->initial_temperature = {"300 + 100*cos(0.8603335890193797*x)"};
   HeatBoundary& air = p.heat->boundaries["xmax"];
   air.type = HeatBoundary::Type::convection, air.coefficient = {"1"}, air.ambient = {"300"};
-  const Mesh mesh = distribute(
+  const LoadedMesh body = distribute(
       MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {cells, 2, 1}, Vec3::Zero(), Vec3(1, 0.5, 0)));
-  auto solid = std::make_unique<Solid>(mesh, p, SolidContext{});
+  auto solid = std::make_unique<Solid>(body, p, SolidContext{});
   solid->collect_errors();
   for (int i = 0; i < steps; ++i) {
     step(*solid, 0.5 / steps);
     if (!again) continue;
-    auto next = std::make_unique<Solid>(mesh, p, SolidContext{});
+    auto next = std::make_unique<Solid>(body, p, SolidContext{});
     next->collect_errors();
     support::SavedState(*solid).load_into(*next);
     solid = std::move(next);
@@ -47,7 +47,7 @@ Shrunk shrunk(int cells, int steps, const char* pull, bool again = false) {
   const std::vector<double> u = solid->fields().point_displacement();
   Shrunk found{0, solid->error_parts()};
   for (std::size_t i = 0; i < u.size(); i += 2)
-    if (std::abs(mesh.reference_points[i / 2].x() - 1) < 1e-9) found.end = u[i];
+    if (std::abs(body.geometry.points[i / 2].x() - 1) < 1e-9) found.end = u[i];
   return found;
 }
 
@@ -129,10 +129,11 @@ Errors wedge_errors(int n, bool solve_for_temperature) {
   const auto solid = make_solid(wedge(n, 0.002, cylinder), p);
   step(*solid, 1);
   const Mesh& mesh = solid->body().mesh();
+  const Geometry& geometry = solid->body().geometry();
   const auto stress = solid->fields().cell_stress(solid->fields().point_displacement());
   double error = 0, size = 0, stress_error = 0, stress_size = 0;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
-    const double r = mesh.reference.cell_centre[c].head<2>().norm(), v = mesh.reference.volume[c];
+    const double r = geometry.cell_centre[c].head<2>().norm(), v = geometry.volume[c];
     const double u = cylinder.displacement(r);
     error += v * std::pow(solid->stepper().state().cell_u[3 * std::size_t(c)] - u, 2);
     size += v * u * u;
@@ -180,7 +181,7 @@ double linear_temperature_stress(BoxCells cells, int n) {
   const auto stress = solid->fields().cell_stress(solid->fields().point_displacement());
   double squares = 0;
   for (std::size_t c = 0; c < stress.size(); ++c)
-    squares += solid->body().mesh().reference.volume[c] * stress[c].squaredNorm();
+    squares += solid->body().geometry().volume[c] * stress[c].squaredNorm();
   return std::sqrt(squares) / (modulus * alpha * 100);
 }
 

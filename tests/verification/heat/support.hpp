@@ -35,30 +35,32 @@ inline HeatBoundary convection(const std::string& coefficient, const std::string
 
 /// A mesh with the heat equation on it.
 struct HeatCase {
-  std::unique_ptr<Mesh> mesh;
+  std::unique_ptr<LoadedMesh> loaded;
   std::unique_ptr<Heat> heat;
 
   HeatCase(const RawMesh& raw, const std::vector<HeatProperties>& materials, const HeatParameters& p,
            MPI_Comm comm = MPI_COMM_WORLD)
-      : mesh(std::make_unique<Mesh>(distribute(comm, raw))),
-        heat(std::make_unique<Heat>(*mesh, materials, p, std::vector<std::string>{})) {}
+      : loaded(std::make_unique<LoadedMesh>(distribute(comm, raw))),
+        heat(std::make_unique<Heat>(mesh(), geometry(), materials, p, std::vector<std::string>{})) {}
 
+  const Mesh& mesh() const { return loaded->mesh; }
+  const Geometry& geometry() const { return loaded->geometry; }
   void step(double dt) {
     heat->solve({heat->accepted().time, dt, Scheme::standalone, heat->accepted().steps});
     heat->accept_step();
   }
   double temperature(Index cell) const { return heat->accepted().cells[cell]; }
-  const Vec3& place(Index cell) const { return mesh->reference.cell_centre[cell]; }
+  const Vec3& place(Index cell) const { return geometry().cell_centre[cell]; }
 
   using Exact = std::function<double(const Vec3&)>;
   /// Volume-weighted L2 norm of the error.
   double error(const Exact& exact) const {
     double squares = 0, volume = 0;
-    for (Index c = 0; c < mesh->cells.n_owned(); ++c) {
-      squares += mesh->reference.volume[c] * std::pow(temperature(c) - exact(place(c)), 2);
-      volume += mesh->reference.volume[c];
+    for (Index c = 0; c < mesh().cells.n_owned(); ++c) {
+      squares += geometry().volume[c] * std::pow(temperature(c) - exact(place(c)), 2);
+      volume += geometry().volume[c];
     }
-    return std::sqrt(sum(mesh->comm, squares) / sum(mesh->comm, volume));
+    return std::sqrt(sum(mesh().comm, squares) / sum(mesh().comm, volume));
   }
   /// Largest error of cells, boundary faces and points.
   double largest_error(const Exact& exact) const {
@@ -66,12 +68,12 @@ struct HeatCase {
     const auto see = [&](double value, const Vec3& x) {
       largest = std::max(largest, std::abs(value - exact(x)));
     };
-    for (Index c = 0; c < mesh->cells.n_owned(); ++c) see(temperature(c), place(c));
+    for (Index c = 0; c < mesh().cells.n_owned(); ++c) see(temperature(c), place(c));
     const std::vector<double> faces = heat->face_temperature(heat->accepted());
-    for (std::size_t f = 0; f < faces.size(); ++f) see(faces[f], mesh->reference.face_centre[f]);
+    for (std::size_t f = 0; f < faces.size(); ++f) see(faces[f], geometry().face_centre[f]);
     const std::vector<double> points = heat->point_temperature(heat->accepted());
-    for (std::size_t v = 0; v < points.size(); ++v) see(points[v], mesh->reference_points[v]);
-    return max(mesh->comm, largest);
+    for (std::size_t v = 0; v < points.size(); ++v) see(points[v], geometry().points[v]);
+    return max(mesh().comm, largest);
   }
 };
 

@@ -287,18 +287,18 @@ TEST(Barrier, slides_along_planes_and_edges_of_any_direction) {
   RawMesh raw = make_box(BoxCells::mixed, {4, 4, 4}, Vec3::Zero(), Vec3::Ones());
   const Tensor3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   for (Vec3& x : raw.points) x = turn * x;
-  const Mesh mesh = distribute(MPI_COMM_WORLD, raw);
+  const auto [mesh, geometry] = distribute(MPI_COMM_WORLD, raw);
   Parameters p;
   p.dimension = 3;
   for (const Patch& patch : mesh.patches) p.boundaries[patch.name].motion = BoundaryMotion::slip;
   p.boundaries["xmin"].motion = BoundaryMotion::fixed;
   p.boundaries["xmax"].motion = BoundaryMotion::interface;
   p.stiffening = 0;
-  BarrierMotion barrier(mesh, p);
+  BarrierMotion barrier(mesh, geometry, p);
   const auto pushed = [&](double way) {
     std::vector<double> d(std::size_t(mesh.points.n_local()) * 3, 0.0);
     for (Index v = 0; v < mesh.points.n_local(); ++v) {
-      const Vec3 x = turn.transpose() * mesh.reference_points[v];
+      const Vec3 x = turn.transpose() * geometry.points[v];
       if (x.x() > 0.999) Eigen::Map<Vec3>(d.data() + 3 * v) = turn * Vec3(way, 0, 0);
     }
     return d;
@@ -306,7 +306,7 @@ TEST(Barrier, slides_along_planes_and_edges_of_any_direction) {
   const std::vector<double> d = barrier.solve(pushed(0.8));
   double across = 0, along = 0;
   for (Index v = 0; v < mesh.points.n_local(); ++v) {
-    const Vec3 x = turn.transpose() * mesh.reference_points[v];
+    const Vec3 x = turn.transpose() * geometry.points[v];
     const Vec3 u = turn.transpose() * Eigen::Map<const Vec3>(d.data() + 3 * v);
     // Uniform stretch has least distortion.
     along = std::max(along, std::abs(u.x() - 0.8 * x.x()));
@@ -317,14 +317,14 @@ TEST(Barrier, slides_along_planes_and_edges_of_any_direction) {
 }
 
 TEST(Barrier, periodic_patches_are_refused_by_name) {
-  const Mesh mesh =
+  const auto [mesh, geometry] =
       distribute(MPI_COMM_SELF, make_box(BoxCells::quadrilaterals, {2, 2, 1}, Vec3::Zero(), Vec3::Ones()));
   Parameters p;
   p.dimension = 2;
   for (const Patch& patch : mesh.patches) p.boundaries[patch.name].motion = BoundaryMotion::fixed;
   p.boundaries["ymax"].motion = BoundaryMotion::periodic;
   try {
-    BarrierMotion barrier(mesh, p);
+    BarrierMotion barrier(mesh, geometry, p);
     FAIL() << "accepted";
   } catch (const Error& e) {
     EXPECT_THAT(e.what(), testing::HasSubstr("boundaries.ymax"));

@@ -20,7 +20,7 @@ constexpr double outer = 2;
 constexpr int around = 24;
 
 /// 1 < r < 2 over half a turn; in 3-D a half tube of height 1.
-Mesh half_ring(BoxCells cells, int dim) {
+LoadedMesh half_ring(BoxCells cells, int dim) {
   RawMesh raw;
   if (comm_rank(MPI_COMM_WORLD) == 0) {
     raw = make_box(cells, {6, around, 2}, Vec3::Zero(), Vec3::Ones());
@@ -43,10 +43,10 @@ struct Far {
   double off = 0, along = 0;  // of the outer points: largest distance from the circle, largest way
 };
 
-Far of_outer_points(const Mesh& mesh, const std::vector<double>& d) {
+Far of_outer_points(const Mesh& mesh, const Geometry& geometry, const std::vector<double>& d) {
   Far far;
   for (Index v = 0; v < mesh.points.n_owned(); ++v) {
-    const Vec3& x = mesh.reference_points[v];
+    const Vec3& x = geometry.points[v];
     if (x.head<2>().norm() < outer - 1e-9) continue;
     const Eigen::Map<const Vec<2>> moved(d.data() + std::size_t(v) * mesh.dim);
     far.off = std::max(far.off, std::abs((x.head<2>() + moved).norm() - outer));
@@ -57,16 +57,16 @@ Far of_outer_points(const Mesh& mesh, const std::vector<double>& d) {
 
 TEST(CurvedSlide, points_stay_on_the_polygon_of_the_patch_however_far_they_slide) {
   for (const int dim : {2, 3}) {
-    const Mesh mesh = half_ring(dim == 2 ? BoxCells::quadrilaterals : BoxCells::hexahedra, dim);
+    const auto [mesh, geometry] = half_ring(dim == 2 ? BoxCells::quadrilaterals : BoxCells::hexahedra, dim);
     const Parameters p = sliding(mesh);
     std::vector<double> given(std::size_t(mesh.points.n_local()) * dim, 0.0);
     for (Index v = 0; v < mesh.points.n_local(); ++v)
-      if (mesh.reference_points[v].head<2>().norm() < 1 + 1e-9) given[std::size_t(v) * dim] = 0.6;
-    PseudoSolid solid(mesh, p);
+      if (geometry.points[v].head<2>().norm() < 1 + 1e-9) given[std::size_t(v) * dim] = 0.6;
+    PseudoSolid solid(mesh, geometry, p);
     std::vector<double> d = solid.solve(given);
-    const Far tangent = of_outer_points(mesh, d);
-    CurvedSlide(mesh, p).put_back(d);
-    const Far after = of_outer_points(mesh, d);
+    const Far tangent = of_outer_points(mesh, geometry, d);
+    CurvedSlide(mesh, geometry, p).put_back(d);
+    const Far after = of_outer_points(mesh, geometry, d);
     const double sagitta = outer * (1 - std::cos(pi / around / 2));
     EXPECT_GT(tangent.off, 2 * sagitta) << "the tangent alone leaves the circle";
     EXPECT_LE(after.off, sagitta * (1 + 1e-9)) << dim;
@@ -75,20 +75,20 @@ TEST(CurvedSlide, points_stay_on_the_polygon_of_the_patch_however_far_they_slide
 }
 
 TEST(CurvedSlide, flat_patches_and_points_that_do_not_move_are_left_alone) {
-  const Mesh mesh = half_ring(BoxCells::quadrilaterals, 2);
+  const auto [mesh, geometry] = half_ring(BoxCells::quadrilaterals, 2);
   Parameters p = sliding(mesh);
   std::vector<double> rest(std::size_t(mesh.points.n_local()) * 2, 0.0);
-  CurvedSlide(mesh, p).put_back(rest);
+  CurvedSlide(mesh, geometry, p).put_back(rest);
   for (const double value : rest) EXPECT_EQ(value, 0);
-  EXPECT_FALSE(CurvedSlide(mesh, p).empty());
+  EXPECT_FALSE(CurvedSlide(mesh, geometry, p).empty());
   p.boundaries["xmax"].motion = BoundaryMotion::fixed;
-  EXPECT_TRUE(CurvedSlide(mesh, p).empty());
+  EXPECT_TRUE(CurvedSlide(mesh, geometry, p).empty());
 }
 
 TEST(CurvedSlide, is_refused_by_the_laplacian_with_what_to_use) {
-  const Mesh mesh = half_ring(BoxCells::quadrilaterals, 2);
+  const auto [mesh, geometry] = half_ring(BoxCells::quadrilaterals, 2);
   try {
-    Laplacian laplacian(mesh, sliding(mesh));
+    Laplacian laplacian(mesh, geometry, sliding(mesh));
     FAIL() << "accepted";
   } catch (const Error& e) {
     EXPECT_THAT(e.what(), testing::HasSubstr("use 'method: pseudo-solid', which slides along any surface"));

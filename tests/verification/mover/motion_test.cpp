@@ -29,15 +29,15 @@ Parameters all_patches(const Mesh& mesh, BoundaryMotion motion) {
   return p;
 }
 
-Mesh box(BoxCells cells, int n, MPI_Comm comm = MPI_COMM_WORLD) {
+LoadedMesh box(BoxCells cells, int n, MPI_Comm comm = MPI_COMM_WORLD) {
   RawMesh raw = make_box(cells, {n, n, n}, Vec3::Zero(), Vec3::Ones());
   perturb_interior(raw, 0.2, 7);
   return distribute(comm, raw);
 }
 
-std::vector<double> at_points(const Mesh& mesh, const Field& f) {
+std::vector<double> at_points(const Mesh& mesh, const Geometry& geometry, const Field& f) {
   std::vector<double> values;
-  for (const Vec3& x : mesh.reference_points) {
+  for (const Vec3& x : geometry.points) {
     const Vec3 d = f(x);
     values.insert(values.end(), d.data(), d.data() + mesh.dim);
   }
@@ -48,12 +48,12 @@ std::vector<double> at_points(const Mesh& mesh, const Field& f) {
 TEST(PseudoSolid, carries_a_linear_field_into_the_mesh_exactly) {
   for (const BoxCells cells : {BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
                                BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed}) {
-    const Mesh mesh = box(cells, 4);
+    const auto [mesh, geometry] = box(cells, 4);
     Parameters p = all_patches(mesh, BoundaryMotion::interface);
     p.stiffening = 0;
     p.poisson_ratio = 0.2;
-    PseudoSolid solid(mesh, p);
-    const auto linear = at_points(mesh, [&](const Vec3& x) {
+    PseudoSolid solid(mesh, geometry, p);
+    const auto linear = at_points(mesh, geometry, [&](const Vec3& x) {
       return Vec3(0.1 * x.x() - 0.2 * x.y() + 0.3, 0.15 * x.x() + 0.05 * x.y(),
                   mesh.dim == 3 ? 0.1 * x.z() : 0);
     });
@@ -67,16 +67,18 @@ TEST(PseudoSolid, slides_along_a_plane_of_any_direction) {
   const double angle = 0.4;
   const Vec3 along(std::cos(angle), std::sin(angle), 0), across(-std::sin(angle), std::cos(angle), 0);
   for (Vec3& x : raw.points) x = x.x() * along + x.y() * across;
-  const Mesh mesh = distribute(MPI_COMM_WORLD, raw);
+  const auto [mesh, geometry] = distribute(MPI_COMM_WORLD, raw);
   Parameters p = all_patches(mesh, BoundaryMotion::slip);
   p.boundaries["xmin"].motion = BoundaryMotion::fixed;
   p.boundaries["xmax"].motion = BoundaryMotion::interface;
-  PseudoSolid solid(mesh, p);
-  const auto pushed = at_points(
-      mesh, [&](const Vec3& x) { return x.dot(along) > 0.999 ? Vec3(0.2 * along) : Vec3(Vec3::Zero()); });
+  PseudoSolid solid(mesh, geometry, p);
+  const auto pushed = at_points(mesh, geometry, [&](const Vec3& x) {
+    return x.dot(along) > 0.999 ? Vec3(0.2 * along) : Vec3(Vec3::Zero());
+  });
   const auto d = solid.solve(pushed);
   // Without Poisson's ratio a uniform body stretches along the push alone.
-  const auto stretched = at_points(mesh, [&](const Vec3& x) { return Vec3(0.2 * x.dot(along) * along); });
+  const auto stretched =
+      at_points(mesh, geometry, [&](const Vec3& x) { return Vec3(0.2 * x.dot(along) * along); });
   EXPECT_LT(largest_difference(mesh.comm, d, stretched), 1e-8);
 }
 
@@ -84,20 +86,21 @@ TEST(PseudoSolid, slides_along_a_plane_of_any_direction) {
 TEST(PseudoSolid, stiffening_is_the_volume_to_the_power_of_minus_chi) {
   RawMesh raw = make_box(BoxCells::quadrilaterals, {24, 1, 1}, Vec3::Zero(), Vec3(1, 0.05, 1));
   for (Vec3& x : raw.points) x.x() = x.x() < 0.5 ? x.x() / 2 : 0.25 + 1.5 * (x.x() - 0.5);  // widths 1:3
-  const Mesh mesh = distribute(MPI_COMM_SELF, raw);
-  const auto pushed = at_points(mesh, [](const Vec3& x) { return Vec3(x.x() < 1e-9 ? 0.2 : 0.0, 0, 0); });
+  const auto [mesh, geometry] = distribute(MPI_COMM_SELF, raw);
+  const auto pushed =
+      at_points(mesh, geometry, [](const Vec3& x) { return Vec3(x.x() < 1e-9 ? 0.2 : 0.0, 0, 0); });
   for (const double chi : {1.0, 2.0}) {
     Parameters p = all_patches(mesh, BoundaryMotion::slip);
     p.boundaries["xmin"].motion = BoundaryMotion::interface;
     p.boundaries["xmax"].motion = BoundaryMotion::fixed;
     p.stiffening = chi;
-    PseudoSolid solid(mesh, p);
+    PseudoSolid solid(mesh, geometry, p);
     const auto d = solid.solve(pushed);
     // Strain e of the small cells, 3^chi e of the large ones: e (0.25 + 0.75 3^chi) = -0.2; the cell pair where they
     // meet smears it.
     const double strain = -0.2 / (0.25 + 0.75 * std::pow(3, chi));
     for (Index v = 0; v < mesh.points.n_local(); ++v) {
-      const double x = mesh.reference_points[v].x();
+      const double x = geometry.points[v].x();
       if (x < 0.2) {
         EXPECT_NEAR(d[2 * v], 0.2 + strain * x, 0.005 * 0.2) << "chi " << chi << " x " << x;
       }
@@ -117,9 +120,10 @@ TEST(Rotations, an_eighth_of_a_turn_keeps_the_shape_of_the_body_and_all_cells_va
   EXPECT_GT(s.worst[MeshState::scaled_jacobian].value, 0.1);
   // Cells at the plate turn with it.
   const Mesh& mesh = mover.mesh();
+  const Geometry& geometry = mover.geometry();
   double worst = 0;
   for (Index v = 0; v < mesh.points.n_local(); ++v) {
-    const Vec3& x = mesh.reference_points[v];
+    const Vec3& x = geometry.points[v];
     if (x.norm() > 0.5) continue;
     const double k = std::sqrt(0.5);
     const Vec3 d(k * (x.x() - x.y()) - x.x(), k * (x.x() + x.y()) - x.y(), 0);
@@ -136,15 +140,16 @@ TEST(Rotations, go_on_beyond_half_a_turn) {
   mover.initialise();
   run(mover, 0, 1, 6);
   const Mesh& mesh = mover.mesh();
+  const Geometry& geometry = mover.geometry();
   // Halfway (in ln r) between the radii of body and wall by more than a quarter of a turn, not backwards by less.
   const double r1 = std::hypot(0.1, 0.01);
   double r2 = 10 * r1;
-  for (const Vec3& x : mesh.reference_points)
+  for (const Vec3& x : geometry.points)
     if (std::max(std::abs(x.x()), std::abs(x.y())) > 0.999) r2 = std::min(r2, x.norm());
   r2 = min(mesh.comm, r2);
   double worst = 0, turned = 0;
   for (Index v = 0; v < mesh.points.n_local(); ++v) {
-    const Vec3& x = mesh.reference_points[v];
+    const Vec3& x = geometry.points[v];
     if (x.norm() < 0.2 || x.norm() > 0.6) continue;
     const double angle = 1.1 * pi * std::log(r2 / x.norm()) / std::log(r2 / r1);
     const Vec3 d(std::cos(angle) * x.x() - std::sin(angle) * x.y() - x.x(),
@@ -197,8 +202,9 @@ TEST_P(EveryMethod, swept_volumes_are_the_change_of_volume) {
   Mover mover(p, context());
   mover.initialise();
   const Mesh& mesh = mover.mesh();
+  const Geometry& geometry = mover.geometry();
   const auto placed = [&] {
-    std::vector<Vec3> points = mesh.reference_points;
+    std::vector<Vec3> points = geometry.points;
     for (std::size_t v = 0; v < points.size(); ++v)
       for (int c = 0; c < 2; ++c) points[v][c] += mover.displacement()[2 * v + c];
     return points;
@@ -226,15 +232,15 @@ INSTANTIATE_TEST_SUITE_P(All, EveryMethod,
                                          std::pair{Method::rotations, Form::total}));
 
 TEST(Guard, measures_of_a_sheared_and_stretched_cell) {
-  const Mesh mesh =
+  const auto [mesh, geometry] =
       distribute(MPI_COMM_SELF, make_box(BoxCells::quadrilaterals, {2, 1, 1}, Vec3::Zero(), Vec3(2, 1, 1)));
   Parameters p = all_patches(mesh, BoundaryMotion::fixed);
-  const Guard guard(mesh, p);
-  std::vector<Vec3> points = mesh.reference_points;
+  const Guard guard(mesh, geometry, p);
+  std::vector<Vec3> points = geometry.points;
   for (Vec3& x : points)
     if (x.x() < 0.5) x.x() -= 3;  // the left cell: 4 x 1
   const Geometry moved = compute_geometry(mesh, points);
-  const MeshState s = guard.measure(moved, points);
+  const MeshState s = guard.measure(moved);
   EXPECT_DOUBLE_EQ(s.worst[MeshState::volume_ratio].value, 1);
   EXPECT_DOUBLE_EQ(s.worst[MeshState::edge_ratio].value, 4);
   EXPECT_DOUBLE_EQ(s.worst[MeshState::scaled_jacobian].value, 1);
@@ -243,7 +249,7 @@ TEST(Guard, measures_of_a_sheared_and_stretched_cell) {
   EXPECT_EQ(s.worst[MeshState::edge_ratio].cell, s.worst[MeshState::area_change].cell);
   EXPECT_NEAR(s.worst[MeshState::edge_ratio].place.x(), -1, 1e-12);
   for (Vec3& x : points) x.x() += x.y();  // sheared by 45 degrees
-  const MeshState t = guard.measure(compute_geometry(mesh, points), points);
+  const MeshState t = guard.measure(compute_geometry(mesh, points));
   EXPECT_NEAR(t.worst[MeshState::scaled_jacobian].value, std::sqrt(0.5), 1e-12);
   EXPECT_NEAR(t.worst[MeshState::angle].value, 45, 1e-9);
 }
@@ -251,14 +257,15 @@ TEST(Guard, measures_of_a_sheared_and_stretched_cell) {
 TEST(Guard, ideal_cells_have_a_scaled_jacobian_of_one_and_turned_over_ones_below_zero) {
   for (const BoxCells cells : {BoxCells::hexahedra, BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed,
                                BoxCells::triangles, BoxCells::quadrilaterals}) {
-    const Mesh mesh = distribute(MPI_COMM_SELF, make_box(cells, {2, 2, 2}, Vec3::Zero(), Vec3::Ones()));
-    const Guard guard(mesh, all_patches(mesh, BoundaryMotion::fixed));
-    const MeshState s = guard.measure(mesh.reference, mesh.reference_points);
+    const auto [mesh, geometry] =
+        distribute(MPI_COMM_SELF, make_box(cells, {2, 2, 2}, Vec3::Zero(), Vec3::Ones()));
+    const Guard guard(mesh, geometry, all_patches(mesh, BoundaryMotion::fixed));
+    const MeshState s = guard.measure(geometry);
     EXPECT_GT(s.worst[MeshState::scaled_jacobian].value, 0.3) << int(cells);
     EXPECT_LE(s.worst[MeshState::scaled_jacobian].value, 1 + 1e-12);
-    std::vector<Vec3> mirrored = mesh.reference_points;
+    std::vector<Vec3> mirrored = geometry.points;
     for (Vec3& x : mirrored) x.x() = -x.x();
-    const MeshState m = guard.measure(compute_geometry(mesh, mirrored), mirrored);
+    const MeshState m = guard.measure(compute_geometry(mesh, mirrored));
     EXPECT_LT(m.worst[MeshState::scaled_jacobian].value, 0) << int(cells);
   }
 }

@@ -26,9 +26,9 @@ Parameters all_patches(const Mesh& mesh, BoundaryMotion motion) {
 }
 
 template <class F>
-std::vector<double> at_points(const Mesh& mesh, F&& f) {
+std::vector<double> at_points(const Mesh& mesh, const Geometry& geometry, F&& f) {
   std::vector<double> values;
-  for (const Vec3& x : mesh.reference_points) {
+  for (const Vec3& x : geometry.points) {
     const Vec3 d = f(x);
     values.insert(values.end(), d.data(), d.data() + mesh.dim);
   }
@@ -41,7 +41,7 @@ double largest_difference(const Mesh& mesh, const std::vector<double>& a, const 
   return max(mesh.comm, worst);
 }
 
-Mesh perturbed_box(BoxCells cells, int n) {
+LoadedMesh perturbed_box(BoxCells cells, int n) {
   RawMesh raw = make_box(cells, {n, n, n}, Vec3::Zero(), Vec3::Ones());
   perturb_interior(raw, 0.2, 7);
   return distribute(MPI_COMM_WORLD, raw);
@@ -50,10 +50,10 @@ Mesh perturbed_box(BoxCells cells, int n) {
 TEST(Laplacian, a_rigid_translation_of_the_boundary_translates_every_point) {
   for (const BoxCells cells : {BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
                                BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed}) {
-    const Mesh mesh = perturbed_box(cells, 5);
-    Laplacian laplacian(mesh, all_patches(mesh, BoundaryMotion::interface));
+    const auto [mesh, geometry] = perturbed_box(cells, 5);
+    Laplacian laplacian(mesh, geometry, all_patches(mesh, BoundaryMotion::interface));
     const auto shift =
-        at_points(mesh, [&](const Vec3&) { return Vec3(0.3, -0.2, mesh.dim == 3 ? 0.1 : 0.0); });
+        at_points(mesh, geometry, [&](const Vec3&) { return Vec3(0.3, -0.2, mesh.dim == 3 ? 0.1 : 0.0); });
     EXPECT_LT(largest_difference(mesh, laplacian.solve(shift), shift), 1e-12);
   }
 }
@@ -61,18 +61,19 @@ TEST(Laplacian, a_rigid_translation_of_the_boundary_translates_every_point) {
 // The equation is linear: what a rigid motion adds to another one is what it does alone.
 TEST(Laplacian, a_rigid_motion_of_the_interface_needs_no_further_solve_and_moves_the_mesh_alike) {
   for (const BoxCells cells : {BoxCells::triangles, BoxCells::prisms}) {
-    const Mesh mesh = perturbed_box(cells, 6);
+    const auto [mesh, geometry] = perturbed_box(cells, 6);
     Parameters p = all_patches(mesh, BoundaryMotion::fixed);
     p.boundaries["xmax"].motion = BoundaryMotion::interface;
     p.boundaries["ymax"].motion = BoundaryMotion::slip;
-    Laplacian laplacian(mesh, p);
+    Laplacian laplacian(mesh, geometry, p);
     const auto turn = [&](double angle, double shift) {
-      return at_points(mesh, [&](const Vec3& x) {
+      return at_points(mesh, geometry, [&](const Vec3& x) {
         return Vec3((std::cos(angle) - 1) * x.x() - std::sin(angle) * x.y() + shift,
                     std::sin(angle) * x.x() + (std::cos(angle) - 1) * x.y(), 0.5 * shift);
       });
     };
-    const auto bend = at_points(mesh, [](const Vec3& x) { return Vec3(0.1 * x.y() * x.y(), 0, 0); });
+    const auto bend =
+        at_points(mesh, geometry, [](const Vec3& x) { return Vec3(0.1 * x.y() * x.y(), 0, 0); });
     const std::vector<double> rigid = turn(0.1, 0.02);
     std::vector<double> both = rigid;
     for (std::size_t i = 0; i < both.size(); ++i) both[i] += bend[i];
@@ -89,25 +90,27 @@ TEST(Laplacian, a_rigid_motion_of_the_interface_needs_no_further_solve_and_moves
 }
 
 TEST(Laplacian, a_slipping_wall_lets_points_slide_and_keeps_them_on_its_plane) {
-  const Mesh mesh =
+  const auto [mesh, geometry] =
       distribute(MPI_COMM_WORLD, make_box(BoxCells::hexahedra, {6, 5, 4}, Vec3::Zero(), Vec3::Ones()));
   Parameters p = all_patches(mesh, BoundaryMotion::slip);
   p.boundaries["xmin"].motion = BoundaryMotion::fixed;
   p.boundaries["xmax"].motion = BoundaryMotion::interface;
   p.stiffening = 0;
-  Laplacian laplacian(mesh, p);
-  const auto pushed = at_points(mesh, [](const Vec3& x) { return Vec3(x.x() > 0.999 ? 0.2 : 0.0, 0, 0); });
+  Laplacian laplacian(mesh, geometry, p);
+  const auto pushed =
+      at_points(mesh, geometry, [](const Vec3& x) { return Vec3(x.x() > 0.999 ? 0.2 : 0.0, 0, 0); });
   const auto d = laplacian.solve(pushed);
   // On a uniform box the Laplacian stretches linearly; next to the slip walls points come from cell centres
   // in the plane.
-  const auto linear = at_points(mesh, [](const Vec3& x) { return Vec3(0.2 * x.x(), 0, 0); });
+  const auto linear = at_points(mesh, geometry, [](const Vec3& x) { return Vec3(0.2 * x.x(), 0, 0); });
   EXPECT_LT(largest_difference(mesh, d, linear), 1e-12);
 }
 
 TEST(Laplacian, no_point_overshoots_the_boundary_values) {
-  const Mesh mesh = perturbed_box(BoxCells::tetrahedra, 6);
-  Laplacian laplacian(mesh, all_patches(mesh, BoundaryMotion::interface));
-  const auto given = at_points(mesh, [](const Vec3& x) { return Vec3(x.y() > 0.999 ? 0.1 : 0.0, 0, 0); });
+  const auto [mesh, geometry] = perturbed_box(BoxCells::tetrahedra, 6);
+  Laplacian laplacian(mesh, geometry, all_patches(mesh, BoundaryMotion::interface));
+  const auto given =
+      at_points(mesh, geometry, [](const Vec3& x) { return Vec3(x.y() > 0.999 ? 0.1 : 0.0, 0, 0); });
   const auto d = laplacian.solve(given);
   for (std::size_t i = 0; i < d.size(); i += 3) {
     EXPECT_GE(d[i], -1e-14);
@@ -116,15 +119,15 @@ TEST(Laplacian, no_point_overshoots_the_boundary_values) {
 }
 
 TEST(Laplacian, cg_and_the_direct_method_move_the_mesh_alike_and_back_to_the_start) {
-  const Mesh mesh = perturbed_box(BoxCells::triangles, 12);
+  const auto [mesh, geometry] = perturbed_box(BoxCells::triangles, 12);
   Parameters p = all_patches(mesh, BoundaryMotion::interface);
-  Laplacian direct(mesh, p);
+  Laplacian direct(mesh, geometry, p);
   p.linear.method = LinearMethod::cg_multigrid;
   p.linear.relative_tolerance = 1e-12;
-  Laplacian iterative(mesh, p);
-  const auto bend =
-      at_points(mesh, [](const Vec3& x) { return Vec3(0.1 * x.y() * x.y(), 0.05 * std::sin(x.x()), 0); });
-  const auto rest = at_points(mesh, [](const Vec3&) { return Vec3(0, 0, 0); });
+  Laplacian iterative(mesh, geometry, p);
+  const auto bend = at_points(
+      mesh, geometry, [](const Vec3& x) { return Vec3(0.1 * x.y() * x.y(), 0.05 * std::sin(x.x()), 0); });
+  const auto rest = at_points(mesh, geometry, [](const Vec3&) { return Vec3(0, 0, 0); });
   EXPECT_LT(largest_difference(mesh, direct.solve(bend), iterative.solve(bend)), 1e-11);
   EXPECT_LT(largest_difference(mesh, direct.solve(rest), rest), 1e-15);
   EXPECT_LT(largest_difference(mesh, iterative.solve(rest), rest), 1e-12);
@@ -133,26 +136,27 @@ TEST(Laplacian, cg_and_the_direct_method_move_the_mesh_alike_and_back_to_the_sta
 TEST(Laplacian, stiffening_protects_the_small_cells) {
   RawMesh raw = make_box(BoxCells::quadrilaterals, {20, 4, 1}, Vec3::Zero(), Vec3::Ones());
   for (Vec3& x : raw.points) x.x() = std::pow(x.x(), 2.5);  // small cells at x = 0
-  const Mesh mesh = distribute(MPI_COMM_WORLD, raw);
-  const auto pushed = at_points(mesh, [](const Vec3& x) { return Vec3(x.x() < 1e-9 ? 0.3 : 0.0, 0, 0); });
+  const auto [mesh, geometry] = distribute(MPI_COMM_WORLD, raw);
+  const auto pushed =
+      at_points(mesh, geometry, [](const Vec3& x) { return Vec3(x.x() < 1e-9 ? 0.3 : 0.0, 0, 0); });
   double least[2];
   for (const int chi : {0, 1}) {
     Parameters p = all_patches(mesh, BoundaryMotion::slip);
     p.boundaries["xmin"].motion = BoundaryMotion::interface;
     p.boundaries["xmax"].motion = BoundaryMotion::fixed;
     p.stiffening = chi;
-    Laplacian laplacian(mesh, p);
+    Laplacian laplacian(mesh, geometry, p);
     const auto d = laplacian.solve(pushed);
-    std::vector<Vec3> moved = mesh.reference_points;
+    std::vector<Vec3> moved = geometry.points;
     for (std::size_t v = 0; v < moved.size(); ++v) moved[v].x() += d[2 * v];
     const Geometry g = compute_geometry(mesh, moved);
     least[chi] = 1e300;
     Index smallest = 0;
     for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-      if (mesh.reference.volume[c] < mesh.reference.volume[smallest]) smallest = c;
-    const double v0 = min(mesh.comm, mesh.reference.volume[smallest]);
+      if (geometry.volume[c] < geometry.volume[smallest]) smallest = c;
+    const double v0 = min(mesh.comm, geometry.volume[smallest]);
     for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-      if (mesh.reference.volume[c] < 1.001 * v0) least[chi] = g.volume[c] / mesh.reference.volume[c];
+      if (geometry.volume[c] < 1.001 * v0) least[chi] = g.volume[c] / geometry.volume[c];
     least[chi] = min(mesh.comm, least[chi]);
   }
   EXPECT_LT(least[0], 0.72);
@@ -164,14 +168,15 @@ TEST(Laplacian, stiffening_protects_the_small_cells) {
 TEST(Laplacian, stiffening_is_the_volume_to_the_power_of_minus_chi) {
   RawMesh raw = make_box(BoxCells::quadrilaterals, {12, 1, 1}, Vec3::Zero(), Vec3::Ones());
   for (Vec3& x : raw.points) x.x() = std::pow(x.x(), 2.0);
-  const Mesh mesh = distribute(MPI_COMM_SELF, raw);
-  const auto pushed = at_points(mesh, [](const Vec3& x) { return Vec3(x.x() < 1e-9 ? 0.2 : 0.0, 0, 0); });
+  const auto [mesh, geometry] = distribute(MPI_COMM_SELF, raw);
+  const auto pushed =
+      at_points(mesh, geometry, [](const Vec3& x) { return Vec3(x.x() < 1e-9 ? 0.2 : 0.0, 0, 0); });
   for (const double chi : {1.0, 2.0}) {
     Parameters p = all_patches(mesh, BoundaryMotion::slip);
     p.boundaries["xmin"].motion = BoundaryMotion::interface;
     p.boundaries["xmax"].motion = BoundaryMotion::fixed;
     p.stiffening = chi;
-    Laplacian laplacian(mesh, p);
+    Laplacian laplacian(mesh, geometry, p);
     laplacian.solve(pushed);
     std::vector<double> compliance, edge;
     for (int i = 0; i <= 12; ++i) edge.push_back(std::pow(i / 12.0, 2));
@@ -184,8 +189,7 @@ TEST(Laplacian, stiffening_is_the_volume_to_the_power_of_minus_chi) {
     const double all = std::accumulate(compliance.begin(), compliance.end(), 0.0);
     for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
       double behind = 0;
-      for (int i = 0; i < 12 && centre(i) < mesh.reference.cell_centre[c].x() + 1e-9; ++i)
-        behind += compliance[i];
+      for (int i = 0; i < 12 && centre(i) < geometry.cell_centre[c].x() + 1e-9; ++i) behind += compliance[i];
       EXPECT_NEAR(laplacian.cell_displacement()[2 * c], 0.2 * (1 - behind / all), 1e-12) << "chi " << chi;
     }
   }
@@ -194,11 +198,11 @@ TEST(Laplacian, stiffening_is_the_volume_to_the_power_of_minus_chi) {
 TEST(Laplacian, a_slip_patch_off_the_axes_is_refused_by_name) {
   RawMesh raw = make_box(BoxCells::quadrilaterals, {4, 4, 1}, Vec3::Zero(), Vec3::Ones());
   for (Vec3& x : raw.points) x.x() += 0.3 * x.y();
-  const Mesh mesh = distribute(MPI_COMM_WORLD, raw);
+  const auto [mesh, geometry] = distribute(MPI_COMM_WORLD, raw);
   Parameters p = all_patches(mesh, BoundaryMotion::fixed);
   p.boundaries["xmax"].motion = BoundaryMotion::slip;
   try {
-    Laplacian laplacian(mesh, p);
+    Laplacian laplacian(mesh, geometry, p);
     FAIL() << "accepted";
   } catch (const Error& e) {
     EXPECT_THAT(e.what(), testing::HasSubstr("'xmax'"));

@@ -23,7 +23,7 @@ namespace {
 using std::numbers::pi;
 
 /// A unit box whose sides in x (and y, in three dimensions) are joined.
-Mesh joined_box(int dim, int n, bool simplices = false) {
+LoadedMesh joined_box(int dim, int n, bool simplices = false) {
   RawMesh raw;
   if (comm_rank(MPI_COMM_WORLD) == 0) {
     const BoxCells in_the_plane = simplices ? BoxCells::triangles : BoxCells::quadrilaterals,
@@ -48,10 +48,10 @@ Parameters floor_moves(int dim) {
 }
 
 /// Displacement of all points where the floor moves as a wave with its crest at `crest`.
-std::vector<double> waved(const Mesh& mesh, MotionMethod& method, double crest) {
+std::vector<double> waved(const Mesh& mesh, const Geometry& geometry, MotionMethod& method, double crest) {
   std::vector<double> floor(std::size_t(mesh.points.n_local()) * mesh.dim, 0.0);
   for (Index v = 0; v < mesh.points.n_local(); ++v) {
-    const Vec3& x = mesh.reference_points[v];
+    const Vec3& x = geometry.points[v];
     if (x[mesh.dim - 1] > 1e-9) continue;
     double wave = 0.1 * std::cos(2 * pi * (x.x() - crest));
     if (mesh.dim == 3) wave *= std::cos(2 * pi * (x.y() - crest));
@@ -64,11 +64,11 @@ std::vector<double> waved(const Mesh& mesh, MotionMethod& method, double crest) 
 using Place = std::array<int, 3>;
 
 /// By place, counted in cells from `crest` on and around the joined sides.
-std::map<Place, Vec3> by_place(const Mesh& mesh, const std::vector<double>& displacement, int n,
-                               double crest) {
+std::map<Place, Vec3> by_place(const Mesh& mesh, const Geometry& geometry,
+                               const std::vector<double>& displacement, int n, double crest) {
   std::vector<double> mine;
   for (Index v = 0; v < mesh.points.n_owned(); ++v) {
-    const Vec3& x = mesh.reference_points[v];
+    const Vec3& x = geometry.points[v];
     mine.insert(mine.end(), {x[0], x[1], x[2], 0, 0, 0});
     for (int c = 0; c < mesh.dim; ++c)
       mine[mine.size() - 3 + c] = displacement[std::size_t(v) * mesh.dim + c];
@@ -89,13 +89,15 @@ std::map<Place, Vec3> by_place(const Mesh& mesh, const std::vector<double>& disp
 
 /// A wave on the floor that begins elsewhere moves the mesh alike elsewhere: no place is a side of the box. Both copies of
 /// a point move as one.
-void expect_no_side(const Mesh& mesh, MotionMethod& method, int n, double tolerance) {
+void expect_no_side(const Mesh& mesh, const Geometry& geometry, MotionMethod& method, int n,
+                    double tolerance) {
   const int dim = mesh.dim;
-  const PeriodicPoints periodic(mesh);
-  const std::vector<double> first = waved(mesh, method, 0), second = waved(mesh, method, 0.25);
+  const PeriodicPoints periodic(mesh, geometry);
+  const std::vector<double> first = waved(mesh, geometry, method, 0),
+                            second = waved(mesh, geometry, method, 0.25);
   EXPECT_LT(periodic.largest_gap(first, dim), 1e-12);
   EXPECT_LT(periodic.largest_gap(second, dim), 1e-12);
-  const auto a = by_place(mesh, first, n, 0), b = by_place(mesh, second, n, 0.25);
+  const auto a = by_place(mesh, geometry, first, n, 0), b = by_place(mesh, geometry, second, n, 0.25);
   ASSERT_EQ(a.size(), b.size());
   double worst = 0, inside = 0;
   for (const auto& [place, d] : a) {
@@ -109,9 +111,9 @@ void expect_no_side(const Mesh& mesh, MotionMethod& method, int n, double tolera
 TEST(Periodic, a_wave_on_the_floor_knows_no_side) {
   for (const int dim : {2, 3}) {
     const int n = dim == 2 ? 12 : 4;
-    const Mesh mesh = joined_box(dim, n);
-    Laplacian laplacian(mesh, floor_moves(dim));
-    expect_no_side(mesh, laplacian, n, 1e-10);
+    const auto [mesh, geometry] = joined_box(dim, n);
+    Laplacian laplacian(mesh, geometry, floor_moves(dim));
+    expect_no_side(mesh, geometry, laplacian, n, 1e-10);
   }
 }
 
@@ -119,11 +121,11 @@ TEST(Periodic, a_wave_on_the_floor_knows_no_side) {
 TEST(Periodic, a_wave_on_the_floor_of_an_elastic_mesh_knows_no_side) {
   for (const int dim : {2, 3}) {
     const int n = dim == 2 ? 8 : 4;
-    const Mesh mesh = joined_box(dim, n, dim == 3);
+    const auto [mesh, geometry] = joined_box(dim, n, dim == 3);
     Parameters p = floor_moves(dim);
     p.linear.relative_tolerance = 1e-9;
-    PseudoSolid solid(mesh, p);
-    expect_no_side(mesh, solid, n, 1e-7);
+    PseudoSolid solid(mesh, geometry, p);
+    expect_no_side(mesh, geometry, solid, n, 1e-7);
   }
 }
 
@@ -141,11 +143,11 @@ std::string refusal_of_ends(BoundaryMotion at_one_end) {
       if (highest < 1e-9) raw.boundary_patch[b] = int(raw.patches.size()) - 1;
     }
   }
-  const Mesh mesh = distribute(MPI_COMM_WORLD, raw);
+  const auto [mesh, geometry] = distribute(MPI_COMM_WORLD, raw);
   Parameters p = floor_moves(2);
   p.boundaries["end"].motion = at_one_end;
   try {
-    PseudoSolid solid(mesh, p);
+    PseudoSolid solid(mesh, geometry, p);
   } catch (const Error& e) {
     return e.what();
   }
@@ -159,25 +161,25 @@ TEST(Periodic, ends_that_are_not_held_alike_are_refused) {
 }
 
 TEST(Periodic, copies_of_points) {
-  const Mesh mesh = joined_box(3, 3);
-  const PeriodicPoints periodic(mesh);
+  const auto [mesh, geometry] = joined_box(3, 3);
+  const PeriodicPoints periodic(mesh, geometry);
   std::vector<double> ones(mesh.points.n_local(), 1.0);
   periodic.add_up(ones, 1);
   for (Index v = 0; v < mesh.points.n_local(); ++v) {
     int sides = 0;
     for (const int c : {0, 1}) {
-      const double x = mesh.reference_points[v][c];
+      const double x = geometry.points[v][c];
       sides += x < 1e-9 || x > 1 - 1e-9 ? 1 : 0;
     }
     EXPECT_EQ(ones[v], 1 << sides);
   }
   ones.assign(ones.size(), 0.5);
   EXPECT_EQ(periodic.largest_gap(ones, 1), 0);
-  for (Index v = 0; v < mesh.points.n_local(); ++v) ones[v] = mesh.reference_points[v].x();
+  for (Index v = 0; v < mesh.points.n_local(); ++v) ones[v] = geometry.points[v].x();
   EXPECT_NEAR(periodic.largest_gap(ones, 1), 1, 1e-12);
-  EXPECT_TRUE(PeriodicPoints(distribute(MPI_COMM_SELF, make_box(BoxCells::quadrilaterals, {2, 2, 1},
-                                                                Vec3::Zero(), Vec3::Ones())))
-                  .empty());
+  const LoadedMesh plain =
+      distribute(MPI_COMM_SELF, make_box(BoxCells::quadrilaterals, {2, 2, 1}, Vec3::Zero(), Vec3::Ones()));
+  EXPECT_TRUE(PeriodicPoints(plain.mesh, plain.geometry).empty());
 }
 
 /// A plate in a square whose left and right sides are joined.
@@ -201,7 +203,7 @@ TEST(Periodic, sides_move_alike_from_a_checkpoint_too) {
     const support::SavedState checkpoint(mover);
     run(mover, 0.5, 1, 1);
     const std::vector<double> end = mover.displacement();
-    const PeriodicPoints periodic(mover.mesh());
+    const PeriodicPoints periodic(mover.mesh(), mover.geometry());
     EXPECT_LT(periodic.largest_gap(end, 2), 1e-12);
     double sideways = 0;  // the joined sides go along with the plate
     for (const Index v : periodic.points()) sideways = std::max(sideways, end[2 * std::size_t(v)]);

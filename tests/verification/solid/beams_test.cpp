@@ -110,10 +110,11 @@ Answer bent(const Beam& beam) {
   const auto solid = make_solid(raw, p);
   step(*solid, 1);
   const Mesh& mesh = solid->body().mesh();
+  const Geometry& geometry = solid->body().geometry();
   const Patch* patch = mesh.find_patch(end);
   double moved = 0, area = 0;
   for (Index f = patch->first; f < patch->first + patch->count; ++f) {
-    const double s = mesh.reference.face_area[f].norm();
+    const double s = geometry.face_area[f].norm();
     moved += s * solid->stepper().state().face_u[std::size_t(f - mesh.n_interior) * 3 + std::size_t(down)];
     area += s;
   }

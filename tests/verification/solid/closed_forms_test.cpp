@@ -28,11 +28,12 @@ RawMesh mapped_square(BoxCells cells, int n_s, int n_t, Place&& place) {
 template <class U, class S>
 Errors compare(const Solid& solid, U&& exact_u, S&& exact_stress) {
   const Mesh& mesh = solid.body().mesh();
+  const Geometry& geometry = solid.body().geometry();
   const auto stress = solid.fields().cell_stress(solid.fields().point_displacement());
   double u = 0, u_size = 0, s = 0, s_size = 0;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
-    const Vec3& x = mesh.reference.cell_centre[c];
-    const double volume = mesh.reference.volume[c];
+    const Vec3& x = geometry.cell_centre[c];
+    const double volume = geometry.volume[c];
     const Vec3 found(solid.stepper().state().cell_u[2 * c], solid.stepper().state().cell_u[2 * c + 1], 0),
         wanted = exact_u(x);
     u += volume * (found - wanted).squaredNorm();
@@ -197,12 +198,13 @@ Errors kirsch_errors(FaceGradient gradient, int n, double& at_hole) {
                  p);
   step(*solid, 1);
   const Mesh& mesh = solid->body().mesh();
+  const Geometry& geometry = solid->body().geometry();
   const Patch& rim = *mesh.find_patch("xmin");
   const auto faces = solid->fields().face_stress(rim.first, rim.count, solid->fields().point_displacement());
   at_hole = 0;
   for (Index i = 0; i < rim.count; ++i) {
-    const Vec3 n = mesh.reference.face_area[rim.first + i].normalized(), along(-n[1], n[0], 0);
-    const Vec3 exact = kirsch_stress(mesh.reference.face_centre[rim.first + i].normalized() * hole);
+    const Vec3 n = geometry.face_area[rim.first + i].normalized(), along(-n[1], n[0], 0);
+    const Vec3 exact = kirsch_stress(geometry.face_centre[rim.first + i].normalized() * hole);
     const double hoop =
         exact[0] * along[0] * along[0] + exact[1] * along[1] * along[1] + 2 * exact[2] * along[0] * along[1];
     at_hole = std::max(at_hole, std::abs(along.dot(faces[i] * along) - hoop) / (3 * tension));

@@ -32,8 +32,8 @@ SolidParameters flap_parameters(int dim) {
   return p;
 }
 
-std::unique_ptr<Solid> make_flap(const Mesh& mesh) {
-  return std::make_unique<Solid>(mesh, flap_parameters(mesh.dim), SolidContext{});
+std::unique_ptr<Solid> make_flap(const LoadedMesh& body) {
+  return std::make_unique<Solid>(body, flap_parameters(body.mesh.dim), SolidContext{});
 }
 
 std::unique_ptr<Solid> make_flap(BoxCells cells, MPI_Comm comm = MPI_COMM_WORLD) {
@@ -89,14 +89,14 @@ TEST_P(SolidContract, solve_starts_from_the_accepted_state_each_time) {
 }
 
 TEST_P(SolidContract, interface_load_acts_as_the_same_traction) {
-  const Mesh mesh = distribute(MPI_COMM_WORLD, flap_mesh(GetParam()));
-  const auto coupled = make_flap(mesh);
+  const LoadedMesh body = distribute(MPI_COMM_WORLD, flap_mesh(GetParam()));
+  const auto coupled = make_flap(body);
   const Interface interface = coupled->initialise();
   SolidParameters p = flap_parameters(dimension_of(GetParam()));
   std::vector<std::string> traction(p.dimension, "0");
   traction[0] = "5";
   p.boundaries["xmin"] = boundary(Type::traction, traction);
-  Solid alone(mesh, p, SolidContext{});
+  Solid alone(body, p, SolidContext{});
   alone.initialise();
   for (int i = 0; i < 3; ++i) {
     coupled->begin_step({0.01 * i, 0.01, Scheme::implicit, i});
@@ -125,7 +125,7 @@ TEST_P(SolidContract, interface_values_are_those_of_the_vertices) {
   const std::vector<double> points = solid->fields().point_displacement();
   double top = 0;
   for (Index v = 0; v < solid->body().mesh().points.n_local(); ++v)
-    if (solid->body().mesh().reference_points[v][1] > 1 - 1e-9)
+    if (solid->body().geometry().points[v][1] > 1 - 1e-9)
       top = std::max(top, points[std::size_t(v) * interface.dim]);
   double sent = 0;
   for (std::size_t i = 0; i < interface.vertices.size(); ++i)
@@ -179,10 +179,10 @@ TEST_P(SolidContract, all_ranks_together_give_what_one_rank_gives) {
 }
 
 void expect_that_a_checkpoint_continues_bit_for_bit(BoxCells cells, MethodParameters method) {
-  const Mesh mesh = distribute(MPI_COMM_WORLD, flap_mesh(cells));
-  SolidParameters parameters = flap_parameters(mesh.dim);
+  const LoadedMesh body = distribute(MPI_COMM_WORLD, flap_mesh(cells));
+  SolidParameters parameters = flap_parameters(body.mesh.dim);
   parameters.method = method;
-  const auto make = [&] { return std::make_unique<Solid>(mesh, parameters, SolidContext{}); };
+  const auto make = [&] { return std::make_unique<Solid>(body, parameters, SolidContext{}); };
   const auto advance = [&](Solid& solid, int from, int end, bool then_ends) {
     const Interface interface = solid.initialise();
     Exchange out;

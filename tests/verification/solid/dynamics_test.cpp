@@ -46,7 +46,7 @@ Errors bar_errors(const SolidParameters& p, int cells, double end, double amplit
   const std::vector<double> u = solid->fields().point_displacement(), v = solid->fields().point_velocity();
   Errors errors;
   for (std::size_t i = 0; i < u.size() / 2; ++i) {
-    const auto [eu, ev] = exact(solid->body().mesh().reference_points[i][0], end);
+    const auto [eu, ev] = exact(solid->body().geometry().points[i][0], end);
     const double off = std::abs(u[2 * i] - eu) / amplitude,
                  off_rate = std::abs(v[2 * i] - ev) / (amplitude * omega);
     errors.displacement = std::max(errors.displacement, off);
@@ -127,9 +127,10 @@ TEST(SolidDynamics, tip_motion_of_a_cantilever_is_second_order_in_time) {
     const auto solid = make_solid(bar_mesh(20, 4, 0.1), p);
     for (int i = 0; i < steps; ++i) step(*solid, 2.0 / steps);
     const Mesh& mesh = solid->body().mesh();
+    const Geometry& geometry = solid->body().geometry();
     const std::vector<double> u = solid->fields().point_displacement(), v = solid->fields().point_velocity();
     for (Index i = 0; i < mesh.points.n_local(); ++i)
-      if ((mesh.reference_points[i] - Vec3(length, 0.05, 0)).norm() < 1e-9)
+      if ((geometry.points[i] - Vec3(length, 0.05, 0)).norm() < 1e-9)
         return std::pair(u[std::size_t(i) * 2 + 1], v[std::size_t(i) * 2 + 1]);
     throw Error("There is no mesh point at the tip.");
   };

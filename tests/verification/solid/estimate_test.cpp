@@ -164,7 +164,7 @@ TEST(MeshEstimate, on_triangles_is_within_a_factor_of_two_on_a_ring) {
     double worst = 0;
     const std::vector<double> u = solid->fields().point_displacement();
     for (std::size_t i = 0; i < u.size() / 2; ++i) {
-      const Vec3& x = solid->body().mesh().reference_points[i];
+      const Vec3& x = solid->body().geometry().points[i];
       if (std::abs(x.norm() - 1) < 1e-9)
         worst = std::max(worst, std::abs(std::hypot(u[2 * i], u[2 * i + 1]) / right - 1));
     }

@@ -69,10 +69,10 @@ TEST(FiniteStrain, pressure_follows_the_surface) {
   for (int i = 0; i < 5; ++i) step(*solid, 0.2);
   const std::vector<double> u = solid->fields().point_displacement();
   Vec3 ends[2] = {Vec3::Zero(), Vec3::Zero()};
-  for (std::size_t v = 0; v < solid->body().mesh().reference_points.size(); ++v)
+  for (std::size_t v = 0; v < solid->body().geometry().points.size(); ++v)
     for (int k = 0; k < 2; ++k)
-      if ((solid->body().mesh().reference_points[v] - Vec3(10 * k, 1, 0)).norm() < 1e-9)
-        ends[k] = solid->body().mesh().reference_points[v] + Vec3(u[2 * v], u[2 * v + 1], 0);
+      if ((solid->body().geometry().points[v] - Vec3(10 * k, 1, 0)).norm() < 1e-9)
+        ends[k] = solid->body().geometry().points[v] + Vec3(u[2 * v], u[2 * v + 1], 0);
   for (Vec3& end : ends)
     for (int a = 0; a < 3; ++a) {
       const double most = max(MPI_COMM_WORLD, end[a]), least = min(MPI_COMM_WORLD, end[a]);
@@ -91,6 +91,7 @@ std::array<double, 7> kept(const Solid& solid) {
   const ElasticKernel kernel(solid.body().mesh(), solid.body().elastic(), FaceGradientScheme::symmetric);
   kernel.set_density(std::vector<double>(solid.body().mesh().cells.n_local(), 1000.));
   const Mesh& mesh = solid.body().mesh();
+  const Geometry& geometry = solid.body().geometry();
   std::vector<double> v, momentum(solid.body().elastic().n_unknowns());
   std::vector<Vec3> x;
   const auto add = [&](const Vec3& place, std::size_t i, const std::vector<double>& us,
@@ -99,10 +100,10 @@ std::array<double, 7> kept(const Solid& solid) {
     for (int a = 0; a < 3; ++a) v.push_back(vs[3 * i + std::size_t(a)]);
   };
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-    add(mesh.reference.cell_centre[c], std::size_t(c), solid.stepper().state().cell_u,
+    add(geometry.cell_centre[c], std::size_t(c), solid.stepper().state().cell_u,
         solid.stepper().state().cell_v);
   for (const Index f : solid.body().elastic().unknown_faces())
-    add(mesh.reference.face_centre[f], std::size_t(f - mesh.n_interior), solid.stepper().state().face_u,
+    add(geometry.face_centre[f], std::size_t(f - mesh.n_interior), solid.stepper().state().face_u,
         solid.stepper().state().face_v);
   kernel.apply_with_mass(v, {}, 1, false, momentum);
   std::array<double, 7> result{};

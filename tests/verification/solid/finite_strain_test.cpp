@@ -48,7 +48,7 @@ double deflection(const Solid& solid) {
   const std::vector<double> u = solid.fields().point_displacement();
   double most = 0;
   for (std::size_t i = 0; i < u.size(); i += 3)
-    if ((solid.body().mesh().reference_points[i / 3] - Vec3(0, 0, length)).norm() < 1e-9)
+    if ((solid.body().geometry().points[i / 3] - Vec3(0, 0, length)).norm() < 1e-9)
       most = std::hypot(u[i], u[i + 1]);
   return max(solid.body().mesh().comm, most) / length;
 }
@@ -69,7 +69,7 @@ TEST(FiniteStrain, the_estimate_of_the_mesh_is_within_a_factor_of_two) {
     const std::vector<double> u = solid.fields().point_displacement();
     std::array<double, 3> found{0, 0, 0};
     for (std::size_t i = 0; i < u.size(); i += 3)
-      if ((solid.body().mesh().reference_points[i / 3] - Vec3(side / 2, side / 2, length)).norm() < 1e-9)
+      if ((solid.body().geometry().points[i / 3] - Vec3(side / 2, side / 2, length)).norm() < 1e-9)
         found = {u[i], u[i + 1], u[i + 2]};
     for (double& v : found) v = max(solid.body().mesh().comm, v) + min(solid.body().mesh().comm, v);
     return Vec3(found[0], found[1], found[2]);
@@ -149,8 +149,8 @@ TEST(FiniteStrain, homogeneous_deformation_is_exact) {
 }
 
 TEST(FiniteStrain, restart_in_the_middle_of_the_load_is_bit_for_bit) {
-  const Mesh mesh = distribute(MPI_COMM_WORLD, beam(BoxCells::hexahedra, 2, 20));
-  const auto another = [&] { return std::make_unique<Solid>(mesh, bent("neo-hookean", 4), SolidContext{}); };
+  const LoadedMesh body = distribute(MPI_COMM_WORLD, beam(BoxCells::hexahedra, 2, 20));
+  const auto another = [&] { return std::make_unique<Solid>(body, bent("neo-hookean", 4), SolidContext{}); };
   const auto through = another(), before = another(), after = another();
   step(*through, 0.25);
   step(*before, 0.25);
@@ -249,7 +249,7 @@ TEST(FiniteStrain, tangent_is_the_derivative_of_the_forces_on_all_cells) {
       EXPECT_NEAR((most - least) / (2 * h), dot(force, v), 1e-5 * std::sqrt(dot(force, force) * dot(v, v)));
       std::vector<double> pressure(solid->body().mesh().boundary.n_owned(), 0);
       for (Index f = solid->body().mesh().n_interior; f < solid->body().mesh().n_flux_faces(); ++f)
-        if (solid->body().mesh().reference.face_centre[f][1] > 1 - 1e-9)
+        if (solid->body().geometry().face_centre[f][1] > 1 - 1e-9)
           pressure[f - solid->body().mesh().n_interior] = 3e5;
       kernel->set_pressure(pressure);
       compare();

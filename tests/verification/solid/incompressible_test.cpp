@@ -26,10 +26,11 @@ SolidParameters rubber(int dim, const std::string& law, double modulus, double n
 /// Displacement of the point that lies at `x`, on all ranks.
 Vec3 displacement_at(const Solid& solid, const Vec3& x) {
   const Mesh& mesh = solid.body().mesh();
+  const Geometry& geometry = solid.body().geometry();
   const std::vector<double> u = solid.fields().point_displacement();
   Vec3 result = Vec3::Constant(-1e300);
   for (Index v = 0; v < mesh.points.n_local(); ++v)
-    if ((mesh.reference_points[v] - x).norm() < 1e-9)
+    if ((geometry.points[v] - x).norm() < 1e-9)
       for (int a = 0; a < mesh.dim; ++a)
         result[a] = u[std::size_t(v) * std::size_t(mesh.dim) + std::size_t(a)];
   for (int a = 0; a < 3; ++a) result[a] = max(mesh.comm, result[a]);
@@ -131,12 +132,13 @@ double dot(std::span<const double> a, std::span<const double> b) {
 double asymmetry(bool whole_wall) {
   const auto solid = ring(8, 3e5, 0.49);
   const Mesh& mesh = solid->body().mesh();
+  const Geometry& geometry = solid->body().geometry();
   const auto law =
       laws::find("mooney-rivlin")->make(lame_constants(solid->body().parameters()), std::vector{0.2});
   const auto kernel = make_finite_kernel(mesh, solid->body().elastic(), {law.get()});
   std::vector<double> pressure(std::size_t(mesh.boundary.n_owned()), 0);
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
-    const Vec3& x = mesh.reference.face_centre[f];
+    const Vec3& x = geometry.face_centre[f];
     if (mesh.owner[f] < mesh.cells.n_owned() && x.norm() < 1.01 && (whole_wall || x[1] > x[0]))
       pressure[std::size_t(f - mesh.n_interior)] = 3e5;
   }

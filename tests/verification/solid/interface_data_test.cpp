@@ -54,8 +54,7 @@ double largest_error(const Solid& solid, double pressure, double warmer) {
   double worst = 0;
   for (std::size_t v = 0; v < u.size() / 3; ++v)
     for (int c = 0; c < 3; ++c)
-      worst =
-          std::max(worst, std::abs(u[3 * v + c] - strain[c] * solid.body().mesh().reference_points[v][c]));
+      worst = std::max(worst, std::abs(u[3 * v + c] - strain[c] * solid.body().geometry().points[v][c]));
   return max(solid.body().mesh().comm, worst) / 1e-3;
 }
 
@@ -205,7 +204,7 @@ TEST(InterfaceData, the_solid_has_the_given_temperature_along_the_interface) {
   for (const auto& effect : solid->body().effects())
     if (const auto* strain = dynamic_cast<const ThermalStrain*>(effect.get())) {
       const std::vector<double> points = strain->point_temperature();
-      const auto& places = solid->body().mesh().reference_points;
+      const auto& places = solid->body().geometry().points;
       for (std::size_t v = 0; v < points.size(); ++v, ++found)
         if (places[v].y() > 0.2 && places[v].y() < 0.8) {
           EXPECT_NEAR(points[v], 300 + 40 * places[v].y(), 1e-9);

@@ -101,11 +101,12 @@ RawMesh mesh_of(const Pair& pair) {
 /// Root mean square over all cells of b - a, over that of a.
 double change_of(const Solid& a, const Solid& b) {
   const Mesh& mesh = a.body().mesh();
+  const Geometry& geometry = a.body().geometry();
   const auto &u = a.stepper().state().cell_u, &v = b.stepper().state().cell_u;
   double difference = 0, whole = 0;
   for (std::size_t i = 0; i < std::size_t(mesh.cells.n_owned()) * mesh.dim; ++i) {
-    difference += mesh.reference.volume[i / mesh.dim] * (v[i] - u[i]) * (v[i] - u[i]);
-    whole += mesh.reference.volume[i / mesh.dim] * u[i] * u[i];
+    difference += geometry.volume[i / mesh.dim] * (v[i] - u[i]) * (v[i] - u[i]);
+    whole += geometry.volume[i / mesh.dim] * u[i] * u[i];
   }
   return std::sqrt(sum(mesh.comm, difference) / sum(mesh.comm, whole));
 }

@@ -79,6 +79,7 @@ inline bool symmetric_refuses(const CellsAndGradient& which, const SolidParamete
 /// Largest error of cells, points and traction faces over the largest displacement.
 inline double relative_error(const Solid& solid, const LinearField& field) {
   const Mesh& mesh = solid.body().mesh();
+  const Geometry& geometry = solid.body().geometry();
   const int dim = mesh.dim;
   double error = 0, size = 0;
   const auto compare = [&](std::span<const double> values, Index i, const Vec3& x) {
@@ -88,11 +89,11 @@ inline double relative_error(const Solid& solid, const LinearField& field) {
     }
   };
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-    compare(solid.stepper().state().cell_u, c, mesh.reference.cell_centre[c]);
+    compare(solid.stepper().state().cell_u, c, geometry.cell_centre[c]);
   const std::vector<double> points = solid.fields().point_displacement();
-  for (Index v = 0; v < mesh.points.n_local(); ++v) compare(points, v, mesh.reference_points[v]);
+  for (Index v = 0; v < mesh.points.n_local(); ++v) compare(points, v, geometry.points[v]);
   for (const Index f : solid.body().elastic().unknown_faces())
-    compare(solid.stepper().state().face_u, f - mesh.n_interior, mesh.reference.face_centre[f]);
+    compare(solid.stepper().state().face_u, f - mesh.n_interior, geometry.face_centre[f]);
   return max(mesh.comm, error) / max(mesh.comm, size);
 }
 

@@ -34,8 +34,9 @@ inline SolidBoundary liquid(double density, double gravity, const std::string& l
 
 /// Calls take(face, force [N]) for the loaded faces of this rank.
 template <class Take>
-void visit_loads(const Mesh& mesh, const SolidParameters& p, const Take& take, double t = 0) {
-  const SolidBoundaries boundaries(mesh, p);
+void visit_loads(const Mesh& mesh, const Geometry& geometry, const SolidParameters& p, const Take& take,
+                 double t = 0) {
+  const SolidBoundaries boundaries(mesh, geometry, p);
   std::vector<double> forces(std::size_t(mesh.boundary.n_owned()) * mesh.dim, 0);
   boundaries.add_forces(t, forces);
   for (Index b = 0; b < mesh.boundary.n_owned(); ++b) {
@@ -50,13 +51,14 @@ struct Resultant {
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   double loaded = 0;  ///< faces
 };
-inline Resultant resultant(const Mesh& mesh, const SolidParameters& p, double t = 0) {
+inline Resultant resultant(const Mesh& mesh, const Geometry& geometry, const SolidParameters& p,
+                           double t = 0) {
   Resultant r;
   visit_loads(
-      mesh, p,
+      mesh, geometry, p,
       [&](Index f, const Vec3& push) {
         r.force += push;
-        r.moment += mesh.reference.face_centre[f].cross(push);
+        r.moment += geometry.face_centre[f].cross(push);
         ++r.loaded;
       },
       t);
@@ -81,11 +83,12 @@ inline RawMesh half_ring(BoxCells cells, int n) {
 /// Mean displacement of the faces of a patch.
 inline Vec3 mean_on(const Solid& solid, const std::string& name) {
   const Mesh& mesh = solid.body().mesh();
+  const Geometry& geometry = solid.body().geometry();
   Vec3 total = Vec3::Zero();
   double area = 0;
   for (const Patch& patch : mesh.patches)
     for (Index f = patch.first; patch.name == name && f < patch.first + patch.count; ++f) {
-      const double size = mesh.reference.face_area[f].norm();
+      const double size = geometry.face_area[f].norm();
       area += size;
       for (int a = 0; a < mesh.dim; ++a)
         total[a] += size * solid.stepper().state().face_u[std::size_t(f - mesh.n_interior) * mesh.dim + a];
@@ -99,6 +102,7 @@ inline Vec3 mean_on(const Solid& solid, const std::string& name) {
 inline Vec3 momentum_of(const Solid& solid) {
   const SolidBody& body = solid.body();
   const Mesh& mesh = body.mesh();
+  const Geometry& geometry = body.geometry();
   const SolidState& state = solid.stepper().state();
   Vec3 total = Vec3::Zero();
   for (int a = 0; a < mesh.dim; ++a) {
@@ -111,7 +115,7 @@ inline Vec3 momentum_of(const Solid& solid) {
       total[a] = body.kernel().product(ElasticPart::mass, {v, state.known_rate}, {e, {}});
     } else {
       for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-        total[a] += body.density(c) * mesh.reference.volume[c] * state.cell_v[std::size_t(c) * mesh.dim + a];
+        total[a] += body.density(c) * geometry.volume[c] * state.cell_v[std::size_t(c) * mesh.dim + a];
     }
     total[a] = sum(mesh.comm, total[a]);
   }

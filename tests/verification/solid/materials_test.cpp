@@ -112,6 +112,7 @@ TEST_P(Materials, piecewise_linear_fields_are_exact_across_an_oblique_interface)
     pull("xmin", field.soft, -normal, "rubber");
     const auto solid = make_solid(two_zones(cells, slant), p);
     const Mesh& mesh = solid->body().mesh();
+    const Geometry& geometry = solid->body().geometry();
     ASSERT_FALSE(mesh.cell_material.empty());
     step(*solid, 1);
     double error = 0, size = 0, stress_error = 0, jump = 0;
@@ -119,13 +120,13 @@ TEST_P(Materials, piecewise_linear_fields_are_exact_across_an_oblique_interface)
     for (Index v = 0; v < mesh.points.n_local(); ++v) {
       Vec3 u = Vec3::Zero();
       for (int a = 0; a < dim; ++a) u[a] = points[std::size_t(v) * dim + a];
-      error = std::max(error, (u - field.at(mesh.reference_points[v])).norm());
+      error = std::max(error, (u - field.at(geometry.points[v])).norm());
       size = std::max(size, u.norm());
     }
     const std::vector<Tensor3> stress = solid->fields().cell_stress(points);
     double stress_size = 0;
     for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
-      const Tensor3 exact = solid->body().elastic().stress(c, field.on(mesh.reference.cell_centre[c]).slope);
+      const Tensor3 exact = solid->body().elastic().stress(c, field.on(geometry.cell_centre[c]).slope);
       stress_error = std::max(stress_error, (stress[c] - exact).topLeftCorner(dim, dim).norm());
       stress_size = std::max(stress_size, exact.norm());
     }
@@ -138,7 +139,7 @@ TEST_P(Materials, piecewise_linear_fields_are_exact_across_an_oblique_interface)
     for (const Index f : solid->body().elastic().unknown_faces()) {
       const Index b = f - mesh.n_interior;
       if (solid->body().elastic().condition(f) != ElasticCondition::bonded) continue;
-      const Vec3 n = mesh.reference.face_area[f].normalized();
+      const Vec3 n = geometry.face_area[f].normalized();
       jump = std::max(jump, ((faces[b] - faces[mesh.twin[b]]) * n).norm());
       ++n_bonded;
     }
@@ -191,10 +192,11 @@ TEST_P(Materials, unequal_thermal_expansion_of_bonded_materials_is_exact) {
   const auto solid = make_solid(two_zones(cells, 0), p);
   step(*solid, 1);
   const Mesh& mesh = solid->body().mesh();
+  const Geometry& geometry = solid->body().geometry();
   double error = 0, stress_error = 0;
   const std::vector<Tensor3> stresses = solid->fields().cell_stress(solid->fields().point_displacement());
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
-    const double x = mesh.reference.cell_centre[c][0];
+    const double x = geometry.cell_centre[c][0];
     const double wanted = x < 0.6 ? e_soft * x : 1.5 * e_soft * (1 - x);
     Vec3 u = Vec3::Zero();
     for (int a = 0; a < dim; ++a) u[a] = solid->stepper().state().cell_u[std::size_t(c) * dim + a];
@@ -247,12 +249,13 @@ double layered_ring_error(int n, double& stress_error) {
   const auto solid = make_solid(raw, p);
   step(*solid, 1);
   const Mesh& mesh = solid->body().mesh();
+  const Geometry& geometry = solid->body().geometry();
   const auto stress = solid->fields().cell_stress(solid->fields().point_displacement());
   double error = 0, size = 0, stress_size = 0;
   stress_error = 0;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
-    const Vec3& x = mesh.reference.cell_centre[c];
-    const double r = x.norm(), volume = mesh.reference.volume[c];
+    const Vec3& x = geometry.cell_centre[c];
+    const double r = x.norm(), volume = geometry.volume[c];
     const Eigen::Vector2d k = r < r1 ? ab.head<2>() : ab.tail<2>();
     const LameConstants& l = r < r1 ? in : out;
     const Vec3 exact = (k[0] + k[1] / (r * r)) * x;

@@ -293,11 +293,11 @@ TEST(SolidMethods, the_advice_of_a_failed_solve_is_another_method_and_that_one_s
 
 /// What `auto` takes for steps of a square of n x n steel cells at an elastic Courant number (trapezoidal rule).
 std::string chosen_for(Index n, double courant) {
-  const Mesh mesh =
+  const auto [mesh, geometry] =
       distribute(MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {n, n, 1}, Vec3::Zero(), Vec3(1, 1, 0)));
   const LameConstants steel{77e9, 115e9};
   const std::vector<ElasticCondition> held(mesh.patches.size(), ElasticCondition::prescribed);
-  const ElasticOperator elastic(mesh, held, steel);
+  const ElasticOperator elastic(mesh, geometry, held, steel);
   const ElasticKernel kernel(mesh, elastic, FaceGradientScheme::thesis);
   const std::vector<double> inertia(mesh.cells.n_owned(),
                                     4 * (2 * steel.mu + steel.lambda) / (courant * courant));

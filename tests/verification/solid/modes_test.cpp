@@ -27,7 +27,7 @@ SolidParameters vibrating(int dim) {
 std::vector<double> cell_mass(const Solid& solid) {
   std::vector<double> mass;
   for (Index c = 0; c < solid.body().mesh().cells.n_owned(); ++c)
-    mass.push_back(solid.body().density(c) * solid.body().mesh().reference.volume[c]);
+    mass.push_back(solid.body().density(c) * solid.body().geometry().volume[c]);
   return mass;
 }
 

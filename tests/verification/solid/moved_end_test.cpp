@@ -63,11 +63,11 @@ std::array<double, 2> moved(const Way& way, MPI_Comm comm) {
   Solid solid(distribute(comm, raw), moved_bar(way), SolidContext{});
   for (int i = 0; i < 2; ++i) step(solid, 0.15);
   const Mesh& mesh = solid.body().mesh();
+  const Geometry& geometry = solid.body().geometry();
   const std::vector<double>& u = solid.stepper().state().cell_u;
   std::array<double, 2> result{};
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-    for (int a = 0; a < 2; ++a)
-      result[std::size_t(a)] += mesh.reference.volume[c] * u[std::size_t(2 * c + a)];
+    for (int a = 0; a < 2; ++a) result[std::size_t(a)] += geometry.volume[c] * u[std::size_t(2 * c + a)];
   for (int a = 0; a < 2; ++a) result[std::size_t(a)] = sum(comm, result[std::size_t(a)]);
   return result;
 }

@@ -70,10 +70,11 @@ Tensor3 exact_slope(int dim, const Vec3& x) {
 /// Root of the mean square over the points, of point_stress(), over that of the exact stress.
 double error_at_points(const Solid& solid) {
   const Mesh& mesh = solid.body().mesh();
+  const Geometry& geometry = solid.body().geometry();
   const std::vector<double> found = solid.fields().point_stress(solid.fields().point_displacement());
   double error = 0, size = 0;
   for (Index v = 0; v < mesh.points.n_owned(); ++v) {
-    const Tensor3 exact = solid.body().elastic().stress(0, exact_slope(mesh.dim, mesh.reference_points[v]));
+    const Tensor3 exact = solid.body().elastic().stress(0, exact_slope(mesh.dim, geometry.points[v]));
     const Tensor3 here = unpack({found.data() + std::size_t(v) * tensor_size, tensor_size});
     error += (here - exact).topLeftCorner(mesh.dim, mesh.dim).squaredNorm();
     size += exact.topLeftCorner(mesh.dim, mesh.dim).squaredNorm();
@@ -96,22 +97,23 @@ Errors solve(BoxCells cells, int n, double perturbed, FaceGradient gradient) {
   step(*solid, 1);
 
   const Mesh& mesh = solid->body().mesh();
+  const Geometry& geometry = solid->body().geometry();
   const auto stress = solid->fields().cell_stress(solid->fields().point_displacement());
   double error = 0, size = 0, stress_error = 0, stress_size = 0, inner_error = 0, inner_size = 0;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
-    const Vec3& x = mesh.reference.cell_centre[c];
+    const Vec3& x = geometry.cell_centre[c];
     double product = 1;
     for (int d = 0; d < dim; ++d) product *= std::sin(wave[d] * x[d]);
     for (int a = 0; a < dim; ++a) {
       const double exact = amplitude[a] * product;
-      error += mesh.reference.volume[c] *
-               std::pow(solid->stepper().state().cell_u[std::size_t(c) * dim + a] - exact, 2);
-      size += mesh.reference.volume[c] * exact * exact;
+      error +=
+          geometry.volume[c] * std::pow(solid->stepper().state().cell_u[std::size_t(c) * dim + a] - exact, 2);
+      size += geometry.volume[c] * exact * exact;
     }
     const Tensor3 slope = exact_slope(dim, x);
     const Tensor3 exact = solid->body().elastic().stress(0, slope);
-    const double here = mesh.reference.volume[c] * (stress[c] - exact).topLeftCorner(dim, dim).squaredNorm();
-    const double there = mesh.reference.volume[c] * exact.topLeftCorner(dim, dim).squaredNorm();
+    const double here = geometry.volume[c] * (stress[c] - exact).topLeftCorner(dim, dim).squaredNorm();
+    const double there = geometry.volume[c] * exact.topLeftCorner(dim, dim).squaredNorm();
     stress_error += here;
     stress_size += there;
     if ((x - Vec3(0.1, 0.1, dim == 3 ? 0.1 : 0)).cwiseAbs().maxCoeff() > 0.075) continue;

@@ -52,11 +52,12 @@ using Displacement = std::function<Vec3(const Vec3&)>;
 using Stress = std::function<Tensor3(const Vec3&)>;
 Errors errors(const Solid& solid, const Displacement& u, const Stress& stress) {
   const Mesh& mesh = solid.body().mesh();
+  const Geometry& geometry = solid.body().geometry();
   double gap = 0, size = 0, stress_gap = 0, stress_size = 0, volume = 0;
   const std::vector<Tensor3> found = solid.fields().cell_stress(solid.fields().point_displacement());
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
-    const Vec3& x = mesh.reference.cell_centre[c];
-    const double v = mesh.reference.volume[c];
+    const Vec3& x = geometry.cell_centre[c];
+    const double v = geometry.volume[c];
     for (int a = 0; a < mesh.dim; ++a) {
       gap += v * std::pow(solid.stepper().state().cell_u[std::size_t(c) * mesh.dim + a] - u(x)[a], 2);
       size += v * std::pow(u(x)[a], 2);

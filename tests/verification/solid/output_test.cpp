@@ -145,7 +145,7 @@ TEST(SolidOutput, acceleration_of_a_driven_block_is_that_of_its_support) {
 TEST(SolidOutput, point_tensors_are_exact_for_linear_fields_up_to_the_boundary) {
   RawMesh raw = make_box(BoxCells::hexahedra, {5, 4, 3}, Vec3::Zero(), Vec3(2, 1, 1));
   perturb_interior(raw, 0.2, 3);
-  const Mesh mesh = distribute(MPI_COMM_WORLD, raw);
+  const auto [mesh, geometry] = distribute(MPI_COMM_WORLD, raw);
   const std::size_t plane = std::size_t(mesh.find_patch("zmin") - mesh.patches.data());
   std::vector<bool> is_symmetry(mesh.patches.size(), false);
   is_symmetry[plane] = true;
@@ -158,14 +158,15 @@ TEST(SolidOutput, point_tensors_are_exact_for_linear_fields_up_to_the_boundary) 
     return t;
   };
   std::vector<Tensor3> cells, faces;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) cells.push_back(field(mesh.reference.cell_centre[c]));
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) cells.push_back(field(geometry.cell_centre[c]));
   for (Index b = 0; b < mesh.boundary.n_owned(); ++b)
-    faces.push_back(field(mesh.reference.face_centre[mesh.n_interior + b]));
-  const VertexInterpolation inside(mesh, std::vector(mesh.patches.size(), PatchStencil::fixed));
-  const std::vector<double> at_points = PointTensors(mesh, is_symmetry, inside).interpolate(cells, faces);
+    faces.push_back(field(geometry.face_centre[mesh.n_interior + b]));
+  const VertexInterpolation inside(mesh, geometry, std::vector(mesh.patches.size(), PatchStencil::fixed));
+  const std::vector<double> at_points =
+      PointTensors(mesh, geometry, is_symmetry, inside).interpolate(cells, faces);
   for (Index v = 0; v < mesh.points.n_local(); ++v) {
-    const PackedTensor expected = pack(field(mesh.reference_points[v]));
-    const Vec3& x = mesh.reference_points[v];
+    const PackedTensor expected = pack(field(geometry.points[v]));
+    const Vec3& x = geometry.points[v];
     for (int i = 0; i < tensor_size; ++i) {
       if (x[2] > 1e-9 && x[2] < 0.4 && i >= 4) continue;  // mirrored stencils reach over the plane there only
       EXPECT_NEAR(at_points[std::size_t(v) * tensor_size + i], expected[i], 1e-10) << x.transpose();

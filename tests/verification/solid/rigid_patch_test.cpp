@@ -25,6 +25,7 @@ struct Motion {
 Motion motion_of(const Solid& solid, const std::string& name, const Vec3& about,
                  const std::vector<double>& field) {
   const Mesh& mesh = solid.body().mesh();
+  const Geometry& geometry = solid.body().geometry();
   const int dim = mesh.dim;
   Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
@@ -34,7 +35,7 @@ Motion motion_of(const Solid& solid, const std::string& name, const Vec3& about,
     for (Index f = patch->first; f < patch->first + patch->count; ++f) {
       Vec3 u = Vec3::Zero();
       for (int a = 0; a < dim; ++a) u[a] = field[std::size_t(f - mesh.n_interior) * dim + a];
-      use(Vec3(mesh.reference.face_centre[f] - about), u);
+      use(Vec3(geometry.face_centre[f] - about), u);
     }
   };
   visit([&](const Vec3& r, const Vec3& u) {

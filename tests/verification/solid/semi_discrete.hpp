@@ -32,7 +32,7 @@ class SemiDiscrete {
     mass_.resize(n_);
     for (Eigen::Index i = 0; i < n_; ++i)
       mass_[i] = solid.body().parameters().material.density *
-                 solid.body().mesh().reference.volume[i / solid.body().mesh().dim];
+                 solid.body().geometry().volume[i / solid.body().mesh().dim];
   }
 
   Eigen::Index size() const { return n_; }

@@ -70,7 +70,7 @@ double energy(const Solid& solid) {
   double kinetic = 0;
   for (Index c = 0; c < solid.body().mesh().cells.n_owned(); ++c)
     for (int a = 0; a < 2; ++a)
-      kinetic += 0.5 * solid.body().parameters().material.density * solid.body().mesh().reference.volume[c] *
+      kinetic += 0.5 * solid.body().parameters().material.density * solid.body().geometry().volume[c] *
                  std::pow(solid.stepper().state().cell_v[std::size_t(c) * 2 + a], 2);
   return kinetic +
          solid.stepper().ledger().total(solid.stepper().state(), solid.fields().point_displacement()).strain;

@@ -103,7 +103,7 @@ TEST_P(SolidSurfaces, moments_of_the_reactions_balance_those_of_the_loads) {
     p.output.moments = true;
     p.output.moment_centre = Vec3(0.3, -0.2, 0.5);
     const auto solid = write(box(), p, folder);
-    Resultant load = resultant(solid->body().mesh(), p);
+    Resultant load = resultant(solid->body().mesh(), solid->body().geometry(), p);
     load.moment -= p.output.moment_centre.cross(load.force);
     const auto row = last_row(folder.path() / "reactions.csv");
     const auto held = [&](const std::string& what) {

@@ -105,9 +105,10 @@ double tip(BoxCells cells, const std::array<int, 3>& n, double length, double nu
   step(*solid, 1);
   double sum_here = 0, area = 0;
   const Mesh& mesh = solid->body().mesh();
+  const Geometry& geometry = solid->body().geometry();
   const Patch* patch = mesh.find_patch("xmax");
   for (Index f = patch->first; f < patch->first + patch->count; ++f) {
-    const double s = mesh.reference.face_area[f].norm();
+    const double s = geometry.face_area[f].norm();
     sum_here += s * solid->stepper().state().face_u[std::size_t(f - mesh.n_interior) * 3 + 1];
     area += s;
   }

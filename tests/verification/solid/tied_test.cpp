@@ -125,6 +125,7 @@ TEST(TiedStress, does_the_work_of_the_stress_on_the_square_of_the_gradient) {
     const auto solid = make_solid(distorted_box(cells), p);
     const SolidBody& body = solid->body();
     const Mesh& mesh = body.mesh();
+    const Geometry& geometry = body.geometry();
     Tensor3 stress, gradient;
     stress << 3, -1, 0.5, -1, 2, 0.25, 0.5, 0.25, -4;
     gradient << 0.1, 0.7, -0.3, -0.2, 0.4, 0.6, 0.5, -0.8, 0.9;
@@ -134,15 +135,15 @@ TEST(TiedStress, does_the_work_of_the_stress_on_the_square_of_the_gradient) {
       const Vec3 v = gradient * x;
       u.insert(u.end(), v.data(), v.data() + dim);
     };
-    for (Index c = 0; c < mesh.cells.n_owned(); ++c) add(mesh.reference.cell_centre[c]);
-    for (const Index f : body.elastic().unknown_faces()) add(mesh.reference.face_centre[f]);
+    for (Index c = 0; c < mesh.cells.n_owned(); ++c) add(geometry.cell_centre[c]);
+    for (const Index f : body.elastic().unknown_faces()) add(geometry.face_centre[f]);
     const Prestress prestress{std::vector<Tensor3>(std::size_t(mesh.n_flux_faces()), stress), {}};
     TiedMatrix tied(mesh, body.elastic(), {.stiffness = 0, .stress = 1, .prestress = &prestress});
     std::vector<double> force(u.size());
     tied.apply(u, force);
     double work = 0, volume = 0;
     for (std::size_t i = 0; i < u.size(); ++i) work += force[i] * u[i];
-    for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += mesh.reference.volume[c];
+    for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += geometry.volume[c];
     work = sum(mesh.comm, work);
     volume = sum(mesh.comm, volume);
     const double wanted = volume * (stress * gradient.transpose() * gradient).trace();
@@ -155,9 +156,10 @@ TEST_P(Tied, has_the_stress_stiffness_of_the_faces_loops) {
   const auto solid = make_solid(distorted_box(GetParam().cells), parameters(GetParam()));
   const SolidBody& body = solid->body();
   const Mesh& mesh = body.mesh();
+  const Geometry& geometry = body.geometry();
   Prestress prestress;
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
-    const Vec3& x = mesh.reference.face_centre[f];
+    const Vec3& x = geometry.face_centre[f];
     Tensor3 s;
     s << std::sin(x[0]), x[1], x[2], x[1], 2 - x[0], 0.3, x[2], 0.3, std::cos(x[1]);
     if (mesh.dim == 2) s.row(2).setZero(), s.col(2).setZero();
@@ -165,9 +167,9 @@ TEST_P(Tied, has_the_stress_stiffness_of_the_faces_loops) {
   }
   std::vector<double> pressure;
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
-    pressure.push_back(
-        body.elastic().condition(f) == ElasticCondition::traction ? mesh.reference.face_centre[f][0] : 0);
-  prestress.pressure = pressure_stiffness(mesh, pressure);
+    pressure.push_back(body.elastic().condition(f) == ElasticCondition::traction ? geometry.face_centre[f][0]
+                                                                                 : 0);
+  prestress.pressure = pressure_stiffness(mesh, geometry, pressure);
   const std::size_t n = body.elastic().n_unknowns();
   const std::vector<double> u = any_motion(n, comm_rank(mesh.comm));
   std::vector<double> wanted(n), found(n);

@@ -33,16 +33,17 @@ RawMesh sheet() { return make_box(BoxCells::quadrilaterals, {8, 3, 1}, Vec3::Zer
 Eigen::VectorXd exact(const SolidParameters& p) {
   const auto solid = make_solid(sheet(), p);
   const SemiDiscrete model(*solid);
-  const SolidBoundaries boundaries(solid->body().mesh(), p);
+  const SolidBoundaries boundaries(solid->body().mesh(), solid->body().geometry(), p);
   const PrescribedDisplacement prescribed(solid->body().mesh(), boundaries, solid->body().elastic());
   const auto body = make_expressions(p.body_force, 2, "body-force");
   const Mesh& mesh = solid->body().mesh();
+  const Geometry& geometry = solid->body().geometry();
   const SolidDamping damping = p.damping.value_or(SolidDamping{});
   const auto force = [&](double t) {
     std::vector<double> rhs(solid->body().elastic().n_unknowns(), 0);
     for (Index c = 0; c < mesh.cells.n_owned(); ++c)
       for (int a = 0; a < 2; ++a)
-        rhs[std::size_t(c) * 2 + a] = body[a](mesh.reference.cell_centre[c], t) * mesh.reference.volume[c];
+        rhs[std::size_t(c) * 2 + a] = body[a](geometry.cell_centre[c], t) * geometry.volume[c];
     std::vector<double> on_faces(std::size_t(mesh.boundary.n_owned()) * 2, 0);
     boundaries.add_forces(t, on_faces);
     const auto& faces = solid->body().elastic().unknown_faces();

@@ -52,7 +52,7 @@ double deflection(const Solid& solid) {
   const std::vector<double> u = solid.fields().point_displacement();
   double most = 0;
   for (std::size_t i = 0; i < u.size(); i += 3)
-    if ((solid.body().mesh().reference_points[i / 3] - Vec3(0, 0, length)).norm() < 1e-9)
+    if ((solid.body().geometry().points[i / 3] - Vec3(0, 0, length)).norm() < 1e-9)
       most = std::hypot(u[i], u[i + 1]);
   return max(solid.body().mesh().comm, most) / length;
 }
@@ -153,8 +153,8 @@ TEST(UpdatedLagrangian, ranks_agree) {
 TEST(UpdatedLagrangian, restart_in_the_middle_of_the_load_is_bit_for_bit) {
   SolidParameters p = bent(20);
   p.method.relative_tolerance = 1e-3;
-  const Mesh mesh = distribute(MPI_COMM_WORLD, stub());
-  const auto another = [&] { return std::make_unique<Solid>(mesh, p, SolidContext{}); };
+  const LoadedMesh body = distribute(MPI_COMM_WORLD, stub());
+  const auto another = [&] { return std::make_unique<Solid>(body, p, SolidContext{}); };
   const auto through = another(), before = another(), after = another();
   step(*through, 0.5);
   step(*before, 0.5);

@@ -34,7 +34,7 @@ double cook(int n, double nu, Volume volume, MPI_Comm comm = MPI_COMM_WORLD) {
   double corner = 0;
   const std::vector<double> u = solid.fields().point_displacement();
   for (std::size_t v = 0; v < u.size() / 2; ++v)
-    if ((solid.body().mesh().reference_points[v] - Vec3(0.048, 0.06, 0)).norm() < 1e-9) corner = u[2 * v + 1];
+    if ((solid.body().geometry().points[v] - Vec3(0.048, 0.06, 0)).norm() < 1e-9) corner = u[2 * v + 1];
   return 1e3 * max(comm, corner);
 }
 
