@@ -34,7 +34,7 @@ class Describes : public Participant {
 
 Reply initialise(bool on) {
   Describes participant(on);
-  return carry_out({.op = Op::initialise}, participant, "mover", MPI_COMM_WORLD);
+  return carry_out(Command{Op::initialise, {}, {}, 0, -1, ""}, participant, "mover", MPI_COMM_WORLD);
 }
 
 TEST(DescribedData, on_all_ranks_or_on_the_first_alone) {

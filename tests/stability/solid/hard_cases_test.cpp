@@ -52,7 +52,6 @@ Plate plate(FaceGradient gradient, double aspect, bool pull) {
       make_box(BoxCells::quadrilaterals, {along, across, 1}, Vec3::Zero(), Vec3(length, height, 0)), p);
   step(*solid, 1);
   const std::vector<double> moved = solid->fields().point_displacement();
-  const Mesh& mesh = solid->body().mesh();
   const Geometry& geometry = solid->body().geometry();
   double end = 0;
   for (std::size_t i = 0; i < geometry.points.size(); ++i)
@@ -137,7 +136,6 @@ TEST(StiffnessThatJumpsByAMillion, is_stretched_as_two_springs_in_a_row) {
     const auto solid = make_solid(joined(sheet(0), 0.45), p);
     step(*solid, 1);
     const std::vector<double> moved = solid->fields().point_displacement();
-    const Mesh& mesh = solid->body().mesh();
     const Geometry& geometry = solid->body().geometry();
     for (std::size_t i = 0; i < geometry.points.size(); ++i) {
       const double x = geometry.points[i][0];

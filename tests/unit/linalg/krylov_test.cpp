@@ -301,7 +301,9 @@ TEST(ComponentMultigrid, iterations_hardly_grow_with_the_mesh_nor_with_the_ranks
 
 // The failing neighbour: cycles of each rank alone.
 TEST(ComponentMultigrid, iterations_grow_with_the_ranks_where_none_knows_of_another) {
-  if (comm_size(MPI_COMM_WORLD) > 1) EXPECT_GT(iterations_with_multigrid(32, false), 40);
+  if (comm_size(MPI_COMM_WORLD) > 1) {
+    EXPECT_GT(iterations_with_multigrid(32, false), 40);
+  }
 }
 
 TEST(ComponentMultigrid, components_do_not_see_each_other) {

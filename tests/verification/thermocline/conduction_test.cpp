@@ -82,7 +82,9 @@ TEST(MineralWool, conducts_as_its_table_says_and_linearly_between) {
   EXPECT_NEAR(wool.conductivity(kelvin(50)), known[0], 1e-12);
   for (int i = 1; i < 6; ++i) {
     EXPECT_NEAR(wool.conductivity(kelvin(100 * i)), known[i], 1e-12);
-    if (i > 1) EXPECT_NEAR(wool.conductivity(kelvin(100 * i - 50)), 0.5 * (known[i - 1] + known[i]), 1e-12);
+    if (i > 1) {
+      EXPECT_NEAR(wool.conductivity(kelvin(100 * i - 50)), 0.5 * (known[i - 1] + known[i]), 1e-12);
+    }
   }
 }
 
