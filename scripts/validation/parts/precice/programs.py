@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Programs of preCICE's own, unchanged: its tutorials and solver dummies as they were fetched, never in this repository. The folders are
-named by COUPLET_PRECICE_TUTORIALS and COUPLET_PRECICE_DUMMIES (examples/solverdummies); without them the rows report that."""
+named by COUPLET_PRECICE_TUTORIALS, COUPLET_PRECICE_DUMMIES (examples/solverdummies) and COUPLET_PRECICE_PYTHON_DUMMY (examples/solverdummy of
+its Python bindings); without them the rows report that."""
 import os
 import pathlib
 import re
@@ -136,10 +137,15 @@ def dummies(job):
     commands = {"c++": ["g++", "-std=c++17", where / "cpp/solverdummy.cpp"], "c": ["gcc", where / "c/solverdummy.c"], "fortran": ["gfortran", "-J", where, where / "fortran/solverdummy.f90"]}
     for kind, command in commands.items():
         job.run([*command, "-o", where / f"dummy-{kind}", *flags(job)], check=True)
-    for one, two in (("c++", "c++"), ("c", "c++"), ("c++", "c"), ("fortran", "c++"), ("c++", "fortran")):
-        coupled(job, where, where / "precice-config.xml", [f"exec {where}/dummy-{kind} {where}/precice-config.xml {name}" for kind, name in ((one, "SolverOne"), (two, "SolverTwo"))])
+    start = {kind: where / f"dummy-{kind}" for kind in commands}
+    pairs = [("c++", "c++"), ("c", "c++"), ("c++", "c"), ("fortran", "c++"), ("c++", "fortran")]
+    if python := folder("COUPLET_PRECICE_PYTHON_DUMMY"):
+        start["python"] = f"/usr/bin/python3 {python / 'solverdummy.py'}"
+        pairs += [("python", "c++"), ("c++", "python"), ("python", "python")]
+    for one, two in pairs:
+        coupled(job, where, where / "precice-config.xml", [f"exec {start[kind]} {where}/precice-config.xml {name}" for kind, name in ((one, "SolverOne"), (two, "SolverTwo"))])
         ran.append(f"{one}/{two}")
-    return f"{', '.join(ran)}: exit code 0", len(ran) == 5
+    return f"{', '.join(ran)}: exit code 0", len(ran) == len(pairs) == 8
 
 
 # -- against the client -------------------------------------------------------------------------------------------------
@@ -230,7 +236,7 @@ BARS = [
     Bar("oscillator of the tutorials, unchanged, Newmark, 4 sub-steps, degree 3: errors of the masses over 1 s", "those of Newmark's scheme for both masses at once with the sub-steps, computed by itself, within 1e-7", oscillator),
     Bar("resonant-circuit of the tutorials in Python, unchanged, degree 3, sub-steps of both: error of the current at 10 s", "at most 1e-2 of 1: ten windows, each converged to 1e-3",
         circuit),
-    Bar("preCICE's solver dummies in C, C++ and Fortran, unchanged, each against the C++ one", "run to the end", dummies),
+    Bar("preCICE's solver dummies in C, C++, Fortran and Python, unchanged, each against the C++ one", "run to the end", dummies),
     Bar(f"a window of {VERTICES} vertices, 3 components each way, against the client itself", "at most 1.2x, values equal bit for bit", cost),
     Bar(f"a window of {VERTICES} vertices, both participants over sockets", "at most 2x the client by MPI, values equal bit for bit", cost_of_sockets),
     Bar("couplet import of every precice-config.xml of the tutorials", "a valid case, or refused by the name of the feature", configurations),
