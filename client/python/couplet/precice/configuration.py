@@ -149,8 +149,8 @@ class Import:
         if len(set(limits)) > 1 or len(set(absolute)) > 1:
             self._note(measures[0], "one limit holds for all data that are iterated on: the strictest")
         if not measures:
-            self._note(scheme, "without a convergence measure each window takes max-iterations, and the estimate of its error is accepted")
-            self.case["simulation"]["accept"] = ["error-estimate"]
+            self._note(scheme, "without a convergence measure each window takes max-iterations, and that it has not converged is accepted")
+            self.case["simulation"]["accept"] = ["error-estimate", "unconverged-step"]
         iterations = self._number(scheme.one("max-iterations"), 0)
         coupling["convergence"] = {"relative": min(limits, default=1e-14)}
         if absolute:
