@@ -18,6 +18,8 @@ Driving::Driving(const FluidParameters& parameters) {
   const auto add = [this](const config::ExpressionText& text) {
     if (Expression found(text); found.uses_time()) timed_.push_back(std::move(found));
   };
+  for (const auto& [patch, b] : parameters.boundaries)
+    if (b.type == BoundaryType::interface) return;
   for (const auto& text : parameters.body_force) add(text);
   for (const auto& [patch, b] : parameters.boundaries) {
     for (const auto& text : b.velocity) add(text);

@@ -57,9 +57,13 @@ double FluidErrorEstimate<D>::forgetting(double dt, double outflow) {
   time_ += dt;
   const double share = std::min(1., dt / (window * time_));
   power_ += share * ((ledger.work - work_) / dt - power_);
-  energy_ += share * (std::max(0., ledger.energy) - energy_);
-  work_ = ledger.work;
-  return outflow + (energy_ > 0 ? std::max(0., power_) / (2 * energy_) : 0);
+  const double held = std::max(0., ledger.energy);
+  gain_ += share * ((held - held_) / dt - gain_);
+  energy_ += share * (held - energy_);
+  work_ = ledger.work, held_ = held;
+  // What a flow gains takes no error away; of one that decays the work alone is more than the solution's own way.
+  const double taken = std::max(0., std::min(power_, power_ - gain_));
+  return outflow + (energy_ > 0 ? taken / (2 * energy_) : 0);
 }
 
 // Divided differences of u at the ends of the last four steps, their lengths nearly alike: the rate over each step,
@@ -203,9 +207,18 @@ ErrorParts FluidErrorEstimate<D>::parts() const {
 
 template <int D>
 std::vector<double> FluidErrorEstimate<D>::state() const {
-  std::vector<double> values{
-      double(seen_),        judged_ ? 1. : 0.,   dt_old_, time_, power_, energy_, work_, left_of_late_,
-      double(left_.size()), double(rate_.size())};
+  std::vector<double> values{double(seen_),
+                             judged_ ? 1. : 0.,
+                             dt_old_,
+                             time_,
+                             power_,
+                             gain_,
+                             energy_,
+                             work_,
+                             held_,
+                             left_of_late_,
+                             double(left_.size()),
+                             double(rate_.size())};
   for (const Vectors<D>* vectors : {&left_, &rate_, &rate_change_})
     for (const Vec<D>& v : *vectors) values.insert(values.end(), v.begin(), v.end());
   const std::vector<double> sums = steps_.state();
@@ -216,12 +229,13 @@ std::vector<double> FluidErrorEstimate<D>::state() const {
 template <int D>
 void FluidErrorEstimate<D>::restore(std::span<const double> state) {
   seen_ = 0, judged_ = false, steps_ = {};
-  time_ = power_ = energy_ = work_ = left_of_late_ = 0;
+  time_ = power_ = gain_ = energy_ = work_ = held_ = left_of_late_ = 0;
   u_.clear(), rate_.clear(), rate_change_.clear(), left_.clear();
   if (state.empty()) return;
   SavedNumbers saved(state, "step errors");
   seen_ = int(saved.count(1e9)), judged_ = saved.real() != 0, dt_old_ = saved.real();
-  for (double* value : {&time_, &power_, &energy_, &work_, &left_of_late_}) *value = saved.real();
+  for (double* value : {&time_, &power_, &gain_, &energy_, &work_, &held_, &left_of_late_})
+    *value = saved.real();
   const std::size_t kept = saved.count_of(D), n = saved.count_of(2 * D);
   const Vectors<D>& u = fluid_.state().u;
   for (const std::size_t size : {kept, n})

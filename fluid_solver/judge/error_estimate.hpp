@@ -16,7 +16,7 @@ namespace couplet::fluid {
 ///           times the Laplacian of u on equal cells: recovery of the values
 ///   step    sum of the local errors 5/12 dt^3 d3u/dt3 of Adams and Bashforth's second order, see StepErrors; of
 ///           k sub-steps each k^-3. The flow forgets at the rate at which it is renewed, outflow over volume, and at which
-///           friction takes what work has brought in, W'/(2 E). Where a clock drives it (Driving) no error drifts: the sum of
+///           friction takes what work has brought in, (W' - E')/(2 E). Where a clock drives it (Driving) no error drifts: the sum of
 ///           the local errors as vectors, which turn back with each half period, counts if it is less
 ///   linear  what the pressure's solver leaves of the cells' net outflow against what passes through them, times the
 ///           square root of the number of cells across: an outflow that alternates moves its neighbours alone, one
@@ -49,7 +49,9 @@ class FluidErrorEstimate {
   bool judged_ = false;                // a step has been judged
   double dt_old_ = 0;
   StepErrors steps_;
-  double time_ = 0, power_ = 0, energy_ = 0, work_ = 0;  // judged so far; means of late; what the ledger had
+  double time_ = 0;                           // judged so far [s]
+  double power_ = 0, gain_ = 0, energy_ = 0;  // means of late: work and gain of energy [W], energy [J]
+  double work_ = 0, held_ = 0;                // what the ledger had: work and energy [J]
   Driving driving_;
   Vectors<D> left_;          // sum of local errors; empty: nothing drives
   double left_of_late_ = 0;  // norm, the largest of late
