@@ -364,6 +364,8 @@ BAD = {  # replaced, by what, what is said
     "a degree": ("<data:scalar name", '<data:scalar waveform-degree="-1" name', ":5: the waveform-degree '-1' of 'Displacement-Left' is not supported"),
     "a degree without sub-steps": ('<data:scalar name="Displacement-Left" />', '<data:scalar name="Displacement-Left" waveform-degree="2" />', ":28: waveform-degree 2 of 'Displacement-Left' without"),
     "windows by the first": ('<time-window-size value="0.1" />', '<time-window-size value="-1" method="first-participant" />', "time windows by the first participant"),
+    "data that are read and never exchanged": ('<exchange data="Displacement-Left"', '<exchange data="Displacement-Right"', "reads 'Displacement-Left', but no <exchange> brings it there"),
+    "exchanged data without a name": ('<exchange data="Displacement-Left"', '<exchange data="Displacment"', "<exchange>: the data 'Displacment' is not one of: "),
     "entities": ("<!-- pairs", '<!DOCTYPE a [<!ENTITY b "c">]><!-- pairs', "document types are not read"),
 }
 

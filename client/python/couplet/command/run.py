@@ -19,7 +19,7 @@ def declare(parser):
     parser.add_argument("-n", "--ranks", action="append", default=[], metavar="NAME=N", help="ranks of participants (fluid=4,solid=2), or one number for all together, divided by measured or expected work")
     parser.add_argument("--participant", metavar="NAME", help="this participant alone, without the others")
     parser.add_argument("--with", dest="played_by", action="append", default=[], metavar="NAME=COMMAND", help="the command of an external participant")
-    parser.add_argument("--separate", action="append", default=[], metavar="NAME[=tcp:INTERFACE]", help="this external participant is launched separately, with COUPLET_JOIN in its environment; it is reached on this machine, or on one network interface")
+    parser.add_argument("--separate", action="append", default=[], metavar="NAME[=tcp:INTERFACE]", help="this external participant is launched separately, with COUPLET_JOIN in its environment; it is reached on this machine, or on one network interface (tcp6: by IPv6)")
     parser.add_argument("--bin", type=pathlib.Path, metavar="FOLDER", help="the folder bin/ with the programs")
     parser.add_argument("--print", action="store_true", help="shows the launch line and runs nothing")
     parser.add_argument("--slurm", nargs="?", const="", metavar="OPTIONS", help="hands the run to Slurm as a batch job, with these options of sbatch; with --print shows the script")

@@ -18,6 +18,7 @@ class Import:
         for element in root.walk():
             self._look_at(element)
         self._participants()
+        self._names()
         if self.schemes:
             self._scheme()
         else:
@@ -72,6 +73,23 @@ class Import:
             if len(sizes) > 1:
                 self._refuse(p, f"meshes of two and of three dimensions in one participant ('{p.get('name')}') are not supported")
         self.case["participants"] = {p.get("name"): {"program": "precice"} for p in self.root.all("participant")}
+
+    def _names(self):
+        """Names that nothing has, and data that are read but never exchanged: the program would read zeros."""
+        data = [d.get("name") for d in self.root.starting("data:")]
+        meshes, people = ([e.get("name") for e in self.root.all(kind)] for kind in ("mesh", "participant"))
+        exchanges = [e for s in self.schemes for e in s.all("exchange")]
+        named = [e for p in self.root.all("participant") for e in p.all("write-data", "read-data")]
+        named = [(e, {"name": data, "mesh": meshes}) for e in named] + [(e, {"data": data, "mesh": meshes, "from": people, "to": people}) for e in exchanges]
+        named += [(m, {"data": data, "mesh": meshes}) for s in self.schemes for m in s.all(*MEASURES)]
+        for element, known in named:
+            for key, names in known.items():
+                if element.get(key) not in ("", *names):
+                    self._refuse(element, f"<{element.name}>: the {key} '{element.get(key)}' is not one of: {', '.join(names)}")
+        for p in self.root.all("participant"):
+            for e in p.all("read-data"):
+                if e.get("name") in data and not any((x.get("data"), x.get("to")) == (e.get("name"), p.get("name")) for x in exchanges):
+                    self._refuse(e, f"'{p.get('name')}' reads '{e.get('name')}', but no <exchange> brings it there")
 
     # -- the scheme ---------------------------------------------------------------------------------------------------
     def _scheme(self):
