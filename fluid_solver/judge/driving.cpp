@@ -19,7 +19,7 @@ Driving::Driving(const FluidParameters& parameters) {
     if (Expression found(text); found.uses_time()) timed_.push_back(std::move(found));
   };
   for (const auto& [patch, b] : parameters.boundaries)
-    if (b.type == BoundaryType::interface) return;
+    if (condition_of(b).velocity == GivenBy::structure) return;
   for (const auto& text : parameters.body_force) add(text);
   for (const auto& [patch, b] : parameters.boundaries) {
     for (const auto& text : b.velocity) add(text);

@@ -12,8 +12,8 @@
 namespace couplet::fluid {
 
 /// What drives a flow in time: expressions of body force, velocities and pressures of boundaries that use t. A flow that
-/// answers to a clock cannot drift away from it: what a step leaves turns back with the next half period. One that moves with
-/// a structure may swing of itself, clock or not: it is never counted as driven.
+/// answers linearly to a clock cannot drift away from it: what a step leaves turns back with the next half period. One that
+/// moves with a structure or carries vortices may swing of itself, clock or not: it is never counted as driven.
 class Driving {
  public:
   explicit Driving(const FluidParameters& parameters);

@@ -14,8 +14,9 @@ namespace couplet::fluid {
 namespace {
 
 constexpr double adams_bashforth_error = 5. / 12;
-// Of what a clock drives: forces at mid-step 1/24, friction by the trapezoidal rule 1/12, convection 5/12.
+// Of what a clock drives: forces at mid-step 1/24, friction by the trapezoidal rule 1/12; hardly any convection, 5/12.
 constexpr double driven_error = 1. / 12;
+constexpr double hardly = 0.1;   // share of convection in the rate of change of a flow that answers linearly
 constexpr double window = 0.25;  // "of late" is about this part of the time that has gone by
 
 /// Sums of a linear fit through the neighbours of a cell, weighted by 1 / d^2.
@@ -76,11 +77,12 @@ void FluidErrorEstimate<D>::accepted(double dt) {
   const double apart = 0.5 * (dt + dt_old_), per_step = 1 / dt, per_apart = 1 / apart;
   const bool knows_rate = seen_ > 0, knows_change = seen_ > 1, knows_third = seen_ > 2;
   u_.resize(n, Vec<D>::Zero()), rate_.resize(n, Vec<D>::Zero()), rate_change_.resize(n, Vec<D>::Zero());
-  // Of u, its rate, the change of that, the change of that; the volume; of what is left, outflow.
-  std::array<double, 7> squares{};
+  // Of u, its rate, the change of that, the change of that; the volume; of what is left, outflow; of what is carried.
+  std::array<double, 8> squares{};
   const double cut = std::max(1, fluid_.statistics().sub_steps);
   const double local = adams_bashforth_error * dt * dt * dt / (cut * cut) / apart;
   if (driving_.is_possible()) left_.resize(n, Vec<D>::Zero());
+  const Vectors<D>& carried = fluid_.state().rates_old.rate;  // times the volume; none of other schemes
   for (std::size_t c = 0; c < n && knows_rate; ++c) {
     const Vec<D> rate = (u[c] - u_[c]) * per_step;
     Vec<D> change = Vec<D>::Zero();
@@ -90,6 +92,7 @@ void FluidErrorEstimate<D>::accepted(double dt) {
       if (!left_.empty()) {
         left_[c] += (driven_error / adams_bashforth_error) * local * (change - rate_change_[c]);
         squares[5] += volume[c] * left_[c].squaredNorm();
+        squares[7] += carried.empty() ? volume[c] * rate.squaredNorm() : carried[c].squaredNorm() / volume[c];
       }
     }
     squares[0] += volume[c] * u[c].squaredNorm();
@@ -107,7 +110,9 @@ void FluidErrorEstimate<D>::accepted(double dt) {
     const double highest = mean(3) / apart;
     const double forgotten = forgetting(dt, squares[4] > 0 ? squares[6] / squares[4] : 0);
     for (Vec<D>& v : left_) v *= std::exp(-forgotten * dt);
-    left_of_late_ = std::max(mean(5), left_of_late_ * std::exp(-dt / (window * time_)));
+    const double faded = std::exp(-dt / (window * time_));
+    left_of_late_ = std::max(mean(5), left_of_late_ * faded);
+    carried_ = std::max(mean(7), carried_ * faded), changed_ = std::max(mean(1), changed_ * faded);
     steps_.add({.error = local * mean(3),
                 .rate = mean(1),
                 .size = mean(0),
@@ -182,7 +187,7 @@ double FluidErrorEstimate<D>::net_outflow() const {
 template <int D>
 double FluidErrorEstimate<D>::step_part() const {
   const double sum = steps_.over_size();
-  if (!driving_.is_possible() || !(steps_.size() > 0)) return sum;
+  if (!driving_.is_possible() || !(steps_.size() > 0) || !(carried_ <= hardly * changed_)) return sum;
   std::vector<Vec3> places;
   for (const Vec3& x : fluid_.state().placement->boundary_centre) places.push_back(x);
   const bool acts = driving_.acts(fluid_.mesh().comm, places, fluid_.state().time, dt_old_);
@@ -217,6 +222,8 @@ std::vector<double> FluidErrorEstimate<D>::state() const {
                              work_,
                              held_,
                              left_of_late_,
+                             carried_,
+                             changed_,
                              double(left_.size()),
                              double(rate_.size())};
   for (const Vectors<D>* vectors : {&left_, &rate_, &rate_change_})
@@ -229,12 +236,13 @@ std::vector<double> FluidErrorEstimate<D>::state() const {
 template <int D>
 void FluidErrorEstimate<D>::restore(std::span<const double> state) {
   seen_ = 0, judged_ = false, steps_ = {};
-  time_ = power_ = gain_ = energy_ = work_ = held_ = left_of_late_ = 0;
+  time_ = power_ = gain_ = energy_ = work_ = held_ = left_of_late_ = carried_ = changed_ = 0;
   u_.clear(), rate_.clear(), rate_change_.clear(), left_.clear();
   if (state.empty()) return;
   SavedNumbers saved(state, "step errors");
   seen_ = int(saved.count(1e9)), judged_ = saved.real() != 0, dt_old_ = saved.real();
-  for (double* value : {&time_, &power_, &gain_, &energy_, &work_, &held_, &left_of_late_})
+  for (double* value :
+       {&time_, &power_, &gain_, &energy_, &work_, &held_, &left_of_late_, &carried_, &changed_})
     *value = saved.real();
   const std::size_t kept = saved.count_of(D), n = saved.count_of(2 * D);
   const Vectors<D>& u = fluid_.state().u;

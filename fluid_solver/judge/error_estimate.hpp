@@ -16,8 +16,9 @@ namespace couplet::fluid {
 ///           times the Laplacian of u on equal cells: recovery of the values
 ///   step    sum of the local errors 5/12 dt^3 d3u/dt3 of Adams and Bashforth's second order, see StepErrors; of
 ///           k sub-steps each k^-3. The flow forgets at the rate at which it is renewed, outflow over volume, and at which
-///           friction takes what work has brought in, (W' - E')/(2 E). Where a clock drives it (Driving) no error drifts: the sum of
-///           the local errors as vectors, which turn back with each half period, counts if it is less
+///           friction takes what work has brought in, (W' - E')/(2 E). Where a clock drives it
+///           (Driving) and it answers linearly (convection is a small share of its rate of change) no error drifts: the sum
+///           of the local errors as vectors, which turn back with each half period, counts if it is less
 ///   linear  what the pressure's solver leaves of the cells' net outflow against what passes through them, times the
 ///           square root of the number of cells across: an outflow that alternates moves its neighbours alone, one
 ///           that does not the whole field; this is the mean of the two in logarithms
@@ -55,6 +56,8 @@ class FluidErrorEstimate {
   Driving driving_;
   Vectors<D> left_;          // sum of local errors; empty: nothing drives
   double left_of_late_ = 0;  // norm, the largest of late
+  double carried_ = 0,
+         changed_ = 0;  // largest of late: the part of the rates that is convection, and the rates [m/s^2]
 };
 
 }  // namespace couplet::fluid
