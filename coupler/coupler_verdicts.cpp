@@ -100,7 +100,7 @@ void Coupler::tell_work() const {
 void Coupler::tell_errors(std::vector<NamedErrors> participants) {
   ErrorParts mine = audit_->parts(parameters_);
   if (errors_) mine.coupling = errors_->over_size();
-  if (mine.known() || !mine.left_out.empty()) participants.push_back({"coupling", std::move(mine)});
+  if (mine.known() || !mine.omittable.empty()) participants.push_back({"coupling", std::move(mine)});
   found_ = largest(participants);
   for (const std::string& sentence : error_sentences(participants)) log::info("{}", sentence);
   if (const auto finding = worthless(participants)) log::finding(comm_rank(comm_), *finding);

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "plate_modal/model/build_model.hpp"
@@ -20,14 +19,6 @@ using V = std::optional<EffectVerdict>;
 
 std::string when(bool on, const char* reason) { return on ? reason : ""; }
 bool is_dynamic(const S& s) { return s.parameters.analysis == Parameters::Analysis::dynamic; }
-
-V verdict(double number, double threshold, std::string sentence, std::string recommendation,
-          double share = std::numeric_limits<double>::quiet_NaN()) {
-  if (std::isnan(number)) return {};
-  EffectVerdict v{"", number, threshold, std::move(sentence), std::move(recommendation)};
-  v.share = share;
-  return v;
-}
 
 // A clamped strip whose tip has moved by a quarter of its length has turned there by about 20 degrees: the
 // foreshortening that modes do not know is 0.6 x 0.25^2 of the length, 4 %.

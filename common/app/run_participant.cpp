@@ -96,7 +96,7 @@ class Errors {
     if (!wanted_) return;
     parts_.model = model.sum;
     parts_.model_by = std::move(model.largest);
-    parts_.left_out = std::move(model.idle);
+    parts_.omittable = std::move(model.omittable);
   }
   const ErrorParts& parts() const { return parts_; }
   std::vector<std::string> sentences() const { return error_sentences({{name_, parts_}}); }

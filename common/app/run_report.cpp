@@ -48,7 +48,7 @@ std::string json(const ErrorParts& e) {
   return fmt::format(
       "{{\"mesh\": {}, \"step\": {}, \"linear\": {}, \"coupling\": {}, \"model\": {}, \"model-by\": {}, \"could-be-omitted\": {}}}",
       number(e.mesh), number(e.step), number(e.linear), number(e.coupling), number(e.model),
-      words(e.model_by), words(e.left_out));
+      words(e.model_by), words(e.omittable));
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ std::string ErrorParts::text() const {
     if (!std::isnan(this->*k.value))
       text += fmt::format("{}{} {:.6g}", text.empty() ? "" : " ", k.name, this->*k.value);
   if (!text.empty() && dimension > 0) text += fmt::format(" dimension {}", dimension);
-  if (!model_by.empty() || !left_out.empty()) text += fmt::format(" | {} | {}", model_by, left_out);
+  if (!model_by.empty() || !omittable.empty()) text += fmt::format(" | {} | {}", model_by, omittable);
   return text;
 }
 
@@ -103,7 +103,7 @@ ErrorParts ErrorParts::of(const std::string& text) {
   if (words_at != text.npos) {
     const std::size_t last = text.rfind(" | ");
     if (last > words_at) parts.model_by = text.substr(words_at + 3, last - words_at - 3);
-    parts.left_out = text.substr(last + 3);
+    parts.omittable = text.substr(last + 3);
   }
   std::istringstream words(text.substr(0, words_at));
   for (std::string name; words >> name;) {
@@ -129,8 +129,9 @@ ErrorParts largest(const std::vector<NamedErrors>& participants) {
     if (p.is(&ErrorParts::model)) parts.model_by = p.of->parts.model_by;
   }
   for (const NamedErrors& n : participants)
-    if (!n.parts.left_out.empty())
-      parts.left_out += fmt::format("{}{}: {}", parts.left_out.empty() ? "" : "; ", n.name, n.parts.left_out);
+    if (!n.parts.omittable.empty())
+      parts.omittable +=
+          fmt::format("{}{}: {}", parts.omittable.empty() ? "" : "; ", n.name, n.parts.omittable);
   return parts;
 }
 
@@ -184,9 +185,9 @@ std::vector<std::string> error_sentences(const std::vector<NamedErrors>& partici
                                     idle.empty() ? "" : "; " + idle + " would not help"));
   }
   for (const NamedErrors& n : participants)
-    if (!n.parts.left_out.empty())
+    if (!n.parts.omittable.empty())
       sentences.push_back(
-          fmt::format("could be omitted{}: {}.", several ? " of '" + n.name + "'" : "", n.parts.left_out));
+          fmt::format("could be omitted{}: {}.", several ? " of '" + n.name + "'" : "", n.parts.omittable));
   return sentences;
 }
 

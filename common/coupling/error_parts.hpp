@@ -20,9 +20,9 @@ struct ErrorParts {
   double coupling = unknown;  ///< what the iteration between participants leaves below its tolerance
   /// What neglected effects change: the sum of the verdicts on them that say so.
   double model = unknown;
-  std::string model_by{};  ///< the largest of these and its cure, in words
-  std::string left_out{};  ///< effects that do next to nothing, and what they cost, in words
-  int dimension = 0;       ///< of the mesh, 0: not known
+  std::string model_by{};   ///< the largest of these and its cure, in words
+  std::string omittable{};  ///< effects that do next to nothing, and what they cost, in words
+  int dimension = 0;        ///< of the mesh, 0: not known
   bool known() const;
   /// "mesh 0.0013 step 2e-05 model 0.1 | thermal strain is neglected: ... | ": the known ones, for messages; empty: none.
   std::string text() const;

@@ -35,14 +35,22 @@ std::string without_advice(const EffectVerdict& v) {
                      v.threshold, verdict_word(v));
 }
 
+std::optional<EffectVerdict> verdict(double number, double threshold, std::string sentence,
+                                     std::string recommendation, double share) {
+  if (std::isnan(number)) return {};
+  EffectVerdict v{"", number, threshold, std::move(sentence), std::move(recommendation)};
+  v.share = share;
+  return v;
+}
+
 ModelError model_error(const std::vector<EffectVerdict>& verdicts) {
   ModelError model;
   double largest = 0;
   for (const EffectVerdict& v : verdicts) {
-    if (v.could_be_left_out())
-      model.idle +=
+    if (v.could_be_omitted())
+      model.omittable +=
           fmt::format("{}{} ({}; limit {:.2g}) saves about {:.0f} % of the time",
-                      model.idle.empty() ? "" : ", ", v.effect, v.sentence, v.threshold, 100 * v.saves);
+                      model.omittable.empty() ? "" : ", ", v.effect, v.sentence, v.threshold, 100 * v.saves);
     if (std::isnan(v.share)) continue;
     model.sum = std::isnan(model.sum) ? v.share : model.sum + v.share;
     if (!(v.share > largest)) continue;

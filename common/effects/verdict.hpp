@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,7 @@ struct EffectVerdict {
   double saves = 0;
   /// NaN is never sound.
   bool sound() const { return number <= threshold || saves > 0; }
-  bool could_be_left_out() const { return saves > 0 && number <= threshold; }
+  bool could_be_omitted() const { return saves > 0 && number <= threshold; }
   /// Of a verdict that is not sound.
   Severity severity() const {
     return number < wrong_from || std::isinf(wrong_from) ? Severity::warning : Severity::wrong;
@@ -41,11 +42,16 @@ struct EffectVerdict {
 /// The part of the error that is the model's: what the verdicts make of the answer, each as a share of it.
 struct ModelError {
   double sum = std::numeric_limits<double>::quiet_NaN();  ///< NaN: nothing is known
-  std::string largest;  ///< "thermal strain is neglected: use 'thermal-expansion'"
-  std::string idle;     ///< "turbulence model (... saves 44 %)": what could be omitted
+  std::string largest;    ///< "thermal strain is neglected: use 'thermal-expansion'"
+  std::string omittable;  ///< "turbulence model (... saves 44 %)": what could be omitted
 };
 /// Sum over the verdicts that know their share, and what could be omitted.
 ModelError model_error(const std::vector<EffectVerdict>& verdicts);
+
+/// Of the number of a run, without the name of its effect; none where the number is not known. `share`: see EffectVerdict.
+std::optional<EffectVerdict> verdict(double number, double threshold, std::string sentence,
+                                     std::string recommendation,
+                                     double share = std::numeric_limits<double>::quiet_NaN());
 
 /// One line: "<effect> neglected: <sentence> (limit <threshold>): <justified, not justified or wrong>", and where it
 /// is not justified the recommendation.

@@ -88,7 +88,7 @@ ErrorParts CouplingAudit::parts(const CouplingParameters& parameters) const {
   ErrorParts parts;
   parts.model = model.sum;
   parts.model_by = std::move(model.largest);
-  parts.left_out = std::move(model.idle);
+  parts.omittable = std::move(model.omittable);
   return parts;
 }
 

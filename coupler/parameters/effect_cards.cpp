@@ -29,24 +29,20 @@ bool is_quasi_newton(const P& p) {
 std::optional<EffectVerdict> judge_one_pass(const P& p, const CouplingEvidence& e) {
   if (p.scheme != Scheme::explicit_ || std::isnan(e.returned)) return {};
   const double limit = limit_of_one_pass(p);
-  EffectVerdict v{
-      "", e.returned, limit / 2,
+  return verdict(
+      e.returned, limit / 2,
       fmt::format(
           "added-mass ratio: {:.3g} of a change of the motion returns through the load in the next pass; "
           "one pass per step diverges from {:.2g}",
           e.returned, limit),
-      "iterate the added mass: 'scheme: semi-implicit'"};
-  v.share = std::min(e.returned, 1.);  // what the load of this step leaves to the next
-  return v;
+      "iterate the added mass: 'scheme: semi-implicit'",
+      std::min(e.returned, 1.));  // what the load of this step leaves to the next
 }
 
 std::optional<EffectVerdict> judge_lost_load(const P&, const CouplingEvidence& e) {
-  if (std::isnan(e.lost_load)) return {};
-  EffectVerdict v{"", e.lost_load, 0.02,
-                  fmt::format("fluid forces not taken / taken by the structure = {:.2g}", e.lost_load),
-                  "let the structure take 'viscous-force' as well ('interface: {load: forces}' of a solid)"};
-  v.share = e.lost_load;
-  return v;
+  return verdict(
+      e.lost_load, 0.02, fmt::format("fluid forces not taken / taken by the structure = {:.2g}", e.lost_load),
+      "let the structure take 'viscous-force' as well ('interface: {load: forces}' of a solid)", e.lost_load);
 }
 
 const std::array cards{

@@ -30,14 +30,6 @@ bool varies(const P& p) {
       materials_of(p), [](const SolidMaterial& m) { return m.heat.youngs_modulus || m.heat.poissons_ratio; });
 }
 
-V verdict(double number, double threshold, std::string sentence, std::string recommendation,
-          double share = E::unknown) {
-  if (std::isnan(number)) return {};
-  EffectVerdict v{"", number, threshold, std::move(sentence), std::move(recommendation)};
-  v.share = share;
-  return v;
-}
-
 /// Of an effect that is on: advice where it does next to nothing. `saves`: 0: what the card says.
 V spare(double number, double threshold, std::string sentence, double saves = 0) {
   if (std::isnan(number)) return {};
@@ -68,20 +60,15 @@ V spare_inertia(const P& p, const E& e) {
 // The stretch along a fibre that turns by an angle phi without straining is off by phi^2/2 in the linear
 // theory; a gradient of 0.02 is a fiftieth of that in the strain itself.
 // What that makes of a displacement: 0.4 of the square of the rotation at the tip of a cantilever (elastica; the norm of the
-// gradient is sqrt(2) times the rotation), about the strain of a bar, and 1/(f - 1) where a load of 1/f of the buckling load makes lateral motion grow.
+// gradient is sqrt(2) times the rotation), about the strain of a bar, and 1/(f - 1) where a load of 1/f of the buckling load makes lateral motion
+// grow.
 double share_of_geometry(const E& e) {
-  if (!std::isnan(e.large_strain_change)) return e.large_strain_change;
+  constexpr double all = 10;  // of a load beyond the buckling load nothing is left
+  if (e.large_strain_estimated) return std::isnan(e.large_strain_change) ? all : e.large_strain_change;
   const double strain = std::isnan(e.largest_strain) ? 0 : e.largest_strain;
   const double share = std::min(1., 0.2 * e.largest_gradient * e.largest_gradient + 0.8 * strain);
   if (std::isnan(e.buckling_factor)) return share;
-  constexpr double all = 10;  // of a load beyond the buckling load nothing is left
   return std::max(share, e.buckling_factor > 1 + 1 / all ? 1 / (e.buckling_factor - 1) : all);
-}
-
-// Linear theory errs by less than a thousandth there, and takes one linear solution a step.
-V spare_geometry(const P& p, const E& e) {
-  if (!has_finite_strain(p) || !std::isnan(e.buckling_factor)) return {};
-  return spare(e.largest_gradient, 1e-3, fmt::format("max |grad u| = {:.2g}", e.largest_gradient));
 }
 
 V judge_geometry(const P& p, const E& e) {
@@ -163,9 +150,7 @@ const std::array cards{
          "updated-Lagrangian method of the thesis instead, at 9 to 17 times the solution time",
          0, 33},
         "largest displacement gradient, 0.02",
-        judge_geometry,
-        false,
-        spare_geometry},
+        judge_geometry},
     SolidCard{"yielding",
               "not available here",
               [](const P&) { return std::string(); },

@@ -21,7 +21,8 @@ struct SolidEvidence {
   double coupling_number = unknown;      ///< stiffening by the heat of deformation, thesis (2.27)
   double temperature_range = unknown;    ///< of a run that knows a temperature [K]
   std::string large_strain{};            ///< what it would change, where that was asked for
-  double large_strain_change = unknown;  ///< the same over the displacement [1]
+  double large_strain_change = unknown;  ///< the same over the displacement [1]; NaN: there is no equilibrium
+  bool large_strain_estimated = false;   ///< it was asked for
   double buckling_factor = unknown;      ///< load that buckles over the load; known where it is low
   double kinetic_over_strain = unknown;  ///< of a dynamic run: largest kinetic over largest strain energy
   double dynamic_steps = unknown;        ///< of a dynamic run

@@ -144,6 +144,7 @@ SolidEvidence SolidJudge::evidence() const {
   if (large_strain_) {
     evidence.large_strain = large_strain_->text();
     evidence.large_strain_change = large_strain_->change;
+    evidence.large_strain_estimated = true;
   }
   if (buckling_factor_ < BucklingEstimate::low) evidence.buckling_factor = buckling_factor_;
   if (body_.is_dynamic() && largest_strain_energy_ > 0) {

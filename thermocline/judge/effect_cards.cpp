@@ -20,33 +20,21 @@ std::string when(const P& p, bool on, const char* reason) {
 using E = Evidence;
 using V = std::optional<EffectVerdict>;
 
-/// What the effect changes in the answer, as a share of it.
-V with_share(EffectVerdict verdict, double share) {
-  verdict.share = share;
-  return verdict;
-}
-
 // One temperature a grain takes a parabola inside it (linear driving force): 1/h becomes (1 + Bi/5)/h. Behind a
 // front the fluid was measured (docs/stability.md) within 0.1 % of 20 shells at Bi 10, within 1.2 % at Bi 100.
 V judge_grains(const P&, const E& e) {
-  if (std::isnan(e.largest_biot)) return {};
-  return with_share(
-      EffectVerdict{
-          "", e.largest_biot, 20,
-          fmt::format("Biot number of the grains = {:.2g}: their inside has {:.2g} of the film resistance",
-                      e.largest_biot, e.largest_biot / 5),
-          "set 'bed.shells': five resolve the grains"},
-      1.2e-4 * e.largest_biot);
+  return verdict(
+      e.largest_biot, 20,
+      fmt::format("Biot number of the grains = {:.2g}: their inside has {:.2g} of the film resistance",
+                  e.largest_biot, e.largest_biot / 5),
+      "set 'bed.shells': five resolve the grains", 1.2e-4 * e.largest_biot);
 }
 
 V judge_yield(const P&, const E& e) {
-  if (std::isnan(e.share_of_yield)) return {};
-  return with_share(
-      EffectVerdict{
-          "", e.share_of_yield, 1,
-          fmt::format("max equivalent stress / yield strength of the wall = {:.2g}", e.share_of_yield),
-          "the wall would yield: its stress and that of the grains are those of an elastic wall"},
-      std::max(0., e.share_of_yield - 1));
+  return verdict(e.share_of_yield, 1,
+                 fmt::format("max equivalent stress / yield strength of the wall = {:.2g}", e.share_of_yield),
+                 "the wall would yield: its stress and that of the grains are those of an elastic wall",
+                 std::max(0., e.share_of_yield - 1));
 }
 
 // As a share of the strength, so that a wall that carries next to nothing is no reason for a word. Both shares grow only.
@@ -60,39 +48,31 @@ V judge_bending(const P&, const E& e) {
 }
 
 V judge_sound(const P&, const E& e) {
-  if (std::isnan(e.largest_mach)) return {};
-  return with_share(
-      EffectVerdict{
-          "", e.largest_mach, 0.3,
-          fmt::format("gas speed between the grains / speed of sound = {:.2g} at the largest flow",
-                      e.largest_mach),
-          "the flow is compressible, and neither pressure loss nor films are valid: use less flow, a wider bed "
-          "or a higher pressure"},
+  return verdict(
+      e.largest_mach, 0.3,
+      fmt::format("gas speed between the grains / speed of sound = {:.2g} at the largest flow",
+                  e.largest_mach),
+      "the flow is compressible, and neither pressure loss nor films are valid: use less flow, a wider bed "
+      "or a higher pressure",
       0.5 * e.largest_mach * e.largest_mach);
 }
 
 V judge_capacity(const P&, const E& e) {
-  if (std::isnan(e.capacity_error)) return {};
-  return with_share(
-      EffectVerdict{
-          "", e.capacity_error, 0.05,
-          fmt::format(
-              "from the coldest to the hottest fluid of the run, air has {:.0f} J/(kg K), a difference of "
-              "{:.2g} from the constant",
-              e.mean_capacity, e.capacity_error),
-          fmt::format("set 'fluid.specific-heat: {:.0f} J/(kg K)'", e.mean_capacity)},
-      e.capacity_error);
+  return verdict(
+      e.capacity_error, 0.05,
+      fmt::format(
+          "from the coldest to the hottest fluid of the run, air has {:.0f} J/(kg K), a difference of "
+          "{:.2g} from the constant",
+          e.mean_capacity, e.capacity_error),
+      fmt::format("set 'fluid.specific-heat: {:.0f} J/(kg K)'", e.mean_capacity), e.capacity_error);
 }
 
 V judge_pressure(const P&, const E& e) {
-  if (std::isnan(e.pumping_share)) return {};
-  return with_share(
-      EffectVerdict{
-          "", e.pumping_share, 0.02,
-          fmt::format("pressure loss of {:.3g} kPa at the largest flow: {:.2g} of the transported heat",
-                      1e-3 * e.pressure_loss, e.pumping_share),
-          "add 'pump: {}', or check flow and grains: no real store is driven this hard"},
-      e.pumping_share);
+  return verdict(
+      e.pumping_share, 0.02,
+      fmt::format("pressure loss of {:.3g} kPa at the largest flow: {:.2g} of the transported heat",
+                  1e-3 * e.pressure_loss, e.pumping_share),
+      "add 'pump: {}', or check flow and grains: no real store is driven this hard", e.pumping_share);
 }
 
 // A power block makes some 0.4 of the heat electricity, and pump or fan run in charge and in discharge: a tenth of the heat

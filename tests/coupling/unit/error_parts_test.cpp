@@ -67,7 +67,7 @@ TEST(ErrorPartsTest, the_model_is_a_part_of_the_budget_and_proves_no_answer_usel
   EXPECT_DOUBLE_EQ(total_error({hot}), 0.018);
   EXPECT_FALSE(worthless({hot}).has_value());
   const NamedErrors small{
-      "solid", {.mesh = 0.018, .model = 1e-4, .left_out = "inertia (...) saves about 97 % of the time"}};
+      "solid", {.mesh = 0.018, .model = 1e-4, .omittable = "inertia (...) saves about 97 % of the time"}};
   const auto other = error_sentences({small});
   ASSERT_EQ(other.size(), 3u);
   EXPECT_EQ(other[1].rfind("the mesh dominates", 0), 0u) << other[1];
@@ -75,12 +75,12 @@ TEST(ErrorPartsTest, the_model_is_a_part_of_the_budget_and_proves_no_answer_usel
 }
 
 TEST(ErrorPartsTest, words_and_dimension_are_read_again) {
-  const ErrorParts parts{.mesh = 0.5, .model = 0.25, .model_by = "a | b", .left_out = "c", .dimension = 3};
+  const ErrorParts parts{.mesh = 0.5, .model = 0.25, .model_by = "a | b", .omittable = "c", .dimension = 3};
   const ErrorParts again = ErrorParts::of(parts.text());
   EXPECT_EQ(again.mesh, 0.5);
   EXPECT_EQ(again.model, 0.25);
   EXPECT_EQ(again.model_by, "a | b");
-  EXPECT_EQ(again.left_out, "c");
+  EXPECT_EQ(again.omittable, "c");
   EXPECT_EQ(again.dimension, 3);
 }
 

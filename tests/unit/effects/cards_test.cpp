@@ -68,13 +68,13 @@ TEST(EffectCards, neglected_effects_say_what_share_of_the_answer_they_change) {
   EXPECT_TRUE(std::isnan(model_error(audit(solid_effect_cards(), p, SolidEvidence{})).sum));
 }
 
-TEST(EffectCards, what_does_next_to_nothing_could_be_left_out) {
+TEST(EffectCards, what_does_next_to_nothing_could_be_omitted) {
   SolidParameters p = static_solid();
   p.analysis = SolidParameters::Analysis::dynamic;
   const auto idle = [&](double energies) {
     return model_error(audit(solid_effect_cards(), p,
                              SolidEvidence{.kinetic_over_strain = energies, .dynamic_steps = 100}))
-        .idle;
+        .omittable;
   };
   EXPECT_THAT(idle(5e-4), HasSubstr("inertia (max kinetic / largest strain energy = 0.0005"));
   EXPECT_THAT(idle(5e-4), HasSubstr("saves about 99 % of the time"));
@@ -84,7 +84,7 @@ TEST(EffectCards, what_does_next_to_nothing_could_be_left_out) {
   const auto model = [&](double eddy) {
     return model_error(
                audit(fluid::fluid_effect_cards(), scene, fluid::FluidEvidence{.eddy_viscosity = eddy}))
-        .idle;
+        .omittable;
   };
   EXPECT_THAT(model(0.002),
               HasSubstr("turbulence model (max eddy viscosity = 0.002 of the molecular; limit 0.01) saves"));
