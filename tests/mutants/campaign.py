@@ -141,7 +141,7 @@ def arguments():
     reader.add_argument("--seed", type=int, default=generate.SEED)
     reader.add_argument("--workers", type=int, default=1)
     reader.add_argument("--only", default="", help="mutants whose name or file holds this")
-    reader.add_argument("--again", action="store_true", help="survivors of before are judged again")
+    reader.add_argument("--again", action="store_true", help="survivors of before that have no reason are judged again")
     reader.add_argument("--batch-survivors", action="store_true", help="survivors once against the whole suite")
     return reader.parse_args()
 
@@ -155,7 +155,9 @@ def main():
         whole_suite(shop, records, [m for m in chosen if records.mutants.get(m.name, {}).get("verdict") == "survived"])
     else:
         known = records.mutants
-        todo = [m for m in chosen if m.name not in known or (asked.again and known[m.name]["verdict"] == "survived")]
+        excused = reasons()
+        todo = [m for m in chosen if m.name not in known or (asked.again and known[m.name]["verdict"] == "survived" and m.name not in excused)]
+        todo.sort(key=lambda m: m.name in known)  # what is new first
         priced(shop, records, dict.fromkeys(t for m in todo for t in nearest.tests_of(m.file, shop.registered, {})))
         judge = Judge(shop, records)
         with concurrent.futures.ThreadPoolExecutor(asked.workers) as pool:

@@ -78,6 +78,19 @@ TEST(MatchedMapping, obeys_the_tolerance_of_the_user) {
   EXPECT_NE(message(line("a", 5), line("b", 5, 0.01), parameters), "");
 }
 
+// What is near is a part of the surfaces' size, wherever they lie.
+TEST(MatchedMapping, matches_alike_on_every_side_of_the_origin) {
+  for (const double along : {-1000., -10., 10.}) {
+    const auto moved = [&](const std::string& what, double aside) {
+      PointSet set = line(what, 5, aside);
+      for (Vec3& p : set.points) p.x() += along;
+      return set;
+    };
+    EXPECT_EQ(message(moved("a", 0), moved("b", 5e-7), {}), "") << along;
+    EXPECT_THAT(message(moved("a", 0), moved("b", 2e-6), {}), testing::HasSubstr("within 1e-06 m")) << along;
+  }
+}
+
 TEST(MatchedMapping, refuses_twins_that_are_not_clear) {
   PointSet from = line("a", 5), to = line("b", 5);
   to.points[2] = to.points[3];

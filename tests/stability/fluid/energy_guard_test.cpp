@@ -84,6 +84,25 @@ TEST(EnergyGuard, too_many_sub_steps_are_named_by_cause_cell_and_place) {
   EXPECT_EQ(said("t > 0.015 && y > 0.13 && y < 0.24 ? 2 : 1", 0.01), "");
 }
 
+/// A fluid that is pushed through a duct, as one body: what pressure does at the inlet, less what flows out and with what flows
+/// in, is its kinetic energy; also where it leaves with a given velocity and not at a given pressure.
+TEST(EnergyGuard, the_work_on_a_fluid_that_is_pushed_through_is_its_kinetic_energy) {
+  for (const bool given : {false, true}) {
+    FluidParameters p;
+    p.density = 1.3;
+    p.viscosity = 1e-3;
+    all_sides(p, 2, boundary(BoundaryType::slip));
+    p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"2*t", "0"});
+    p.boundaries["xmax"] =
+        given ? boundary(BoundaryType::inlet, {"2*t", "0"}) : boundary(BoundaryType::outlet);
+    FluidCase<2> c(MPI_COMM_WORLD, box(8), p);
+    for (int i = 0; i < 40; ++i) c.step(0.025);
+    const EnergyLedger& ledger = c.state().ledger;
+    EXPECT_NEAR(ledger.energy, 0.5 * 1.3 * 4, 1e-6);
+    EXPECT_NEAR(ledger.work, ledger.energy, 0.02 * ledger.energy) << given;
+  }
+}
+
 TEST(EnergyGuard, what_a_pressure_solve_leaves_in_a_fluid_at_rest_is_no_blow_up) {
   for (const double density : {1.0, 1e3, 1e5}) {
     FluidParameters p = layers();

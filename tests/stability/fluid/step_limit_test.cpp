@@ -47,6 +47,29 @@ TEST(StepLimit, of_explicit_diffusion_is_the_longest_stable_step) {
   EXPECT_GT(growth_of_noise(1.05, ExplicitScheme::runge_kutta), 10);
 }
 
+/// What a uniform eddy viscosity does not allow is what no fluid of that viscosity is allowed: nu + 2 nu_t, as the stress
+/// nu_t (grad u + grad u^T) may have twice the rate of nu_t grad u.
+TEST(StepLimit, of_eddy_viscosity_is_that_of_a_more_viscous_fluid) {
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {8, 8, 1}, Vec3::Zero(), Vec3::Ones());
+  perturb_interior(raw, 0.2, 3);
+  raw.periodic = {{"xmin", "xmax"}, {"ymin", "ymax"}};
+  FluidParameters p;
+  p.density = 1;
+  p.viscosity = 0.1;
+  p.viscous = ViscousTreatment::explicit_;
+  p.initial_velocity = {{"2"}, {"1"}};
+  all_sides(p, 2, boundary(BoundaryType::periodic));
+  const FluidCase<2> c(MPI_COMM_WORLD, raw, p);
+  FluidCase<2> thick(MPI_COMM_WORLD, raw, p);
+  StepSize<2> sizes(c.mesh(), thick.fluid().boundary(), 0.1),
+      of_thick(c.mesh(), thick.fluid().boundary(), 0.7);
+  State<2> eddying = c.state();
+  eddying.eddy.assign(std::size_t(c.mesh().cells.n_local()), 0.3);
+  const double limit = sizes.limits(eddying).explicit_viscous;
+  EXPECT_NEAR(limit, of_thick.limits(c.state()).explicit_viscous, 1e-5 * limit);
+  EXPECT_LT(limit, 0.5 * sizes.limits(c.state()).explicit_viscous);
+}
+
 /// Lid-driven cavity, Re = 1000, that chooses its steps itself, first cautiously until the flow has developed
 /// near the lid: largest speed in the cells. The steady flow in them is slower than the lid.
 double speed_in_cavity(double safety_factor, ViscousTreatment viscous,

@@ -222,6 +222,29 @@ TEST(ElasticKernel, a_symmetry_plane_keeps_a_symmetric_linear_field_exact) {
     }
 }
 
+// Hence no gradient along the plane has a part across it, whatever the displacement is.
+TEST(ElasticKernel, no_vertex_of_a_symmetry_plane_moves_across_it) {
+  for (const FaceGradientScheme scheme : {FaceGradientScheme::thesis, FaceGradientScheme::corrected})
+    for (const Case& c : all_cases) {
+      const Setting s(c, scheme, all_kinds);
+      std::mt19937 random(17 + comm_rank(MPI_COMM_WORLD));
+      std::uniform_real_distribution<double> number(-1, 1);
+      std::vector<double> u(s.rows.n_unknowns()),
+          points(std::size_t(s.mesh.points.n_local()) * s.mesh.dim, 0);
+      for (double& x : u) x = number(random);
+      s.kernel.point_values(u, {}, points);
+      double along = 0, across = 0;
+      for (const Patch& patch : s.mesh.patches)
+        for (Index f = patch.first; patch.name == "ymin" && f < patch.first + patch.count; ++f)
+          for (const Index v : s.mesh.face_points[f]) {
+            along = std::max(along, std::abs(points[v * s.mesh.dim]));
+            across = std::max(across, std::abs(points[v * s.mesh.dim + 1]));
+          }
+      EXPECT_LT(across, 1e-13);
+      EXPECT_GT(max(MPI_COMM_WORLD, along), 0.1);
+    }
+}
+
 TEST(ElasticKernel, corrected_gradients_are_exact_for_quadratic_fields_on_even_bricks) {
   for (const BoxCells cells : {BoxCells::quadrilaterals, BoxCells::hexahedra}) {
     const Setting s({cells, 0}, FaceGradientScheme::corrected, {}, 6);

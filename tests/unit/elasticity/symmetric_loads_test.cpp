@@ -56,6 +56,34 @@ TEST_P(SymmetricLoads, thermal_pressure_works_on_the_strain_that_faces_share_wit
   plane ? check<2>(GetParam()) : check<3>(GetParam());
 }
 
+template <int D>
+void check_mass(BoxCells cells) {
+  RawMesh raw = make_box(cells, {4, 3, 3}, Vec3::Zero(), Vec3(1.1, 1.0, D == 3 ? 1.2 : 0));
+  perturb_interior(raw, 0.2, 7);
+  const auto [mesh, geometry] = distribute(MPI_COMM_SELF, raw);
+  std::vector<ElasticCondition> conditions(mesh.patches.size(), ElasticCondition::traction);
+  conditions[0] = ElasticCondition::prescribed;
+  conditions[1] = ElasticCondition::symmetry;
+  const ElasticOperator rows(mesh, geometry, conditions, lame);
+  const ElasticKernel kernel(mesh, rows, FaceGradientScheme::symmetric);
+  ASSERT_TRUE(kernel.set_density(std::vector<double>(std::size_t(mesh.cells.n_local()), 2.5)));
+  const std::vector<double> unknowns = noise(rows.n_unknowns(), 2), still(rows.n_unknowns(), 0),
+                            known = noise(rows.n_known() * D, 3), held(known.size(), 0);
+  const double moving = kernel.product(ElasticPart::mass, {unknowns, held}, {unknowns, held}),
+               carried = kernel.product(ElasticPart::mass, {still, known}, {still, known}),
+               between = kernel.product(ElasticPart::mass, {unknowns, held}, {still, known});
+  EXPECT_GT(moving, 0);
+  EXPECT_GT(carried, 0);
+  EXPECT_LT(std::abs(between), 1e-14 * std::sqrt(moving * carried));
+}
+
+// Nodes and vertices have their mass, and a vertex that a face of known displacement touches follows such faces alone: so the
+// inertia of what is known acts on nothing that is not, and the work on it needs no velocity of the rest.
+TEST_P(SymmetricLoads, no_mass_belongs_to_known_and_unknown_displacements) {
+  const bool plane = GetParam() == BoxCells::quadrilaterals || GetParam() == BoxCells::triangles;
+  plane ? check_mass<2>(GetParam()) : check_mass<3>(GetParam());
+}
+
 INSTANTIATE_TEST_SUITE_P(All, SymmetricLoads,
                          ::testing::Values(BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
                                            BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed));

@@ -75,6 +75,23 @@ TEST_P(Exactness, heat_is_neither_lost_nor_made_while_properties_depend_on_the_t
   }
 }
 
+// Volume over surface is 1/22 m; at 400 K on average c = 700 J/(kg K): 3 kg/m^3 * 700 / 22^2 = 4.3 s.
+TEST(SteadyHeat, tells_the_time_that_it_neglects_by_the_mean_temperature) {
+  HeatParameters p;
+  p.analysis = HeatParameters::Analysis::steady;
+  p.boundaries["xmin"] = heat_boundary(HeatType::temperature, "300");
+  p.boundaries["xmax"] = heat_boundary(HeatType::temperature, "500");
+  HeatCase scene(make_box(BoxCells::quadrilaterals, {8, 2, 1}, Vec3::Zero(), Vec3(1, 0.1, 0)),
+                 {{3, 1.0, Property({"table(T, 300, 500, 800, 1500)"}, "c")}}, p);
+  std::vector<std::string> said;
+  for (int i = 0; i < 2; ++i) scene.step(1);
+  scene.heat->judge(said);
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_NE(said[0].find("heat needs about 4.3 s to spread through the solid, a step takes 1 s"),
+            std::string::npos)
+      << said[0];
+}
+
 TEST_P(Exactness, ranks_agree_with_one_rank) {
   const int dim = dimension_of(GetParam());
   HeatParameters p;

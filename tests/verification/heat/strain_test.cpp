@@ -131,6 +131,28 @@ TEST_P(Strain, elastic_constants_follow_the_temperature) {
   EXPECT_LT(error, 1e-9);
 }
 
+// Whether new constants are needed is asked of every cell: here only the one at the end of the bar gets warm, be it the
+// mesh's first or last.
+TEST(VaryingStiffness, follows_the_temperature_of_a_single_cell) {
+  for (const bool last : {false, true}) {
+    SolidParameters p = warm_box(2, last ? "300 + (x > 0.75 ? 100*t : 0)" : "300 + (x < 0.25 ? 100*t : 0)");
+    p.plane = SolidParameters::Plane::stress;
+    p.material.poissons_ratio = 0;
+    p.material.heat.expansion = config::ExpressionText{"0"};
+    p.material.heat.youngs_modulus = config::ExpressionText{"table(T, 300, 200e9, 400, 100e9)"};
+    p.boundaries["xmax"] = boundary(Type::pressure);
+    p.boundaries["xmax"].pressure = {"-1e8"};
+    const auto solid =
+        make_solid(make_box(BoxCells::quadrilaterals, {4, 1, 1}, Vec3::Zero(), Vec3(1, 0.25, 0)), p);
+    step(*solid, 1);
+    double end = 0;
+    const std::vector<double> u = solid->fields().point_displacement();
+    for (std::size_t v = 0; v < solid->body().geometry().points.size(); ++v) end = std::max(end, u[2 * v]);
+    // 1e8 Pa over a length of 1 m at 200 GPa, a quarter of it at half of that; the face between the two has a mean.
+    EXPECT_NEAR(max(solid->body().mesh().comm, end), 1.25 * 1e8 / 200e9, 0.03 * 1e8 / 200e9) << last;
+  }
+}
+
 TEST(PrescribedTemperature, is_taken_at_the_end_of_a_static_step) {
   SolidParameters p = warm_box(3, "300 + 50*t");
   const auto solid = make_solid(distorted_box(BoxCells::hexahedra), p);

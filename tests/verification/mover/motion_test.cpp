@@ -62,6 +62,23 @@ TEST(PseudoSolid, carries_a_linear_field_into_the_mesh_exactly) {
   }
 }
 
+/// Pulled between its ends a free side draws in by nu / (1 - nu) of the stretch in the plane, in three dimensions, beside a side
+/// that is kept from it, as well.
+TEST(PseudoSolid, a_free_side_draws_in_by_poissons_ratio) {
+  for (const BoxCells cells : {BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra}) {
+    const auto [mesh, geometry] = box(cells, 4);
+    Parameters p = all_patches(mesh, BoundaryMotion::slip);
+    p.boundaries["xmin"].motion = p.boundaries["xmax"].motion = BoundaryMotion::interface;
+    p.boundaries["ymax"].motion = BoundaryMotion::free;
+    p.stiffening = 0;
+    p.poisson_ratio = 0.3;
+    PseudoSolid solid(mesh, geometry, p);
+    const auto pulled = at_points(
+        mesh, geometry, [](const Vec3& x) { return Vec3(0.1 * x.x(), -0.3 / 0.7 * 0.1 * x.y(), 0); });
+    EXPECT_LT(largest_difference(mesh.comm, solid.solve(pulled), pulled), 1e-8) << int(cells);
+  }
+}
+
 TEST(PseudoSolid, slides_along_a_plane_of_any_direction) {
   RawMesh raw = make_box(BoxCells::quadrilaterals, {8, 6, 1}, Vec3::Zero(), Vec3::Ones());
   const double angle = 0.4;

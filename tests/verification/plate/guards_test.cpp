@@ -230,11 +230,18 @@ TEST(PlateGuards, an_edge_of_the_outline_in_no_patch_is_named_by_its_middle) {
 
 TEST(PlateGuards, a_mesh_out_of_its_plane_is_refused) {
   RawMesh raw = square(4);
-  raw.points[7].z() = 1e-8;
-  EXPECT_NO_THROW(midsurface_of(raw));
-  raw.points[7].z() = 1e-3;
-  EXPECT_NE(message_of([&] { midsurface_of(raw); }).find("does not lie in the plane z = 0"),
-            std::string::npos);
+  // By its size, wherever it lies: about the origin, beside it, far from it.
+  const Vec3 middle = 0.5 * (raw.points.front() + raw.points.back());
+  for (const double aside : {0., 0.5, 1000.}) {
+    for (Vec3& x : raw.points) x += Vec3(aside, aside, 0) - Vec3(middle.x(), middle.y(), 0);
+    raw.points[7].z() = 1e-8;
+    EXPECT_NO_THROW(midsurface_of(raw)) << aside;
+    raw.points[7].z() = 1e-3;
+    EXPECT_NE(message_of([&] { midsurface_of(raw); }).find("does not lie in the plane z = 0"),
+              std::string::npos)
+        << aside;
+    for (Vec3& x : raw.points) x -= Vec3(aside, aside, 0) - Vec3(middle.x(), middle.y(), 0);
+  }
 }
 
 TEST(PlateGuards, a_pressure_without_a_sound_value_names_its_key_time_and_place) {

@@ -354,6 +354,32 @@ TEST_F(PlateModesFile, of_two_sheets_each_looks_away_from_the_other) {
   EXPECT_EQ(facing_problem_of(alone) + facing_problem_of(alone, Facing::inward), "");
 }
 
+/// A sheet of n squares of edge 1 in a row at z, each with vertices of its neighbours, from x on; looking up.
+ModalModel strip(int n, double x, double z) {
+  ModalModel sheet;
+  for (int i = 0; i <= n; ++i)
+    for (const int y : {0, 1}) sheet.vertices.push_back(Vec3(x + i, y, z));
+  for (Index i = 0; i < n; ++i)
+    sheet.faces.push_row(std::vector<Index>{2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1});
+  return sheet;
+}
+
+// A long sheet between one that lies above its first half and one that lies below the other. The rest of it sees nothing.
+TEST_F(PlateModesFile, a_sheet_whose_neighbours_contradict_each_other_is_named) {
+  const auto between = [](int seen) {
+    const ModalModel above = strip(seen, 0, 1), below = strip(seen, seen, -1);
+    const auto down = [](const ModalModel& m) { return turned(m, [](Index) { return true; }); };
+    return facing_problem_of(
+        with(with(strip(20, 0, 0), above, 1, Vec3::Zero()), down(below), 1, Vec3::Zero()));
+  };
+  EXPECT_NE(between(8).find("cannot determine on which side of the faces of part 1 of 3"), std::string::npos)
+      << between(8);
+  EXPECT_NE(between(8).find("50 % of them face away from other faces and 50 % towards them"),
+            std::string::npos)
+      << between(8);
+  EXPECT_EQ(between(3), "");  // most of it sees nothing: it may look anywhere
+}
+
 TEST_F(PlateModesFile, kept_modes_that_were_edited_are_found_again) {
   if (comm_size(MPI_COMM_WORLD) > 1) return;
   const RawMesh raw = square(4);

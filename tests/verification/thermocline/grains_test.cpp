@@ -109,11 +109,26 @@ TEST(Closures, wakao_and_kaguei_are_those_of_the_paper) {
   EXPECT_NEAR(layer.at(350, MassFlux(1.6)).film, 490, 1e-9);  // Re = 1.6 * 0.02/1e-3
 }
 
+// A run that leaves the limits of its fluid is warned about and goes on: the properties follow it for 100 K above and 50 K below.
+TEST(Closures, follow_the_fluid_a_little_beyond_its_limits) {
+  const Fluid fluid{"fluid", 1000, 4000, Table({200, 1200}, {0.2, 1.2}), Table(1e-3), 400, 700};
+  const LayerClosure layer({}, fluid, Filler{}, 0.4, 0.02);
+  for (const double t : {355., 390., 550., 710., 795.})  // still: Nu = 2, k = t / 1000
+    EXPECT_NEAR(layer.at(t, MassFlux(0)).film, 2 * t / 1000 / 0.02, 1e-9) << t;
+}
+
 TEST(Closures, a_stagnant_bed_of_like_materials_conducts_as_they_do) {
   EXPECT_NEAR(zehner_schluender(0.4, 1), 1, 1e-12);
   // Continuous where the formula is 0/0.
   const double b = 1.25 * std::pow(0.6 / 0.4, 10.0 / 9);
   EXPECT_NEAR(zehner_schluender(0.4, b * 1.00101), zehner_schluender(0.4, b * 1.00099), 1e-4);
+}
+
+// Zehner and Schluender's formula evaluated by hand, of beds for which B differs: B = 1.9617, 1.25, 0.7966.
+TEST(Closures, a_stagnant_bed_conducts_as_the_formula_of_its_porosity) {
+  EXPECT_NEAR(zehner_schluender(0.4, 10), 3.64273, 1e-5);
+  EXPECT_NEAR(zehner_schluender(0.5, 100), 6.28307, 1e-5);
+  EXPECT_NEAR(zehner_schluender(0.6, 30), 3.30343, 1e-5);
 }
 
 TEST(Properties, solar_salt_has_the_values_of_its_source) {
