@@ -68,7 +68,7 @@ void send_reply(couplet_client& c) {
   if (c.rank == 0) {
     Packer head;
     head.integers({reply_mark, version, c.status});
-    head.text(c.text);
+    head.text(first && c.status == 0 ? c.introduction : c.text);
     head.real(MPI_Wtime() - c.started);
     head.real(c.advised);
     head.real(c.dt);
@@ -214,6 +214,8 @@ void couplet_gives(couplet_client* c, const char* datum, const char* unit, enum 
                    int components) {
   c->gives.push_back({datum, unit, int(place), components});
 }
+
+void couplet_introduce(couplet_client* c, const char* text) { c->introduction = text; }
 
 enum couplet_event couplet_next(couplet_client* c) try {
   for (;;) {

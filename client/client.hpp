@@ -25,7 +25,7 @@ struct couplet_client {
   bool pending = false;
   std::map<std::string, std::vector<double>> input, output, spare;  // spare: arrays of outputs that were sent
   std::int64_t status = 0;
-  std::string text, checkpoint;
+  std::string text, checkpoint, introduction;
   double time = 0, dt = 0;  // of the step that began last
   double advised = std::numeric_limits<double>::infinity();
   std::int64_t iterations = 0;

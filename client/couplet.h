@@ -62,6 +62,9 @@ void couplet_faces(couplet_client* c, int n, const double* centres, const double
 void couplet_takes(couplet_client* c, const char* datum, const char* unit, enum couplet_place place, int components);
 void couplet_gives(couplet_client* c, const char* datum, const char* unit, enum couplet_place place, int components);
 
+/* What the program was configured by, for the coupler to compare (docs/protocol.md, initialise); before the first couplet_next. */
+void couplet_introduce(couplet_client* c, const char* text);
+
 /* Answers for the last event and waits, without burning a core, for the next. Collective over couplet_comm. */
 enum couplet_event couplet_next(couplet_client* c);
 

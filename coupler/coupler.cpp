@@ -11,6 +11,7 @@
 #include "common/parallel/collective.hpp"
 #include "coupler/exchange/foreign_fluid.hpp"
 #include "coupler/exchange/foreign_structure.hpp"
+#include "coupler/exchange/introductions.hpp"
 #include "coupler/exchange/role_checks.hpp"
 #include "coupler/judge/places.hpp"
 #include "coupler/judge/surfaces.hpp"
@@ -99,6 +100,7 @@ std::vector<Partner*> Coupler::everyone() {
 void Coupler::initialise() {
   enter_(Phase::initialise, {});
   std::vector<Interface> interfaces = initialise_all(everyone());
+  check_introductions(parameters_, partners_);
   for (std::size_t i = 0; i < partners_.size(); ++i)
     if (auto* foreign = dynamic_cast<ForeignFluid*>(partners_[i].channel.get()))
       foreign->adapt(interfaces[i], partners_[i].surfaces);
@@ -240,6 +242,7 @@ void Coupler::accept(double time, int output) {
 
 std::string Coupler::run() {
   initialise();
+  const std::string stateless = without_state(simulation_.checkpoint_interval, partners_);
   double restart_time = std::numeric_limits<double>::quiet_NaN();
   if (!folders_.restart.empty()) {
     load();
@@ -257,6 +260,7 @@ std::string Coupler::run() {
   actions.accept = [&](double time, int output) { accept(time, output); };
   actions.write_start = [&](int output) { ask_all(everyone(), {Op::write_output, {}, {}, 0, output, ""}); };
   actions.save = [&](const std::filesystem::path& folder) { save(folder); };
+  actions.stateless = stateless;
   actions.report = [&](const Step& step, double time) { monitor_->step(step, time, last_, partners_); };
   actions.advised_dt = [&] { return advised_dt(everyone()); };
   std::string problem = loop_.run(actions);

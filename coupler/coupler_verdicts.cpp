@@ -28,9 +28,10 @@ constexpr double useless_residual = 0.5;
 void Coupler::report_unconverged(double time) {
   const double residual = last_.residual.relative;
   const std::string text = fmt::format(
-      "t = {:g} s: coupling: relative residual = {:.2e} (limit {:.1e}) after {} iterations: the step is accepted "
+      "t = {:g} s: coupling: relative residual = {:.2e} (limit {:.1e}){} after {} iterations: the step is accepted "
       "unconverged",
-      time, residual, parameters_.convergence.relative, last_.iterations);
+      time, residual, parameters_.convergence.relative, absolute_too(last_.residual, parameters_.convergence),
+      last_.iterations);
   if (worst_accepted_ > 0 && residual < 10 * worst_accepted_) {
     log::info("{}", text);
     return;

@@ -53,6 +53,7 @@ class Reader {
         degree_[child.attribute("name")] = degree(child);
       }
     check_supported(me);
+    c_.introduction = digest(root_);
     meshes(me);
     data(me);
     for (const Element& child : root_.children)
@@ -180,7 +181,13 @@ class Reader {
     const std::string first = pair.empty() ? "" : pair[0]->attribute("first");
     bool mine = !pair.empty() && (first == c_.participant || pair[0]->attribute("second") == c_.participant);
     for (const Element* p : s.all("participant")) mine = mine || p->attribute("name") == c_.participant;
-    if (mine) c_.implicit = c_.implicit || implicit;
+    if (mine) {
+      c_.implicit = c_.implicit || implicit;
+      c_.introduction +=
+          std::string("\x1e") + (implicit ? "implicit" : "explicit") +
+          (serial && !pair.empty() ? "\x1fserial\x1f" + first + "\x1f" + pair[0]->attribute("second")
+                                   : "\x1fparallel");
+    }
     for (const Element* w : s.all("time-window-size"))
       if (mine && w->attribute("method") == "first-participant")
         refuse(c_.file, *w, "<time-window-size method=\"first-participant\"> is not supported.");
@@ -223,7 +230,7 @@ class Reader {
       wire.held = !k.implicit && k.taker_is_early;
       wire.iterated = k.implicit && k.taker_is_early;
       wire.degree = degree_[k.data];
-      wire.within = k.sub_steps && wire.degree > 0 && !wire.held;
+      wire.within = k.sub_steps && !wire.held;
       for (const auto& other : c_.wires)
         if (!gives && !other.given && other.data == wire.data)
           throw ::precice::Error(c_.file + ": \"" + k.data + "\" comes to mesh \"" + k.to +

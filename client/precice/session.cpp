@@ -124,6 +124,7 @@ void Session::describe() {
     }
     xyz.insert(xyz.end(), m.xyz.begin(), m.xyz.end());
   }
+  couplet_introduce(job, configuration.introduction.c_str());
   couplet_vertices(job, meshes.front().dimensions, int(xyz.size() / 3), xyz.data());
   if (meshes.size() > 1) {
     std::vector<int> surface;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdint>
+#include <cstdio>
 #include <fstream>
 #include <sstream>
 
@@ -73,6 +75,7 @@ class Parser {
     const std::size_t end = text_.find(quote, at_ + 1);
     if (end == std::string::npos) fail("a value has no end");
     const std::string raw = text_.substr(at_ + 1, end - at_ - 1);
+    if (raw.find("&#") != std::string::npos) fail("characters by their numbers (&#...;) are not read");
     at_ = end + 1;
     static const std::pair<const char*, const char*> named[] = {
         {"&lt;", "<"}, {"&gt;", ">"}, {"&quot;", "\""}, {"&apos;", "'"}, {"&amp;", "&"}};
@@ -145,6 +148,39 @@ std::vector<const Element*> Element::all(const std::string& of) const {
   for (const Element& child : children)
     if (child.name == of) list.push_back(&child);
   return list;
+}
+
+namespace {
+
+struct Fnv {
+  std::uint64_t value = 0xcbf29ce484222325;
+
+  void add(const std::string& text) {
+    for (const char c : text)
+      if (!std::isspace(static_cast<unsigned char>(c)))
+        value = (value ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  }
+  void add(const Element& e) {
+    for (const char* silent : {"m2n:", "intra-comm:", "export:", "watch-"})
+      if (e.name.rfind(silent, 0) == 0) return;
+    if (e.name == "log" || e.name == "profiling") return;
+    add("<" + e.name);
+    auto attributes = e.attributes;
+    std::sort(attributes.begin(), attributes.end());
+    for (const auto& [key, text] : attributes) add(";" + key + "=" + text);
+    for (const Element& child : e.children) add(child);
+    add(">");
+  }
+};
+
+}  // namespace
+
+std::string digest(const Element& element) {
+  Fnv all;
+  all.add(element);
+  char text[24];
+  std::snprintf(text, sizeof text, "xml-%016llx", static_cast<unsigned long long>(all.value));
+  return text;
 }
 
 Element read_xml(const std::string& file) {

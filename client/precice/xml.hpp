@@ -20,6 +20,10 @@ struct Element {
   std::vector<const Element*> all(const std::string& name) const;
 };
 
+/// Of what an element holds, "xml-" and 16 hexadecimal digits: names and attributes without blanks, in the elements' order (FNV-1a,
+/// 64 bits). Not of what has no part in an answer (log, profiling, m2n, intra-comm, export, watch). `couplet import` has the same.
+std::string digest(const Element& element);
+
 /// The outermost element. Throws precice::Error with file and line.
 Element read_xml(const std::string& file);
 

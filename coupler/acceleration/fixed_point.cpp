@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/acceleration/fixed_point.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +11,14 @@
 namespace couplet {
 
 bool converged(const Residual& residual, const ConvergenceParameters& parameters) {
-  return residual.relative <= parameters.relative || residual.absolute <= parameters.absolute;
+  const bool relative = residual.relative <= parameters.relative,
+             absolute = residual.absolute <= parameters.absolute;
+  return parameters.both ? relative && absolute : relative || absolute;
+}
+
+std::string absolute_too(const Residual& residual, const ConvergenceParameters& parameters) {
+  if (!parameters.both) return "";
+  return fmt::format(", the absolute one {:.2e} ({:.1e})", residual.absolute, parameters.absolute);
 }
 
 Residual worst(const std::vector<Residual>& residuals) {
@@ -48,8 +57,9 @@ FixedPointResult solve_fixed_point(Iterate x, const FixedPointMap& map, const Re
     x = accelerator.next(std::move(x), image);
   }
   throw SolveFailure(
-      "the coupling did not converge in {} iterations: the relative residual is {:.2e} (tolerance {:.1e}).",
-      parameters.max_iterations, result.residual.relative, parameters.relative);
+      "the coupling did not converge in {} iterations: the relative residual is {:.2e} (tolerance {:.1e}){}.",
+      parameters.max_iterations, result.residual.relative, parameters.relative,
+      absolute_too(result.residual, parameters));
 }
 
 }  // namespace couplet

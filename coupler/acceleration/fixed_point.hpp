@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "coupler/acceleration/accelerator.hpp"
@@ -11,6 +12,8 @@
 namespace couplet {
 
 bool converged(const Residual& residual, const ConvergenceParameters& parameters);
+/// For a sentence that has named the relative residual; empty where that alone decides.
+std::string absolute_too(const Residual& residual, const ConvergenceParameters& parameters);
 /// The largest of each kind.
 Residual worst(const std::vector<Residual>& residuals);
 

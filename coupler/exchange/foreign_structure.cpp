@@ -1,39 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/exchange/foreign_structure.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
-#include "common/base/error.hpp"
-#include "common/base/text.hpp"
 #include "common/io/checkpoint.hpp"
+#include "coupler/exchange/foreign_names.hpp"
 
 namespace couplet {
-namespace {
 
 using Datum = Interface::Datum;
-
-std::vector<Datum>::iterator named(std::vector<Datum>& data, const std::string& name) {
-  return std::ranges::find(data, name, &Datum::name);
-}
-
-[[noreturn]] void refuse(const char* key, const std::string& who, const char* does, const std::string& wanted,
-                         const std::vector<Datum>& announced) {
-  std::vector<std::string> all;
-  for (const Datum& d : announced)
-    all.push_back(fmt::format("'{}' [{}] at {}", d.name, d.unit,
-                              d.place == Interface::Place::vertices ? "vertices" : "faces"));
-  throw Error("coupling.structure.{}: '{}' {} no {}. It {}: {}.", key, who, does, wanted, does,
-              all.empty() ? "nothing" : join(all));
-}
-
-void rename(std::map<std::string, int>& surface_of, const std::string& from, const std::string& to) {
-  if (auto node = surface_of.extract(from); !node.empty()) {
-    node.key() = to;
-    surface_of.insert(std::move(node));
-  }
-}
-
-}  // namespace
 
 void ForeignStructure::adapt(Interface& own, Surfaces& surfaces, const std::vector<Interface>& all) {
   adapt_displacement(own, surfaces);
@@ -42,24 +19,25 @@ void ForeignStructure::adapt(Interface& own, Surfaces& surfaces, const std::vect
 }
 
 void ForeignStructure::adapt_displacement(Interface& own, Surfaces& surfaces) {
-  const auto datum = named(own.gives, names_.displacement);
+  const ForeignNames gives{own.gives, surfaces.gives, "structure", name(), "gives"};
+  const auto datum = gives.find(names_.displacement);
   if (datum == own.gives.end() || datum->place != Interface::Place::vertices ||
       datum->size(own.dim) != own.dim || (datum->unit != "m" && datum->unit != "1"))
-    refuse("displacement", name(), "gives",
-           fmt::format("vector '{}' [m, or without a unit] at vertices", names_.displacement), own.gives);
-  datum->name = "displacement", datum->unit = "m";
-  rename(surfaces.gives, names_.displacement, "displacement");
-  derives_velocity_ = named(own.gives, "velocity") == own.gives.end();
+    gives.refuse("displacement",
+                 fmt::format("vector '{}' [m, or without a unit] at vertices", names_.displacement));
+  gives.rename(*datum, "displacement");
+  datum->unit = "m";
+  derives_velocity_ = gives.find("velocity") == own.gives.end();
   if (!derives_velocity_) return;
   own.gives.push_back({"velocity", "m/s", Interface::Place::vertices});
-  if (const auto surface = surfaces.gives.find("displacement"); surface != surfaces.gives.end())
-    surfaces.gives["velocity"] = surface->second;
+  gives.put_beside("displacement", "velocity");
 }
 
 void ForeignStructure::adapt_load(Interface& own, Surfaces& surfaces, const std::vector<Interface>& all) {
-  const auto datum = named(own.takes, names_.load);
+  const ForeignNames takes{own.takes, surfaces.takes, "structure", name(), "takes"};
+  const auto datum = takes.find(names_.load);
   if (datum == own.takes.end() || datum->unit != "N" || datum->size(own.dim) != own.dim)
-    refuse("load", name(), "takes", fmt::format("force '{}' [N]", names_.load), own.takes);
+    takes.refuse("load", fmt::format("force '{}' [N]", names_.load));
   for (const Interface& other : all)
     for (const Datum& given : other.gives)
       if (given.unit == "N" && given.size(other.dim) == own.dim &&
@@ -69,8 +47,7 @@ void ForeignStructure::adapt_load(Interface& own, Surfaces& surfaces, const std:
   own.takes.erase(datum);
   for (const std::string& force : forces_) {
     own.takes.push_back({force, "N", load.place});
-    if (const auto surface = surfaces.takes.find(load.name); surface != surfaces.takes.end())
-      surfaces.takes[force] = surface->second;
+    takes.put_beside(load.name, force);
   }
 }
 

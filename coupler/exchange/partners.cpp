@@ -42,6 +42,7 @@ std::vector<Interface> initialise_all(const std::vector<Partner*>& partners) {
   for (Partner* p : partners) {
     Reply reply = p->receive();
     p->advised_dt = reply.suggested_dt;
+    p->introduction = std::move(reply.text);
     p->initial = std::move(reply.data);
     p->surfaces = std::move(reply.surfaces);
     interfaces.push_back(std::move(reply.interface));

@@ -18,8 +18,9 @@ struct Partner {
   double seconds_since_accepted = 0;
   StepReport report;  ///< of the last accepted step
   double advised_dt = 0;
-  Surfaces surfaces;  ///< of its vertices
-  Exchange initial;   ///< values before the first step that it gave at its start; none: it gave no values
+  Surfaces surfaces;         ///< of its vertices
+  std::string introduction;  ///< what its program was configured by; empty: it says nothing
+  Exchange initial;  ///< values before the first step that it gave at its start; none: it gave no values
 
   const std::string& name() const { return channel->name(); }
   void send(Command&& command) { send(command); }

@@ -30,6 +30,10 @@ void declare(config::Section& section, CouplingParameters::Exchange& p) {
       .doc(
           "serial: one after the other, each with the data of the preceding ones from this step; parallel: "
           "all at the same time with the data of the last step");
+  section.value("digest", p.digest)
+      .doc(
+          "of the precice-config.xml that the case was made of, as `couplet import` writes it: programs that "
+          "read another one, or a scheme or order that is not its, are refused; absent: not looked at");
 }
 
 /// Either fluid and structure, or an exchange.
@@ -150,6 +154,9 @@ void declare(config::Section& section, ConvergenceParameters& p) {
       .plausible(1e-18, 0.1)
       .not_negative()
       .doc("or when the root mean square of r over the interface vertices is below this; 0: not used");
+  section.value("both", p.both)
+      .doc("true: not one of both limits is enough, `relative` and `absolute` have to be met");
+  section.check([&p] { return !p.both || p.absolute > 0 ? "" : "it needs `absolute`"; }, "both");
   section.value("max-iterations", p.max_iterations)
       .range(1, 10000)
       .doc("maximum number of iterations; a step that needs more fails and is halved");

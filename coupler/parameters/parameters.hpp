@@ -23,6 +23,7 @@ struct AccelerationParameters {
 struct ConvergenceParameters {
   double relative = 1e-5;  // |r|_2 / |H(x)|_2
   double absolute = 0;     // rms of |r| over the vertices [m]
+  bool both = false;       // not either
   int min_iterations = 1, max_iterations = 50;
   enum class AtMaximum { fail, accept } at_maximum = AtMaximum::fail;
 };
@@ -43,6 +44,7 @@ struct ExchangeParameters {
   enum class Order { serial, parallel, structure_first };
   std::vector<std::string> participants;
   Order order = Order::serial;
+  std::string digest;  // of the configuration of preCICE that the case was made of; empty: it was not
 };
 
 struct CouplingParameters {

@@ -114,6 +114,7 @@ bool StepLoop::due(double interval) const {
 }
 
 fs::path StepLoop::checkpoint(const StepActions& actions) {
+  if (!actions.stateless.empty()) return {};
   const CheckpointStamp stamp{run_id_, plan_.steps_accepted(), plan_.time()};
   std::string name;
   on_first_rank(comm_, [&] { name = begin_checkpoint_set(checkpoints_, stamp).string(); });
@@ -137,23 +138,28 @@ fs::path StepLoop::checkpoint(const StepActions& actions) {
   return folder;
 }
 
-void StepLoop::stop(const StepActions& actions) {
+std::string StepLoop::stop(const StepActions& actions) {
   const fs::path folder = checkpoint(actions);
+  if (folder.empty())
+    return fmt::format("Stopped at t = {:g} s by a signal.{}", plan_.time(), what_is_kept(actions));
   Watch::stopped();
   if (comm_rank(comm_) == 0)
     log::info("stopped at t = {:g} s by a signal; the state is saved: continue with --restart {}",
               plan_.time(), folder.string());
+  return "";
+}
+
+std::string StepLoop::what_is_kept(const StepActions& actions) const {
+  if (!actions.stateless.empty()) return fmt::format(" No state was saved: {}.", actions.stateless);
+  return fmt::format(" The state at t = {:g} s was saved in {}.", plan_.time(), checkpoints_.string());
 }
 
 std::string StepLoop::give_up(const StepActions& actions, const Step& step, const StepFailure& failure) {
   checkpoint(actions);
   if (!failure.halving_helps)
-    return fmt::format("The run ends at t = {:g} s: {} The state at t = {:g} s was saved in {}.", step.time,
-                       failure.reason, step.time, checkpoints_.string());
-  return fmt::format(
-      "The step from t = {:g} s failed, even with dt = {:g} s after {} halvings: {} The state at t = {:g} s "
-      "was saved in {}.",
-      step.time, step.dt, plan_.halvings(), failure.reason, step.time, checkpoints_.string());
+    return fmt::format("The run ends at t = {:g} s: {}{}", step.time, failure.reason, what_is_kept(actions));
+  return fmt::format("The step from t = {:g} s failed, even with dt = {:g} s after {} halvings: {}{}",
+                     step.time, step.dt, plan_.halvings(), failure.reason, what_is_kept(actions));
 }
 
 /// The failure itself, or, where the same cause has halved steps too often, why the run ends. Collective: ranks may word a
@@ -173,10 +179,7 @@ std::string StepLoop::run(const StepActions& actions) {
   });
   if (!restarted_) actions.write_start(outputs_++);
   while (!plan_.finished()) {
-    if (any(comm_, Watch::stop_requested())) {
-      stop(actions);
-      return "";
-    }
+    if (any(comm_, Watch::stop_requested())) return stop(actions);
     plan_.limit(actions.advised_dt());
     const Step step{.time = plan_.time(),
                     .dt = plan_.dt(),

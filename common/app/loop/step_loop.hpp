@@ -51,6 +51,8 @@ struct StepActions {
   std::function<void(double time, int output)> accept;
   std::function<void(int output)> write_start;
   std::function<void(const std::filesystem::path& folder)> save;
+  /// Why no checkpoint could be continued from; empty: checkpoints are written.
+  std::string stateless;
   /// After each accepted step: for the console.
   std::function<void(const Step&, double time)> report;
   /// Largest step that is advised now [s].
@@ -67,7 +69,7 @@ class StepLoop {
   void restart(const RunState& state);
   /// Runs to the end, or to the next accepted step after the job was asked to stop (Watch::stop_requested), which is
   /// saved. The text is empty if all went well, else it says at what time and why no step could be found; the
-  /// state before that step was saved.
+  /// state before that step was saved, unless the job is stateless.
   std::string run(const StepActions& actions);
 
   double time() const { return plan_.time(); }
@@ -79,7 +81,8 @@ class StepLoop {
   StepFailure seen_again(const StepFailure& failure, double dt);
   /// Gives the folder.
   std::filesystem::path checkpoint(const StepActions& actions);
-  void stop(const StepActions& actions);
+  std::string stop(const StepActions& actions);
+  std::string what_is_kept(const StepActions& actions) const;
   std::string give_up(const StepActions& actions, const Step& step, const StepFailure& failure);
 
   MPI_Comm comm_;

@@ -6,6 +6,7 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -16,6 +17,7 @@ project, build = map(pathlib.Path, sys.argv[1:3])
 mpirun, what = sys.argv[3:sys.argv.index("--")], sys.argv[-1]
 sys.path[:0] = [str(project / "client/python")]
 from couplet.command import main  # noqa: E402
+from couplet.runs.launcher import Pages, culprit  # noqa: E402
 
 here, python = project / "tests/coupling/precice", "/usr/bin/python3"
 environment = dict(os.environ, PYTHONPATH=str(project / "client/precice/python"), COUPLET_PRECICE_LIBRARY=str(build / "precice/lib/libprecice.so.3"))
@@ -227,6 +229,10 @@ def waveforms():
     check("values at the sub-steps on 3 and 2 processes, coupler on 2: the same motion", off < 1e-9, f"{off:.1e}")
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
+        for scheme in ("serial-explicit", "serial-implicit"):
+            imported(folder, configuration(scheme, degree=0, end=0.3))
+            found = re.search(r"worst (\S+) beyond ([-+.e\d]+)", said_by(folder, "polynomial.py", [0]))
+            check(f"{scheme}: with degree 0 the value at the next sub-step is read", bool(found) and max(map(float, found.groups())) < 1e-14, found and found[0])
         for scheme, degree in (("serial-explicit", 3), ("serial-implicit", 2), ("parallel-implicit", 3)):
             imported(folder, configuration(scheme, degree=degree, end=0.3))
             found = re.search(r"worst (\S+) beyond ([-+.e\d]+)", said_by(folder, "polynomial.py", [degree]))
@@ -346,8 +352,64 @@ def wrong():
         check("a program that leaves early ends the job with its name", done.returncode != 0 and 'The participant "Left" ended before the coupling was over' in done.stderr, done.stderr[-300:])
         words = {name: [*programs["c++"], name, "precice-config.xml", 1] for name in ("Left", "Right")}
         imported(folder, configuration("serial-explicit"))
+        case = folder / "case.yaml"
+        case.write_text(re.sub(", digest: [-a-z0-9]*", "", case.read_text()))
         done = launch(folder, words, sets=["coupling.scheme=implicit"])
         check("a case that is not that of the configuration is refused", done.returncode != 0 and "repeat a step of explicit coupling" in done.stderr, done.stderr[-300:])
+        edited(folder, words)
+        ended(folder)
+
+
+def ended(folder):
+    """By a signal to one program, by a stop, and a case that asks for checkpoints."""
+    imported(folder, configuration("serial-implicit", end=1e6))
+    line = [sys.executable, "-m", "couplet", "run", "case.yaml", "--bin", build / "bin", *(w for n in ("Left", "Right") for w in ("--with", f"{n}={programs['c++'][0]} {n} precice-config.xml 1"))]
+    surroundings = {**environment, "PYTHONPATH": str(project / "client/python")}
+    for victim, number, said in (("Right", signal.SIGKILL, "'Right' was ended by signal 9"), ("run", signal.SIGINT, "No state was saved: 'Left', a program on preCICE's interface, keeps no file of its state")):
+        process = subprocess.Popen(list(map(str, line)), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=surroundings)
+        for words in process.stdout:
+            if "step 3 " in words:
+                break
+        found = [int(pid) for pid in os.listdir("/proc") if pid.isdigit() and words_of(pid)[:2] == [str(programs["c++"][0]), "Right"] and os.readlink(f"/proc/{pid}/cwd") == str(folder.resolve())]
+        os.kill(found[0] if victim == "Right" else process.pid, number)
+        out, told = process.communicate(timeout=30)
+        check(f"{victim} ended by signal {number}: the reason is named, nothing to resume", process.returncode not in (0, 3) and said in told and "couplet resume" not in told, (process.returncode, told[-500:]))
+    done = subprocess.run(list(map(str, [*line, "--set", "simulation.checkpoint.interval=1"])), cwd=folder, capture_output=True, text=True, env=surroundings, timeout=60)
+    check("checkpoints are refused", done.returncode == 2 and "simulation.checkpoint.interval: 1 s here, but 'Left'" in done.stderr, done.stderr[-500:])
+    pages = Pages()
+    frame = b"-" * 74 + b"\n"
+    text = b"a\n" + frame + b"mpirun noticed that process rank 2 with PID 7 on node n exited on\nsignal 9 (Killed).\n" + frame + frame + b"of a program\n" + frame + b"unfinished"
+    seen = b"".join(pages.feed(text[i:i + 1]) for i in range(len(text))) + pages.feed(b"", last=True)
+    check("of mpirun's pages only its own are taken out", seen == b"a\n" + frame + b"of a program\n" + frame + b"unfinished", seen)
+    check("and the process is found in them", culprit(pages.killed, [("coupler", 1), ("Left", 2)]) == "'Left', rank 1, was ended by signal 9 (Killed)", pages.killed)
+
+
+def words_of(pid):
+    try:
+        return pathlib.Path(f"/proc/{pid}/cmdline").read_text().split("\0")
+    except OSError:
+        return []
+
+
+def edited(folder, words):
+    """The configuration or the case changed after the import."""
+    text, file = configuration("serial-implicit"), folder / "precice-config.xml"
+    imported(folder, text)
+    once = "".join(text.split("\n")[1:]).replace('first="Left" second="Right"', 'second = "Right"\n\tfirst= "Left"').replace("<!-- pairs of masses -->", "<!-- two --><!-- masses -->")
+    file.write_text(once.replace("debug", "info").replace("m2n:sockets", "m2n:mpi"))
+    done = launch(folder, words)
+    check("comments, spaces, the order of attributes, logs and m2n may change", done.returncode == 0, done.stderr[-500:])
+    refused = lambda done, said: (done.returncode == 2 and said in done.stdout + done.stderr, (done.returncode, done.stdout[-300:], done.stderr[-500:]))  # noqa: E731
+    file.write_text(text.replace('<max-time value="1" />', '<max-time value="2" />'))
+    done = launch(folder, words)
+    check("another end in the configuration than in its case is refused", *refused(done, "reads a configuration of preCICE that is not the one this case was made of"))
+    (folder / "other.xml").write_text(text)
+    done = launch(folder, {**words, "Right": [*words["Right"][:2], "other.xml", 1]}, sets=["coupling.exchange.digest="])
+    check("two programs with different configurations are refused", *refused(done, "'Left' and 'Right' read different configurations of preCICE"))
+    file.write_text(text)
+    for key, said in (("coupling.scheme=explicit", "coupling.scheme: explicit here, but implicit"), ("coupling.exchange.order=parallel", "coupling.exchange.order: parallel here, but serial"),
+                      ("coupling.exchange.participants=[Right, Left]", "coupling.exchange.participants: 'Right' before 'Left' here, but after it")):
+        check(f"{key} against the configuration is refused", *refused(launch(folder, words, sets=[key]), said))
 
 
 GOOD = configuration("serial-implicit", substeps="false")
@@ -366,6 +428,9 @@ BAD = {  # replaced, by what, what is said
     "windows by the first": ('<time-window-size value="0.1" />', '<time-window-size value="-1" method="first-participant" />', "time windows by the first participant"),
     "data that are read and never exchanged": ('<exchange data="Displacement-Left"', '<exchange data="Displacement-Right"', "reads 'Displacement-Left', but no <exchange> brings it there"),
     "exchanged data without a name": ('<exchange data="Displacement-Left"', '<exchange data="Displacment"', "<exchange>: the data 'Displacment' is not one of: "),
+    "an attribute that nobody knows": ('initialize="true"', 'initialise="true"', ":29: <exchange>: the attribute 'initialise' is not known, only: data, mesh, from, to, initialize, substeps."),
+    "no iteration": ('<max-iterations value="50" />', '<max-iterations value="0" />', ":30: <max-iterations>: '0' is not supported; expected a whole number from 1 to 10000"),
+    "a limit that is no number": ('limit="1e-12"', 'limit="small"', "<relative-convergence-measure>: the limit 'small' is no number above 0"),
     "entities": ("<!-- pairs", '<!DOCTYPE a [<!ENTITY b "c">]><!-- pairs', "document types are not read"),
 }
 
@@ -385,6 +450,17 @@ def imports():
             file.write_text(GOOD.replace(old, new))
             done = ask("--force")
             check(f"{name}: refused with the line", GOOD != file.read_text() and done.returncode == 2 and said in done.stderr, done.stderr[-300:])
+        measure = '<relative-convergence-measure limit="1e-12"'
+        second = '<absolute-convergence-measure limit="1e-6" data="Displacement-Right" mesh="Right-Mesh" />'
+        either = '<absolute-or-relative-convergence-measure abs-limit="1e-6" rel-limit="1e-12"'
+        for text, wanted in ((GOOD, False), (GOOD.replace(measure, second + measure), True), (GOOD.replace(measure, either), False), (GOOD.replace(measure, second + either), True)):
+            file.write_text(text)
+            done = ask("--force")
+            valid = subprocess.run([build / "bin/coupler", case, "--check"], capture_output=True, text=True)
+            check("both limits are asked for where the configuration does", done.returncode == valid.returncode == 0 and ("both: true" in case.read_text()) == wanted, done.stderr + valid.stderr)
+        file.write_text(GOOD.replace('<max-iterations value="50" />', ""))
+        done = ask("--force")
+        check("no limit of iterations is noted", done.returncode == 0 and "without max-iterations a window ends after 10000" in done.stdout, done.stdout)
         file.write_text(configuration("serial-implicit", degree=3))
         done = ask("--force")
         check("a higher degree is taken as it is", done.returncode == 0 and "waveform" not in done.stdout, done.stdout)

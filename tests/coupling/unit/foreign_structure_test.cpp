@@ -1,35 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // A structure with vertices alone, names of its own and no velocity, as a program on preCICE's interface.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
 
 #include "common/app/loop/step_loop.hpp"
-#include "common/base/error.hpp"
-#include "common/log/log.hpp"
-#include "coupler/coupler.hpp"
 #include "coupler/judge/balance.hpp"
+#include "tests/coupling/unit/foreign.hpp"
 
 namespace couplet {
 namespace {
 
-namespace fs = std::filesystem;
 using Place = Interface::Place;
-
-class Quiet : public Participant {
- public:
-  void begin_step(const Step& step) override { step_ = step; }
-  StepReport accept_step() override { return {.dt = step_.dt}; }
-  void save(CheckpointWriter&) const override {}
-  void load(CheckpointReader&) override {}
-  void write_output(double, int) override {}
-  void write_monitors(double) override {}
-
- protected:
-  Step step_;
-};
 
 /// Moves by 3 t^2 whatever its load, which it remembers.
 class Shaker final : public Quiet {
@@ -37,7 +17,7 @@ class Shaker final : public Quiet {
   Interface initialise() override {
     Interface line{2, {}, {}, {}, {{"Push", "N", Place::vertices}}, {{"Way", unit, Place::vertices}}};
     if (gives_velocity) line.gives.push_back({"velocity", "m/s", Place::vertices});
-    for (int i = 0; i < 12; ++i) line.vertices.emplace_back(i / 11., 0, 0);
+    lay_out(line, 12);
     return line;
   }
   Exchange solve(const Exchange& in) override {
@@ -64,14 +44,7 @@ class Wind final : public Quiet {
                    {},
                    {{"displacement", "m", Place::vertices}, {"velocity", "m/s", Place::vertices}},
                    {{"pressure-force", "N", Place::faces}, {"viscous-force", "N", Place::faces}}};
-    for (int i = 0; i < 6; ++i) {
-      line.vertices.emplace_back(i / 5., 0, 0);
-      line.face_offset.push_back(2 * i);
-      if (i == 0) continue;
-      line.face_centres.emplace_back((i - 0.5) / 5, 0, 0);
-      line.face_areas.emplace_back(0, 0.2, 0);
-      line.face_vertices.insert(line.face_vertices.end(), {Index(i - 1), Index(i)});
-    }
+    lay_out(line, 6, true);
     return line;
   }
   Exchange solve(const Exchange&) override {
@@ -80,32 +53,21 @@ class Wind final : public Quiet {
   }
 };
 
-struct Shaken {
-  CouplingParameters coupling;
-  SimulationParameters simulation;
+struct Shaken : ForeignCase {
   Shaker shaker;
   Wind wind;
-  fs::path folder = fs::temp_directory_path() / ("couplet-foreign-" + std::to_string(::getpid())), restart;
   std::vector<double> way, velocity;
 
   Shaken() {
-    spdlog::set_level(spdlog::level::off);
-    coupling.scheme = Scheme::implicit;
-    coupling.mapping.type = MappingParameters::Type::rbf;
     coupling.structure.emplace();
     coupling.structure->displacement = "Way", coupling.structure->load = "Push";
     simulation.end_time = 0.97;
     simulation.time_step = 0.05;
   }
-  ~Shaken() { fs::remove_all(folder); }
   std::string operator()() {
-    fs::create_directories(folder);
-    Coupler coupler(coupling, simulation,
-                    {std::make_unique<LocalChannel>("fluid", wind),
-                     std::make_unique<LocalChannel>("solid", shaker), nullptr},
-                    {folder, folder / "checkpoints", restart});
-    std::string problem = coupler.run();
-    way = coupler.given_by("solid").at("displacement"), velocity = coupler.given_by("solid").at("velocity");
+    const auto job = coupler(wind, shaker);
+    std::string problem = job->run();
+    way = job->given_by("solid").at("displacement"), velocity = job->given_by("solid").at("velocity");
     return problem;
   }
   std::string error() {

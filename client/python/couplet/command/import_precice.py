@@ -39,7 +39,7 @@ def inline(value):
 
 
 def text_of(found, file, output):
-    case = {"simulation": {"name": file.resolve().parent.name or "precice", **found.case["simulation"], "output": {"folder": "precice-run", "interval": 0}, "checkpoint": {"interval": 0}},
+    case = {"simulation": {"name": file.resolve().parent.name or "precice", **found.case["simulation"], "output": {"folder": f"{output.stem}-run", "interval": 0}, "checkpoint": {"interval": 0}},
             "participants": found.case["participants"], "coupling": found.case["coupling"]}
     source = os.path.relpath(file, output.parent)
     lines = [f"# precice-config: {source}", "# A job of programs on preCICE's interface, made by couplet import. Each program is given that file, or this one:",

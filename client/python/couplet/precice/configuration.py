@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The case that a configuration of preCICE asks for, what of it differs here (notes), and what is not supported (refusals), each
 with its line."""
+import math
 import re
 
-from couplet.precice.elements import MAPPED, REFUSED, SILENT, WITHOUT_EFFECT, listed
+from couplet.precice.elements import MAPPED, REFUSED, SILENT, WITHOUT_EFFECT, digest, listed
 
 TRUE = ("true", "1", "yes", "on")
 KINDS = {"nearest-neighbor": ("nearest", 0), "nearest-projection": ("projection", 1), "rbf": ("rbf", 2)}
@@ -45,6 +46,10 @@ class Import:
             self._refuse(element, f"<{name}> is not known")
 
     def _look_at_attributes(self, e):
+        words = MAPPED[e.name if e.name in MAPPED else "mapping:rbf"].split()
+        for key in e.attributes:
+            if key not in words:
+                self._refuse(e, f"<{e.name}>: the attribute '{key}' is not known" + (f", only: {', '.join(words)}" if words else ""))
         if e.name == "receive-mesh" and (e.get("api-access") in TRUE or e.get("direct-access") in TRUE):
             self._refuse(e, f"direct access to the received mesh '{e.get('name')}' is not supported")
         if e.name.startswith("mapping:") and not (e.get("from") and e.get("to")):
@@ -103,7 +108,7 @@ class Import:
         order = "serial" if "serial" in first.name else "parallel"
         members = self._members()
         self.case["simulation"] = self._times()
-        self.case["coupling"] = coupling = {"scheme": "implicit" if implicit else "explicit", "exchange": {"participants": members, "order": order}}
+        self.case["coupling"] = coupling = {"scheme": "implicit" if implicit else "explicit", "exchange": {"participants": members, "order": order, "digest": digest(self.root)}}
         if implicit:
             self._convergence(first, coupling)
             self._acceleration(first, coupling)
@@ -160,25 +165,49 @@ class Import:
         for m in measures:
             kind = m.name.removesuffix("-convergence-measure")
             if kind != "absolute":
-                limits.append(float(m.get("limit" if kind == "relative" else "rel-limit", "1e-5")))
+                limits.append(self._limit(m, "limit" if kind == "relative" else "rel-limit"))
             if kind != "relative":
-                absolute.append(float(m.get("limit" if kind == "absolute" else "abs-limit", "1e-12")))
-                self._note(m, f"<{m.name}> is judged by the root mean square over the vertices, and either limit is enough")
+                absolute.append(self._limit(m, "limit" if kind == "absolute" else "abs-limit"))
+                self._note(m, f"<{m.name}> is judged by the root mean square over the vertices")
         if len(set(limits)) > 1 or len(set(absolute)) > 1:
             self._note(measures[0], "one limit holds for all data that are iterated on: the strictest")
         if not measures:
             self._note(scheme, "without a convergence measure each window takes max-iterations, and that it has not converged is accepted")
             self.case["simulation"]["accept"] = ["error-estimate", "unconverged-step"]
-        iterations = self._number(scheme.one("max-iterations"), 0)
+        both = absolute and limits and any(not m.name.startswith("absolute-or") for m in measures)
         coupling["convergence"] = {"relative": min(limits, default=1e-14)}
         if absolute:
             coupling["convergence"]["absolute"] = f"{min(absolute):g} m"
-        if iterations > 0:
-            coupling["convergence"] |= {"max-iterations": int(iterations), "at-max-iterations": "accept"}
+        if both:
+            self._note(measures[0], "all data that are iterated on have to meet the relative and the absolute limit")
+            coupling["convergence"]["both"] = True
+        if (most := self._count(scheme.one("max-iterations"))) is not None:
+            coupling["convergence"] |= {"max-iterations": most, "at-max-iterations": "accept"}
         else:
+            self._note(scheme, "without max-iterations a window ends after 10000")
             coupling["convergence"]["max-iterations"] = 10000
-        if (least := self._number(scheme.one("min-iterations"), 0)) > 1:
-            coupling["convergence"]["min-iterations"] = int(least)
+        if (least := self._count(scheme.one("min-iterations"))) is not None and least > 1:
+            coupling["convergence"]["min-iterations"] = least
+
+    def _limit(self, measure, key):
+        """Of a convergence measure; with preCICE's default where both kinds stand in one."""
+        word = measure.get(key, {"rel-limit": "1e-5", "abs-limit": "1e-12"}.get(key, ""))
+        try:
+            if 0 < float(word) < math.inf:
+                return float(word)
+        except ValueError:
+            pass
+        self._refuse(measure, f"<{measure.name}>: the {key} '{word}' is no number above 0")
+        return 1
+
+    def _count(self, element):
+        """A whole number of iterations; None: there is no such element."""
+        if element is None:
+            return None
+        if re.fullmatch("[0-9]{1,5}", element.get("value")) and 1 <= int(element.get("value")) <= 10000:
+            return int(element.get("value"))
+        self._refuse(element, f"<{element.name}>: '{element.get('value')}' is not supported; expected a whole number from 1 to 10000")
+        return None
 
     def _acceleration(self, scheme, coupling):
         found = scheme.starting("acceleration:")

@@ -15,6 +15,7 @@ import time
 from couplet import places
 from couplet.runs import folder as folders
 from couplet.runs.case import COUPLER, Case, expect, load, mapping_of
+from couplet.runs.launcher import Pages, culprit
 from couplet.runs.process import RunFailed, environment, last_words
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -35,9 +36,8 @@ def output_of(case, sets):
 
 
 def surroundings():
-    """Environment of the programs: one thread per rank, no pages of the launcher about exit codes, this package for participants in Python."""
+    """Environment of the programs: one thread per rank, this package for participants in Python."""
     env = environment()
-    env.setdefault("OMPI_MCA_orte_execute_quiet", "1")
     env["PYTHONPATH"] = os.pathsep.join([str(places.PACKAGE.parent), *filter(None, [env.get("PYTHONPATH")])])
     return env
 
@@ -125,6 +125,9 @@ class Job:
                     data = os.read(key.fd, 65536)
                     if not data:
                         selector.unregister(key.fileobj)
+                    if key.data is sys.stderr:
+                        data = self.pages.feed(data, last=not data)
+                    if not data:
                         continue
                     self.last.extend(data.decode(errors="replace").splitlines())
                     try:
@@ -142,7 +145,7 @@ class Job:
         """Exit code of the job; `shown` gets its words (terminal.Plain: as they are)."""
         expect(folders.driver(self.output) is None, f"{self.output} is in use by another job that is still running. End it (couplet stop {shlex.quote(str(self.output))}), or "
                "give this one another folder: --set simulation.output.folder=...")
-        self.recorded, self.started = False, time.monotonic()
+        self.recorded, self.started, self.pages = False, time.monotonic(), Pages()
         self.process = subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=surroundings(),
                                         start_new_session=True, preexec_fn=ends_with_us)
         before = {s: signal.signal(s, self.on_signal) for s in SIGNALS}
@@ -159,6 +162,8 @@ class Job:
         return code if code >= 0 else 128 - code
 
     def last_words(self):
+        if self.pages.killed and not self.asked:
+            return culprit(self.pages.killed, [(name, int(self.ranks.get(name, 1))) for name in ((self.alone,) if self.alone else (COUPLER, *self.case.participants))])
         return last_words("\n".join(self.last))
 
 

@@ -1,41 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // A fluid with vertices alone and names of its own, as a program on preCICE's interface.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
-
-#include "common/base/error.hpp"
-#include "common/io/checkpoint.hpp"
-#include "common/log/log.hpp"
-#include "coupler/coupler.hpp"
+#include "tests/coupling/unit/foreign.hpp"
 
 namespace couplet {
 namespace {
 
-namespace fs = std::filesystem;
 using Place = Interface::Place;
-
-class Quiet : public Participant {
- public:
-  void begin_step(const Step& step) override { step_ = step; }
-  StepReport accept_step() override { return {.dt = step_.dt}; }
-  void save(CheckpointWriter&) const override {}
-  void load(CheckpointReader&) override {}
-  void write_output(double, int) override {}
-  void write_monitors(double) override {}
-
- protected:
-  Step step_;
-};
 
 /// Pushes (1, 2) N at each of its 7 vertices, whatever the motion, which it remembers.
 class Gust final : public Quiet {
  public:
   Interface initialise() override {
     Interface line{2, {}, {}, {}, {{"Way", "1", Place::vertices}}, {{"Push", unit, Place::vertices}}};
-    for (int i = 0; i < 7; ++i) line.vertices.emplace_back(i / 6., 0, 0);
+    lay_out(line, 7);
     return line;
   }
   Exchange solve(const Exchange& in) override {
@@ -59,14 +36,7 @@ class Sheet final : public Quiet {
                    {},
                    {{"pressure-force", "N", Place::faces}, {"viscous-force", "N", Place::faces}},
                    {{"displacement", "m", Place::vertices}, {"velocity", "m/s", Place::vertices}}};
-    line.face_offset = {0};
-    for (int i = 0; i < 11; ++i) line.vertices.emplace_back(i / 10., 0, 0);
-    for (int i = 0; i < 10; ++i) {
-      line.face_centres.emplace_back((i + 0.5) / 10, 0, 0);
-      line.face_areas.emplace_back(0, -0.1, 0);
-      line.face_vertices.insert(line.face_vertices.end(), {Index(i), Index(i + 1)});
-      line.face_offset.push_back(2 * (i + 1));
-    }
+    lay_out(line, 11, true, -1);
     return line;
   }
   Exchange solve(const Exchange& in) override {
@@ -79,31 +49,19 @@ class Sheet final : public Quiet {
   std::vector<double> pressure, viscous;
 };
 
-struct Blown {
-  CouplingParameters coupling;
-  SimulationParameters simulation;
+struct Blown : ForeignCase {
   Gust gust;
   Sheet sheet;
-  fs::path folder = fs::temp_directory_path() / ("couplet-blown-" + std::to_string(::getpid()));
 
   Blown() {
-    spdlog::set_level(spdlog::level::off);
-    coupling.scheme = Scheme::implicit;
-    coupling.mapping.type = MappingParameters::Type::rbf;
     coupling.fluid.emplace();
     coupling.fluid->displacement = "Way", coupling.fluid->load = "Push";
     simulation.end_time = 0.5;
     simulation.time_step = 0.1;
   }
-  ~Blown() { fs::remove_all(folder); }
   std::string operator()() {
-    fs::create_directories(folder);
     try {
-      Coupler coupler(coupling, simulation,
-                      {std::make_unique<LocalChannel>("fluid", gust),
-                       std::make_unique<LocalChannel>("solid", sheet), nullptr},
-                      {folder, folder / "checkpoints", ""});
-      return coupler.run();
+      return coupler(gust, sheet)->run();
     } catch (const Error& e) {
       return e.what();
     }
@@ -130,10 +88,12 @@ TEST(ForeignFluid, its_force_goes_to_the_structure_and_the_motion_comes_back_by_
 TEST(ForeignFluid, data_that_it_does_not_announce_are_named) {
   Blown run;
   run.coupling.fluid->displacement = "Weg";
-  EXPECT_EQ(run(),
-            "coupling.fluid.displacement: 'fluid' takes no vector 'Weg' [m or 1]. It takes: 'Way' [1].");
+  EXPECT_EQ(
+      run(),
+      "coupling.fluid.displacement: 'fluid' takes no vector 'Weg' [m, or without a unit]. It takes: 'Way' [1] at vertices.");
   run.coupling.fluid->displacement = "Way", run.gust.unit = "Pa";
-  EXPECT_EQ(run(), "coupling.fluid.load: 'fluid' gives no vector 'Push' [N]. It gives: 'Push' [Pa].");
+  EXPECT_EQ(run(),
+            "coupling.fluid.load: 'fluid' gives no force 'Push' [N]. It gives: 'Push' [Pa] at vertices.");
 }
 
 }  // namespace

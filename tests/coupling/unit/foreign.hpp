@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the tests of participants with names of their own share.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "common/base/error.hpp"
+#include "common/io/checkpoint.hpp"
+#include "common/log/log.hpp"
+#include "coupler/coupler.hpp"
+
+namespace couplet {
+
+/// Has a surface and answers; keeps and writes nothing.
+class Quiet : public Participant {
+ public:
+  void begin_step(const Step& step) override { step_ = step; }
+  StepReport accept_step() override { return {.dt = step_.dt}; }
+  void save(CheckpointWriter&) const override {}
+  void load(CheckpointReader&) override {}
+  void write_output(double, int) override {}
+  void write_monitors(double) override {}
+
+ protected:
+  Step step_;
+};
+
+/// Vertices at equal distances on 0 <= x <= 1; `faces` between them, of areas (0, height / n).
+inline void lay_out(Interface& line, int n_vertices, bool faces = false, double height = 1) {
+  const int n = n_vertices - 1;
+  for (int i = 0; i <= n; ++i) line.vertices.emplace_back(double(i) / n, 0, 0);
+  if (!faces) return;
+  line.face_offset = {0};
+  for (int i = 0; i < n; ++i) {
+    line.face_centres.emplace_back((i + 0.5) / n, 0, 0);
+    line.face_areas.emplace_back(0, height / n, 0);
+    line.face_vertices.insert(line.face_vertices.end(), {Index(i), Index(i + 1)});
+    line.face_offset.push_back(2 * (i + 1));
+  }
+}
+
+/// A case of a fluid and a solid in one process, in a folder of its own.
+struct ForeignCase {
+  CouplingParameters coupling;
+  SimulationParameters simulation;
+  std::filesystem::path folder = std::filesystem::temp_directory_path() /
+                                 ("couplet-foreign-" + std::to_string(::getpid())),
+                        restart;
+
+  ForeignCase() {
+    spdlog::set_level(spdlog::level::off);
+    coupling.scheme = Scheme::implicit;
+    coupling.mapping.type = MappingParameters::Type::rbf;
+  }
+  ~ForeignCase() { std::filesystem::remove_all(folder); }
+
+  std::unique_ptr<Coupler> coupler(Participant& fluid, Participant& solid) const {
+    std::filesystem::create_directories(folder);
+    return std::make_unique<Coupler>(coupling, simulation,
+                                     CouplerChannels{std::make_unique<LocalChannel>("fluid", fluid),
+                                                     std::make_unique<LocalChannel>("solid", solid), nullptr},
+                                     CouplerFolders{folder, folder / "checkpoints", restart});
+  }
+};
+
+}  // namespace couplet
