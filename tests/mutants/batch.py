@@ -7,37 +7,52 @@ import tempfile
 LIMIT = 600.0  # seconds of processor time of a test
 
 
-def _made(shop, mutants, folder):
-    """One object a file, with all its mutants; of two that overlap the second is left for its own turn."""
-    by_file = {}
-    for m in mutants:
-        by_file.setdefault(m.file, []).append(m)
-    made, left = {}, []
-    for file, group in by_file.items():
-        text, last = (shop.root / file).read_text(), 10**9
-        for m in sorted(group, key=lambda m: -m.begin):
-            if m.end > last:
-                left.append(m)
-                continue
-            text, last = m.apply(text), m.begin
-        made[file] = shop.compiled(file, text, folder)
-    return made, left
+class Objects:
+    """Broken objects, each compiled once."""
+
+    def __init__(self, shop, folder):
+        self.shop, self.folder, self._known = shop, folder, {}
+
+    def of(self, mutants):
+        """One object a file, with all its mutants; of two that overlap the second is left for its own turn."""
+        by_file = {}
+        for m in mutants:
+            by_file.setdefault(m.file, []).append(m)
+        made, left = {}, []
+        for file, group in by_file.items():
+            chosen = []
+            for m in sorted(group, key=lambda m: -m.begin):
+                (left if chosen and m.end > chosen[-1].begin else chosen).append(m)
+            key = (file, *(m.name for m in chosen))
+            if key not in self._known:
+                text = (self.shop.root / file).read_text()
+                for m in chosen:
+                    text = m.apply(text)
+                place = self.folder / str(len(self._known))
+                place.mkdir()
+                self._known[key] = self.shop.compiled(file, text, place)
+            made[file] = self._known[key]
+        return made, left
 
 
-def _fails(shop, test, mutants):
+def _fails(shop, objects, test, mutants):
     target = shop.target_of(test)
     chosen = [m for m in mutants if not target or shop.holds(target, m.file)]
     if not chosen:
         return False
     with tempfile.TemporaryDirectory(prefix="couplet-mutant-") as name:
-        folder = pathlib.Path(name)
-        made, left = _made(shop, chosen, folder)
-        command = shop.broken_command(test, list(made.values()), folder, list(made))
+        made, left = objects.of(chosen)
+        command = shop.broken_command(test, list(made.values()), pathlib.Path(name), list(made))
         failed = command is not None and shop.run(test, command, LIMIT).failed
-    return failed or (bool(left) and _fails(shop, test, left))
+    return failed or (bool(left) and _fails(shop, objects, test, left))
 
 
 def whole_suite(shop, records, survivors):
+    with tempfile.TemporaryDirectory(prefix="couplet-mutants-") as name:
+        _whole_suite(shop, Objects(shop, pathlib.Path(name)), records, survivors)
+
+
+def _whole_suite(shop, objects, records, survivors):
     alive = list(survivors)
     for test, entry in shop.registered.items():
         labels = next((p["value"] for p in entry.get("properties", []) if p["name"] == "LABELS"), [])
@@ -45,11 +60,11 @@ def whole_suite(shop, records, survivors):
         if "long" in labels or not asked or any("fuzz" in w for w in [test]):
             continue
         try:
-            noticed = _fails(shop, test, asked)
+            noticed = _fails(shop, objects, test, asked)
             if noticed and shop.run(test, entry["command"], LIMIT).failed:
                 print(f"RED BEFORE   {test}", flush=True)
                 continue
-            killed = [m for m in asked if _fails(shop, test, [m])] if noticed else []
+            killed = [m for m in asked if _fails(shop, objects, test, [m])] if noticed else []
         except subprocess.CalledProcessError as error:
             print(f"NOT LINKED   {test}: {error.stderr[-200:]}", flush=True)
             continue
