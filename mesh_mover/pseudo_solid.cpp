@@ -11,14 +11,14 @@
 namespace couplet::mesh_mover {
 namespace {
 
-ElasticCondition condition_of(BoundaryMotion motion) {
+BoundaryRow row_of(BoundaryMotion motion) {
   switch (motion) {
     case BoundaryMotion::slip:
-      return ElasticCondition::symmetry;
+      return mirror_row();
     case BoundaryMotion::free:
-      return ElasticCondition::traction;
+      return free_row();
     default:
-      return ElasticCondition::prescribed;
+      return fixed_row();
   }
 }
 
@@ -45,13 +45,13 @@ PseudoSolid::PseudoSolid(const Mesh& mesh, const Geometry& geometry, const Param
       options_{parameters.linear.relative_tolerance, parameters.linear.max_iterations, true},
       given_point_(mesh.points.n_local(), 0),
       given_face_(mesh.boundary.n_local(), 0) {
-  std::vector<ElasticCondition> conditions;
+  std::vector<BoundaryRow> of_patches;
   bool held = false;
   for (const Patch& patch : mesh.patches) {
     const BoundaryMotion motion = parameters.boundaries.at(patch.name).motion;
-    conditions.push_back(condition_of(motion));
+    of_patches.push_back(row_of(motion));
     // The faces of periodic patches are interior ones.
-    held = held || (motion != BoundaryMotion::periodic && conditions.back() == ElasticCondition::prescribed);
+    held = held || (motion != BoundaryMotion::periodic && of_patches.back().fixed);
     if (!is_given(motion)) continue;
     for (const auto& [first, count] :
          {std::pair{patch.first, patch.count}, {patch.ghost_first, patch.ghost_count}})
@@ -70,7 +70,7 @@ PseudoSolid::PseudoSolid(const Mesh& mesh, const Geometry& geometry, const Param
           for (const Index v : mesh.face_points[f]) given_point_[v] = 0;
   ElasticBody body;
   body.lame = stiffness(mesh, parameters, volumes.empty() ? std::span(geometry.volume) : volumes);
-  rows_ = std::make_unique<ElasticOperator>(mesh, geometry, boundary_of_patches(mesh, conditions),
+  rows_ = std::make_unique<ElasticOperator>(mesh, geometry, boundary_of_patches(mesh, of_patches),
                                             std::move(body));
   kernel_ = std::make_unique<ElasticKernel>(mesh, *rows_, FaceGradientScheme::symmetric);
   unknowns_.assign(rows_->n_unknowns(), 0.0);

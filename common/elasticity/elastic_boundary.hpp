@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -10,38 +9,52 @@
 
 namespace couplet {
 
-/// What is known at a boundary face of a solid.
-enum class ElasticCondition : std::uint8_t {
-  traction,    ///< the force is known, the displacement of the face is an unknown
-  prescribed,  ///< the displacement is known at face and vertices; no unknown
-  symmetry,    ///< no displacement across the plane, no shear on it; no unknown
-  support,     ///< some components of the displacement are known, or springs hold the face (ElasticSupport)
-  zero_gradient,  ///< n . grad u = 0, thesis (2.62); the displacement of the face is an unknown
-  bonded,         ///< one side of a face between two materials; both sides share one unknown
-};
-
-/// A support with the projector P on the known directions and the spring stiffness k. With the known vector
-/// g of the face (displacement along P, place of the far end of the springs across) and a traction T:
+/// What a condition gives to the rows of a boundary face, as numbers. With the projector P, the stiffness k of springs, the
+/// known vector g of the face (displacement along P, place of the far end of the springs across) and a known traction T:
 ///   P (u_B - g) = 0,   (I - P) [sigma . n + k (u_B - g) - T] = 0
-struct ElasticSupport {
-  Tensor3 known = Tensor3::Zero();   ///< P, symmetric; I is better served by ElasticCondition::prescribed
+/// Nothing else is asked of a condition but where u_B is no unknown of the face alone (mirrored, level, shared).
+struct BoundaryRow {
+  Tensor3 known = Tensor3::Zero();   ///< P, symmetric: 0 free, I fixed, n n^T across a plane
   Tensor3 spring = Tensor3::Zero();  ///< k, symmetric [N/m^3]
-  bool operator==(const ElasticSupport& other) const {
-    return known == other.known && spring == other.spring;
-  }
+  Tensor3 passing =
+      Tensor3::Zero();  ///< R: the cell takes R sigma . n as it is and (I - R) T; P, or I if level or shared
+  bool fixed = false;   ///< P = I: no unknown
+  bool held = false;    ///< P is not 0
+  bool mirrored = false;  ///< no unknown: across the face stands the mirror image of the cell
+  bool level = false;     ///< n . grad u = 0 is the row of u_B, thesis (2.62)
+  bool shared = false;    ///< between two materials; both sides have the same u_B
+  bool operator==(const BoundaryRow&) const = default;
+
+  /// All of the force on it is known.
+  bool is_free() const { return !mirrored && passing.isZero(0) && spring.isZero(0); }
+  /// It has a vector g.
+  bool has_value() const { return !mirrored && (held || !spring.isZero(0)); }
 };
 
-/// The condition of each local boundary face (entry of mesh.boundary, ghosts included).
-struct ElasticBoundary {
-  std::vector<ElasticCondition> condition;
-  std::vector<Index> support_of_face;  ///< index into `supports`, -1: none; empty: no face is a support
-  std::vector<ElasticSupport> supports;
+BoundaryRow free_row();
+BoundaryRow fixed_row();
+/// P and k as above.
+BoundaryRow support_row(const Tensor3& known, const Tensor3& spring);
+/// A plane of symmetry. P comes with the geometry.
+BoundaryRow mirror_row();
+BoundaryRow level_row();
 
-  const ElasticSupport& support(Index entry) const { return supports[support_of_face[entry]]; }
+/// The row of each local boundary face (entry of mesh.boundary, ghosts included).
+class ElasticBoundary {
+ public:
+  /// `row`: of the next entry.
+  void add(const BoundaryRow& row);
+  const BoundaryRow& operator[](Index entry) const { return rows_[row_of_face_[entry]]; }
+  Index size() const { return static_cast<Index>(row_of_face_.size()); }
+  /// P = n n^T of the mirrors; faces between materials are shared whatever was given.
+  ElasticBoundary on(const Mesh& mesh, const Geometry& geometry) const;
+
+ private:
+  std::vector<BoundaryRow> rows_;  // few: runs of equal ones are one
+  std::vector<Index> row_of_face_;
 };
 
-/// One condition a patch, none of them a support. Faces between materials are bonded whatever is given for
-/// their patch.
-ElasticBoundary boundary_of_patches(const Mesh& mesh, std::span<const ElasticCondition> conditions);
+/// One row a patch.
+ElasticBoundary boundary_of_patches(const Mesh& mesh, std::span<const BoundaryRow> of_patches);
 
 }  // namespace couplet

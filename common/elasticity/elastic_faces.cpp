@@ -12,10 +12,7 @@ Vec3 ElasticOperator::add_forces(std::span<const double> forces, std::span<doubl
   for (std::size_t i = 0; i < unknown_faces_.size(); ++i) {
     const Index f = unknown_faces_[i];
     Vec3 force = vector_at(forces, f - mesh_->n_interior, dim);
-    if (condition(f) == ElasticCondition::support)
-      force -= support(f).known * force;
-    else if (condition(f) != ElasticCondition::traction)
-      continue;
+    force -= (at(f).passing * force).eval();
     total += force;
     for (int a = 0; a < dim; ++a) {
       rhs[std::size_t(mesh_->owner[f]) * dim + a] += force[a];
@@ -37,26 +34,15 @@ void ElasticOperator::add_pressure(std::span<const double> pressure, std::span<d
     if (mesh_->neighbour[f] < n_owned) add(mesh_->neighbour[f], force(f));
   }
   for (Index f = mesh_->n_interior; f < mesh_->n_flux_faces(); ++f) {
-    if (condition(f) == ElasticCondition::traction) continue;
-    const Vec3 here = force(f);
-    add(mesh_->owner[f],
-        condition(f) == ElasticCondition::support ? Vec3(support(f).known * -here) : Vec3(-here));
+    if (!at(f).passing.isZero(0)) add(mesh_->owner[f], at(f).passing * -force(f));
   }
   for (std::size_t i = 0; i < unknown_faces_.size(); ++i) {
     const Index f = unknown_faces_[i], row = n_owned + static_cast<Index>(i);
     const Vec3 here = force(f);
-    switch (condition(f)) {
-      case ElasticCondition::support:
-        add(row, here - support(f).known * here);
-        break;
-      case ElasticCondition::zero_gradient:
-        break;
-      case ElasticCondition::bonded:
-        add(row, here + force(mesh_->n_interior + mesh_->twin[f - mesh_->n_interior]));
-        break;
-      default:
-        add(row, here);
-    }
+    if (at(f).shared)
+      add(row, here + force(mesh_->n_interior + mesh_->twin[f - mesh_->n_interior]));
+    else
+      add(row, here - at(f).passing * here);
   }
 }
 
@@ -65,9 +51,9 @@ void ElasticOperator::impose_known(std::span<const double> known, std::span<doub
   for (const Index f : known_faces_) {
     const Index b = f - mesh_->n_interior;
     Vec3 value = vector_at(known, known_of_face(f), dim);
-    if (condition(f) == ElasticCondition::support) {
+    if (!at(f).fixed) {
       const Vec3 found = vector_at(faces, b, dim);
-      value = found + support(f).known * (value - found);
+      value = found + at(f).known * (value - found);
     }
     for (int a = 0; a < dim; ++a) faces[std::size_t(b) * dim + a] = value[a];
   }
@@ -85,23 +71,14 @@ void ElasticOperator::join_twins(std::span<double> faces) const {
 Vec3 ElasticOperator::holding_force(Index face, const Tensor3& stress, std::span<const double> faces,
                                     std::span<const double> known) const {
   const Vec3 force = stress * geometry_->face_area[face];
-  const Vec3 n = geometry_->face_area[face].normalized();
-  switch (condition(face)) {
-    case ElasticCondition::symmetry:
-      return n * n.dot(force);
-    case ElasticCondition::support: {
-      const ElasticSupport& s = support(face);
-      const Vec3 stretch = vector_at(faces, face - mesh_->n_interior, mesh_->dim) -
-                           vector_at(known, known_of_face(face), mesh_->dim);
-      const Vec3 spring = area(face) * (s.spring * stretch);
-      return s.known * force - (spring - s.known * spring);
-    }
-    case ElasticCondition::prescribed:
-    case ElasticCondition::zero_gradient:
-      return force;
-    default:
-      return Vec3::Zero();
-  }
+  const BoundaryRow& row = at(face);
+  if (row.shared) return Vec3::Zero();
+  const Vec3 held = row.passing * force;
+  if (row.spring.isZero(0)) return held;
+  const Vec3 stretch = vector_at(faces, face - mesh_->n_interior, mesh_->dim) -
+                       vector_at(known, known_of_face(face), mesh_->dim);
+  const Vec3 spring = area(face) * (row.spring * stretch);
+  return held - (spring - row.known * spring);
 }
 
 }  // namespace couplet

@@ -117,7 +117,7 @@ class ElasticNodes {
     for (std::size_t i = 0; i < open.size(); ++i)
       copy(unknowns.data() + (n_owned + i) * D, at(n_cells + open[i] - mesh_->n_interior));
     for (const Index f : rows_->known_faces()) {
-      if (rows_->condition(f) != ElasticCondition::prescribed) {
+      if (!rows_->at(f).fixed) {
         if (supports_hold) hold(f, known);
         continue;
       }
@@ -149,7 +149,7 @@ class ElasticNodes {
     Vec3 gap = Vec3::Zero();
     for (int a = 0; a < D; ++a)
       gap[a] = (known.empty() ? 0 : known[std::size_t(rows_->known_of_face(f)) * D + a]) - here[a];
-    const Vec3 step = rows_->support(f).known * gap;
+    const Vec3 step = rows_->at(f).known * gap;
     for (int a = 0; a < D; ++a) here[a] += step[a];
   }
   double* at(Index node) { return value_.data() + std::size_t(node) * stride; }

@@ -17,9 +17,9 @@ class ElasticRows {
       : mesh_(&mesh), geometry_(&rows.geometry()), rows_(&rows) {
     const Geometry& geometry = rows.geometry();
     for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
-      const ElasticCondition here = rows.condition(f);
-      if (here == ElasticCondition::symmetry) symmetry_.push_back({f, geometry.face_area[f].normalized()});
-      if (here == ElasticCondition::prescribed || here == ElasticCondition::bonded) held_.push_back(f);
+      const BoundaryRow& here = rows.at(f);
+      if (here.mirrored) symmetry_.push_back({f, geometry.face_area[f].normalized()});
+      if (here.fixed || here.shared || here.level) held_.push_back(f);
     }
     for (const Index f : rows.unknown_faces()) {
       const LameConstants lame = rows.lame(mesh.owner[f]);
@@ -43,25 +43,17 @@ class ElasticRows {
     for (std::size_t i = 0; i < unknown.size(); ++i) {
       const Index f = unknown[i];
       lanes::Lane<D> own = {};
-      switch (rows_->condition(f)) {
-        case ElasticCondition::support: {
-          std::array<double, lanes::width<D>> here{};
-          lanes::store<D>(here.data(), force(f));
-          support_row(f, stiffness_[i], nodes, known, here);
-          own = lanes::load<D>(here.data());
-          break;
-        }
-        case ElasticCondition::zero_gradient: {
-          const LameConstants lame = rows_->lame(mesh_->owner[f]);
-          lanes::add<D>(nodes.force(mesh_->owner[f]), -force(f));
-          own = (2 * lame.mu + lame.lambda) * geometry_->face_area[f].norm() * slope(f);
-          break;
-        }
-        case ElasticCondition::bonded:
-          own = force(f) + force(mesh_->n_interior + mesh_->twin[f - mesh_->n_interior]);
-          break;
-        default:
-          own = force(f);
+      if (rows_->known_of_face(f) >= 0) {
+        std::array<double, lanes::width<D>> here{};
+        lanes::store<D>(here.data(), force(f));
+        hold(f, stiffness_[i], nodes, known, here);
+        own = lanes::load<D>(here.data());
+      } else if (rows_->at(f).level) {
+        const LameConstants lame = rows_->lame(mesh_->owner[f]);
+        own = (2 * lame.mu + lame.lambda) * geometry_->face_area[f].norm() * slope(f);
+      } else {
+        own = force(f);
+        if (rows_->at(f).shared) own += force(mesh_->n_interior + mesh_->twin[f - mesh_->n_interior]);
       }
       for (int a = 0; a < D; ++a) *row++ = own[a];
     }
@@ -71,9 +63,9 @@ class ElasticRows {
   /// The force on the face becomes its row. No lanes in the signature: how they are passed depends on the
   /// processor.
   template <int D, std::size_t Width>
-  void support_row(Index f, double stiffness, ElasticNodes<D>& nodes, std::span<const double> known,
-                   std::array<double, Width>& force) const {
-    const ElasticSupport& support = rows_->support(f);
+  void hold(Index f, double stiffness, ElasticNodes<D>& nodes, std::span<const double> known,
+            std::array<double, Width>& force) const {
+    const BoundaryRow& boundary = rows_->at(f);
     const double area = geometry_->face_area[f].norm();
     Vec3 jump = Vec3::Zero(), flux = Vec3::Zero();
     for (int a = 0; a < D; ++a) {
@@ -81,10 +73,10 @@ class ElasticRows {
           nodes.of_face(f)[a] - (known.empty() ? 0 : known[std::size_t(rows_->known_of_face(f)) * D + a]);
       flux[a] = force[a];
     }
-    const Vec3 pull = area * (support.spring * jump);
-    const Vec3 spring = pull - support.known * pull;
-    const Vec3 across = support.known * flux;
-    const Vec3 own = flux - across + spring + stiffness * (support.known * jump);
+    const Vec3 pull = area * (boundary.spring * jump);
+    const Vec3 spring = pull - boundary.known * pull;
+    const Vec3 across = boundary.known * flux;
+    const Vec3 own = flux - across + spring + stiffness * (boundary.known * jump);
     double* cell = nodes.force(mesh_->owner[f]);
     for (int a = 0; a < D; ++a) {
       cell[a] += spring[a] - across[a];

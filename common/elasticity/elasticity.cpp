@@ -11,10 +11,10 @@ namespace {
 
 VertexInterpolation::ByFace stencils_of(const ElasticBoundary& boundary, const ElasticBody& body) {
   VertexInterpolation::ByFace stencils{{}, body.material_of_cell};
-  for (const ElasticCondition condition : boundary.condition)
-    stencils.stencil.push_back(condition == ElasticCondition::prescribed ? PatchStencil::fixed
-                               : condition == ElasticCondition::symmetry ? PatchStencil::symmetry
-                                                                         : PatchStencil::open);
+  for (Index b = 0; b < boundary.size(); ++b)
+    stencils.stencil.push_back(boundary[b].fixed      ? PatchStencil::fixed
+                               : boundary[b].mirrored ? PatchStencil::symmetry
+                                                      : PatchStencil::open);
   return stencils;
 }
 
@@ -45,11 +45,11 @@ struct ElasticOperator::Row {
   Part nodes, known;
 };
 
-ElasticOperator::ElasticOperator(const Mesh& mesh, const Geometry& geometry, ElasticBoundary boundary,
+ElasticOperator::ElasticOperator(const Mesh& mesh, const Geometry& geometry, const ElasticBoundary& boundary,
                                  ElasticBody body)
     : mesh_(&mesh),
       geometry_(&geometry),
-      boundary_(std::move(boundary)),
+      boundary_(boundary.on(mesh, geometry)),
       body_(std::move(body)),
       vertices_(mesh, geometry, stencils_of(boundary_, body_)),
       constraints_(mesh, boundary_, vertices_) {
@@ -58,8 +58,8 @@ ElasticOperator::ElasticOperator(const Mesh& mesh, const Geometry& geometry, Ela
 }
 
 ElasticOperator::ElasticOperator(const Mesh& mesh, const Geometry& geometry,
-                                 std::span<const ElasticCondition> conditions, const LameConstants& lame)
-    : ElasticOperator(mesh, geometry, boundary_of_patches(mesh, conditions), {{lame}, {}}) {}
+                                 std::span<const BoundaryRow> of_patches, const LameConstants& lame)
+    : ElasticOperator(mesh, geometry, boundary_of_patches(mesh, of_patches), {{lame}, {}}) {}
 
 ElasticOperator::FaceWeights ElasticOperator::weights_of(Index face) const {
   FaceWeights here{face_line(*mesh_, *geometry_, face), {}};
@@ -71,12 +71,10 @@ void ElasticOperator::sort_boundary() {
   known_of_face_.assign(mesh_->boundary.n_local(), -1);
   for (Index f = mesh_->n_interior; f < mesh_->n_flux_faces(); ++f) {
     const Index b = f - mesh_->n_interior;
-    const ElasticCondition here = condition(f);
-    const bool is_second =
-        here == ElasticCondition::bonded && mesh_->boundary_id[mesh_->twin[b]] < mesh_->boundary_id[b];
-    if (here != ElasticCondition::prescribed && here != ElasticCondition::symmetry && !is_second)
-      unknown_faces_.push_back(f);
-    if (here != ElasticCondition::prescribed && here != ElasticCondition::support) continue;
+    const BoundaryRow& here = at(f);
+    const bool is_second = here.shared && mesh_->boundary_id[mesh_->twin[b]] < mesh_->boundary_id[b];
+    if (!here.fixed && !here.mirrored && !is_second) unknown_faces_.push_back(f);
+    if (!here.has_value()) continue;
     known_of_face_[b] = static_cast<Index>(n_known());
     known_faces_.push_back(f);
   }
@@ -99,28 +97,16 @@ void ElasticOperator::assemble() const {
 void ElasticOperator::add_cell(Index cell, std::span<const Index> faces, Row& row) const {
   for (const Index f : faces) {
     const double out = (mesh_->owner[f] == cell ? -1 : 1) * area(f);
-    const ElasticCondition here = f < mesh_->n_interior ? ElasticCondition::bonded : condition(f);
-    switch (here) {
-      case ElasticCondition::traction:
-        break;
-      case ElasticCondition::symmetry: {
-        const Vec3 n = face_line(*mesh_, *geometry_, f).normal;
-        add_flux(f, out * n * n.transpose(), row);
-        break;
-      }
-      case ElasticCondition::support: {
-        const ElasticSupport& s = support(f);
-        if (!s.known.isZero(0)) add_flux(f, out * s.known, row);
-        if (!s.spring.isZero(0)) {
-          const Tensor3 held = -out * (Tensor3::Identity() - s.known) * s.spring;
-          add_face_node(f, held, row);
-          row.known.add(known_of_face(f), -held);
-        }
-        break;
-      }
-      default:
-        add_flux(f, out * Tensor3::Identity(), row);
+    if (f < mesh_->n_interior) {
+      add_flux(f, out * Tensor3::Identity(), row);
+      continue;
     }
+    const BoundaryRow& here = at(f);
+    if (!here.passing.isZero(0)) add_flux(f, out * here.passing, row);
+    if (here.spring.isZero(0)) continue;
+    const Tensor3 held = -out * (Tensor3::Identity() - here.known) * here.spring;
+    add_face_node(f, held, row);
+    row.known.add(known_of_face(f), -held);
   }
 }
 
@@ -128,36 +114,28 @@ void ElasticOperator::add_unknown_face(Index face, Row& row) const {
   const LameConstants lame = lame_at(face);
   const double size = area(face), stiffness = (2 * lame.mu + lame.lambda) * size;
   const FaceWeights here = weights_of(face);
-  switch (condition(face)) {
-    case ElasticCondition::support: {
-      const ElasticSupport& s = support(face);
-      const Tensor3 open = Tensor3::Identity() - s.known;
-      add_flux(face, size * open, row);
-      const Tensor3 held = size * open * s.spring + stiffness * here.line.inverse_dn * s.known;
-      add_face_node(face, held, row);
-      row.known.add(known_of_face(face), -held);
-      break;
-    }
-    case ElasticCondition::zero_gradient: {
-      const Tensor3 across = stiffness * here.line.inverse_dn * Tensor3::Identity();
-      row.nodes.add(mesh_->owner[face], -across);
-      add_face_node(face, across, row);
-      for (Index e = mesh_->face_points.offset[face]; e < mesh_->face_points.offset[face + 1]; ++e)
-        add_vertex(mesh_->face_points.index[e],
-                   stiffness * here.line.skew.dot(here.tangential[e - mesh_->face_points.offset[face]]) *
-                       Tensor3::Identity(),
-                   row);
-      break;
-    }
-    case ElasticCondition::bonded: {
-      const Index twin = mesh_->n_interior + mesh_->twin[face - mesh_->n_interior];
-      add_flux(face, size * Tensor3::Identity(), row);
-      add_flux(twin, area(twin) * Tensor3::Identity(), row);
-      break;
-    }
-    default:
-      add_flux(face, size * Tensor3::Identity(), row);
+  const BoundaryRow& boundary = at(face);
+  if (boundary.level) {
+    const Tensor3 across = stiffness * here.line.inverse_dn * Tensor3::Identity();
+    row.nodes.add(mesh_->owner[face], -across);
+    add_face_node(face, across, row);
+    for (Index e = mesh_->face_points.offset[face]; e < mesh_->face_points.offset[face + 1]; ++e)
+      add_vertex(mesh_->face_points.index[e],
+                 stiffness * here.line.skew.dot(here.tangential[e - mesh_->face_points.offset[face]]) *
+                     Tensor3::Identity(),
+                 row);
+    return;
   }
+  const Tensor3 open = Tensor3::Identity() - boundary.known;
+  add_flux(face, size * open, row);
+  if (boundary.shared) {
+    const Index twin = mesh_->n_interior + mesh_->twin[face - mesh_->n_interior];
+    add_flux(twin, area(twin) * Tensor3::Identity(), row);
+  }
+  if (!boundary.has_value()) return;
+  const Tensor3 held = size * open * boundary.spring + stiffness * here.line.inverse_dn * boundary.known;
+  add_face_node(face, held, row);
+  row.known.add(known_of_face(face), -held);
 }
 
 void ElasticOperator::set_lame(std::vector<LameConstants> lame) {
@@ -185,9 +163,9 @@ void ElasticOperator::add_flux(Index face, const Tensor3& scale, Row& row) const
   row.nodes.add(mesh_->owner[face], -across);
   if (!on_boundary)
     row.nodes.add(mesh_->neighbour[face], across);
-  else if (condition(face) == ElasticCondition::prescribed)
+  else if (this->at(face).fixed)
     row.known.add(known_of_face(face), across);
-  else if (condition(face) != ElasticCondition::symmetry)
+  else if (!this->at(face).mirrored)
     add_face_node(face, across, row);
   for (Index e = mesh_->face_points.offset[face]; e < mesh_->face_points.offset[face + 1]; ++e) {
     const Vec3& c = at.tangential[e - mesh_->face_points.offset[face]];
@@ -280,8 +258,7 @@ Tensor3 ElasticOperator::gradient(Index face, std::span<const double> cells, std
         weights[e - mesh_->face_points.offset[face]] * at(points, mesh_->face_points.index[e]).transpose();
   const Vec3& n = line.normal;
   const Vec3 here = at(cells, mesh_->owner[face]);
-  if (face >= mesh_->n_interior && condition(face) == ElasticCondition::symmetry)
-    return n * (-n.dot(here) * line.inverse_dn * n).transpose() + tangential;
+  if (mirrored(face)) return n * (-n.dot(here) * line.inverse_dn * n).transpose() + tangential;
   const Vec3 there =
       face < mesh_->n_interior ? at(cells, mesh_->neighbour[face]) : at(boundary, face - mesh_->n_interior);
   const Vec3 normal = (there - here) * line.inverse_dn + tangential.transpose() * line.skew;

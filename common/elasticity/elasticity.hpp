@@ -34,32 +34,29 @@ struct ElasticBody {
 /// errata), all displacement components coupled, reference configuration.
 ///
 /// Unknown nodes of a rank: its owned cells, then its boundary faces with an unknown (unknown_faces()) in the
-/// order of the faces; `dim` unknowns a node. The two sides of a bonded face share the unknown of the side
+/// order of the faces; `dim` unknowns a node. The two sides of a shared face have the unknown of the side
 /// with the smaller boundary_id, which holds the row. Known columns of a rank: points with a known value,
-/// then prescribed and support faces of owned cells in the order of the faces; `dim` values a column.
+/// then the faces of owned cells that have a vector g in the order of the faces; `dim` values a column.
 ///
 /// Vertex values: u_V = F_V sum_i w_i u_i + g_V with the weights of VertexInterpolation and F_V, g_V of
 /// VertexConstraints.
 ///
-/// Row of a cell, [A u + K g] = - sum_f [...] with, by the condition of face f (n out of the cell, S its
-/// area):
-///   interior, prescribed, zero-gradient, bonded    sigma_f . n S
-///   symmetry                                       n n . sigma_f . n S, with the displacement of the face =
-///   0 along n traction                                       nothing support P sigma_f . n S - (I - P) k S
-///   (u_B - g)
+/// Row of a cell, [A u + K g] = - sum_f [...] with P, R, k of BoundaryRow at face f (n out of the cell, S its area):
+///   interior                                       sigma_f . n S
+///   boundary                                       R sigma_f . n S - (I - P) k S (u_B - g); mirrored: u_B = 0 along n
 /// Row of a face with an unknown:
-///   traction                                       sigma_f . n S
-///   support                                        (I - P) [sigma_f . n S + k S (u_B - g)] + s P (u_B - g)
-///   zero-gradient                                  (2 mu + lambda) S n . grad u
-///   bonded                                         sigma_f . n S + sigma_f' . n' S, of the two sides
-/// with s = (2 mu + lambda) S / (d . n). The known forces stand on the right: F of a traction face in its row
-/// and in its cell's, (I - P) F of a support likewise (add_forces()).
+///   own                                            (I - P) [sigma_f . n S + k S (u_B - g)] + s P (u_B - g)
+///   level                                          (2 mu + lambda) S n . grad u
+///   shared                                         sigma_f . n S + sigma_f' . n' S, of the two sides
+/// with s = (2 mu + lambda) S / (d . n). The known forces stand on the right: (I - R) F in the face's row and in its
+/// cell's (add_forces()).
 class ElasticOperator {
  public:
   /// Mesh and geometry by reference.
-  ElasticOperator(const Mesh& mesh, const Geometry& geometry, ElasticBoundary boundary, ElasticBody body);
-  /// One condition a patch, one material. Collective.
-  ElasticOperator(const Mesh& mesh, const Geometry& geometry, std::span<const ElasticCondition> conditions,
+  ElasticOperator(const Mesh& mesh, const Geometry& geometry, const ElasticBoundary& boundary,
+                  ElasticBody body);
+  /// One row a patch, one material. Collective.
+  ElasticOperator(const Mesh& mesh, const Geometry& geometry, std::span<const BoundaryRow> of_patches,
                   const LameConstants& lame);
 
   const VertexInterpolation& vertices() const { return vertices_; }
@@ -78,8 +75,10 @@ class ElasticOperator {
   Index known_of_face(Index face) const { return known_of_face_[face - mesh_->n_interior]; }
   /// Unknowns of this rank.
   std::size_t n_unknowns() const { return (mesh_->cells.n_owned() + unknown_faces_.size()) * mesh_->dim; }
-  ElasticCondition condition(Index face) const { return boundary_.condition[face - mesh_->n_interior]; }
-  const ElasticSupport& support(Index face) const { return boundary_.support(face - mesh_->n_interior); }
+  /// Of a boundary face.
+  const BoundaryRow& at(Index face) const { return boundary_[face - mesh_->n_interior]; }
+  /// Across the face stands the mirror image of its cell; any face.
+  bool mirrored(Index face) const { return face >= mesh_->n_interior && at(face).mirrored; }
   VolumeStrain volume_strain() const { return body_.volume_strain; }
   /// Cells have a volume strain of their own, on which some or all of the bulk modulus acts.
   bool volume_by_cells() const { return body_.volume_strain != VolumeStrain::faces; }
@@ -99,16 +98,15 @@ class ElasticOperator {
   SparseMatrix matrix(std::span<const double> inertia) const;
   /// rhs -= K known; `known`: dim values a known column.
   void subtract_known(std::span<const double> known, std::span<double> rhs) const;
-  /// Adds the known forces [N] of the boundary faces of owned cells (`dim` values a face) to the right-hand
-  /// side; gives the sum of what this rank added to its cells. Faces whose displacement is known take none.
+  /// Adds (I - R) of the known forces [N] of the boundary faces of owned cells (`dim` values a face) to the right-hand
+  /// side; gives the sum of what this rank added to its cells.
   Vec3 add_forces(std::span<const double> forces, std::span<double> rhs) const;
 
   /// Adds the forces of an isotropic stress - p I beside that of the displacement (`pressure`: p [Pa] per
   /// local face, boundary faces of ghost cells included): the rows' sigma becomes sigma - p I.
   void add_pressure(std::span<const double> pressure, std::span<double> rhs) const;
 
-  /// Sets what is known of the values on boundary faces of owned cells (`faces`: dim a local boundary face):
-  /// prescribed faces, the known directions of supports.
+  /// Sets what is known of the values on boundary faces of owned cells (`faces`: dim a local boundary face): P g.
   void impose_known(std::span<const double> known, std::span<double> faces) const;
   /// Gives the second side of bonded faces the value of the first. The ghosts of `faces` must be up to date.
   void join_twins(std::span<double> faces) const;
@@ -119,9 +117,8 @@ class ElasticOperator {
                    std::span<const double> points) const;
   /// Stress for the gradient in a cell (or at one of its faces).
   Tensor3 stress(Index cell, const Tensor3& gradient) const;
-  /// Force [N] with which a boundary face is held: along P and by springs (support), all of it (prescribed,
-  /// zero-gradient), across the plane (symmetry), none (traction). `stress` there, `known` in the order of
-  /// the columns.
+  /// Force [N] with which a boundary face is held: R sigma . n S less that of the springs, none where it is shared.
+  /// `stress` there, `known` in the order of the columns.
   Vec3 holding_force(Index face, const Tensor3& stress, std::span<const double> faces,
                      std::span<const double> known) const;
 

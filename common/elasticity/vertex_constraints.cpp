@@ -51,13 +51,6 @@ class VertexConstraints::Known {
   std::vector<Source> sources;
 };
 
-ElasticBoundary boundary_of_patches(const Mesh& mesh, std::span<const ElasticCondition> conditions) {
-  ElasticBoundary boundary;
-  for (const Index p : mesh.patch_of_boundary())
-    boundary.condition.push_back(mesh.patches[p].bonded ? ElasticCondition::bonded : conditions[p]);
-  return boundary;
-}
-
 VertexConstraints::VertexConstraints(const Mesh& mesh, const ElasticBoundary& boundary,
                                      const VertexInterpolation& vertices) {
   const Index n_points = mesh.points.n_local();
@@ -82,7 +75,7 @@ void VertexConstraints::constrain(Index point, std::span<const Index> faces, con
   Known known;
   if (mesh.dim == 2) known.q(2, 2) = 1;
   for (const Index b : ordered)
-    if (boundary.condition[b] == ElasticCondition::prescribed) {
+    if (boundary[b].fixed) {
       known.q = Tensor3::Identity();
       known.sources.push_back({b, Tensor3::Identity()});
       return store(point, known);
@@ -94,8 +87,8 @@ void VertexConstraints::constrain(Index point, std::span<const Index> faces, con
     Index source = -1;
     double most = 0;
     for (auto b = first; b != last; ++b) {
-      if (boundary.condition[*b] != ElasticCondition::support) continue;
-      const Tensor3& p = boundary.support(*b).known;
+      if (!boundary[*b].held || boundary[*b].mirrored) continue;
+      const Tensor3& p = boundary[*b].known;
       mean += p / double(last - first);
       if (p.trace() > most + 0.5) source = *b, most = p.trace();
     }

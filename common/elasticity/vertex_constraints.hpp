@@ -15,8 +15,7 @@ namespace couplet {
 ///   u_V = F_V sum_i w_i u_i + g_V,   F_V = I - Q_V,   g_V = sum_j G_j g_j(x_V)
 /// Q_V is the projector on the known directions; g_j is the known vector of the condition of boundary face j,
 /// taken at the vertex, so that g_V = Q_V g_V. Rules, in this order:
-/// - A vertex of a prescribed face is known in all directions, from the first prescribed face around it
-/// (order
+/// - A vertex of a fixed face is known in all directions, from the first fixed face around it (order
 ///   of the patches, then of the faces).
 /// - Supports: of each patch, in the order of the patches, those directions in which the patch's faces around
 ///   the vertex agree: eigenvalue of their mean P above 3/4, so that a curved patch keeps its mean normal,

@@ -18,11 +18,10 @@ namespace {
 /// Of the gradients without an energy: beyond it they only lock.
 constexpr double most_poissons_ratio = 0.499;
 
-/// A support's face has a vertex that is free in a direction which the face knows.
+/// A face has a vertex that is free in a direction which the face knows.
 bool has_loose_vertex(const Mesh& mesh, const ElasticOperator& elastic) {
   for (const Index f : elastic.known_faces()) {
-    if (elastic.condition(f) != ElasticCondition::support) continue;
-    const Tensor3& known = elastic.support(f).known;
+    const Tensor3& known = elastic.at(f).known;
     for (const Index v : mesh.face_points[f])
       if ((known * elastic.constraints().free_part(v) * known).trace() > 0.5) return true;
   }
@@ -84,7 +83,7 @@ void SolidBody::check_supports() const {
 void SolidBody::find_mass() {
   bool has_no_energy = false;
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
-    has_no_energy = has_no_energy || elastic_.condition(f) == ElasticCondition::zero_gradient;
+    has_no_energy = has_no_energy || elastic_.at(f).level;
   if (kernel_.is_symmetric() && any(mesh_.comm, has_no_energy))
     throw Error(
         "solution-method.face-gradient: symmetric: a boundary of 'type: zero-normal-gradient' has no energy "

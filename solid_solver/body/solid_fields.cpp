@@ -84,7 +84,7 @@ const PointTensors& SolidFields::point_tensors() const {
     for (const Patch& patch : mesh_.patches) {
       const auto found = parameters_.boundaries.find(patch.name);
       is_symmetry.push_back(found != parameters_.boundaries.end() && found->second.parts.empty() &&
-                            found->second.type == SolidBoundary::Type::symmetry);
+                            is_symmetry_plane(found->second));
     }
     point_tensors_ = std::make_unique<PointTensors>(mesh_, geometry_, is_symmetry, elastic_.vertices());
   }
@@ -99,24 +99,11 @@ std::vector<SurfaceTraction> SolidFields::known_tractions() const {
     const Index f = mesh_.n_interior + Index(b);
     const double area = geometry_.face_area[f].norm();
     SurfaceTraction& known = result[b];
-    switch (elastic_.condition(f)) {
-      case ElasticCondition::traction:
-        if (!body_.boundaries().knows_traction(f)) continue;
-        known.projector = Tensor3::Identity();
-        break;
-      case ElasticCondition::symmetry: {
-        const Vec3 n = geometry_.face_area[f] / area;
-        known.projector = Tensor3::Identity() - n * n.transpose();
-        known.symmetry = true;
-        continue;
-      }
-      case ElasticCondition::support:
-        if (elastic_.support(f).spring.isZero(0))
-          known.projector = Tensor3::Identity() - elastic_.support(f).known;
-        break;
-      default:
-        continue;
-    }
+    const BoundaryRow& row = elastic_.at(f);
+    if (row.is_free() && !body_.boundaries().knows_traction(f)) continue;
+    if (row.spring.isZero(0)) known.projector = Tensor3::Identity() - row.passing;
+    known.symmetry = row.mirrored;
+    if (row.mirrored || row.fixed || row.level || row.shared) continue;
     Vec3 force = Vec3::Zero();
     for (int a = 0; a < mesh_.dim; ++a) force[a] = forces[b * std::size_t(mesh_.dim) + std::size_t(a)];
     known.traction = known.projector * force / area;

@@ -139,7 +139,7 @@ void StressRecovery::fit_tensors(Index cell, const std::vector<Tensor3>& cells,
   };
   for (const Index c : patch.cells) add(g.cell_centre[c], moment_[std::size_t(c)], cells[std::size_t(c)]);
   for (const Index f : patch.faces)
-    if (rows_.condition(f) == ElasticCondition::traction)
+    if (rows_.at(f).is_free())
       add(g.face_centre[f], Tensor3::Zero(), faces[std::size_t(f - mesh_.n_interior)]);
   if (surface)
     for (const Index f : patch.loaded) {

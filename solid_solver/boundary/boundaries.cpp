@@ -46,9 +46,9 @@ SolidBoundaries::SolidBoundaries(const Mesh& mesh, const Geometry& geometry,
     holds_.push_back(0);
     if (patch.bonded) continue;
     const SolidBoundary& boundary = parameters.boundaries.at(patch.name);
-    holds_.back() = !is_load(boundary.type);
-    for (const SolidPart& part : boundary.parts) holds_.back() |= !is_load(part.type);
-    if (boundary.type == Type::interface_) {
+    holds_.back() = !is_load(boundary);
+    for (const SolidPart& part : boundary.parts) holds_.back() |= !is_load(part);
+    if (is_interface(boundary)) {
       if (!boundary.parts.empty())
         throw Error("boundaries.{}: an interface cannot have parts; make them separate patches.", patch.name);
       interface_patches_.push_back(patch.name);
@@ -63,6 +63,7 @@ SolidBoundaries::Condition SolidBoundaries::make_condition(const SolidCondition&
   const int dim = mesh_->dim;
   Condition c;
   c.type = from.type;
+  c.is_load = is_load(from);
   c.by_component = from.type == Type::fixed_displacement && from.value.empty();
   if (c.by_component) {
     for (int i = 0; i < dim; ++i) {
@@ -75,15 +76,21 @@ SolidBoundaries::Condition SolidBoundaries::make_condition(const SolidCondition&
     if (!from.value.empty()) c.known = make_expressions(from.value, dim, where + ".value");
     c.known_components.head(dim).setConstant(from.type == Type::fixed_displacement);
   }
+  if (from.type == Type::roller && !Expression(from.along, where + ".value").is_zero())
+    for (int i = 0; i < dim; ++i)
+      c.known.emplace_back(
+          config::ExpressionText{fmt::format("({})*({})", from.along.text, from.normal.normalized()[i])},
+          where + ".value");
   if (std::ranges::all_of(c.known, [](const Expression& e) { return e.is_zero(); })) c.known.clear();
   if (from.type == Type::traction) c.traction = make_expressions(from.value, dim, where + ".value");
   if (!from.traction.empty()) c.traction = make_expressions(from.traction, dim, where + ".traction");
-  if (from.type == Type::pressure) c.pressure = Expression(from.pressure, where + ".value");
+  c.presses = from.type == Type::pressure;
+  if (c.presses) c.pressure = Expression(from.pressure, where + ".value");
   if (from.type == Type::spring) c.stiffness = Expression(from.stiffness, where + ".stiffness");
   if (c.stiffness.uses_time())
     throw Error("{}.stiffness: the stiffness of a spring cannot depend on the time t.", where);
   c.along_normal = from.along_normal;
-  c.plate_normal = from.plate_normal.normalized();
+  c.normal = from.normal.normalized();
   return c;
 }
 
@@ -120,7 +127,7 @@ void SolidBoundaries::choose_faces(const Patch& patch, const SolidBoundary& boun
 void SolidBoundaries::make_load(Condition& c, const SolidCondition& from, const std::string& where) const {
   if (from.type == Type::force || from.type == Type::remote_load)
     c.distributed.emplace(*mesh_, *geometry_, c.faces, from.load, from.type == Type::remote_load, where);
-  c.is_rigid = from.type == Type::remote_load && from.load.is_rigid;
+  c.is_rigid = is_rigid(from);
   if (from.type == Type::bearing_load) c.bearing.emplace(*mesh_, *geometry_, c.faces, from.load, where);
   if (from.type == Type::hydrostatic_pressure) c.liquid.emplace(*mesh_, *geometry_, from.load, where);
 }
@@ -129,7 +136,7 @@ void SolidBoundaries::make_point_loads(const SolidParameters& parameters) {
   if (parameters.point_loads.empty()) return;
   std::vector<std::uint8_t> open(mesh_->boundary.n_owned());
   for (std::size_t b = 0; b < open.size(); ++b)
-    open[b] = condition_of_face_[b] >= 0 && is_load(at(static_cast<Index>(b)).type);
+    open[b] = condition_of_face_[b] >= 0 && at(static_cast<Index>(b)).is_load;
   for (const auto& [name, load] : parameters.point_loads) {
     const std::string where = "point-loads." + name;
     point_loads_.emplace_back(*mesh_, *geometry_, faces_of_point_load(*mesh_, *geometry_, load, open, where),
@@ -137,59 +144,47 @@ void SolidBoundaries::make_point_loads(const SolidParameters& parameters) {
   }
 }
 
-ElasticCondition SolidBoundaries::kind_of(const Condition& c) const {
+/// All that the equations ask of a type: its projector and its stiffness at a face.
+BoundaryRow SolidBoundaries::row_at(const Condition& c, Index face) const {
+  const Vec3 n = geometry_->face_area[face].normalized();
+  const Tensor3 none = Tensor3::Zero(), across = n * n.transpose(), lifted = c.normal * c.normal.transpose();
   switch (c.type) {
     case Type::symmetry:
-      return ElasticCondition::symmetry;
+      return mirror_row();
     case Type::zero_normal_gradient:
-      return ElasticCondition::zero_gradient;
+      return level_row();
     case Type::fixed_displacement:
-      return c.by_component ? ElasticCondition::support : ElasticCondition::prescribed;
+      return c.by_component ? support_row(c.known_components.asDiagonal(), none) : fixed_row();
     case Type::frictionless:
+      return support_row(across, none);
+    case Type::roller:
     case Type::soft_support:
-    case Type::hard_support:
-    case Type::spring:
-      return ElasticCondition::support;
+      return support_row(lifted, none);
+    case Type::hard_support: {
+      const Vec3 along = n.cross(c.normal);
+      // On the top or bottom of the plate there is no edge to go along.
+      const bool has_edge = along.norm() > 1e-3;
+      return support_row(
+          has_edge ? Tensor3(lifted + along * along.transpose() / along.squaredNorm()) : lifted, none);
+    }
+    case Type::spring: {
+      const double stiffness = c.stiffness(geometry_->face_centre[face], 0);
+      if (stiffness < 0)
+        throw Error("boundaries: the spring stiffness '{}' is {:g} N/m^3 at a face; it must not be negative.",
+                    c.stiffness.text(), stiffness);
+      return support_row(none, stiffness * (c.along_normal ? across : Tensor3::Identity()));
+    }
     default:
-      return ElasticCondition::traction;
+      return free_row();
   }
-}
-
-ElasticSupport SolidBoundaries::support_at(const Condition& c, Index face) const {
-  ElasticSupport support;
-  const Vec3 n = geometry_->face_area[face].normalized();
-  if (c.type == Type::fixed_displacement) support.known = c.known_components.asDiagonal();
-  if (c.type == Type::frictionless) support.known = n * n.transpose();
-  if (c.type == Type::soft_support || c.type == Type::hard_support)
-    support.known = c.plate_normal * c.plate_normal.transpose();
-  if (c.type == Type::hard_support) {
-    const Vec3 along = n.cross(c.plate_normal);
-    // On the top or bottom of the plate there is no edge to go along.
-    if (along.norm() > 1e-3) support.known += along * along.transpose() / along.squaredNorm();
-  }
-  if (c.type == Type::spring) {
-    const double stiffness = c.stiffness(geometry_->face_centre[face], 0);
-    if (stiffness < 0)
-      throw Error("boundaries: the spring stiffness '{}' is {:g} N/m^3 at a face; it must not be negative.",
-                  c.stiffness.text(), stiffness);
-    support.spring = stiffness * (c.along_normal ? Tensor3(n * n.transpose()) : Tensor3::Identity());
-  }
-  return support;
 }
 
 ElasticBoundary SolidBoundaries::elastic() const {
   ElasticBoundary result;
-  result.condition.assign(condition_of_face_.size(), ElasticCondition::bonded);
-  for (std::size_t b = 0; b < condition_of_face_.size(); ++b) {
-    if (condition_of_face_[b] < 0) continue;
-    const Condition& c = at(static_cast<Index>(b));
-    result.condition[b] = kind_of(c);
-    if (result.condition[b] != ElasticCondition::support) continue;
-    if (result.support_of_face.empty()) result.support_of_face.assign(condition_of_face_.size(), -1);
-    const ElasticSupport here = support_at(c, mesh_->n_interior + static_cast<Index>(b));
-    if (result.supports.empty() || !(result.supports.back() == here)) result.supports.push_back(here);
-    result.support_of_face[b] = static_cast<Index>(result.supports.size()) - 1;
-  }
+  for (std::size_t b = 0; b < condition_of_face_.size(); ++b)
+    result.add(condition_of_face_[b] < 0
+                   ? free_row()  // between materials
+                   : row_at(at(static_cast<Index>(b)), mesh_->n_interior + static_cast<Index>(b)));
   return result;
 }
 

@@ -44,6 +44,7 @@ class SolidBoundaries {
   /// One entry of the YAML: a patch or a part of it.
   struct Condition {
     SolidCondition::Type type;
+    bool is_load = true;               ///< knows no more than the force
     std::vector<Expression> known;     // vector g of the support, or displacement; empty: zero
     std::vector<Expression> traction;  // empty: none
     Expression pressure;
@@ -53,13 +54,13 @@ class SolidBoundaries {
     /// fixed-displacement by component. A part of which all are known holds its faces, `value` also their
     /// vertices.
     bool by_component = false;
-    Vec3 known_components = Vec3::Zero(), plate_normal = Vec3::Zero();
+    Vec3 known_components = Vec3::Zero(), normal = Vec3::Zero();
     // By their total.
     std::optional<DistributedForce> distributed;
     std::optional<BearingLoad> bearing;
     std::optional<HydrostaticPressure> liquid;
-    bool is_rigid = false;
-    bool has_pressure() const { return type == SolidCondition::Type::pressure || liquid; }
+    bool is_rigid = false, presses = false;
+    bool has_pressure() const { return presses || liquid; }
   };
   Condition make_condition(const SolidCondition& from, const std::string& where) const;
   void choose_faces(const Patch& patch, const SolidBoundary& boundary);
@@ -68,8 +69,7 @@ class SolidBoundaries {
   /// Calls take(face, pressure [Pa]) for the faces of a condition.
   template <class Take>
   void visit_pressures(const Condition& condition, double t, const Take& take) const;
-  ElasticCondition kind_of(const Condition& condition) const;
-  ElasticSupport support_at(const Condition& condition, Index face) const;
+  BoundaryRow row_at(const Condition& condition, Index face) const;
   const Condition& at(Index entry) const { return conditions_[condition_of_face_[entry]]; }
 
   const Mesh* mesh_;

@@ -117,26 +117,11 @@ void add_face(const Mesh& mesh, const ElasticOperator& elastic, Index face, Body
   };
   const auto at_centre = displacements(body, geometry.face_centre[face]);
   const Vec3 n = geometry.face_area[face].normalized();
-  switch (elastic.condition(face)) {
-    case ElasticCondition::prescribed:
-      resist(at_centre, Tensor3::Identity());
-      break;
-    case ElasticCondition::symmetry:
-      resist(at_centre, n * n.transpose());
-      break;
-    case ElasticCondition::support: {
-      const ElasticSupport& s = elastic.support(face);
-      resist(at_centre, s.known);
-      // Any spring holds: its stiffness only says how far the body moves.
-      if (const double stiffest = s.spring.norm(); stiffest > 0) resist(at_centre, s.spring / stiffest);
-      break;
-    }
-    case ElasticCondition::zero_gradient:
-      resist(normal_gradients(n), Tensor3::Identity());
-      break;
-    default:
-      break;
-  }
+  const BoundaryRow& row = elastic.at(face);
+  if (row.held) resist(at_centre, row.known);
+  // Any spring holds: its stiffness only says how far the body moves.
+  if (const double stiffest = row.spring.norm(); stiffest > 0) resist(at_centre, row.spring / stiffest);
+  if (row.level) resist(normal_gradients(n), Tensor3::Identity());
   for (const Index v : mesh.face_points[face])
     if (elastic.constraints().is_constrained(v))
       resist(displacements(body, geometry.points[v]),

@@ -68,8 +68,8 @@ EffectChoice inertia(const SolidParameters& p, const MeshFacts& mesh, const Choi
     return EffectChoice{"analysis", word, word, std::move(reason), false};
   };
   const bool takes_forces = !(p.interface_data && p.interface_data->temperature);
-  const bool has_interface = std::ranges::any_of(
-      p.boundaries, [](const auto& b) { return b.second.type == SolidCondition::Type::interface_; });
+  const bool has_interface =
+      std::ranges::any_of(p.boundaries, [](const auto& b) { return is_interface(b.second); });
   if (scene.coupled && has_interface && takes_forces)
     return choose(true, "the partner's forces vary in time");
   if (!p.initial_velocity.empty()) return choose(true, "'initial-velocity' is given");

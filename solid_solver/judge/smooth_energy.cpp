@@ -64,7 +64,7 @@ void SmoothEnergy::gather(Index cell, Patch& patch) const {
     patch.reach = std::max(patch.reach, (geometry_.points[v] - centre).norm());
   for (const Index c : patch.cells)
     for (const Index f : patch.faces_of_cell[c]) {
-      if (rows_.condition(f) != ElasticCondition::symmetry) continue;
+      if (!rows_.mirrored(f)) continue;
       const Vec3 normal = g.face_area[f].normalized();
       if (std::ranges::none_of(patch.mirrors, [&](const auto& m) { return m.first.dot(normal) > 0.99; }))
         patch.mirrors.emplace_back(normal, g.face_centre[f]);

@@ -106,7 +106,7 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
     const Vec3 here = vector_at(state.cell_u, owner, dim);
     if (f < mesh_.n_interior)
       work += 0.5 * force.dot(vector_at(state.cell_u, mesh_.neighbour[f], dim) - here);
-    else if (rows.condition(f) == ElasticCondition::symmetry)
+    else if (rows.mirrored(f))
       work -= 0.5 * geometry_.face_area[f].dot(force) * geometry_.face_area[f].dot(here) /
               geometry_.face_area[f].squaredNorm();
     else

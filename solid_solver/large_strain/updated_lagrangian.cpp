@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -15,17 +16,13 @@
 namespace couplet {
 namespace {
 
-const char* name_of(ElasticCondition condition) {
-  switch (condition) {
-    case ElasticCondition::support:
-      return "a support or springs";
-    case ElasticCondition::zero_gradient:
-      return "'zero-normal-gradient'";
-    case ElasticCondition::bonded:
-      return "an interface between two materials";
-    default:
-      return nullptr;
-  }
+constexpr std::array unknown_conditions{"a support or springs", "'zero-normal-gradient'",
+                                        "an interface between two materials"};
+
+/// Which of these a row is, -1: none.
+int unknown_condition_of(const BoundaryRow& row) {
+  if (row.fixed || row.mirrored || row.is_free()) return -1;
+  return row.has_value() ? 0 : row.level ? 1 : 2;
 }
 
 }  // namespace
@@ -40,14 +37,14 @@ UpdatedLagrangian::UpdatedLagrangian(const Mesh& mesh, const ElasticOperator& ro
   const Geometry& geometry = rows.geometry();
   int unknown_condition = -1;
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
-    if (name_of(rows.condition(f))) unknown_condition = static_cast<int>(rows.condition(f));
+    unknown_condition = std::max(unknown_condition, unknown_condition_of(rows.at(f)));
   unknown_condition = max(mesh.comm, unknown_condition);
   if (unknown_condition >= 0)
     throw Error(
         "solution-method.type: segregated: at finite strain it supports 'fixed-displacement' of all "
         "components, 'symmetry', 'traction', 'pressure', 'free' and 'interface', not {}; use 'type: "
         "newton-krylov' (or 'auto').",
-        name_of(static_cast<ElasticCondition>(unknown_condition)));
+        unknown_conditions[std::size_t(unknown_condition)]);
   const SolidMaterial material = materials_of(parameters).front();
   law_ = laws::of(material.law)->make(lame_constants(parameters, material), material.law_coefficients);
   noise_ = rounding_of_forces(mesh, rows);
@@ -128,13 +125,13 @@ void UpdatedLagrangian::add_forces(std::span<double> result) {
     if (f < mesh_.n_interior) {
       if (here < n) add(here, -force);
       if (mesh_.neighbour[f] < n) add(mesh_.neighbour[f], force);
-    } else if (rows_.condition(f) == ElasticCondition::traction) {
+    } else if (rows_.at(f).is_free()) {
       Vec3 push = Vec3::Zero();
       if (!pressure_.empty()) push = -pressure_[f - mesh_.n_interior] * present_area(f);
       pressure_force_ += push;
       add(here, -push);
       add(open++, force - push);
-    } else if (rows_.condition(f) == ElasticCondition::symmetry) {
+    } else if (rows_.mirrored(f)) {
       const Vec3& S = frame().area()[f];
       add(here, -S.dot(force) / S.squaredNorm() * S);
     } else {

@@ -56,9 +56,8 @@ std::vector<Wrench> UpdatedLagrangian::holding_forces(std::span<const double> un
       Vec3 centre = Vec3::Zero();
       for (const Index v : mesh_.face_points[f])
         centre += now_.points[v] / double(mesh_.face_points[f].size());
-      if (rows_.condition(f) == ElasticCondition::prescribed) force.add(force_through(f), centre);
-      if (rows_.condition(f) == ElasticCondition::symmetry)
-        force.add(S.dot(force_through(f)) / S.squaredNorm() * S, centre);
+      if (rows_.at(f).fixed) force.add(force_through(f), centre);
+      if (rows_.mirrored(f)) force.add(S.dot(force_through(f)) / S.squaredNorm() * S, centre);
     }
     forces.push_back(force);
   }

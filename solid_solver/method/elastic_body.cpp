@@ -101,9 +101,6 @@ bool has_orthotropic(const SolidParameters& p) {
 bool symmetric_suits(const SolidParameters& p) {
   using Type = MethodParameters::Type;
   if (p.method.type != Type::automatic && p.method.type != Type::newton_krylov) return false;
-  const auto has_no_energy = [](const SolidCondition& c) {
-    return c.type == SolidCondition::Type::zero_normal_gradient;
-  };
   return std::ranges::none_of(p.boundaries, [&](const auto& entry) {
     return has_no_energy(entry.second) || std::ranges::any_of(entry.second.parts, has_no_energy);
   });
@@ -141,7 +138,7 @@ void check_symmetry(const SolidParameters& p, const Mesh& mesh, const ElasticOpe
   const Matrices matrices(p);
   double worst = 0;
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
-    if (rows.condition(f) != ElasticCondition::symmetry) continue;
+    if (!rows.mirrored(f)) continue;
     const Vec3 n = geometry.face_area[f].normalized();
     const ElasticMatrix here =
         matrices.at(std::size_t(mesh.material_of(mesh.owner[f])), geometry.face_centre[f]);

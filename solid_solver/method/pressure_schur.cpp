@@ -117,7 +117,7 @@ void PressureSchur::by_gradients(const SolidProblem& problem, std::span<const do
     }
     if (p < n) gradient[p].push_back({p, area});
     if (q < n) gradient[q].push_back({q, -area});
-    if (f < mesh.n_interior || p >= n || rows.condition(f) != ElasticCondition::traction) continue;
+    if (f < mesh.n_interior || p >= n || !rows.at(f).is_free()) continue;
     before.add(p, p, elastic);
     wide.add(p, p, k + elastic * unit_ / bulk(p));
   }
@@ -145,7 +145,7 @@ void PressureSchur::by_faces(const SolidProblem& problem, std::span<const double
     const auto [here, there] = pyramids(mesh, geometry, f);
     const double whole = here + there;
     double weight = whole / mean * unit_ / (elastic_of_faces(mesh.dim) * face_lame(mesh, rows, f).mu);
-    if (f >= mesh.n_interior && rows.condition(f) == ElasticCondition::traction) weight *= free_face;
+    if (f >= mesh.n_interior && rows.at(f).is_free()) weight *= free_face;
     const std::array<std::pair<Index, double>, 2> sides{{{p, here / whole}, {q, there / whole}}};
     for (const auto& [i, a] : sides)
       for (const auto& [j, b] : sides)

@@ -21,25 +21,15 @@ double stiffness(const Mesh& mesh, const ElasticOperator& rows, Index f) {
 /// What a boundary face adds on the diagonal of its cell.
 double boundary_diagonal(const Mesh& mesh, const ElasticOperator& rows, Index f, int component) {
   const Geometry& geometry = rows.geometry();
-  const double k = stiffness(mesh, rows, f), n = geometry.face_area[f].normalized()[component];
-  switch (rows.condition(f)) {
-    case ElasticCondition::prescribed:
-      return k;
-    case ElasticCondition::symmetry:
-      return k * n * n;
-    case ElasticCondition::support: {
-      const ElasticSupport& s = rows.support(f);
-      const double known = s.known(component, component);
-      const double spring = geometry.face_area[f].norm() * s.spring(component, component);
-      return k * (known + (1 - known) * spring / (k + spring));
-    }
-    case ElasticCondition::bonded: {
-      const double other = stiffness(mesh, rows, mesh.n_interior + mesh.twin[f - mesh.n_interior]);
-      return k * other / (k + other);
-    }
-    default:
-      return 0;
+  const double k = stiffness(mesh, rows, f);
+  const BoundaryRow& row = rows.at(f);
+  if (row.shared) {
+    const double other = stiffness(mesh, rows, mesh.n_interior + mesh.twin[f - mesh.n_interior]);
+    return k * other / (k + other);
   }
+  const double known = row.known(component, component);
+  const double spring = geometry.face_area[f].norm() * row.spring(component, component);
+  return k * (known + (1 - known) * spring / (k + spring));
 }
 
 }  // namespace
@@ -70,10 +60,8 @@ ScalarSystems::ScalarSystems(const Mesh& mesh, const ElasticOperator& rows, std:
   for (int c = 0; c < mesh.dim; ++c) assemble(c, inertia);
   for (const Index f : rows.unknown_faces()) {
     double own = stiffness(mesh, rows, f);
-    if (rows.condition(f) == ElasticCondition::bonded)
-      own += stiffness(mesh, rows, mesh.n_interior + mesh.twin[f - mesh.n_interior]);
-    if (rows.condition(f) == ElasticCondition::support)
-      own += geometry.face_area[f].norm() * rows.support(f).spring.trace();
+    if (rows.at(f).shared) own += stiffness(mesh, rows, mesh.n_interior + mesh.twin[f - mesh.n_interior]);
+    own += geometry.face_area[f].norm() * rows.at(f).spring.trace();
     own_.push_back(own);
   }
 }
@@ -122,10 +110,10 @@ int ScalarSystems::find_step(std::span<const double> residual, std::span<double>
   }
   const auto& faces = rows_.unknown_faces();
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    const bool is_support = rows_.condition(faces[i]) == ElasticCondition::support;
+    const BoundaryRow& row = rows_.at(faces[i]);
     for (std::size_t a = 0; a < dim; ++a) {
       const double cell = step[std::size_t(mesh_.owner[faces[i]]) * dim + a];
-      const double follows = is_support ? 1 - rows_.support(faces[i]).known(a, a) : 1;
+      const double follows = 1 - row.known(Index(a), Index(a));
       step[(n + i) * dim + a] = follows * cell + residual[(n + i) * dim + a] / own_[i];
     }
   }

@@ -89,8 +89,7 @@ void TangentSolver::find_frames(std::span<const Tensor3> gradient) {
   frame_.clear();
   for (Index c = 0; c < n; ++c) frame_.push_back(rotation_of(mean[c] / weight[c]));
   for (const Index f : rows_.unknown_faces())
-    frame_.push_back(rows_.condition(f) == ElasticCondition::traction ? frame_[mesh_.owner[f]]
-                                                                      : Tensor3::Identity());
+    frame_.push_back(rows_.at(f).is_free() ? frame_[mesh_.owner[f]] : Tensor3::Identity());
 }
 
 void TangentSolver::follow(bool with_modes) {

@@ -62,7 +62,7 @@ double SolidLedger::stress_work(const BodyField& stressed, const BodyField& chan
     const Vec3 here = vector_at(change.cells, owner, dim);
     if (f < mesh_.n_interior) {
       work += force.dot(vector_at(change.cells, mesh_.neighbour[f], dim) - here);
-    } else if (elastic_.condition(f) == ElasticCondition::symmetry) {
+    } else if (elastic_.mirrored(f)) {
       work -= area.dot(force) * area.dot(here) / area.squaredNorm();
     } else {
       const Vec3 there = vector_at(change.faces, f - mesh_.n_interior, dim);
@@ -123,7 +123,7 @@ void SolidLedger::add_face_work(const SolvedStage& stage) const {
   for (std::size_t i = 0; i < n_cells; ++i) outside += work.loads[i] * cells[i];
   const auto& free = elastic_.unknown_faces();
   for (std::size_t i = 0; i < free.size(); ++i) {
-    if (elastic_.condition(free[i]) == ElasticCondition::bonded) continue;  // their cells take the stress
+    if (elastic_.at(free[i]).shared) continue;  // their cells take the stress
     for (int a = 0; a < dim; ++a)
       outside -= work.loads[n_cells + i * dim + a] * cells[std::size_t(mesh_.owner[free[i]]) * dim + a];
   }

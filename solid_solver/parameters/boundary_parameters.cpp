@@ -52,12 +52,24 @@ void declare_displacement(config::Section& s, SolidCondition& c, const int& dime
 }
 
 void declare_plate(config::Section& s, SolidCondition& c, const int& dimension) {
-  s.value("plate-normal", c.plate_normal).doc("normal of the plate, any length");
-  s.check([&c] { return c.plate_normal.norm() > 0 ? "" : "a direction is needed, not the zero vector"; },
+  s.value("plate-normal", c.normal).doc("normal of the plate, any length");
+  s.check([&c] { return c.normal.norm() > 0 ? "" : "a direction is needed, not the zero vector"; },
           "plate-normal");
   declare_vector(s, "traction", c.traction, dimension, "Pa",
                  "force per area on the remaining free "
                  "components");
+}
+
+void declare_roller(config::Section& s, SolidCondition& c, const int& dimension) {
+  s.value("direction", c.normal).required().doc("direction that is held, any length");
+  s.check([&c] { return c.normal.norm() > 0 ? "" : "a direction is needed, not the zero vector"; },
+          "direction");
+  s.value("value", c.along)
+      .unit("m")
+      .plausible(1e-9, 1e4)
+      .doc("displacement along this direction, of x, y, z, t");
+  s.check([&c] { return problem_of(c.along); }, "value");
+  declare_vector(s, "traction", c.traction, dimension, "Pa", "force per area across this direction");
 }
 
 void declare_spring(config::Section& s, SolidCondition& c, const int& dimension) {
@@ -93,6 +105,7 @@ void declare_condition(config::Section& s, SolidCondition& c, const int& dimensi
     v.check([&] { return problem_of(c.pressure); }, "value");
   };
   const auto plate = [&](config::Section& v) { declare_plate(v, c, dimension); };
+  const auto roller = [&](config::Section& v) { declare_roller(v, c, dimension); };
   const auto spring = [&](config::Section& v) { declare_spring(v, c, dimension); };
   const auto force = [&](config::Section& v) { declare_total_force(v, c.load, dimension); };
   const auto remote = [&](config::Section& v) { declare_remote_load(v, c.load, dimension); };
@@ -109,6 +122,7 @@ void declare_condition(config::Section& s, SolidCondition& c, const int& dimensi
       {"hydrostatic-pressure", Type::hydrostatic_pressure, hydrostatic},
       {"symmetry", Type::symmetry, nothing},
       {"frictionless", Type::frictionless, nothing},
+      {"roller", Type::roller, roller},
       {"soft-support", Type::soft_support, plate},
       {"hard-support", Type::hard_support, plate},
       {"spring", Type::spring, spring},
@@ -120,13 +134,37 @@ void declare_condition(config::Section& s, SolidCondition& c, const int& dimensi
       "boundary condition; force: total force; remote-load: force and moment at a point, distributed by "
       "area; bearing-load: cosine pressure of a pin on half of a cylinder; hydrostatic-pressure: of a "
       "liquid below its level; symmetry: a plane of any orientation; frictionless: no displacement normal "
-      "to the surface, curved or not; soft-support: no displacement along the plate's normal; hard-support: "
+      "to the surface, curved or not; roller: no displacement along one direction, or a given one; soft-support: no displacement along the plate's normal; hard-support: "
       "nor along the edge; zero-normal-gradient: the displacement does not change along the normal; "
       "interface (whole patches): the load comes from the coupler",
       true);
 }
 
 }  // namespace
+
+bool is_load(const SolidCondition& c) {
+  switch (c.type) {
+    case Type::traction:
+    case Type::pressure:
+    case Type::force:
+    case Type::remote_load:
+    case Type::bearing_load:
+    case Type::hydrostatic_pressure:
+    case Type::free:
+    case Type::interface_:
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool is_interface(const SolidCondition& c) { return c.type == Type::interface_; }
+
+bool is_rigid(const SolidCondition& c) { return c.type == Type::remote_load && c.load.is_rigid; }
+
+bool is_symmetry_plane(const SolidCondition& c) { return c.type == Type::symmetry; }
+
+bool has_no_energy(const SolidCondition& c) { return c.type == Type::zero_normal_gradient; }
 
 void declare(config::Section& s, SolidBoundary& b, const int& dimension) {
   declare_condition(s, b, dimension, true);

@@ -23,6 +23,7 @@ struct SolidCondition {
     hydrostatic_pressure,
     symmetry,
     frictionless,
+    roller,
     soft_support,
     hard_support,
     spring,
@@ -38,11 +39,12 @@ struct SolidCondition {
   std::array<std::optional<config::ExpressionText>, 3> components;
   /// fixed-displacement by component, spring: force per area beside it [Pa], one a component; empty: none.
   std::vector<config::ExpressionText> traction;
-  config::ExpressionText pressure;    ///< pressure: [Pa], pushes into the solid
-  Vec3 plate_normal = Vec3::UnitZ();  ///< soft and hard support
-  config::ExpressionText stiffness;   ///< spring: [N/m^3]
-  bool along_normal = false;          ///< spring: resists the normal displacement only
-  TotalLoad load;                     ///< force, remote-load, bearing-load, hydrostatic-pressure
+  config::ExpressionText pressure;   ///< pressure: [Pa], pushes into the solid
+  Vec3 normal = Vec3::UnitZ();       ///< roller, soft and hard support: the direction that is held
+  config::ExpressionText along;      ///< roller: displacement along it [m]
+  config::ExpressionText stiffness;  ///< spring: [N/m^3]
+  bool along_normal = false;         ///< spring: resists the normal displacement only
+  TotalLoad load;                    ///< force, remote-load, bearing-load, hydrostatic-pressure
 };
 
 /// The faces of a patch whose centre fulfils a condition.
@@ -55,12 +57,14 @@ struct SolidBoundary : SolidCondition {
 };
 
 /// Knows no more than the force there.
-inline bool is_load(SolidCondition::Type type) {
-  using Type = SolidCondition::Type;
-  return type == Type::traction || type == Type::pressure || type == Type::force ||
-         type == Type::remote_load || type == Type::bearing_load || type == Type::hydrostatic_pressure ||
-         type == Type::free || type == Type::interface_;
-}
+bool is_load(const SolidCondition& condition);
+/// The load comes from the coupler.
+bool is_interface(const SolidCondition& condition);
+/// The faces of a remote-load move as one rigid body.
+bool is_rigid(const SolidCondition& condition);
+bool is_symmetry_plane(const SolidCondition& condition);
+/// No functional has it as its condition, so that the symmetric gradient cannot have it.
+bool has_no_energy(const SolidCondition& condition);
 
 /// `dimension`: of the scene; read before the boundaries, so it is a reference.
 void declare(config::Section& section, SolidBoundary& boundary, const int& dimension);

@@ -19,16 +19,12 @@ bool any_condition(const SolidParameters& p, const Test& test) {
   });
 }
 
-bool has_interface(const SolidParameters& p) {
-  return any_condition(p, [](const SolidCondition& c) { return c.type == SolidCondition::Type::interface_; });
-}
+bool has_interface(const SolidParameters& p) { return any_condition(p, is_interface); }
 
 /// Whether a condition of any kind keeps some displacement from being free.
 bool is_held(const SolidParameters& p) {
-  return any_condition(p, [](const SolidCondition& c) {
-    using Type = SolidCondition::Type;
-    return (!is_load(c.type) || c.type == Type::interface_) && c.type != Type::zero_normal_gradient;
-  });
+  return any_condition(
+      p, [](const SolidCondition& c) { return (!is_load(c) || is_interface(c)) && !has_no_energy(c); });
 }
 
 /// What the thesis's own method at finite strain cannot have, each with the key to change.
@@ -199,11 +195,7 @@ void check_buckling(config::Section& s, SolidParameters& p) {
       "output");
 }
 
-bool has_rigid_patch(const SolidParameters& p) {
-  return any_condition(p, [](const SolidCondition& c) {
-    return c.type == SolidCondition::Type::remote_load && c.load.is_rigid;
-  });
-}
+bool has_rigid_patch(const SolidParameters& p) { return any_condition(p, is_rigid); }
 
 /// What a patch that moves as a rigid body cannot have, each with the key to change.
 void check_rigid_patches(config::Section& s, SolidParameters& p) {

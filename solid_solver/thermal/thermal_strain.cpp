@@ -15,7 +15,7 @@ namespace {
 std::vector<std::string> symmetry_patches(const SolidParameters& parameters) {
   std::vector<std::string> names;
   for (const auto& [name, boundary] : parameters.boundaries)
-    if (boundary.type == SolidBoundary::Type::symmetry) names.push_back(name);
+    if (is_symmetry_plane(boundary)) names.push_back(name);
   return names;
 }
 

@@ -147,9 +147,8 @@ void CurrentRigidModes::add_springs(const DeformedBody& body, std::vector<double
   FaceStencil stencil(mesh_, rows_, number_);
   const std::size_t n = centre_.size() * std::size_t(modes_);
   for (const Index f : rows_.known_faces()) {
-    if (mesh_.owner[f] >= mesh_.cells.n_owned() || rows_.condition(f) != ElasticCondition::support) continue;
-    const ElasticSupport& s = rows_.support(f);
-    if (s.spring.isZero(0)) continue;
+    const BoundaryRow& s = rows_.at(f);
+    if (mesh_.owner[f] >= mesh_.cells.n_owned() || s.spring.isZero(0)) continue;
     const Tensor3 open = Tensor3::Identity() - s.known;
     const Tensor3 spring = geometry_.face_area[f].norm() * open * s.spring * open;
     std::map<Index, Eigen::Matrix<double, 3, 6>> motion;  // of the face by the modes of each aggregate
@@ -169,12 +168,12 @@ void CurrentRigidModes::add_springs(const DeformedBody& body, std::vector<double
   }
 }
 
-/// Of a vector at an unknown node: supports know the rest, and no mode moves it.
+/// Of a vector at an unknown node: the rest is known, and no mode moves it.
 Vec3 CurrentRigidModes::free_part(std::size_t i, const Vec3& v) const {
   const std::size_t n_cells = std::size_t(mesh_.cells.n_owned());
   if (i < n_cells) return v;
   const Index f = rows_.unknown_faces()[i - n_cells];
-  return rows_.condition(f) == ElasticCondition::support ? Vec3(v - rows_.support(f).known * v) : v;
+  return v - rows_.at(f).known * v;
 }
 
 void CurrentRigidModes::add_inertia(std::vector<double>& matrix) const {

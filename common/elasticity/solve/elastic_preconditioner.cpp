@@ -73,28 +73,13 @@ Lanes CompactRows::bond(Index f) const {
 Lanes CompactRows::boundary_diagonal(Index f) const {
   Lanes k = coefficient(f);
   const FaceLine line = face_line(mesh_, geometry_, f);
+  const BoundaryRow& row = rows_.at(f);
+  if (row.shared) return bond(f);
   for (int c = 0; c < mesh_.dim; ++c) {
-    const double nc = line.normal[c], whole = boundary_factor_ * k[c];
-    double value = 0;
-    switch (rows_.condition(f)) {
-      case ElasticCondition::prescribed:
-        value = whole;
-        break;
-      case ElasticCondition::symmetry:
-        value = k[c] * nc * nc;
-        break;
-      case ElasticCondition::support: {
-        const double known = rows_.support(f).known(c, c), spring = line.area * rows_.support(f).spring(c, c);
-        value = whole * (known + (1 - known) * spring / (whole + spring));  // spring and half cell in series
-        break;
-      }
-      case ElasticCondition::bonded:
-        value = bond(f)[c];
-        break;
-      default:
-        break;
-    }
-    k[c] = static_cast<float>(value);
+    const double known = row.known(c, c), spring = line.area * row.spring(c, c);
+    const double whole = (row.mirrored ? 1 : boundary_factor_) * k[c];
+    // spring and half cell in series
+    k[c] = static_cast<float>(whole * (known + (1 - known) * spring / (whole + spring)));
   }
   return k;
 }
@@ -104,7 +89,7 @@ void CompactRows::visit_couplings(const Take& take) const {
   for (Index f = 0; f < mesh_.n_interior; ++f) take(mesh_.owner[f], mesh_.neighbour[f], f);
   if (mesh_.twin.empty()) return;
   for (const Index f : rows_.unknown_faces()) {
-    if (rows_.condition(f) != ElasticCondition::bonded) continue;
+    if (!rows_.at(f).shared) continue;
     const Index other = mesh_.owner[mesh_.n_interior + mesh_.twin[f - mesh_.n_interior]];
     if (owned(other)) take(mesh_.owner[f], other, f);
   }
@@ -150,13 +135,13 @@ ComponentCycle multigrid_cycle(ComponentMultigrid::Rows rows, const ComponentMul
   };
 }
 
-/// Of a support's face with the block `own`: springs beside what is free, `whole` where it is known.
-Tensor3 supported(const Tensor3& own, const ElasticSupport& s, double area, double whole) {
+/// Of a face with the block `own`: springs beside what is free, `whole` where it is known.
+Tensor3 supported(const Tensor3& own, const BoundaryRow& s, double area, double whole) {
   const Tensor3 open = Tensor3::Identity() - s.known;
   return open * (own + area * s.spring) * open + whole * s.known;
 }
 
-/// Of a two-point flux along the normal, which stands for the known part of a support [N/m].
+/// Of a two-point flux along the normal, which stands for what is known of a face [N/m].
 double stiffness_across(const LameConstants& lame, const FaceLine& line) {
   return (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn;
 }
@@ -205,36 +190,28 @@ void ElasticPreconditioner::find_face_rows(double boundary_factor, std::span<con
     const double whole = stiffness_across(lame, line);
     Tensor3 own = stiffness(f), cell = own;
     FaceRow row{Tensor3::Zero(), Tensor3::Zero(), Tensor3::Zero(), mesh.owner[f], -1};
-    switch (rows_->condition(f)) {
-      case ElasticCondition::zero_gradient:
-        own = cell = boundary_factor * whole * Tensor3::Identity();
-        break;
-      case ElasticCondition::support: {
-        const ElasticSupport& s = rows_->support(f);
-        const Tensor3 open = Tensor3::Identity() - s.known;
-        cell = open * own;
-        own = open * (own + line.area * s.spring) + whole * s.known;
-        if (is_symmetric_) {
-          cell = (open * stiffness(f) * open).eval();
-          own = supported(stiffness(f), s, line.area, whole);
-        }
-        break;
+    const BoundaryRow& s = rows_->at(f);
+    if (s.level) own = cell = boundary_factor * whole * Tensor3::Identity();
+    if (s.has_value()) {
+      const Tensor3 open = Tensor3::Identity() - s.known;
+      cell = open * own;
+      own = open * (own + line.area * s.spring) + whole * s.known;
+      if (is_symmetric_) {
+        cell = (open * stiffness(f) * open).eval();
+        own = supported(stiffness(f), s, line.area, whole);
       }
-      case ElasticCondition::bonded: {
-        const Index twin = mesh.n_interior + mesh.twin[f - mesh.n_interior];
-        const Tensor3 other = stiffness(twin);
-        own += other;
-        // The other cell's part goes to this one where it lives on another rank: constants stay constants.
-        if (mesh.owner[twin] < mesh.cells.n_owned()) {
-          row.twin_owner = mesh.owner[twin];
-          row.other = own.inverse() * other;
-        } else {
-          cell += other;
-        }
-        break;
+    }
+    if (s.shared) {
+      const Index twin = mesh.n_interior + mesh.twin[f - mesh.n_interior];
+      const Tensor3 other = stiffness(twin);
+      own += other;
+      // The other cell's part goes to this one where it lives on another rank: constants stay constants.
+      if (mesh.owner[twin] < mesh.cells.n_owned()) {
+        row.twin_owner = mesh.owner[twin];
+        row.other = own.inverse() * other;
+      } else {
+        cell += other;
       }
-      default:
-        break;
     }
     if (!node_inertia.empty())
       own += node_inertia[std::size_t(mesh.cells.n_owned()) + face_rows_.size()] * Tensor3::Identity();
@@ -258,9 +235,9 @@ void ElasticPreconditioner::add_true_diagonal(std::span<const double> node_inert
   for (std::size_t i = 0; i < face_rows_.size(); ++i) {
     const Index f = rows_->unknown_faces()[i];
     Tensor3 own = diagonal.faces[i] + inertia(n_cells + i) * Tensor3::Identity();
-    if (rows_->condition(f) == ElasticCondition::support) {
+    if (rows_->at(f).has_value()) {
       const FaceLine line = face_line(mesh, geometry, f);
-      own = supported(own, rows_->support(f), line.area, stiffness_across(rows_->lame(mesh.owner[f]), line));
+      own = supported(own, rows_->at(f), line.area, stiffness_across(rows_->lame(mesh.owner[f]), line));
     }
     face_rows_[i].inverse = of_faces * own.inverse();
   }

@@ -121,7 +121,6 @@ struct RigidCoarseSpace::Assembly {
   /// cells.
   void add_face(Index f) {
     const bool on_boundary = f >= mesh.n_interior;
-    const ElasticCondition condition = on_boundary ? rows.condition(f) : ElasticCondition::bonded;
     const FaceLine line = face_line(mesh, geometry, f);
     std::array<Vec3, 4> weights;
     tangential_weights(mesh, geometry.points, f, line, weights.data());
@@ -129,15 +128,14 @@ struct RigidCoarseSpace::Assembly {
     const Vec3& n = line.normal;
     const Tensor3 nn = n * n.transpose(), identity = Tensor3::Identity();
     Tensor3 scale = line.area * identity;
-    if (condition == ElasticCondition::symmetry) scale = scale * nn;
-    if (condition == ElasticCondition::support) scale = scale * rows.support(f).known;
+    if (on_boundary) scale = scale * rows.at(f).passing;
     const Tensor3 across = scale * (mu * (identity + nn) + lambda * nn) * line.inverse_dn;
     found_.clear();
     add_node(mesh.owner[f], -across);
     if (!on_boundary)
       add_node(mesh.neighbour[f], across);
-    else if (condition != ElasticCondition::symmetry && condition != ElasticCondition::prescribed)
-      add_face_node(f, condition, across);
+    else if (!rows.at(f).mirrored && !rows.at(f).fixed)
+      add_face_node(f, across);
     for (Index e = mesh.face_points.offset[f]; e < mesh.face_points.offset[f + 1]; ++e) {
       const Index v = mesh.face_points.index[e];
       if (offset[v] == offset[v + 1]) continue;
@@ -167,19 +165,18 @@ struct RigidCoarseSpace::Assembly {
  private:
   void add_node(Index cell, const Tensor3& block) { add(space.aggregate_[cell], block, 1, space.arm(cell)); }
 
-  // Bonded: the mean of both sides, for want of the true balance.
-  void add_face_node(Index f, ElasticCondition condition, const Tensor3& across) {
+  // Shared: the mean of both sides, for want of the true balance.
+  void add_face_node(Index f, const Tensor3& across) {
     const Vec3& x = geometry.face_centre[f];
     const auto follow = [&](Index cell, const Tensor3& block, double share) {
       const Index a = space.aggregate_[cell];
       add(a, block, share, share * (x - space.centre_[a]));
     };
-    if (condition == ElasticCondition::bonded) {
+    const BoundaryRow& s = rows.at(f);
+    if (s.shared) {
       follow(mesh.owner[f], across, 0.5);
       return follow(mesh.owner[mesh.n_interior + mesh.twin[f - mesh.n_interior]], across, 0.5);
     }
-    if (condition != ElasticCondition::support) return follow(mesh.owner[f], across, 1);
-    const ElasticSupport& s = rows.support(f);
     const Tensor3 open = Tensor3::Identity() - s.known;
     follow(mesh.owner[f], (across - geometry.face_area[f].norm() * open * s.spring) * open, 1);
   }
@@ -219,7 +216,7 @@ RigidCoarseSpace::RigidCoarseSpace(const Mesh& mesh, const ElasticOperator& rows
 
   Assembly assembly(*this, mesh, rows, first, n_here);
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
-    if (f >= mesh.n_interior && rows.condition(f) == ElasticCondition::traction) continue;
+    if (f >= mesh.n_interior && rows.at(f).is_free()) continue;
     if (!assembly.within_one(f)) assembly.add_face(f);
   }
   assembly.add_inertia(inertia);
@@ -300,8 +297,7 @@ void RigidCoarseSpace::add_correction(std::span<const double> r, std::span<doubl
     const Index a = aggregate_[mesh_->owner[faces[i]]];
     Vec3 u = Vec3::Zero();
     move(a, geometry_->face_centre[faces[i]] - centre_[a], u.data());
-    if (rows_->condition(faces[i]) == ElasticCondition::support)
-      u -= (rows_->support(faces[i]).known * u).eval();
+    u -= (rows_->at(faces[i]).known * u).eval();
     for (int c = 0; c < dim; ++c) z[(std::size_t(mesh_->cells.n_owned()) + i) * dim + c] += u[c];
   }
 }

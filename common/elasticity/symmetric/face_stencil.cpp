@@ -14,10 +14,7 @@ void FaceStencil::take(Index node, const Vec3& b, const Tensor3& turn) {
 }
 
 void FaceStencil::take_boundary(Index f, const Vec3& b) {
-  const Tensor3 identity = Tensor3::Identity();
-  take(node_of(f), b,
-       rows_.condition(f) == ElasticCondition::support ? Tensor3(identity - rows_.support(f).known)
-                                                       : identity);
+  take(node_of(f), b, Tensor3::Identity() - rows_.at(f).known);
 }
 
 void FaceStencil::take_point(Index v, const Vec3& b) {
@@ -28,8 +25,8 @@ void FaceStencil::take_point(Index v, const Vec3& b) {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     Tensor3 turn = constraints.free_part(v);
     const Index f = nodes[i] - mesh_.cells.n_local() + mesh_.n_interior;
-    if (nodes[i] >= mesh_.cells.n_local() && rows_.condition(f) == ElasticCondition::support)
-      turn = (turn * (Tensor3::Identity() - rows_.support(f).known)).eval();
+    if (nodes[i] >= mesh_.cells.n_local() && rows_.at(f).held)
+      turn = (turn * (Tensor3::Identity() - rows_.at(f).known)).eval();
     take(nodes[i], weights[i] * b, turn);
   }
 }
@@ -47,7 +44,7 @@ const std::vector<FaceStencil::Term>& FaceStencil::of(const SymmetricFace<D>& fa
   take(mesh_.owner[f], -s, identity);
   if (f < mesh_.n_interior) {
     take(mesh_.neighbour[f], s, identity);
-  } else if (rows_.condition(f) == ElasticCondition::symmetry) {
+  } else if (rows_.mirrored(f)) {
     const Vec3 n = geometry_.face_area[f].normalized();
     take(mesh_.owner[f], s, identity - 2 * n * n.transpose());
   } else {

@@ -22,8 +22,8 @@ void NodeAssembly::finish_volumes(const std::function<double(Index)>& modulus) {
 
 void NodeAssembly::add_supports() {
   for (const Index f : rows_.known_faces()) {
-    if (rows_.condition(f) != ElasticCondition::support) continue;
-    const ElasticSupport& s = rows_.support(f);
+    const BoundaryRow& s = rows_.at(f);
+    if (s.fixed) continue;
     const LameConstants lame = rows_.lame(mesh_.owner[f]);
     const FaceLine line = face_line(mesh_, geometry_, f);
     const Tensor3 open = Tensor3::Identity() - s.known;

@@ -153,7 +153,7 @@ void SharedEdges::find_mirrors(const Mesh& mesh, const ElasticOperator& rows) {
     by_ends[end_points_[e]].push_back(static_cast<Index>(e));
   std::map<Index, std::vector<Vec3>> normals;
   for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f) {
-    if (rows.condition(f) != ElasticCondition::symmetry) continue;
+    if (!rows.mirrored(f)) continue;
     const Vec3 n = geometry.face_area[f].normalized();
     const auto p = mesh.face_points[f];
     for (std::size_t i = 0; i < p.size(); ++i) {

@@ -59,7 +59,7 @@ void Sum::add_face(Index f) {
     return b;
   };
   const Index cell = mesh_.owner[f];
-  const bool mirrored = f >= mesh_.n_interior && rows_.condition(f) == ElasticCondition::symmetry;
+  const bool mirrored = rows_.mirrored(f);
   if (!mirrored) add(cell, scaled(face.area, -1));
   if (f < mesh_.n_interior)
     add(mesh_.neighbour[f], scaled(face.area, 1));
@@ -107,7 +107,7 @@ SymmetricDiagonal Sum::finish() {
     };
     const Index b = f - mesh_.n_interior;
     result.faces.push_back(block_of(b));
-    if (rows_.condition(f) == ElasticCondition::bonded) result.faces.back() += block_of(mesh_.twin[b]);
+    if (rows_.at(f).shared) result.faces.back() += block_of(mesh_.twin[b]);
   }
   return result;
 }

@@ -21,7 +21,7 @@ Vec3 line_across(const Mesh& mesh, const Geometry& geometry, Index f, bool mirro
 template <int D>
 SymmetricFace<D> symmetric_face(const Mesh& mesh, const ElasticOperator& rows, Index f) {
   const Geometry& geometry = rows.geometry();
-  const bool mirrored = f >= mesh.n_interior && rows.condition(f) == ElasticCondition::symmetry;
+  const bool mirrored = rows.mirrored(f);
   const Vec3 d = line_across(mesh, geometry, f, mirrored);
   const auto point = mesh.face_points[f];
   const bool diagonals = point.size() == 4;

@@ -19,7 +19,7 @@ Vec3 SymmetricSpace<D>::place_of(const double* force, bool moved) const {
   const Index node = entry(force_), f = mesh_.n_interior + node - mesh_.cells.n_local();
   const bool is_cell = node < mesh_.cells.n_local();
   Vec3 at = is_cell ? geometry_.cell_centre[node] : geometry_.face_centre[f];
-  if (!is_cell && rows_.condition(f) == ElasticCondition::symmetry) {
+  if (!is_cell && rows_.mirrored(f)) {
     const Vec3 n = geometry_.face_area[f].normalized(), &cell = geometry_.cell_centre[mesh_.owner[f]];
     at = cell - 2 * n.dot(cell - at) * n;
   }
@@ -33,7 +33,7 @@ void SymmetricSpace<D>::held_at_points(std::span<const Index> patch_of, bool mov
                                        std::vector<Wrench>& result) {
   std::vector<std::vector<std::pair<Index, Vec3>>> planes(mesh_.points.n_local());
   for (Index f = mesh_.n_interior; f < mesh_.n_faces(); ++f) {
-    if (rows_.condition(f) != ElasticCondition::symmetry) continue;
+    if (!rows_.mirrored(f)) continue;
     const Vec3 n = geometry_.face_area[f].normalized();
     for (const Index v : mesh_.face_points[f]) {
       const auto same = [&](const auto& plane) { return std::abs(plane.second.dot(n)) > 0.9994; };
@@ -74,33 +74,24 @@ std::vector<Wrench> SymmetricSpace<D>::held(std::span<const double> known, bool 
   points_to_nodes();
   for (Index b = 0; b < mesh_.boundary.n_local(); ++b) {
     const Index f = mesh_.n_interior + b;
+    if (!rows_.at(f).held) continue;
     const double* node = force(mesh_.cells.n_local() + b);
     const Vec3 here = vector(node);
     Wrench& patch = result[patch_of[b]];
-    switch (rows_.condition(f)) {
-      case ElasticCondition::prescribed:
-        patch.add(here, place_of(node, moved));
-        break;
-      case ElasticCondition::support:
-        patch.add(rows_.support(f).known * here, place_of(node, moved));
-        break;
-      case ElasticCondition::symmetry: {
-        const Vec3 n = geometry_.face_area[f].normalized();
-        Vec3 cell = geometry_.cell_centre[mesh_.owner[f]];
-        if (moved) cell += vector(nodes_[mesh_.owner[f]]);
-        patch.force += 2 * n.dot(here) * n;
-        patch.moment += place_of(node, moved).cross(here) - cell.cross(here - 2 * n.dot(here) * n);
-        break;
-      }
-      default:
-        break;
+    if (!rows_.mirrored(f)) {
+      patch.add(rows_.at(f).known * here, place_of(node, moved));
+      continue;
     }
+    const Vec3 n = geometry_.face_area[f].normalized();
+    Vec3 cell = geometry_.cell_centre[mesh_.owner[f]];
+    if (moved) cell += vector(nodes_[mesh_.owner[f]]);
+    patch.force += 2 * n.dot(here) * n;
+    patch.moment += place_of(node, moved).cross(here) - cell.cross(here - 2 * n.dot(here) * n);
   }
   for (const Index f : rows_.known_faces())
-    if (rows_.condition(f) == ElasticCondition::support)
-      visit_spring(f, known, [&](double* where, const Vec3& pull) {
-        result[patch_of[f - mesh_.n_interior]].add(-pull, place_of(where, moved));
-      });
+    visit_spring(f, known, [&](double* where, const Vec3& pull) {
+      result[patch_of[f - mesh_.n_interior]].add(-pull, place_of(where, moved));
+    });
   return result;
 }
 

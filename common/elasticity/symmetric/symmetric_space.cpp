@@ -32,8 +32,7 @@ SymmetricSpace<D>::SymmetricSpace(const Mesh& mesh, const ElasticOperator& rows)
       volume_(pyramid_volumes(mesh, rows.geometry())) {
   const Geometry& geometry = rows.geometry();
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
-    if (rows.condition(f) == ElasticCondition::symmetry)
-      symmetry_.emplace_back(f, geometry.face_area[f].normalized());
+    if (rows.mirrored(f)) symmetry_.emplace_back(f, geometry.face_area[f].normalized());
   if (!any(mesh.comm, !mesh.neighbour_shift.empty())) return;
   joined_ = std::make_unique<JoinedVertices>(mesh, rows);
   std::erase_if(vertices_.free, [&](Index v) { return joined_->has(v); });
@@ -158,9 +157,8 @@ void SymmetricSpace<D>::take_rows(std::span<const double> unknowns, std::span<co
     const Index f = open[i];
     const std::size_t row = (std::size_t(n_owned) + i) * D;
     Vec3 own = vector(force(node_of_face(f)));
-    if (rows_.condition(f) == ElasticCondition::support) {
-      const ElasticSupport& s = rows_.support(f);
-      own -= (s.known * own).eval();
+    if (const BoundaryRow& boundary = rows_.at(f); boundary.held) {
+      own -= (boundary.known * own).eval();
       if (!unknowns.empty()) {
         Vec3 jump = Vec3::Zero();
         for (int a = 0; a < D; ++a)
@@ -168,7 +166,7 @@ void SymmetricSpace<D>::take_rows(std::span<const double> unknowns, std::span<co
               unknowns[row + a] - (known.empty() ? 0 : known[std::size_t(rows_.known_of_face(f)) * D + a]);
         const LameConstants lame = rows_.lame(mesh_.owner[f]);
         const FaceLine line = face_line(mesh_, geometry_, f);
-        own += (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn * (s.known * jump);
+        own += (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn * (boundary.known * jump);
       }
     }
     for (int a = 0; a < D; ++a) result[row + a] = own[a];
@@ -178,13 +176,12 @@ void SymmetricSpace<D>::take_rows(std::span<const double> unknowns, std::span<co
 template <int D>
 void SymmetricSpace<D>::add_springs(std::span<const double> known) {
   for (const Index f : rows_.known_faces())
-    if (rows_.condition(f) == ElasticCondition::support)
-      visit_spring(f, known, [&](double* at, const Vec3& pull) { add(at, pull); });
+    visit_spring(f, known, [&](double* at, const Vec3& pull) { add(at, pull); });
 }
 
 template <int D>
 void SymmetricSpace<D>::spread_over_base(Index f, const Vec3& force_on_base) {
-  const bool has_node = f >= mesh_.n_interior && rows_.condition(f) != ElasticCondition::symmetry;
+  const bool has_node = f >= mesh_.n_interior && !rows_.mirrored(f);
   if (has_node) add(force(node_of_face(f)), force_on_base / D);
   const double part = has_node ? 1 - 1.0 / D : 1;
   const auto shares = point_shares(mesh_, geometry_, f);
@@ -198,11 +195,8 @@ void SymmetricSpace<D>::spread_face_forces(std::span<const double> forces) {
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
     Vec3 here = vector(forces.data() + std::size_t(f - mesh_.n_interior) * D);
     if (here.isZero(0)) continue;
-    if (rows_.condition(f) == ElasticCondition::support)
-      here -= (rows_.support(f).known * here).eval();
-    else if (rows_.condition(f) != ElasticCondition::traction)
-      continue;
-    spread_over_base(f, here);
+    here -= (rows_.at(f).passing * here).eval();
+    if (!here.isZero(0) && !rows_.mirrored(f)) spread_over_base(f, here);
   }
 }
 
@@ -262,12 +256,8 @@ template <int D>
 Vec3 SymmetricSpace<D>::acting(std::span<const double> forces) const {
   Vec3 total = Vec3::Zero();
   for (const Index f : rows_.unknown_faces()) {
-    Vec3 here = vector(forces.data() + std::size_t(f - mesh_.n_interior) * D);
-    if (rows_.condition(f) == ElasticCondition::support)
-      here -= (rows_.support(f).known * here).eval();
-    else if (rows_.condition(f) != ElasticCondition::traction)
-      continue;
-    total += here;
+    const Vec3 here = vector(forces.data() + std::size_t(f - mesh_.n_interior) * D);
+    total += here - rows_.at(f).passing * here;
   }
   return total;
 }

@@ -117,7 +117,7 @@ std::vector<double> pyramid_volumes(const Mesh& mesh, const Geometry& geometry);
 template <int D>
 template <class Take>
 void SymmetricSpace<D>::visit_spring(Index f, std::span<const double> known, const Take& take) {
-  const ElasticSupport& s = rows_.support(f);
+  const BoundaryRow& s = rows_.at(f);
   if (s.spring.isZero(0)) return;
   const Tensor3 open = Tensor3::Identity() - s.known, spring = open * s.spring * open;
   Vec3 g = Vec3::Zero();

@@ -38,7 +38,7 @@ CellGradients::CellGradients(const Mesh& mesh, const ElasticOperator& rows) {
       if (f < mesh.n_interior)
         line.push_back(geometry.cell_centre[mesh.owner[f] == c ? mesh.neighbour[f] : mesh.owner[f]] -
                        geometry.cell_centre[c]);
-      else if (rows.condition(f) == ElasticCondition::symmetry)
+      else if (rows.mirrored(f))
         line.push_back(mirrored(f));
       else
         line.push_back(geometry.face_centre[f] - geometry.cell_centre[c]);
@@ -49,7 +49,7 @@ CellGradients::CellGradients(const Mesh& mesh, const ElasticOperator& rows) {
       const Index f = faces[c][i];
       const auto w = static_cast<float>(std::pow(shortest / line[i].norm(), 3));
       m += w * line[i] * line[i].transpose();
-      if (f >= mesh.n_interior && rows.condition(f) == ElasticCondition::symmetry) {
+      if (rows.mirrored(f)) {
         mirrors.push_back({c, w * line[i], geometry.face_area[f].normalized()});
         continue;
       }
@@ -72,7 +72,7 @@ std::vector<std::uint32_t> edge_kinds(const Mesh& mesh, const ElasticOperator& r
   std::vector<std::uint8_t> uncorrected(mesh.points.n_local(), 0);
   for (Index v = 0; v < mesh.points.n_local(); ++v) uncorrected[v] = rows.constraints().is_fixed(v);
   for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f)
-    if (rows.condition(f) == ElasticCondition::bonded)
+    if (rows.at(f).shared)
       for (const Index v : mesh.face_points[f]) uncorrected[v] = 1;
   std::vector<std::uint32_t> kinds(n_faces_with_force(mesh), 0);
   for (std::size_t f = 0; f < kinds.size(); ++f) {
@@ -106,7 +106,7 @@ std::vector<MirrorVertex> mirror_vertices(const Mesh& mesh, const ElasticOperato
     result.push_back({v, {}});
   }
   for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f) {
-    if (rows.condition(f) != ElasticCondition::symmetry) continue;
+    if (!rows.mirrored(f)) continue;
     const Vec3 n = geometry.face_area[f].normalized();
     for (const Index v : mesh.face_points[f]) {
       if (place[v] < 0) continue;

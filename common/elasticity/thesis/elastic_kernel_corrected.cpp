@@ -89,8 +89,7 @@ CorrectedKernel<D>::CorrectedKernel(const Mesh& mesh, const ElasticOperator& row
   }
   std::vector<std::uint8_t> open(mesh.points.n_local(), 0);
   for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f) {
-    const ElasticCondition here = rows.condition(f);
-    if (here == ElasticCondition::prescribed || here == ElasticCondition::symmetry) continue;
+    if (rows.at(f).fixed || rows.at(f).mirrored) continue;
     open_faces_.push_back(f);
     for (const Index v : mesh.face_points[f]) open[v] = 1;
   }
@@ -298,7 +297,7 @@ inline void CorrectedKernel<D>::collect_forces(std::span<const double> known, st
     lanes::add<D>(nodes_.force(mesh_.neighbour[f]), force);
   }
   const auto slope = [&](Index f, const Rows<D>& grad) __attribute__((always_inline)) {
-    return rows_.condition(f) == ElasticCondition::symmetry ? at_symmetry(f, grad) : outer(f, grad);
+    return rows_.mirrored(f) ? at_symmetry(f, grad) : outer(f, grad);
   };
   boundary_.add_rows<D>(
       nodes_, known, result.data() + std::size_t(mesh_.cells.n_owned()) * D,
@@ -374,7 +373,7 @@ void CorrectedKernel<D>::face_gradients(std::span<const double> unknowns, std::s
     Lane<D> g;
     if (f < mesh_.n_interior)
       g = inner(f, grad);
-    else if (rows_.condition(f) == ElasticCondition::symmetry)
+    else if (rows_.mirrored(f))
       g = lanes::dot<D>(n, at_symmetry(f, grad)) * n;
     else
       g = outer(f, grad);

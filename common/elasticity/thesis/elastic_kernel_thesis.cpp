@@ -285,7 +285,7 @@ void ThesisKernel<D>::face_gradients(std::span<const double> unknowns, std::span
   fill(unknowns, known);
   for (Index f = first; f < end; ++f) {
     const ThesisFace<D>& face = faces_[f];
-    const bool symmetric = f >= mesh_.n_interior && rows_.condition(f) == ElasticCondition::symmetry;
+    const bool symmetric = rows_.mirrored(f);
     Lane<D> g = (load<D>(f < mesh_.n_interior ? nodes_[mesh_.neighbour[f]] : nodes_.of_face(f)) -
                  load<D>(nodes_[mesh_.owner[f]])) *
                 face.inverse_dn;

@@ -55,8 +55,8 @@ void TiedAssembly::add(std::span<const TiedTerm> terms, const GradientStiffness&
 /// Springs act on the mean displacement of a face.
 void TiedAssembly::add_supports() {
   for (const Index f : rows_.known_faces()) {
-    if (rows_.condition(f) != ElasticCondition::support) continue;
-    const ElasticSupport& s = rows_.support(f);
+    const BoundaryRow& s = rows_.at(f);
+    if (s.fixed) continue;
     const LameConstants lame = rows_.lame(mesh_.owner[f]);
     const FaceLine line = face_line(mesh_, geometry_, f);
     const GlobalIndex node = unknowns_.node(mesh_.cells.n_local() + f - mesh_.n_interior);
@@ -78,8 +78,7 @@ void TiedAssembly::add_mass(double factor, std::span<const double> of_nodes,
     if (node < 0 || of_nodes[std::size_t(i)] == 0) continue;
     Tensor3 open = Tensor3::Identity();
     const Index f = i - mesh_.cells.n_local() + mesh_.n_interior;
-    if (i >= mesh_.cells.n_local() && rows_.condition(f) == ElasticCondition::support)
-      open -= rows_.support(f).known;
+    if (i >= mesh_.cells.n_local()) open -= rows_.at(f).known;
     add_block(node, node, factor * of_nodes[std::size_t(i)] * open);
   }
   for (Index v = 0; v < Index(of_points.size()); ++v)
@@ -96,8 +95,7 @@ void TiedAssembly::add_places(double factor, std::span<const PlaceBlock> blocks)
   const auto open = [&](Index place) {
     Tensor3 part = Tensor3::Identity();
     const Index f = place - n_cells + mesh_.n_interior;
-    if (place >= n_cells && place < n_nodes && rows_.condition(f) == ElasticCondition::support)
-      part -= rows_.support(f).known;
+    if (place >= n_cells && place < n_nodes) part -= rows_.at(f).known;
     return part;
   };
   for (const PlaceBlock& b : blocks)
@@ -128,8 +126,8 @@ void TiedAssembly::add_ties(double tie) {
       if (node < 0) continue;
       Tensor3 turn = rows_.constraints().free_part(v);
       const Index f = nodes[i] - mesh_.cells.n_local() + mesh_.n_interior;
-      if (nodes[i] >= mesh_.cells.n_local() && rows_.condition(f) == ElasticCondition::support)
-        turn = (turn * (Tensor3::Identity() - rows_.support(f).known)).eval();
+      if (nodes[i] >= mesh_.cells.n_local() && rows_.at(f).held)
+        turn = (turn * (Tensor3::Identity() - rows_.at(f).known)).eval();
       both(multiplier, node, -tie * weights[i] * turn);
     }
   }

@@ -19,11 +19,7 @@ void take(std::vector<TiedTerm>& terms, GlobalIndex block, const Vec3& b, const 
 Index node_of(const Mesh& mesh, Index f) { return mesh.cells.n_local() + f - mesh.n_interior; }
 
 /// What of a boundary face's node is not known.
-Tensor3 open_part(const ElasticOperator& rows, Index f) {
-  const Tensor3 identity = Tensor3::Identity();
-  return rows.condition(f) == ElasticCondition::support ? Tensor3(identity - rows.support(f).known)
-                                                        : identity;
-}
+Tensor3 open_part(const ElasticOperator& rows, Index f) { return Tensor3::Identity() - rows.at(f).known; }
 
 template <int D>
 std::vector<TiedTerm> terms_of(const Mesh& mesh, const ElasticOperator& rows, const TiedUnknowns& unknowns,
@@ -41,7 +37,7 @@ std::vector<TiedTerm> terms_of(const Mesh& mesh, const ElasticOperator& rows, co
   take(terms, unknowns.node(mesh.owner[f]), -s, identity);
   if (f < mesh.n_interior) {
     take(terms, unknowns.node(mesh.neighbour[f]), s, identity);
-  } else if (rows.condition(f) == ElasticCondition::symmetry) {
+  } else if (rows.mirrored(f)) {
     const Vec3 n = geometry.face_area[f].normalized();
     take(terms, unknowns.node(mesh.owner[f]), s, identity - 2 * n * n.transpose());
   } else {

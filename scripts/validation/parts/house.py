@@ -184,7 +184,7 @@ BARS = [
     Bar("copies of a whole mesh, and geometry emptied to save memory", "0 (3 before)",
         lines_with(r"\bMesh \w+ = \*?\w*mesh_?;|make_unique<Mesh>\(\w*mesh_?\)|\bmesh_?\.reference = \{\}")),
     Bar("files of the solid that test the kind of a condition", "<= 3 (29 before)",
-        files_with(r"\bElasticCondition::", "solid_solver/", "common/elasticity/", limit=3)),
+        files_with(r"\b(?:ElasticCondition::|Solid(?:Condition|Boundary)::Type\b)", "solid_solver/", "common/elasticity/", limit=3)),
     Bar("files of the fluid that test the kind of a face or the type of its condition", "<= 4 (22 before, 13 the former)",
         files_with(r"\b(?:FaceKind|BoundaryType)::", "fluid_solver/", limit=4)),
     Bar("branches on the kind of strain", "0 (35 before)", lines_with(r"\b(?:body_?|solid_?)\.(?:finite|newton)\(\)", "solid_solver/")),

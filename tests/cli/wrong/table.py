@@ -198,10 +198,10 @@ case.yaml:7:5: participants.solid.dimension: 4 is out of range; expected a value
 """, ("dimension: 2", "dimension: 4")),
     solid("half a dimension", "case.yaml:7:5: participants.solid.dimension: '2.5' is not a whole number.", ("dimension: 2", "dimension: 2.5")),
     solid("unknown boundary type", """
-case.yaml:15:15: participants.solid.boundaries.right.type: 'tractions' is not one of: fixed-displacement, traction, pressure, force, remote-load, bearing-load, hydrostatic-pressure, symmetry, frictionless, soft-support, hard-support, spring, zero-normal-gradient, free, interface. Did you mean 'traction'?
+case.yaml:15:15: participants.solid.boundaries.right.type: 'tractions' is not one of: fixed-displacement, traction, pressure, force, remote-load, bearing-load, hydrostatic-pressure, symmetry, frictionless, roller, soft-support, hard-support, spring, zero-normal-gradient, free, interface. Did you mean 'traction'?
 """, ("type: traction", "type: tractions")),
     solid("boundary without type", """
-case.yaml:16:7: participants.solid.boundaries.bottom.type: this required key is missing (one of: fixed-displacement, traction, pressure, force, remote-load, bearing-load, hydrostatic-pressure, symmetry, frictionless, soft-support, hard-support, spring, zero-normal-gradient, free, interface).
+case.yaml:16:7: participants.solid.boundaries.bottom.type: this required key is missing (one of: fixed-displacement, traction, pressure, force, remote-load, bearing-load, hydrostatic-pressure, symmetry, frictionless, roller, soft-support, hard-support, spring, zero-normal-gradient, free, interface).
 """, ("{type: free}\n      top", "{}\n      top")),
     solid("boundary without value", """
 case.yaml:14:7: participants.solid.boundaries.left.value: give either 'value' (all components) or 'components' (the prescribed ones of x, y, z).
@@ -263,7 +263,7 @@ case.yaml:16:37: participants.solid.boundaries.bottom.parts[0].where: cannot par
 """,
           ("bottom: {type: free}", "bottom: {type: free, parts: [{where: abs(r) < 1, type: symmetry}]}")),
     solid("interface on a part", """
-case.yaml:16:51: participants.solid.boundaries.bottom.parts[0].type: 'interface' is not one of: fixed-displacement, traction, pressure, force, remote-load, bearing-load, hydrostatic-pressure, symmetry, frictionless, soft-support, hard-support, spring, zero-normal-gradient, free.
+case.yaml:16:51: participants.solid.boundaries.bottom.parts[0].type: 'interface' is not one of: fixed-displacement, traction, pressure, force, remote-load, bearing-load, hydrostatic-pressure, symmetry, frictionless, roller, soft-support, hard-support, spring, zero-normal-gradient, free.
 """,
           ("bottom: {type: free}", "bottom: {type: free, parts: [{where: x < 1, type: interface}]}")),
     solid("spring without stiffness", """

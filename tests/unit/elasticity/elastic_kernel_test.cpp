@@ -41,7 +41,7 @@ LoadedMesh make_mesh(const Case& c, int n = 4, bool materials = false) {
 
 /// An operator and its kernel; the first patches get the conditions given, the others are open.
 struct Setting {
-  Setting(const Case& c, FaceGradientScheme scheme, std::vector<ElasticCondition> first, int n = 4)
+  Setting(const Case& c, FaceGradientScheme scheme, std::vector<BoundaryRow> first, int n = 4)
       : loaded(make_mesh(c, n)),
         rows(mesh, geometry, padded(first), {mu, lambda}),
         kernel(mesh, rows, scheme) {}
@@ -53,26 +53,18 @@ struct Setting {
   /// xmin known, xmax held along an oblique direction and by springs, ymin a plane of symmetry, ymax without
   /// normal gradient, the rest open.
   ElasticBoundary all_conditions() const {
-    std::vector<ElasticCondition> c = {ElasticCondition::prescribed, ElasticCondition::support,
-                                       ElasticCondition::symmetry, ElasticCondition::zero_gradient};
-    ElasticBoundary boundary = boundary_of_patches(mesh, padded(c));
     const Vec3 along = Vec3(2, 1, mesh.dim == 3 ? -1 : 0).normalized();
-    ElasticSupport support;
-    support.known = along * along.transpose();
-    support.spring = Vec3(0.3, 0.5, mesh.dim == 3 ? 0.2 : 0).asDiagonal();
-    boundary.supports = {support};
-    boundary.support_of_face.assign(boundary.condition.size(), -1);
-    for (std::size_t b = 0; b < boundary.condition.size(); ++b)
-      if (boundary.condition[b] == ElasticCondition::support) boundary.support_of_face[b] = 0;
-    return boundary;
+    const BoundaryRow support =
+        support_row(along * along.transpose(), Vec3(0.3, 0.5, mesh.dim == 3 ? 0.2 : 0).asDiagonal());
+    return boundary_of_patches(mesh, padded({fixed_row(), support, mirror_row(), level_row()}));
   }
   std::vector<LameConstants> lame() const {
     std::vector<LameConstants> result;
     for (const int zone : mesh.cell_zone) result.push_back({mu * (1 + 2 * zone), lambda});
     return result;
   }
-  std::vector<ElasticCondition> padded(std::vector<ElasticCondition> c) const {
-    c.resize(mesh.patches.size(), ElasticCondition::traction);
+  std::vector<BoundaryRow> padded(std::vector<BoundaryRow> c) const {
+    c.resize(mesh.patches.size(), free_row());
     return c;
   }
   std::size_t n_known() const { return rows.n_known() * mesh.dim; }
@@ -98,8 +90,7 @@ struct Setting {
 };
 
 // xmin known, ymin a symmetry plane, the others open: all kinds, and the edges where they meet.
-const std::vector<ElasticCondition> all_kinds = {ElasticCondition::prescribed, ElasticCondition::traction,
-                                                 ElasticCondition::symmetry};
+const std::vector<BoundaryRow> all_kinds = {fixed_row(), free_row(), mirror_row()};
 
 /// The kernel beside the assembled matrix and its known columns.
 void expect_the_rows_of_the_matrix(const Setting& s) {
@@ -147,7 +138,7 @@ TEST(ElasticKernel, linear_fields_pass_from_one_material_into_the_next) {
   for (const FaceGradientScheme scheme : {FaceGradientScheme::thesis, FaceGradientScheme::corrected})
     for (const Case& c : all_cases) {
       const auto [mesh, geometry] = make_mesh(c, 4, true);
-      std::vector<ElasticCondition> conditions(mesh.patches.size(), ElasticCondition::prescribed);
+      std::vector<BoundaryRow> conditions(mesh.patches.size(), fixed_row());
       const ElasticOperator rows(mesh, geometry, boundary_of_patches(mesh, conditions),
                                  {{{mu, lambda}}, mesh.cell_zone});
       const ElasticKernel kernel(mesh, rows, scheme);
@@ -173,7 +164,7 @@ TEST(ElasticKernel, linear_fields_pass_from_one_material_into_the_next) {
 TEST(ElasticKernel, linear_fields_have_their_exact_constant_stress_in_both_schemes) {
   for (const FaceGradientScheme scheme : {FaceGradientScheme::thesis, FaceGradientScheme::corrected})
     for (const Case& c : all_cases) {
-      const Setting s(c, scheme, {ElasticCondition::prescribed});
+      const Setting s(c, scheme, {fixed_row()});
       Tensor3 gradient;
       gradient << 0.3, -0.7, 0.2, 0.5, 0.9, -0.4, 0.1, 0.8, -0.6;  // entry (i, j) = d u_j / d x_i
       if (s.mesh.dim == 2) {

@@ -39,25 +39,6 @@ SolidParameters pulled_box(const LinearField& field, int dim) {
   return p;
 }
 
-/// Of all cells of all ranks, by cell_id.
-std::vector<Vec3> displacement_by_cell(const Solid& solid) {
-  struct Entry {
-    GlobalIndex id;
-    double u[3];
-  };
-  const Mesh& mesh = solid.body().mesh();
-  std::vector<Entry> own;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
-    own.push_back({mesh.cell_id[c], {0, 0, 0}});
-    std::copy_n(&solid.stepper().state().cell_u[std::size_t(c) * mesh.dim], mesh.dim, own.back().u);
-  }
-  std::vector<Entry> all = all_gather(mesh.comm, own);
-  std::ranges::sort(all, {}, &Entry::id);
-  std::vector<Vec3> result;
-  for (const Entry& e : all) result.emplace_back(e.u[0], e.u[1], e.u[2]);
-  return result;
-}
-
 class Conditions : public ::testing::TestWithParam<CellsAndGradient> {
  protected:
   const BoxCells cells = std::get<0>(GetParam());
@@ -169,6 +150,20 @@ TEST_P(Conditions, soft_and_hard_supports_hold_along_the_plate_normal_and_the_ed
   p.boundaries["ymin"] = boundary(Type::fixed_displacement, hard.text(dim));
   p.boundaries["xmin"].traction = {{traction_text(p, hard, Vec3(-1, 0, 0))[0]}, {"0"}, {"0"}};
   expect_exact_after_a_step(p, hard);
+}
+
+TEST_P(Conditions, a_roller_moves_along_one_oblique_direction_and_is_pulled_across_it) {
+  const Vec3 along(2, 1, dim == 3 ? -1 : 0);
+  SolidParameters p = pulled_box(field, dim);
+  SolidBoundary& roller = p.boundaries["xmax"] = boundary(Type::roller);
+  roller.normal = along;
+  roller.along.text.clear();
+  for (int a = 0; a < dim; ++a)
+    roller.along.text +=
+        fmt::format("{}({})*({})", a > 0 ? "+" : "", along.normalized()[a], field.text(dim)[std::size_t(a)]);
+  for (const std::string& text : traction_text(p, field, Vec3(1, 0, 0))) roller.traction.push_back({text});
+  p.boundaries["ymin"] = boundary(Type::fixed_displacement, field.text(dim));
+  expect_exact_after_a_step(p, field);
 }
 
 TEST_P(Conditions, parts_of_a_patch_have_conditions_of_their_own) {

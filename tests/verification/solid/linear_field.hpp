@@ -115,4 +115,23 @@ inline void expect_exact(const Solid& solid, const LinearField& field) {
   EXPECT_LT(stress_error, 1e-10);
 }
 
+/// Of all cells of all ranks, by cell_id.
+inline std::vector<Vec3> displacement_by_cell(const Solid& solid) {
+  struct Entry {
+    GlobalIndex id;
+    double u[3];
+  };
+  const Mesh& mesh = solid.body().mesh();
+  std::vector<Entry> own;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+    own.push_back({mesh.cell_id[c], {0, 0, 0}});
+    std::copy_n(&solid.stepper().state().cell_u[std::size_t(c) * mesh.dim], mesh.dim, own.back().u);
+  }
+  std::vector<Entry> all = all_gather(mesh.comm, own);
+  std::ranges::sort(all, {}, &Entry::id);
+  std::vector<Vec3> result;
+  for (const Entry& e : all) result.emplace_back(e.u[0], e.u[1], e.u[2]);
+  return result;
+}
+
 }  // namespace couplet::testing

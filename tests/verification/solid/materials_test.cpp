@@ -138,7 +138,7 @@ TEST_P(Materials, piecewise_linear_fields_are_exact_across_an_oblique_interface)
     double n_bonded = 0;
     for (const Index f : solid->body().elastic().unknown_faces()) {
       const Index b = f - mesh.n_interior;
-      if (solid->body().elastic().condition(f) != ElasticCondition::bonded) continue;
+      if (!solid->body().elastic().at(f).shared) continue;
       const Vec3 n = geometry.face_area[f].normalized();
       jump = std::max(jump, ((faces[b] - faces[mesh.twin[b]]) * n).norm());
       ++n_bonded;

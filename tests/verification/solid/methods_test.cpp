@@ -296,7 +296,7 @@ std::string chosen_for(Index n, double courant) {
   const auto [mesh, geometry] =
       distribute(MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {n, n, 1}, Vec3::Zero(), Vec3(1, 1, 0)));
   const LameConstants steel{77e9, 115e9};
-  const std::vector<ElasticCondition> held(mesh.patches.size(), ElasticCondition::prescribed);
+  const std::vector<BoundaryRow> held(mesh.patches.size(), fixed_row());
   const ElasticOperator elastic(mesh, geometry, held, steel);
   const ElasticKernel kernel(mesh, elastic, FaceGradientScheme::thesis);
   const std::vector<double> inertia(mesh.cells.n_owned(),

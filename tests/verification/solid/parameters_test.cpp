@@ -61,7 +61,7 @@ TEST(SolidParameters, supports_parts_and_materials_are_read) {
   EXPECT_EQ(edge.traction.at(1).text, "5");
   ASSERT_EQ(edge.parts.size(), 1U);
   EXPECT_EQ(edge.parts[0].type, SolidCondition::Type::hard_support);
-  EXPECT_EQ(edge.parts[0].plate_normal, Vec3(0, 0, 2));
+  EXPECT_EQ(edge.parts[0].normal, Vec3(0, 0, 2));
   EXPECT_TRUE(p.boundaries.at("bed").along_normal);
   EXPECT_THAT(zones_of(p.materials),
               ::testing::ElementsAre(::testing::ElementsAre("core", "lid"), ::testing::ElementsAre("steel")));
