@@ -52,15 +52,15 @@ FILE = {
     "coupler/exchange/cavity_wall": "coupling_volume_level coupling_cavity",
     "coupler/judge/lag_estimate": "coupled_toy",
     "coupler/exchange/transfer": "unit_maps unit_interface_map",
-    "coupler/mapping/mapping": "unit_coupler unit_maps unit_coupler_maps_2",
-    "coupler/mapping/map_local": "unit_maps unit_coupler_maps_2",
-    "coupler/mapping/map_projection": "unit_maps unit_coupler_maps_2",
+    "coupler/mapping/mapping": "unit_coupler unit_maps unit_coupler_maps_3",
+    "coupler/mapping/map_local": "unit_maps unit_coupler_maps_3",
+    "coupler/mapping/map_projection": "unit_maps unit_coupler_maps_3",
     "coupler/mapping/conjugate_map": "unit_conjugate_maps unit_maps",
     "coupler/mapping/corner_weights": "unit_maps unit_conjugate_maps",
     "coupler/mapping/overlay": "unit_maps unit_conjugate_maps",
     "coupler/mapping/slopes": "unit_conjugate_maps unit_maps",
     "coupler/mapping/surface_rows": "unit_conjugate_maps unit_maps",
-    "coupler/output/watch_integrals": "unit_coupler_maps_2 coupling_exchange",
+    "coupler/output/watch_integrals": "unit_coupler_maps_3 coupling_exchange",
     "coupler/judge/balance": "coupling_exchange coupling_piston",
     "coupler/judge/mechanics": "coupling_exchange coupling_piston",
     "plate_modal/motion/contact": "verification_plate_contact stability_plate_contact",
@@ -86,7 +86,7 @@ FOLDER = {
                     "verification_fluid_boundaries verification_fluid_prescribed_motion verification_fluid_wall_output verification_fluid_samples "
                     "verification_fluid_turning_walls verification_fluid_rotating_frame verification_fluid_gaps verification_fluid_effects "
                     "stability_fluid_step_sizes stability_fluid_energy_guard stability_fluid_light_wall stability_fluid_under_resolved contract_fluid "
-                    "verification_fluid_exactness_2 flap_first_maximum_and_residuals",
+                    "verification_fluid_exactness_3 flap_first_maximum_and_residuals",
     "solid_solver": "verification_solid_patch verification_solid_order verification_solid_cantilever verification_solid_dynamics "
                     "verification_solid_time_schemes verification_solid_energy verification_solid_step_control verification_solid_spectrum "
                     "verification_solid_contract unit_solid_parameters verification_solid_output verification_solid_conditions "
@@ -96,19 +96,19 @@ FOLDER = {
                     "verification_solid_updated_lagrangian verification_solid_orthotropic verification_solid_incompressible "
                     "verification_solid_large_strain_estimate verification_solid_volume_strain verification_solid_mixed_form "
                     "verification_heat_exactness verification_heat_errors verification_heat_order verification_heat_series verification_heat_strain "
-                    "verification_heat_stress contract_solid stability_solid_hard_cases verification_solid_patch_2",
+                    "verification_heat_stress contract_solid stability_solid_hard_cases verification_solid_patch_3",
     "common/elasticity": "unit_symmetric_loads unit_elasticity_kernel unit_finite_law unit_symmetric_diagonal verification_solid_patch verification_solid_symmetric "
                          "verification_solid_methods verification_solid_order verification_solid_closed_forms verification_solid_conditions "
                          "verification_solid_materials verification_solid_incompressible verification_solid_mixed_form verification_solid_volume_strain "
                          "verification_solid_finite_strain verification_solid_updated_lagrangian verification_solid_orthotropic verification_solid_energy "
                          "verification_solid_audit verification_heat_strain verification_heat_stress verification_solid_contract verification_solid_beams "
-                         "verification_solid_patch_2 verification_mover",
+                         "verification_solid_patch_3 verification_mover",
     "common/fv": "unit_fv_operators unit_fv_expression unit_fv_table unit_fv_interpolation unit_fv_point_gradient verification_heat_exactness verification_heat_order "
                  "verification_heat_series verification_heat_strain verification_solid_output verification_fluid_prescribed_motion verification_mover "
-                 "verification_mover_motion verification_solid_patch verification_heat_errors verification_heat_exactness_2",
+                 "verification_mover_motion verification_solid_patch verification_heat_errors verification_heat_exactness_3",
     "common/time": "unit_time verification_solid_time_schemes verification_solid_dynamics verification_solid_energy verification_solid_audit "
                    "verification_solid_spectrum verification_heat_order verification_heat_errors verification_plate_dynamics verification_plate_guards",
-    "coupler": "unit_conjugate_maps unit_coupler unit_maps unit_coupler_maps unit_coupler_maps_2 unit_coupler_ranks unit_coupler_ranks_2 coupling_groups coupling_exchange "
+    "coupler": "unit_conjugate_maps unit_coupler unit_maps unit_coupler_maps unit_coupler_maps_3 unit_coupler_ranks unit_coupler_ranks_3 coupling_groups coupling_exchange "
                "coupled_toy coupling_volume_level coupling_added_mass unit_interface_map contract_toys coupling_piston coupling_string coupling_robin "
                "coupling_cavity coupled_toy_mpmd",
     "common/modes": "verification_solid_modes verification_plate_modes_file verification_plate_frequencies verification_plate_guards coupling_plate_solid_modes",
@@ -117,7 +117,7 @@ FOLDER = {
                    "stability_plate_contact contract_plate coupling_plate_restart_alone",
     "thermocline": "unit_thermocline_plant stability_thermocline stability_thermocline_hard_cases contract_thermocline {verification_thermocline_}",
     "mesh_mover": "verification_mover verification_mover_motion verification_mover_ranks verification_mover_curved_slide verification_mover_periodic "
-                  "verification_mover_periodic_2 flap_first_maximum_and_residuals",
+                  "verification_mover_periodic_3 flap_first_maximum_and_residuals",
 }
 
 
