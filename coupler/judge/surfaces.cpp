@@ -132,6 +132,16 @@ double faceting(const SurfaceFacts& a, const SurfaceFacts& b) {
   return 0.01 + share * share;
 }
 
+/// Largest difference of the mean distances from the centroid [m]. The centres of one row of faces all lie on a line, those of two rows
+/// do not: a direction in which a surface is but few faces wide is left to the box.
+double spread_apart(const SurfaceFacts& a, const SurfaceFacts& b) {
+  const Vec3 width = (a.high - a.low).cwiseMin(b.high - b.low);
+  double apart = 0;
+  for (int c = 0; c < 3; ++c)
+    if (width[c] > 3 * std::max(a.face, b.face)) apart = std::max(apart, std::abs(a.spread[c] - b.spread[c]));
+  return apart;
+}
+
 std::string difference_of(const SurfaceFacts& a, const SurfaceFacts& b, double limit) {
   const double size = std::min(a.extent(), b.extent()), area = std::max(a.area, b.area);
   if (!(size > 0) || !(area > 0)) return "";
@@ -145,8 +155,7 @@ std::string difference_of(const SurfaceFacts& a, const SurfaceFacts& b, double l
        {of("area", std::abs(a.area - b.area) / area, fmt::format("{:.4g} m^2", a.area),
            fmt::format("{:.4g} m^2", b.area)),
         of("centroid", (a.centroid - b.centroid).norm() / size, text(a.centroid), text(b.centroid)),
-        of("mean distance from the centroid", (a.spread - b.spread).cwiseAbs().maxCoeff() / size,
-           text(a.spread), text(b.spread)),
+        of("mean distance from the centroid", spread_apart(a, b) / size, text(a.spread), text(b.spread)),
         of("bounding box", box / size, text(a.low) + " to " + text(a.high),
            text(b.low) + " to " + text(b.high))})
     if (!found.empty()) return found;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fluid_solver/output/fluxes.hpp"
 
+#include <cmath>
+#include <limits>
+
 #include "common/parallel/collective.hpp"
 
 namespace couplet::fluid {
@@ -47,6 +50,15 @@ std::vector<PatchFlux<D>> patch_fluxes(const Fluid<D>& fluid) {
   return result;
 }
 
+template <int D>
+FlowArea flow_area(const PatchFlux<D>& from, const PatchFlux<D>& to, double density) {
+  const double mass = -density * from.volume, drop = from.mean_pressure - to.mean_pressure,
+               area = mass / std::sqrt(2 * density * std::abs(drop)) * (drop < 0 ? -1 : 1);
+  return {mass, drop, drop != 0 ? area : std::numeric_limits<double>::quiet_NaN()};
+}
+
+template FlowArea flow_area<2>(const PatchFlux<2>&, const PatchFlux<2>&, double);
+template FlowArea flow_area<3>(const PatchFlux<3>&, const PatchFlux<3>&, double);
 template std::vector<PatchFlux<2>> patch_fluxes<2>(const Fluid<2>&);
 template std::vector<PatchFlux<3>> patch_fluxes<3>(const Fluid<3>&);
 

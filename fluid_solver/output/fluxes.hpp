@@ -17,6 +17,16 @@ struct PatchFlux {
   double mean_pressure = 0, area = 0;  ///< [Pa], over the area; [m^2]
 };
 
+/// What an ideal flow would need to carry the same mass with the same difference of pressure, (KA)_e in [thesis] eq. (4.35).
+struct FlowArea {
+  double mass_flow = 0;      ///< into the fluid through the first patch [kg/s]
+  double pressure_drop = 0;  ///< mean pressures of the first less the second patch [Pa]
+  double area =
+      0;  ///< [m^2]; negative where the flow goes against the pressure; NaN where there is no difference
+};
+template <int D>
+FlowArea flow_area(const PatchFlux<D>& from, const PatchFlux<D>& to, double density);
+
 /// Of all patches with faces: volume, carried momentum and pressure at the accepted time, loads (those of forces.csv) as
 /// means over the last step; in a steady flow without body forces the sums of volume and momentum are zero. Nothing
 /// before the first step. Collective.

@@ -23,6 +23,7 @@ FluidOutput<D>::FluidOutput(const Fluid<D>& fluid, const Geometry& geometry, Flu
   for (const Patch& patch : mesh_.patches)
     if (is_wall(fluid.parameters().boundaries.at(patch.name))) walls_.push_back(&patch);
   check_coefficients();
+  check_flow_areas();
   if (!fluid.parameters().output.surfaces.empty()) surfaces_.emplace(fluid);
 }
 
@@ -108,6 +109,7 @@ void FluidOutput<D>::write_series(double time) {
   if (!walls_.empty() && (fluid_.parameters().turbulence || fluid_.parameters().output.walls))
     write_walls(time);
   if (fluid_.parameters().output.fluxes) write_fluxes(time);
+  if (!fluid_.parameters().output.flow_areas.empty()) write_flow_areas(time);
   write_balance(time);
   if (fluid_.parameters().output.energy_budget) write_energy(time);
   if (fluid_.bodies()) write_bodies(time);

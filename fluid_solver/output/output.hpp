@@ -23,7 +23,7 @@ struct FluidContext {
   double restart_time = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The files of a fluid: fields, forces.csv, coefficients.csv, walls.csv, fluxes.csv, balance.csv, energy.csv,
+/// The files of a fluid: fields, forces.csv, coefficients.csv, walls.csv, fluxes.csv, flow-areas.csv, balance.csv, energy.csv,
 /// bodies.csv, probes.csv, sample-NAME.csv, surface-PATCH.h5. They are opened when first written to.
 template <int D>
 class FluidOutput {
@@ -45,6 +45,8 @@ class FluidOutput {
   void write_coefficients(double time);
   void write_fluxes(double time);
   void check_coefficients() const;
+  void check_flow_areas() const;
+  void write_flow_areas(double time);
   void write_energy(double time);
   void write_bodies(double time);
   void write_gaps(double time);
@@ -63,7 +65,8 @@ class FluidOutput {
   std::optional<FieldWriter> fields_;
   std::optional<FluidSurfaces<D>> surfaces_;
   std::vector<double> divergence_;
-  std::optional<Series> forces_, coefficients_, walls_series_, fluxes_, balance_, energy_, bodies_, gaps_,
+  std::optional<Series> forces_, coefficients_, walls_series_, fluxes_, flow_areas_, balance_, energy_,
+      bodies_, gaps_,
       probe_series_;                                  // on rank 0
   std::vector<std::optional<Series>> sample_series_;  // one a sample, on rank 0
 };

@@ -66,11 +66,17 @@ struct SampleParameters {
   int points = 101, rows = 21;                  // along from-to; along from-up
 };
 
+/// The effective flow area between two patches.
+struct FlowAreaParameters {
+  std::string from, to;
+};
+
 /// Fields and series beyond velocity, pressure, forces and balance.
 struct FluidOutputParameters {
   bool vorticity = false, q_criterion = false, energy_budget = false, walls = false, fluxes = false;
   std::vector<std::string> surfaces;  // patches, or "all"
   std::map<std::string, CoefficientParameters> coefficients;
+  std::map<std::string, FlowAreaParameters> flow_areas;
   std::map<std::string, SampleParameters> samples;
 };
 

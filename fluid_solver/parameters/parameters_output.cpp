@@ -84,6 +84,16 @@ void declare_output(config::Section& s, FluidOutputParameters& p) {
   s.map<CoefficientParameters>(
       "coefficients", p.coefficients, declare_coefficients, "name",
       "coefficients.csv: force and moment coefficients of some walls, means over the step");
+  s.map<FlowAreaParameters>(
+      "flow-areas", p.flow_areas,
+      [](config::Section& area, FlowAreaParameters& a) {
+        area.value("from", a.from).required().doc("patch upstream, whose inflow counts");
+        area.value("to", a.to).required().doc("patch downstream");
+        area.check([&a] { return a.from == a.to ? "'from' and 'to' are the same patch" : ""; }, "to");
+      },
+      "name",
+      "flow-areas.csv: effective flow area between two patches, m/sqrt(2 rho (p_from - p_to)) with the mass flow m and mean "
+      "pressures");
   s.map<SampleParameters>(
       "samples", p.samples, declare_sample, "name",
       "sample-<name>.csv: velocity and pressure (with 'statistics' their means and rms) on a line or plane "

@@ -92,6 +92,26 @@ TEST(Surfaces, a_surface_five_per_cent_larger_or_elsewhere_is_named_with_the_num
   EXPECT_THAT(difference(tests::flap(40, 4, 1), moved), HasSubstr("centroid"));
 }
 
+/// A strip of 0.06 by 0.01 m: `n` faces along it, `rows` across.
+Interface strip(int n, int rows, double length = 0.06) {
+  Interface s;
+  s.dim = 3;
+  for (int j = 0; j <= rows; ++j)
+    for (int i = 0; i <= n; ++i) s.vertices.push_back({length * i / n, 0.01 * j / rows - 0.005, 0});
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < n; ++i) {
+      s.face_centres.push_back({length * (i + 0.5) / n, 0.01 * (j + 0.5) / rows - 0.005, 0});
+      s.face_areas.push_back({0, 0, length * 0.01 / (n * rows)});
+    }
+  return s;
+}
+
+TEST(Surfaces, one_row_of_faces_covers_the_same_strip_as_two) {
+  EXPECT_EQ(difference(strip(24, 2), strip(30, 1)), "");
+  EXPECT_EQ(difference(strip(24, 2), strip(60, 8)), "");
+  EXPECT_NE(difference(strip(24, 2), strip(30, 1, 0.055)), "");
+}
+
 TEST(Surfaces, doubts_are_counted_and_a_mover_that_holds_a_wall_is_refused) {
   Schedule schedule;
   schedule.mover = "mover", schedule.moved = "fluid";

@@ -2,6 +2,7 @@
 // Fields on patches and fluxes through them, against flows whose loads are known.
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -181,6 +182,9 @@ TEST(Fluxes, of_a_plane_channel_balance_and_its_walls_carry_the_pressure_drop) {
   p.viscosity = 1;
   p.initial_velocity = {{"4*y*(1 - y)"}, {"0"}};
   p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"4*y*(1 - y)", "0"});
+  p.output.flow_areas["duct"] = {"xmin", "xmax"};
+  p.output.flow_areas["turned"] = {"xmax", "xmin"};
+  p.output.flow_areas["walls"] = {"ymin", "ymax"};
   const Written run(p, "poiseuille", 30, squares(16, 12), 0.05);
   const Columns fluxes = run.csv("fluxes.csv");
   const std::size_t last = fluxes.at("time [s]").size() - 1;
@@ -193,11 +197,34 @@ TEST(Fluxes, of_a_plane_channel_balance_and_its_walls_carry_the_pressure_drop) {
               0.04 * drop);
   EXPECT_NEAR(fluxes.at("ymin momentum x [N]")[last] + fluxes.at("ymax momentum x [N]")[last], drop,
               0.04 * drop);
+  // The area of an ideal flow, [thesis] eq. (4.35).
+  const Columns areas = run.csv("flow-areas.csv");
+  const double area = areas.at("duct effective area [m^2]")[last],
+               mass = areas.at("duct mass flow [kg/s]")[last];
+  EXPECT_NEAR(mass, rho * 2 / 3, 0.01);
+  EXPECT_NEAR(area, rho * 2 / 3 / std::sqrt(2 * rho * drop), 0.025 * area);
+  EXPECT_NEAR(areas.at("duct pressure drop [Pa]")[last],
+              fluxes.at("xmin mean pressure [Pa]")[last] - fluxes.at("xmax mean pressure [Pa]")[last], 1e-9);
+  EXPECT_NEAR(areas.at("turned effective area [m^2]")[last], area, 1e-9);
+  EXPECT_NEAR(areas.at("turned mass flow [kg/s]")[last], -mass, 1e-9);
+  EXPECT_NEAR(areas.at("walls mass flow [kg/s]")[last], 0, 1e-12);
   const auto centres = run.surface("ymax").centres(), shear = run.surface("ymax").vectors("cells/wall-shear");
   for (std::size_t c = 0; c < centres.size(); ++c) {
     const double x = centres[c].x();
     if (x < 0.4 || x > 1.6) continue;         // the scheme's parabola is not that of the inlet
     EXPECT_NEAR(shear[c].x(), 4, 0.06) << x;  // mu dU/dy
+  }
+}
+
+TEST(Fluxes, areas_between_patches_that_do_not_exist_are_refused) {
+  FluidParameters p = channel();
+  p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"1", "0"});
+  p.output.flow_areas["valve"] = {"xmin", "xmas"};
+  try {
+    const Written run(p, "no-such-patch", 1, squares(4, 4), 0.05);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("output.flow-areas.valve.to: there is no patch 'xmas'"));
   }
 }
 
