@@ -16,7 +16,7 @@
 #include "coupler/judge/places.hpp"
 #include "coupler/judge/surfaces.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 /// Columns of balance.csv speak of roles where there are such.
@@ -268,4 +268,4 @@ std::string Coupler::run() {
   return problem;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -30,7 +30,7 @@
 #include "coupler/parameters/parameters.hpp"
 #include "coupler/parameters/schedule.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 struct CouplerFolders {
   std::filesystem::path output;       ///< for the coupler's own files
@@ -143,4 +143,4 @@ class Coupler {
   std::function<void(Phase, std::optional<double>)> enter_ = [](Phase, std::optional<double>) {};
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

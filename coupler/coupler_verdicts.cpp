@@ -7,7 +7,7 @@
 #include "common/parallel/collective.hpp"
 #include "coupler/coupler.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 /// Of the accepted state, of all that take a force [J]; NaN where one does not tell.
@@ -130,4 +130,4 @@ StepFailure Coupler::cause_of(const std::string& reported) const {
   return StepFailure(reported + data_guard_->silent());
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -10,16 +10,16 @@
 
 namespace {
 
-int run(const couplet::Job& job, const couplet::CouplingParameters& read) {
+int run(const couplet::Job& job, const couplet::coupler::CouplingParameters& read) {
   using namespace couplet;
-  const CouplingParameters parameters = read.in_force();
-  log::info("{}", summary(effects_of(coupling_effect_cards(), parameters)));
+  const coupler::CouplingParameters parameters = read.in_force();
+  log::info("{}", summary(effects_of(coupler::coupling_effect_cards(), parameters)));
   std::vector<std::unique_ptr<Channel>> channels;
   for (const Member& m : job.members)
     if (m.participant != coupler_name)
       channels.push_back(std::make_unique<MpiChannel>(m.participant, job.connect(m.participant), job.comm));
-  Coupler coupler(job.comm, parameters, job.simulation, std::move(channels),
-                  {job.output_folder, job.checkpoints, job.restart_folder});
+  coupler::Coupler coupler(job.comm, parameters, job.simulation, std::move(channels),
+                           {job.output_folder, job.checkpoints, job.restart_folder});
   coupler.on_phase([&](Phase phase, std::optional<double> time) {
     if (time) job.watch->set_time(*time);
     job.enter(phase);
@@ -39,13 +39,13 @@ int run(const couplet::Job& job, const couplet::CouplingParameters& read) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  couplet::CouplingParameters parameters;
+  couplet::coupler::CouplingParameters parameters;
   const couplet::ProgramKind kind{
       "coupler",
       "couples a fluid, a structure and a mesh mover, or participants of any kind, each a separate program",
       true, [&](couplet::config::Section& section) { declare(section, parameters); },
       [&](const couplet::EffectScene&) {
-        return couplet::effects_of(couplet::coupling_effect_cards(), parameters.in_force());
+        return couplet::effects_of(couplet::coupler::coupling_effect_cards(), parameters.in_force());
       }};
   return couplet::run_job(argc, argv, kind, [&](const couplet::Job& job) { return run(job, parameters); });
 }

@@ -4,7 +4,7 @@
 #include "coupler/coupler.hpp"
 #include "coupler/judge/places.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 void Coupler::ask(std::size_t i, const std::vector<Exchange>& known, bool move_mesh) {
   // The moved one blocks until the mesh has been moved: the mover's command goes out first.
@@ -157,4 +157,4 @@ void Coupler::pass_once(const Step& step, const FixedPointMap& map) {
   iterations_ -= 2;            // nor are these its passes
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

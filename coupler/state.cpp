@@ -5,7 +5,7 @@
 #include "coupler/coupler.hpp"
 #include "coupler/exchange/foreign_structure.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 void write(CheckpointWriter& file, const std::string& name, const Iterate& x) {
@@ -78,4 +78,4 @@ void Coupler::load() {
   log::info("continues from {} at t = {:g} s", folders_.restart.string(), state.time);
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -7,7 +7,7 @@
 #include "coupler/acceleration/quasi_newton.hpp"
 #include "coupler/acceleration/relaxation.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 void sum_over(MPI_Comm comm, std::span<double> values) {
   MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, comm);
@@ -59,4 +59,4 @@ std::unique_ptr<Accelerator> make_accelerator(const AccelerationParameters& para
   return nullptr;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

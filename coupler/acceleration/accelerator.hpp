@@ -11,9 +11,11 @@
 #include "coupler/parameters/parameters.hpp"
 
 namespace couplet {
-
 class CheckpointReader;
 class CheckpointWriter;
+}  // namespace couplet
+
+namespace couplet::coupler {
 
 /// One vector of the fixed point x = H(x): this rank's part of the unknown, and what is no unknown of its own
 /// but undergoes the same linear combinations (the velocity that goes with a displacement).
@@ -71,4 +73,4 @@ void for_blocks(std::size_t rows, Work work) {
   for (std::size_t first = 0; first < rows; first += block) work(first, std::min(block, rows - first));
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

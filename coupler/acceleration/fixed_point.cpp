@@ -8,7 +8,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 bool converged(const Residual& residual, const ConvergenceParameters& parameters) {
   const bool relative = residual.relative <= parameters.relative,
@@ -62,4 +62,4 @@ FixedPointResult solve_fixed_point(Iterate x, const FixedPointMap& map, const Re
       absolute_too(result.residual, parameters));
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

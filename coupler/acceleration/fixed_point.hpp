@@ -9,7 +9,7 @@
 #include "coupler/acceleration/unknown.hpp"
 #include "coupler/parameters/parameters.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 bool converged(const Residual& residual, const ConvergenceParameters& parameters);
 /// For a sentence that has named the relative residual; empty where that alone decides.
@@ -38,4 +38,4 @@ FixedPointResult solve_fixed_point(Iterate x, const FixedPointMap& map, const Re
                                    const ConvergenceParameters& parameters, Accelerator& accelerator,
                                    const IterationObserver& observer);
 
-}  // namespace couplet
+}  // namespace couplet::coupler

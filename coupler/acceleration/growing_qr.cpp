@@ -8,7 +8,7 @@
 #include "common/io/checkpoint.hpp"
 #include "coupler/acceleration/accelerator.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 /// Rows `row` and `row` + 1 of R and the columns of Q that belong to them turn.
@@ -163,4 +163,4 @@ void GrowingQr::load(CheckpointReader& file, const std::string& name, std::size_
   r_ = Eigen::Map<Eigen::MatrixXd>(r.data(), m, m);
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

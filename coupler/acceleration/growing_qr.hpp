@@ -9,9 +9,11 @@
 #include <vector>
 
 namespace couplet {
-
 class CheckpointReader;
 class CheckpointWriter;
+}  // namespace couplet
+
+namespace couplet::coupler {
 
 /// A checkpoint holds no more of them.
 inline constexpr std::size_t most_columns = 10000;
@@ -47,4 +49,4 @@ class GrowingQr {
   Eigen::MatrixXd r_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -4,7 +4,7 @@
 
 #include "common/io/checkpoint.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 // -- least squares
 // --------------------------------------------------------------------------------------------
 
@@ -161,4 +161,4 @@ void MultiVectorNewton::load(CheckpointReader& file) {
   for (std::size_t s = 0; s < n; ++s) steps_.emplace_back(comm_).load(file, "iqn." + std::to_string(s));
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -7,7 +7,7 @@
 #include "coupler/acceleration/accelerator.hpp"
 #include "coupler/acceleration/growing_qr.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// Differences of residuals, V = QR, and those of the images (with their riders), W, newest first.
 class SecantPairs {
@@ -122,4 +122,4 @@ class MultiVectorNewton final : public Accelerator {
   long resets_ = 0;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

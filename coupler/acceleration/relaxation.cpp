@@ -9,7 +9,7 @@
 
 #include "common/io/checkpoint.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 double aitken_factor(double omega, std::span<const double> residual, std::span<const double> next_residual,
                      MPI_Comm comm) {
   assert(residual.size() == next_residual.size());
@@ -90,4 +90,4 @@ void AitkenRelaxation::save(CheckpointWriter& file) const { file.write_scalar("o
 
 void AitkenRelaxation::load(CheckpointReader& file) { first_ = file.read_scalar("omega"); }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -5,7 +5,7 @@
 
 #include "coupler/acceleration/accelerator.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// x += omega r with the same omega always.
 class ConstantRelaxation final : public Accelerator {
@@ -62,4 +62,4 @@ class AitkenRelaxation final : public Accelerator {
 double aitken_factor(double omega, std::span<const double> residual, std::span<const double> next_residual,
                      MPI_Comm comm = MPI_COMM_SELF);
 
-}  // namespace couplet
+}  // namespace couplet::coupler

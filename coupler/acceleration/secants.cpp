@@ -7,7 +7,7 @@
 #include "common/io/checkpoint.hpp"
 #include "coupler/acceleration/quasi_newton.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b) {
@@ -114,4 +114,4 @@ double Secants::share(const Iterate& x, const Iterate& next) const {
   return sums[1] > 0 ? sums[0] / sums[1] : 0;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

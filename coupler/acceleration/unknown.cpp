@@ -8,7 +8,7 @@
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 Unknown::Unknown(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
                  const std::vector<std::size_t>& group, bool side_by_side)
@@ -225,4 +225,4 @@ Iterate predict(const Unknown& unknown, const History& history, double dt, int o
   return guess;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

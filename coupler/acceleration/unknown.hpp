@@ -11,7 +11,7 @@
 #include "coupler/mapping/links.hpp"
 #include "coupler/parameters/schedule.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 struct Residual {
   double relative = 0;  ///< |r|_2 / |H(x)|_2; 0 if both vanish
@@ -106,4 +106,4 @@ struct History {
 /// All else: the polynomial of this order through the last values. Fewer levels lower the order.
 Iterate predict(const Unknown& unknown, const History& history, double dt, int order);
 
-}  // namespace couplet
+}  // namespace couplet::coupler

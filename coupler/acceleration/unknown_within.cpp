@@ -7,7 +7,7 @@
 #include "common/coupling/within_step.hpp"
 #include "coupler/acceleration/unknown.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 bool Unknown::asked_within() const { return std::ranges::any_of(parts(), &Part::asked_within); }
 
@@ -100,4 +100,4 @@ std::vector<double> Unknown::between_times(const Part& part, const Exchange& giv
   return values;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -10,7 +10,7 @@
 #include "common/parallel/collective.hpp"
 #include "coupler/acceleration/accelerator.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 constexpr const char* inflow_name = "inflow";
@@ -278,4 +278,4 @@ std::vector<double> VolumeLevel::row() const {
   return list;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

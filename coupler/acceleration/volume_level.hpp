@@ -13,7 +13,7 @@
 #include "coupler/mapping/links.hpp"
 #include "coupler/parameters/schedule.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// The pressure level of closed fluids. An incompressible fluid without an outlet knows its pressure up to a
 /// constant lambda only, which is what holds its volume: in each pass the structure's answer is moved by lambda
@@ -93,4 +93,4 @@ class VolumeLevel {
   Eigen::MatrixXd slope_;  // dg/dlambda [m^3/(s Pa)], of steps of slope_dt_
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -7,7 +7,7 @@
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 CavityWall::CavityWall(MPI_Comm comm, const Side& side, bool moves)
     : dim_(side.interface.dim),
@@ -90,4 +90,4 @@ double CavityWall::swept(const std::vector<double>& from, const std::vector<doub
   return (flux(way, areas(from)).net + 4 * flux(way, areas(middle)).net + flux(way, areas(to)).net) / 6;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

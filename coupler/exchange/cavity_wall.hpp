@@ -6,7 +6,7 @@
 #include "coupler/exchange/side.hpp"
 #include "coupler/exchange/transfer.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// The interface of a fluid as the wall of a volume: areas of its faces where the wall is, and the volume that it
 /// sweeps. A fluid whose mesh rests sees the reference areas wherever its wall is.
@@ -38,4 +38,4 @@ class CavityWall {
   Transfer to_corners_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -5,7 +5,7 @@
 
 #include "coupler/exchange/foreign_names.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 void ForeignFluid::adapt(Interface& own, Surfaces& surfaces) {
   const ForeignNames takes{own.takes, surfaces.takes, "fluid", name(), "takes"},
@@ -45,4 +45,4 @@ Reply ForeignFluid::receive() {
   return reply;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

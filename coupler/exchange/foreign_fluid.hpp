@@ -7,7 +7,7 @@
 #include "common/coupling/channel.hpp"
 #include "coupler/parameters/parameters.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// The channel to a fluid that calls its data otherwise: a program on preCICE's interface. The displacement [m] goes to
 /// it by its name, its force [N] goes on as the pressure's; the force of viscosity is part of it and is given as zero.
@@ -30,4 +30,4 @@ class ForeignFluid final : public Channel {
   CouplingParameters::Fluid names_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -6,7 +6,7 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 using Datum = Interface::Datum;
 
@@ -36,4 +36,4 @@ void ForeignNames::refuse(const char* key, const std::string& wanted) const {
               all.empty() ? "nothing" : join(all));
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -6,7 +6,7 @@
 
 #include "common/coupling/messages.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// Data of a program that calls them otherwise than the coupler, as it announced them: of a role, in one direction.
 struct ForeignNames {
@@ -25,4 +25,4 @@ struct ForeignNames {
   [[noreturn]] void refuse(const char* key, const std::string& wanted) const;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

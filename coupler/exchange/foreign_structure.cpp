@@ -8,7 +8,7 @@
 #include "common/io/checkpoint.hpp"
 #include "coupler/exchange/foreign_names.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 using Datum = Interface::Datum;
 
@@ -112,4 +112,4 @@ Reply ForeignStructure::receive() {
   return reply;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -9,9 +9,11 @@
 #include "coupler/parameters/parameters.hpp"
 
 namespace couplet {
-
 class CheckpointReader;
 class CheckpointWriter;
+}  // namespace couplet
+
+namespace couplet::coupler {
 
 /// The channel to a structure that calls its data otherwise, and gives no velocity: a program on preCICE's
 /// interface. Its displacement [m] goes on by the coupler's name, its load is the sum of all forces [N] of the
@@ -49,4 +51,4 @@ class ForeignStructure final : public Channel {
   std::size_t n_values_ = 0;                // of a displacement on this rank
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

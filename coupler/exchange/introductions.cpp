@@ -8,7 +8,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 std::vector<std::string> parts(const std::string& text, char separator) {
@@ -83,4 +83,4 @@ void check_introductions(const CouplingParameters& parameters, const std::vector
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -7,7 +7,7 @@
 #include "coupler/exchange/partners.hpp"
 #include "coupler/parameters/parameters.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// Programs on preCICE's interface read their configuration themselves and introduce themselves by its digest and their schemes
 /// (docs/protocol.md, initialise). Throws Error where two read different ones, or where the case was made of one
@@ -18,4 +18,4 @@ void check_introductions(const CouplingParameters& parameters, const std::vector
 /// the same (`checkpoint_interval` [s] above 0).
 std::string without_state(double checkpoint_interval, const std::vector<Partner>& partners);
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -8,7 +8,7 @@
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 Reply Partner::receive() {
   Reply reply = channel->receive();
@@ -70,4 +70,4 @@ double advised_dt(const std::vector<Partner*>& partners) {
   return dt;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

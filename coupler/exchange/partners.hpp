@@ -8,7 +8,7 @@
 #include "common/coupling/channel.hpp"
 #include "common/coupling/error_parts.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// A participant as the coupler talks to it.
 struct Partner {
@@ -44,4 +44,4 @@ std::vector<NamedErrors> finalise_all(const std::vector<Partner*>& partners, con
 /// The smallest step that somebody advises [s].
 double advised_dt(const std::vector<Partner*>& partners);
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -6,7 +6,7 @@
 #include "common/base/error.hpp"
 #include "common/coupling/roles.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 void check_dimensions(const std::vector<Side>& sides, const std::string& structure) {
@@ -37,4 +37,4 @@ void check_roles(const CouplingParameters& p, const std::vector<Side>& sides) {
   check("mesh", p.mesh);
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -8,7 +8,7 @@
 #include "common/base/point_tree.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 const Neighbour none{std::numeric_limits<double>::infinity(), -1, std::numeric_limits<GlobalIndex>::max(), 0,
@@ -77,4 +77,4 @@ std::vector<Neighbour> nearest(MPI_Comm comm, const std::vector<Vec3>& points, c
   return found;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -9,7 +9,7 @@
 #include "common/coupling/blocks.hpp"
 #include "common/coupling/participant.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// The smallest box around some points.
 struct PointBox {
@@ -51,4 +51,4 @@ struct Neighbour {
 /// smallest id. No rank sees more of `among` than its own part. Collective.
 std::vector<Neighbour> nearest(MPI_Comm comm, const std::vector<Vec3>& points, const PointSet& among);
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -3,7 +3,7 @@
 
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 Side::Side(MPI_Comm comm, std::string its_name, Interface its_interface)
     : name(std::move(its_name)), interface(std::move(its_interface)) {
@@ -57,4 +57,4 @@ PointSet Side::places_of(const Interface::Datum& datum, const std::map<std::stri
   return part;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

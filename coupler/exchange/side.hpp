@@ -8,7 +8,7 @@
 #include "common/coupling/messages.hpp"
 #include "coupler/exchange/search.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// One participant as the coupler knows it after `initialise`: this rank's part of its places, and how they
 /// are cut over the coupler's ranks.
@@ -34,4 +34,4 @@ struct Side {
   std::size_t rank_ = 0;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -5,7 +5,7 @@
 
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 /// Of entries sorted by target and source, equal ones added up.
@@ -141,4 +141,4 @@ std::vector<Transfer::Entry> product(MPI_Comm comm, const Starts& between,
   return result;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

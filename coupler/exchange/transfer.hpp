@@ -8,7 +8,7 @@
 
 #include "common/coupling/blocks.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// A sparse matrix between two lists of places that are cut over the coupler's ranks. It is built once; what
 /// a rank needs of the others' values it asks for once, too.
@@ -45,4 +45,4 @@ std::vector<Transfer::Entry> product(MPI_Comm comm, const Starts& between,
 /// The same weights from targets to sources.
 std::vector<Transfer::Entry> transposed(std::vector<Transfer::Entry> entries);
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -11,7 +11,7 @@
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 CouplingAudit::CouplingAudit(MPI_Comm comm, const std::vector<Side>& sides, const Links& links)
     : comm_(comm) {
@@ -92,4 +92,4 @@ ErrorParts CouplingAudit::parts(const CouplingParameters& parameters) const {
   return parts;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -14,7 +14,7 @@
 #include "coupler/mapping/links.hpp"
 #include "coupler/parameters/effect_cards.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// What a coupling has left out, found while it runs.
 class CouplingAudit {
@@ -62,4 +62,4 @@ class CouplingAudit {
   AuditTrail trail_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -7,7 +7,7 @@
 #include "common/parallel/collective.hpp"
 #include "coupler/mapping/corner_weights.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 Balancing::Balancing(MPI_Comm comm, const Side& side)
     : comm_(comm),
@@ -53,4 +53,4 @@ Balance Balancing::operator()(const Exchange& data, const std::vector<Interface:
   return b;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

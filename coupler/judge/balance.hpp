@@ -4,7 +4,7 @@
 #include "coupler/exchange/side.hpp"
 #include "coupler/exchange/transfer.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// What the loads on one side of the interface add up to.
 struct Balance {
@@ -34,4 +34,4 @@ class Balancing {
   Transfer to_faces_;  // means over the faces
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -9,7 +9,7 @@
 
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 bool gives(const Interface& interface, const char* name) {
@@ -110,4 +110,4 @@ std::vector<log::Finding> DataGuard::accepted(const std::vector<Exchange>& given
   return findings;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -9,7 +9,7 @@
 #include "common/log/finding.hpp"
 #include "coupler/exchange/side.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// Watches for two faults of participants that no residual shows by its cause: an answer that does not follow the input (a
 /// solver whose first guess meets its own tolerance), and a velocity that is not the rate of the displacement beside it.
@@ -55,4 +55,4 @@ class DataGuard {
   std::vector<Motion> motions_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

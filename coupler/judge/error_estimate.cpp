@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 // Of a residual that hardly falls nothing is known but that the error is large.
@@ -20,4 +20,4 @@ void CouplingErrorEstimate::accepted(const Residual& last, const Residual& chang
   errors_.add({.error = c / (1 - c) * last.absolute, .rate = change.absolute / dt, .size = size, .dt = dt});
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -7,7 +7,7 @@
 #include "common/time/step_errors.hpp"
 #include "coupler/acceleration/unknown.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// What the iteration between participants leaves in the unknown below its tolerance: of a step whose residual fell
 /// by the factor c in its last pass, |x - x*| <= c / (1 - c) |H(x) - x|; over all steps see StepErrors. Residuals
@@ -28,4 +28,4 @@ class CouplingErrorEstimate {
   StepErrors errors_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -7,7 +7,7 @@
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 double dot_over(MPI_Comm comm, const std::vector<double>& a, const std::vector<double>& b) {
@@ -207,4 +207,4 @@ void WorkGuard::restore(const std::array<double, 6>& totals) {
   windows_.clear();
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -12,7 +12,7 @@
 
 #include "common/coupling/participant.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// Watches the residuals of one step: a coupling that runs away is named within a few passes instead of when
 /// the allowed passes are used up.
@@ -112,4 +112,4 @@ class WorkGuard {
   std::vector<Window> windows_;  // the last three
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

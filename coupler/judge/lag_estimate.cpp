@@ -10,7 +10,7 @@
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 constexpr double unknown_value = std::numeric_limits<double>::quiet_NaN();
@@ -140,4 +140,4 @@ void LagEstimate::restore(std::span<const double> state) {
   for (double* value : list(sums_)) *value = state[k++];
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

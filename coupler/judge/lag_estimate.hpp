@@ -12,7 +12,7 @@
 #include "common/coupling/error_parts.hpp"
 #include "coupler/acceleration/unknown.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// What explicit coupling leaves in the motion: the load of a step answers a predicted velocity w, the structure then moves
 /// with v. Of d = v - w comes back through the load in the same step, per step,
@@ -85,4 +85,4 @@ class LagEstimate {
   Sums sums_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace couplet {
+namespace couplet::coupler {
 
 Mechanics::Mechanics(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
                      std::vector<std::string> labels)
@@ -56,4 +56,4 @@ std::vector<SideBalance> Mechanics::accepted(const std::vector<Exchange>& given,
   return list;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -7,7 +7,7 @@
 #include "coupler/judge/balance.hpp"
 #include "coupler/mapping/links.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// Forces and work of one participant over a step.
 struct SideBalance {
@@ -50,4 +50,4 @@ class Mechanics {
   int dim_ = 3;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

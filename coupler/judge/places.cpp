@@ -11,7 +11,7 @@
 #include "common/parallel/collective.hpp"
 #include "coupler/exchange/transfer.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 using Place = Interface::Place;
@@ -239,4 +239,4 @@ void check_places(MPI_Comm comm, const std::vector<Side>& sides, const Links& li
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

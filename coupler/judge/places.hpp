@@ -9,7 +9,7 @@
 #include "coupler/parameters/parameters.hpp"
 #include "coupler/parameters/schedule.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// Throws SolveFailure on all ranks, naming datum, entry and place, if one of the values is not finite.
 /// Collective.
@@ -35,4 +35,4 @@ void check_foreseen(const std::vector<Side>& sides, const Links& links, const Sc
 void check_places(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
                   const MappingParameters& mapping);
 
-}  // namespace couplet
+}  // namespace couplet::coupler

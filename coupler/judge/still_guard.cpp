@@ -7,7 +7,7 @@
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 double largest(const Exchange& data, const std::string& name) {
@@ -52,4 +52,4 @@ std::vector<std::string> StillGuard::accepted(const std::vector<Exchange>& given
   return findings;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -8,7 +8,7 @@
 
 #include "coupler/exchange/side.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// Watches for structures that are loaded and do not move at all: their interface is held, or the load does not arrive.
 /// However stiff a structure is, a load moves it by more than nothing.
@@ -34,4 +34,4 @@ class StillGuard {
   std::vector<Structure> structures_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

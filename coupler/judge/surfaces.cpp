@@ -10,7 +10,7 @@
 #include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 void add_up(MPI_Comm comm, double* values, int n) {
@@ -180,4 +180,4 @@ void compare_surfaces(MPI_Comm comm, const std::vector<Side>& sides, const Links
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

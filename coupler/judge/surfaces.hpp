@@ -9,7 +9,7 @@
 #include "coupler/mapping/links.hpp"
 #include "coupler/parameters/schedule.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// Size and place of a surface, in the reference configuration: of one participant or of several together.
 struct SurfaceFacts {
@@ -38,4 +38,4 @@ std::string difference_of(const SurfaceFacts& a, const SurfaceFacts& b, double l
 void compare_surfaces(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
                       const Schedule& schedule);
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -6,7 +6,7 @@
 #include "coupler/mapping/surface_rows.hpp"
 #include "coupler/mapping/surroundings.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 /// Where a side does not list the corners of its faces: local interpolants through the centres of the structure's.
@@ -47,4 +47,4 @@ ConjugateMap::Entries ConjugateMap::motion(Place from, Place to) const { return 
 
 ConjugateMap::Entries ConjugateMap::load(Place from, Place to) const { return transposed(between(to, from)); }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

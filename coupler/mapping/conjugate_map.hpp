@@ -9,7 +9,7 @@
 #include "coupler/exchange/transfer.hpp"
 #include "coupler/parameters/parameters.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// One map between a structure and a surface that moves with it and gives its load, used both ways:
 ///   motion: B N A,   load: transpose of B N
@@ -36,4 +36,4 @@ class ConjugateMap {
   Entries to_faces_, across_, to_surface_faces_;  // A, N, B
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -7,7 +7,7 @@
 #include "coupler/mapping/map_projection.hpp"
 #include "coupler/mapping/surroundings.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 /// Of a polygon: the integrals of its corners' functions, linear over the triangles about the mean of the corners,
@@ -95,4 +95,4 @@ std::vector<Transfer::Entry> vertices_to_faces(MPI_Comm comm, const Interface& p
   return entries;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

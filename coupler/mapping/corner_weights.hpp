@@ -7,7 +7,7 @@
 #include "common/coupling/participant.hpp"
 #include "coupler/exchange/transfer.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// Corners of a face, as positions in the surface's own list of vertices.
 std::span<const Index> corners(const Interface& surface, Index face);
@@ -24,4 +24,4 @@ std::vector<double> corner_weights(const Interface& surface, Index face);
 /// position in the list of all vertices. Where the participant does not list corners: local interpolants. Collective.
 std::vector<Transfer::Entry> vertices_to_faces(MPI_Comm comm, const Interface& part);
 
-}  // namespace couplet
+}  // namespace couplet::coupler

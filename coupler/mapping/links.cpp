@@ -13,7 +13,7 @@
 #include "coupler/mapping/conjugate_map.hpp"
 #include "coupler/mapping/map_projection.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 using Datum = Interface::Datum;
@@ -285,4 +285,4 @@ std::vector<Links::Amount> Links::amounts(const std::vector<Exchange>& given) co
   return result;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

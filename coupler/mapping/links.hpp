@@ -8,7 +8,7 @@
 #include "coupler/exchange/side.hpp"
 #include "coupler/mapping/mapping.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// Who gives what to whom among any number of participants: each datum that one takes comes from another that
 /// gives a datum of the same name. Where several give it (two structures in one fluid), every place takes it
@@ -57,4 +57,4 @@ class Links {
   std::vector<std::string> notes_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

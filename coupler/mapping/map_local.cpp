@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 double wendland(double r) {
@@ -73,4 +73,4 @@ std::vector<double> local_weights(const std::vector<Vec3>& points, std::span<con
   return {w.data(), w.data() + n};
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

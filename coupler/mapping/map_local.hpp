@@ -6,7 +6,7 @@
 
 #include "common/base/types.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// Weights of the sources for the value at x: the interpolant by Wendland's compact C2 function
 /// phi(r) = (1 - r/R)^4 (4 r/R + 1) on these sources, with a linear polynomial [Wendland 1995; de Boer et al.
@@ -17,4 +17,4 @@ namespace couplet {
 std::vector<double> local_weights(const std::vector<Vec3>& points, std::span<const Index> sources,
                                   const Vec3& x);
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -10,7 +10,7 @@
 #include "coupler/mapping/corner_weights.hpp"
 #include "coupler/mapping/map_local.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 /// The nearest place of a face, as weights of its corners.
@@ -126,4 +126,4 @@ void check_corners(const Interface& surface, const std::string& name, GlobalInde
     if (v < 0 || v >= vertices) refuse(fmt::format("vertex {} is not one of its {}", v, vertices));
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -8,7 +8,7 @@
 #include "coupler/exchange/transfer.hpp"
 #include "coupler/mapping/sparse_map.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// Each target takes the value at its nearest point of the surface: linear along edges (2-D) and over the
 /// triangles of faces (3-D; a face of more corners is cut into triangles about its centre). Beside the
@@ -39,4 +39,4 @@ SparseMap local_interpolation(const std::vector<Vec3>& sources, const std::vecto
 /// how many there are on all ranks.
 void check_corners(const Interface& surface, const std::string& name, GlobalIndex vertices);
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -11,7 +11,7 @@
 #include "coupler/mapping/surface_rows.hpp"
 #include "coupler/mapping/surroundings.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 double extent(MPI_Comm comm, const std::vector<Vec3>& points) {
@@ -216,4 +216,4 @@ void Mapping::set(MPI_Comm comm, const PointSet& from, const PointSet& to,
                          to.what, max_distance_, mean_distance_);
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -8,7 +8,7 @@
 #include "coupler/exchange/transfer.hpp"
 #include "coupler/parameters/parameters.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// How values go from one set of points to another, as a sparse matrix over the coupler's ranks, built once
 /// on the reference configuration. By type of `coupling.mapping`:
@@ -60,4 +60,4 @@ class Mapping {
   std::string summary_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -10,7 +10,7 @@
 #include "coupler/mapping/corner_weights.hpp"
 #include "coupler/mapping/map_projection.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 using Vec2 = Eigen::Vector2d;
@@ -225,4 +225,4 @@ std::vector<Cover> covers(const Interface& surface, Index face, const Interface&
   return found;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -6,7 +6,7 @@
 
 #include "common/coupling/participant.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// The part of a face that a face of the other surface covers: integrals of the products of the corner functions
 /// of the former over it [m^2] (2-D: [m]). These functions are 1 at their corner, linear along an edge (2-D) or
@@ -22,4 +22,4 @@ struct Cover {
 std::vector<Cover> covers(const Interface& surface, Index face, const Interface& other,
                           const std::vector<Index>& candidates);
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -9,7 +9,7 @@
 #include "coupler/mapping/corner_weights.hpp"
 #include "coupler/mapping/map_local.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 constexpr double same_way = 0.5, not_against = -0.5;
@@ -117,4 +117,4 @@ const Slope& Slopes::at(Index face) {
   return slope;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -9,6 +9,10 @@
 #include "coupler/parameters/parameters.hpp"
 
 namespace couplet {
+class PointTree;
+}
+
+namespace couplet::coupler {
 
 /// The slope of a field along a surface at one of its faces, from values at faces: sum of weights.col(i) times the
 /// value at around[i], exact for linear fields as far as these faces span the surface there.
@@ -38,7 +42,7 @@ class Slopes {
   bool radial_;
   std::vector<std::vector<Index>> faces_of_;  // by vertex
   std::vector<Slope> known_;
-  std::unique_ptr<class PointTree> centres_;
+  std::unique_ptr<PointTree> centres_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -3,7 +3,7 @@
 
 #include <cassert>
 
-namespace couplet {
+namespace couplet::coupler {
 
 void SparseMap::push_row(std::span<const Index> sources, std::span<const double> weights) {
   assert(sources.size() == weights.size());
@@ -41,4 +41,4 @@ SparseMap SparseMap::transposed() const {
   return t;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -6,7 +6,7 @@
 
 #include "common/base/types.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// A linear map between two sets of places: target i is the sum of weight[k] times source[k] over
 /// offset[i] <= k < offset[i + 1]. The same for each component of a vector.
@@ -23,4 +23,4 @@ struct SparseMap {
   SparseMap transposed() const;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -14,7 +14,7 @@
 #include "coupler/mapping/slopes.hpp"
 #include "coupler/mapping/surroundings.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 using Eigen::MatrixXd;
@@ -269,4 +269,4 @@ std::vector<Transfer::Entry> faces_to_faces(MPI_Comm comm, const Interface& stru
   return rows(comm, structure, surface, type, false);
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

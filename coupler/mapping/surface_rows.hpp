@@ -9,7 +9,7 @@
 #include "coupler/exchange/transfer.hpp"
 #include "coupler/parameters/parameters.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// From values at the faces of `structure` to those at the vertices of `surface`: at each vertex the mean of the
 /// structure's field, linear over each of its faces, weighted by the function that is biorthogonal to the corner
@@ -22,4 +22,4 @@ std::vector<Transfer::Entry> faces_to_vertices(MPI_Comm comm, const Interface& s
 std::vector<Transfer::Entry> faces_to_faces(MPI_Comm comm, const Interface& structure,
                                             const Interface& surface, MappingParameters::Type type);
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -9,7 +9,7 @@
 #include "common/base/point_tree.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -208,4 +208,4 @@ std::vector<GlobalIndex> Surroundings::faces_around(const std::vector<GlobalInde
   return faces;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -7,7 +7,7 @@
 
 #include "coupler/exchange/search.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// Points of a list that is cut over the ranks, those alone that a rank asked for, by position.
 struct Nearby {
@@ -49,4 +49,4 @@ class Surroundings {
   bool has_corners_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -9,7 +9,7 @@
 #include "common/csv/line_reader.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 namespace fs = std::filesystem;
@@ -147,4 +147,4 @@ void InterfaceOutput::write_list(const Surface& surface) const {
   fs::rename(part, file);
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -9,7 +9,7 @@
 #include "coupler/exchange/side.hpp"
 #include "coupler/exchange/transfer.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// What goes over the interfaces, for ParaView: <participant>.pvd with a VTK file for each output and rank of
 /// the coupler. Faces are polygons with the data at faces; data at vertices stand at their corners, each face
@@ -39,4 +39,4 @@ class InterfaceOutput {
   std::vector<Surface> surfaces_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

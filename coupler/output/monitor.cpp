@@ -10,7 +10,7 @@
 #include "common/log/progress.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 // Forces and work as ever, moments after them.
@@ -179,4 +179,4 @@ std::string Monitor::summary(int halvings) const {
   return text;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -17,7 +17,7 @@
 #include "coupler/judge/mechanics.hpp"
 #include "coupler/mapping/links.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// The coupler's own output, by its rank 0: residuals.csv (a row a pass), participants.csv (a row a step:
 /// what each worked and waited, what it says of its step, the coupler's own work), balance.csv (forces, moments and work),
@@ -57,4 +57,4 @@ class Monitor {
          own_before_ = 0;  // processor seconds of the coupler: of the run, up to this step since it began
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -10,7 +10,7 @@
 #include "common/base/text.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 using Datum = Interface::Datum;
@@ -222,4 +222,4 @@ std::vector<double> WatchIntegrals::row(const std::vector<Exchange>& given,
   return row;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

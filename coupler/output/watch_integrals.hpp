@@ -9,7 +9,7 @@
 #include "coupler/exchange/transfer.hpp"
 #include "coupler/parameters/parameters.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// Integrals over interfaces, or over parts of them, of data that go over them (`coupling.watch`):
 ///   amounts (N, W)            sum of each component
@@ -62,4 +62,4 @@ class WatchIntegrals {
   std::vector<std::string> columns_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -8,7 +8,7 @@
 
 #include "coupler/parameters/schedule.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 using P = CouplingParameters;
@@ -143,4 +143,4 @@ double limit_of_one_pass(const P& p) { return predictor_order_of(p) >= 2 ? 1.0 /
 
 std::span<const CouplingCard> coupling_effect_cards() { return cards; }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

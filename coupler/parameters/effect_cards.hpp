@@ -7,7 +7,7 @@
 #include "common/effects/card.hpp"
 #include "coupler/parameters/parameters.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// What a run has found out (CouplingAudit); most of what the coupler sees is judged by its guards while it runs
 /// (guards.hpp). NaN: not known.
@@ -24,4 +24,4 @@ using CouplingCard = EffectCard<CouplingParameters, CouplingEvidence>;
 /// All that a coupling can have beside one pass a step over matching surfaces, in the order in which it is told.
 std::span<const CouplingCard> coupling_effect_cards();
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -8,7 +8,7 @@
 
 #include "common/base/text.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 namespace {
 
 void declare_role(config::Section& section, const char* role, std::optional<CouplingParameters::Role>& target,
@@ -318,4 +318,4 @@ void declare(config::Section& section, CouplingParameters& p) {
   section.check([&] { return problem_of_roles(p); }, p.exchange ? "exchange" : "structure");
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -9,7 +9,7 @@
 #include "common/config/section.hpp"
 #include "common/coupling/participant.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 struct AccelerationParameters {
   enum class Type { constant, aitken, iqn_ils, iqn_mvj } type = Type::iqn_ils;
@@ -91,4 +91,4 @@ struct CouplingParameters {
 };
 void declare(config::Section& section, CouplingParameters& parameters);
 
-}  // namespace couplet
+}  // namespace couplet::coupler

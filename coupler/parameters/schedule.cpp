@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace couplet {
+namespace couplet::coupler {
 
 std::vector<std::string> Schedule::everyone() const {
   std::vector<std::string> all;
@@ -47,4 +47,4 @@ Schedule schedule_of(const CouplingParameters& p) {
   return s;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -8,7 +8,7 @@
 
 #include "coupler/parameters/parameters.hpp"
 
-namespace couplet {
+namespace couplet::coupler {
 
 /// One coupling step as data: who takes part, in which order, how often.
 ///   [mover once or with each pass][group: one pass (explicit) or until it converges, one after the other
@@ -38,4 +38,4 @@ int predictor_order_of(const CouplingParameters& parameters);
 /// The schedule that the roles or the exchange of `coupling:` stand for. Throws std::bad_optional_access without either.
 Schedule schedule_of(const CouplingParameters& parameters);
 
-}  // namespace couplet
+}  // namespace couplet::coupler

@@ -313,7 +313,7 @@ def instructions(n):
     return measure
 
 
-EFFECTS = r"couplet::(?:fluid::)?(PrescribedMotion::\w+|swept_volumes|Gaps<2>::\w+|GapPockets<2>::\w+|Sample::\w+|PlaceSearch::\w+|PointValues<2>::\w+|Fluid<2>::place|set_turn)\b"
+EFFECTS = r"couplet::(?:fluid::|fv::|mesh::)?(PrescribedMotion::\w+|swept_volumes|Gaps<2>::\w+|GapPockets<2>::\w+|Sample::\w+|PlaceSearch::\w+|PointValues<2>::\w+|Fluid<2>::place|set_turn)\b"
 
 
 def off_is_nothing(job):

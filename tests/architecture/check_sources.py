@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Holds the table of docs/architecture.md: who may include whom (among sub-folders: floors.py), how many files lie in a folder, which folder sees which third-party headers, an SPDX
+"""Holds the table of docs/architecture.md: who may include whom (among sub-folders: floors.py), the namespace of a folder (namespaces.py), how many files lie in a folder, which folder sees which third-party headers, an SPDX
 line in every source file, file lengths, one reader for each format (readers.py), member functions of a class, output of runs, the papers cited, links, and clang-format where it is installed.
 Usage: check_sources.py PROJECT_ROOT"""
 import pathlib
@@ -10,6 +10,7 @@ import subprocess
 import sys
 
 from floors import climbs, crowded
+from namespaces import check_namespaces
 from readers import check_readers
 
 LONGEST = 500
@@ -159,6 +160,7 @@ def check_text(path, text):
     if len(lines) > LONGEST:
         trouble.append(f"{path}: {len(lines)} lines, at most {LONGEST} are allowed")
     if path.suffix in (".cpp", ".hpp"):
+        trouble += check_namespaces(path.as_posix(), text)
         for number, line in enumerate(lines, 1):
             match = re.match(r'\s*#\s*include\s*[<"]([^>"]+)[>"]', line)
             reason = match and wrong_include(path, match.group(1))

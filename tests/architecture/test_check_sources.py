@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The source check must notice each kind of violation, else it proves nothing."""
 import pathlib
+import re
 import sys
 
 from check_sources import check_findings, check_links, check_monitors, check_references, check_text, committed_output
 from floors import FLOORS, MOST_FILES, UPWARDS, crowded
+from namespaces import EVERYBODYS, NAMESPACES
 from readers import READERS, check_readers
 
 HEAD = "// SPDX-License-Identifier: Apache-2.0\n"
@@ -43,6 +45,10 @@ WRONG = {
     ("fluid_solver/e.cpp", HEAD + "MPI_Recv(at, n, MPI_BYTE, 0, 0, comm, MPI_STATUS_IGNORE);\n"): "a second reader",
     ("common/base/a.cpp", HEAD + "\n" * 600): "601 lines",
     ("common/base/a.hpp", HEAD + class_of(41)): "A has 41 member functions",
+    ("coupler/a.hpp", HEAD + "namespace couplet {\nint a();\n}  // namespace couplet\n"): "stands in couplet::coupler",
+    ("coupler/mapping/a.hpp", HEAD + "namespace couplet { struct A {}; }\n"): "stands in couplet::coupler",
+    ("thermocline/bed/a.hpp", HEAD + "namespace couplet::fluid\n{\nclass A;\nint f(A&);\n}\n"): "stands in couplet::thermocline",
+    ("common/csv/a.hpp", HEAD + "namespace couplet::csvs {\nclass A;\nint a();\n}\n"): "stands in couplet::csv",
 }
 RIGHT = [
     ("common/io/hdf5_reader.cpp", HEAD + "const Handle id(H5Fopen(name, 0, 0), H5Fclose);  // hid_t\n"),
@@ -52,6 +58,11 @@ RIGHT = [
     ("fluid_solver/a.cpp", HEAD + '#include "fluid_solver/step/fluid.hpp"\n#include "common/fv/expression.hpp"\n'),
     ("common/base/a.cpp", HEAD + "#include <nanoflann.hpp>\n"),
     ("coupler/judge/a.cpp", HEAD + '#include "coupler/judge/b.hpp"\n#include "coupler/mapping/links.hpp"\n'),
+    ("coupler/a.hpp", HEAD + "namespace couplet::fluid {\nclass A;\ntemplate <int D>\nstruct B;\n}\nnamespace couplet::coupler {\nint f(A&);\n}\n"),
+    ("common/csv/a.hpp", HEAD + "namespace couplet::csv::detail {\nint f();\n}\n"),
+    ("coupler/a.cpp", HEAD + "namespace couplet {\nint f();\n}\n"),
+    ("tests/unit/a.hpp", HEAD + "namespace couplet {\nint f();\n}\n"),
+    ("common/base/types.hpp", HEAD + "namespace couplet {\nusing Index = int;\n}\n"),
     ("common/base/a.hpp", HEAD + class_of(40)),
     ("common/base/a.hpp", HEAD + class_of(40).replace("class A", "struct B {};\nstruct A")),
 ]
@@ -85,6 +96,14 @@ for place, included in UPWARDS:
     if f'"{included}"' not in (ROOT / place).read_text():
         print(f"floors.py: {place} does not include {included} any more")
         failed += 1
+for place, reason in EVERYBODYS.items():
+    if not re.search(r"^namespace couplet \{", (ROOT / place).read_text(), re.M) or len(reason) < 20:
+        print(f"namespaces.py: {place} needs no exception, or has no reason")
+        failed += 1
+rows = dict(re.findall(r"^\| `([\w/.]+)` \| `(couplet[\w:]*)` \|", (ROOT / "docs/architecture.md").read_text(), re.M))
+if rows != {**NAMESPACES, **{place: "couplet" for place in EVERYBODYS}}:
+    print(f"namespaces.py and docs/architecture.md differ: {sorted(set(rows.items()) ^ set(NAMESPACES.items()))}")
+    failed += 1
 BIB = "@article{stone1968,\n  year = {1968}\n}\n"
 CITES = "see [sto" + "ne1968]"
 REFERENCES = {

@@ -153,7 +153,7 @@ void read_checkpoint(const fs::path& file) {
   reader.read("u", u);
   ASSERT_LT(reader.read("u").size(), 51u);
   reader.read_scalar("dt");
-  LeastSquaresNewton newton(AccelerationParameters{}, MPI_COMM_SELF);
+  coupler::LeastSquaresNewton newton(coupler::AccelerationParameters{}, MPI_COMM_SELF);
   newton.load(reader);
 }
 

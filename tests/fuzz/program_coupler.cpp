@@ -8,7 +8,8 @@ std::string ProgramUnderTest::name() const { return "coupler"; }
 
 ProgramKind ProgramUnderTest::fresh() const {
   return {name(), "", true,
-          with_fresh<CouplingParameters>([](config::Section& s, CouplingParameters& p) { declare(s, p); })};
+          with_fresh<coupler::CouplingParameters>(
+              [](config::Section& s, coupler::CouplingParameters& p) { coupler::declare(s, p); })};
 }
 
 }  // namespace couplet::fuzz

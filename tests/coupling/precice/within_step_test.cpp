@@ -15,6 +15,7 @@
 #include "coupler/coupler.hpp"
 
 namespace couplet {
+using namespace coupler;
 namespace {
 
 namespace fs = std::filesystem;

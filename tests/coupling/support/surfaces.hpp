@@ -91,9 +91,9 @@ inline Interface part_of(MPI_Comm world, const Interface& whole) {
   return part;
 }
 
-inline PointSet vertices_of(const Interface& s) { return {"vertices", s.vertices, {}, &s}; }
-inline PointSet faces_of(const Interface& s) {
-  PointSet set{"faces", s.face_centres, {}, &s};
+inline coupler::PointSet vertices_of(const Interface& s) { return {"vertices", s.vertices, {}, &s}; }
+inline coupler::PointSet faces_of(const Interface& s) {
+  coupler::PointSet set{"faces", s.face_centres, {}, &s};
   set.place = Interface::Place::faces;
   for (const Vec3& area : s.face_areas) set.sizes.push_back(area.norm());
   return set;

@@ -8,6 +8,7 @@
 #include "coupler/acceleration/accelerator.hpp"
 
 namespace couplet {
+using namespace coupler;
 namespace {
 
 /// 30 modes of a heavy fluid, of which this rank holds those from first to last. Passes of three steps, and

@@ -14,6 +14,7 @@
 #include "coupler/acceleration/relaxation.hpp"
 
 namespace couplet {
+using namespace coupler;
 namespace {
 
 using Vector = std::vector<double>;

@@ -17,8 +17,8 @@ TEST(CornerWeights, meet_the_centre_of_a_face_that_is_no_parallelogram) {
   for (const Vec3& centre : {Vec3(1.7, 0.8, 0), Vec3(1.6, 0.9, 0), corners_mean}) {
     s.face_centres = {centre, {0.3, 0.4, 1}};
     for (Index f = 0; f < 2; ++f) {
-      const std::vector<double> weights = corner_weights(s, f);
-      const auto vertex = corners(s, f);
+      const std::vector<double> weights = coupler::corner_weights(s, f);
+      const auto vertex = coupler::corners(s, f);
       Vec3 met = Vec3::Zero();
       double sum = 0;
       for (std::size_t i = 0; i < weights.size(); ++i)
@@ -37,7 +37,7 @@ TEST(CornerWeights, are_those_of_the_triangles_about_the_mean_of_the_corners) {
   s.face_offset = {0, 4};
   s.face_vertices = {0, 1, 2, 3};
   s.face_centres = {{26. / 15, 11. / 15, 0}};
-  const std::vector<double> weights = corner_weights(s, 0);
+  const std::vector<double> weights = coupler::corner_weights(s, 0);
   const double wanted[] = {14. / 60, 18. / 60, 16. / 60, 12. / 60};
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(weights[std::size_t(i)], wanted[i], 1e-13) << i;
 }

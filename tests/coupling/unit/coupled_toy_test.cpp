@@ -17,6 +17,7 @@
 #include "tests/coupling/toy/spring.hpp"
 
 namespace couplet {
+using namespace coupler;
 namespace {
 
 namespace fs = std::filesystem;

@@ -44,7 +44,7 @@ inline void lay_out(Interface& line, int n_vertices, bool faces = false, double 
 
 /// A case of a fluid and a solid in one process, in a folder of its own.
 struct ForeignCase {
-  CouplingParameters coupling;
+  coupler::CouplingParameters coupling;
   SimulationParameters simulation;
   std::filesystem::path folder = std::filesystem::temp_directory_path() /
                                  ("couplet-foreign-" + std::to_string(::getpid())),
@@ -53,16 +53,17 @@ struct ForeignCase {
   ForeignCase() {
     spdlog::set_level(spdlog::level::off);
     coupling.scheme = Scheme::implicit;
-    coupling.mapping.type = MappingParameters::Type::rbf;
+    coupling.mapping.type = coupler::MappingParameters::Type::rbf;
   }
   ~ForeignCase() { std::filesystem::remove_all(folder); }
 
-  std::unique_ptr<Coupler> coupler(Participant& fluid, Participant& solid) const {
+  std::unique_ptr<coupler::Coupler> coupler(Participant& fluid, Participant& solid) const {
     std::filesystem::create_directories(folder);
-    return std::make_unique<Coupler>(coupling, simulation,
-                                     CouplerChannels{std::make_unique<LocalChannel>("fluid", fluid),
-                                                     std::make_unique<LocalChannel>("solid", solid), nullptr},
-                                     CouplerFolders{folder, folder / "checkpoints", restart});
+    return std::make_unique<coupler::Coupler>(
+        coupling, simulation,
+        coupler::CouplerChannels{std::make_unique<LocalChannel>("fluid", fluid),
+                                 std::make_unique<LocalChannel>("solid", solid), nullptr},
+        coupler::CouplerFolders{folder, folder / "checkpoints", restart});
   }
 };
 

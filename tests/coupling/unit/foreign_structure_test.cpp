@@ -152,9 +152,9 @@ TEST(ForeignStructure, a_checkpoint_of_one_that_gives_its_velocity_has_no_displa
 }
 
 TEST(Balancing, forces_at_vertices_have_a_sum_a_moment_and_work) {
-  const Side side(MPI_COMM_SELF, "solid", {2, {{1, 0, 0}, {3, 0, 0}}, {}, {}, {}, {}});
-  const Balance b = Balancing(MPI_COMM_SELF, side)({{"Push", {0, 2, 1, 5}}}, {{"Push", "N", Place::vertices}},
-                                                   {0.5, 0.1, 0.2, 0.3});
+  const coupler::Side side(MPI_COMM_SELF, "solid", {2, {{1, 0, 0}, {3, 0, 0}}, {}, {}, {}, {}});
+  const coupler::Balance b = coupler::Balancing(MPI_COMM_SELF, side)(
+      {{"Push", {0, 2, 1, 5}}}, {{"Push", "N", Place::vertices}}, {0.5, 0.1, 0.2, 0.3});
   EXPECT_EQ(b.force, Vec3(1, 7, 0));
   EXPECT_EQ(b.moment, Vec3(0, 0, 17));
   EXPECT_DOUBLE_EQ(b.work, 0.2 + 0.2 + 1.5);

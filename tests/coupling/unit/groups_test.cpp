@@ -15,6 +15,7 @@
 #include "tests/coupling/toy/spring.hpp"
 
 namespace couplet {
+using namespace coupler;
 namespace {
 
 namespace fs = std::filesystem;

@@ -12,6 +12,7 @@
 #include "coupler/judge/places.hpp"
 
 namespace couplet {
+using namespace coupler;
 namespace {
 
 using testing::HasSubstr;

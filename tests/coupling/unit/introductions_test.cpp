@@ -5,6 +5,7 @@
 #include "tests/coupling/unit/foreign.hpp"
 
 namespace couplet {
+using namespace coupler;
 namespace {
 
 class Nobody final : public Quiet {

@@ -72,7 +72,7 @@ struct LagRun {
   /// Two masses of 0.5 kg, which swing with 1 rad/s together with the fluid.
   void operator()() {
     fs::create_directories(folder);
-    CouplingParameters coupling;
+    coupler::CouplingParameters coupling;
     coupling.scheme = scheme;
     coupling.convergence.relative = 1e-12;
     coupling.predictor_order = order;
@@ -86,9 +86,10 @@ struct LagRun {
     Drag dragged(piston, drag);
     Watched spring({.mass = 0.5, .stiffness = (1 + mu) / 2}, way);
     spring.fails_below = fails_below;
-    CouplerChannels channels{std::make_unique<LocalChannel>("fluid", dragged),
-                             std::make_unique<LocalChannel>("solid", spring), nullptr};
-    Coupler coupler(coupling, simulation, std::move(channels), {folder, folder / "checkpoints", restart});
+    coupler::CouplerChannels channels{std::make_unique<LocalChannel>("fluid", dragged),
+                                      std::make_unique<LocalChannel>("solid", spring), nullptr};
+    coupler::Coupler coupler(coupling, simulation, std::move(channels),
+                             {folder, folder / "checkpoints", restart});
     spdlog::set_level(spdlog::level::info);
     testing::internal::CaptureStdout();
     const std::string problem = coupler.run();

@@ -12,6 +12,7 @@
 #include "tests/coupling/support/surfaces.hpp"
 
 namespace couplet {
+using namespace coupler;
 namespace {
 
 using Kind = Mapping::Kind;

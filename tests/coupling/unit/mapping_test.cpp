@@ -11,6 +11,7 @@
 #include "common/base/error.hpp"
 
 namespace couplet {
+using namespace coupler;
 namespace {
 
 using Kind = Mapping::Kind;

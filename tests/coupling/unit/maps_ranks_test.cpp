@@ -13,6 +13,7 @@
 #include "tests/support/world.hpp"
 
 namespace couplet {
+using namespace coupler;
 namespace {
 
 /// n points on a spiral, this rank's part of them; `turned`: the list runs the other way.

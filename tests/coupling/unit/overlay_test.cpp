@@ -19,7 +19,7 @@ double length_given(const Interface& other) {
   std::vector<Index> all(other.face_centres.size());
   std::iota(all.begin(), all.end(), Index(0));
   Eigen::Matrix2d products = Eigen::Matrix2d::Zero();
-  for (const Cover& c : covers(edge, 0, other, all)) products += c.products;
+  for (const coupler::Cover& c : coupler::covers(edge, 0, other, all)) products += c.products;
   // The samples stand for what they lie in: the mass matrix of an edge nearly, its sum exactly.
   EXPECT_NEAR(products(0, 0), 1. / 3, 0.05);
   EXPECT_NEAR(products(1, 1), 1. / 3, 0.05);
@@ -44,7 +44,7 @@ TEST(Overlay, a_part_of_a_face_that_nothing_covers_goes_to_the_nearest_in_full) 
   other.vertices = {{0, 0, 0}, {0.4, 0, 0}, {0.4, 1, 0}, {0, 1, 0}};
   other.face_centres = {{0.2, 0.5, 0}}, other.face_areas = {{0, 0, -0.4}};
   other.face_offset = {0, 4}, other.face_vertices = {0, 3, 2, 1};
-  const std::vector<Cover> part = covers(face, 0, other, {0});
+  const std::vector<coupler::Cover> part = coupler::covers(face, 0, other, {0});
   ASSERT_EQ(part.size(), 1);
   EXPECT_NEAR(part[0].products.sum(), 1, 1e-12);
 }

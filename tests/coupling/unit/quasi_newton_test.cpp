@@ -13,6 +13,7 @@
 #include "coupler/acceleration/fixed_point.hpp"
 
 namespace couplet {
+using namespace coupler;
 namespace {
 
 using Vector = std::vector<double>;

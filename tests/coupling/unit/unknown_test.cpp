@@ -6,6 +6,7 @@
 #include <cmath>
 
 namespace couplet {
+using namespace coupler;
 namespace {
 
 using Place = Interface::Place;

@@ -8,6 +8,7 @@
 #include "coupler/acceleration/volume_level.hpp"
 
 namespace couplet {
+using namespace coupler;
 namespace {
 
 using Place = Interface::Place;

@@ -93,7 +93,7 @@ class Bag final : public Participant {
 };
 
 struct BagRun {
-  CouplingParameters coupling;
+  coupler::CouplingParameters coupling;
   SimulationParameters simulation;
   toy::SpringParameters spring;
   int bags = 1;
@@ -108,8 +108,8 @@ struct BagRun {
   BagRun() {
     spdlog::set_level(spdlog::level::off);
     coupling.scheme = Scheme::implicit;
-    coupling.acceleration.type = AccelerationParameters::Type::iqn_ils;
-    coupling.mapping.type = MappingParameters::Type::nearest;
+    coupling.acceleration.type = coupler::AccelerationParameters::Type::iqn_ils;
+    coupling.mapping.type = coupler::MappingParameters::Type::nearest;
     coupling.exchange.emplace();
     simulation.end_time = 1;
     simulation.time_step = 0.02;
@@ -134,8 +134,8 @@ struct BagRun {
       coupling.exchange->participants = {"left", "right", "wall"};
       channels.push_back(std::make_unique<LocalChannel>("right", right));
     }
-    Coupler coupler(MPI_COMM_SELF, coupling, simulation, std::move(channels),
-                    {folder, folder / "checkpoints", restart});
+    coupler::Coupler coupler(MPI_COMM_SELF, coupling, simulation, std::move(channels),
+                             {folder, folder / "checkpoints", restart});
     problem = coupler.run();
     iterations = double(coupler.iterations()) / double(std::max<GlobalIndex>(1, coupler.steps()));
     position = coupler.given_by("wall").at("displacement");
@@ -288,7 +288,7 @@ TEST(VolumeLevel, arrangements_that_cannot_hold_a_volume_are_refused) {
   lagged.coupling.scheme = Scheme::explicit_;
   EXPECT_THAT([&] { lagged(); }, testing::ThrowsMessage<Error>(HasSubstr("'left' is a closed fluid")));
   BagRun jacobi;
-  jacobi.coupling.exchange->order = CouplingParameters::Exchange::Order::parallel;
+  jacobi.coupling.exchange->order = coupler::CouplingParameters::Exchange::Order::parallel;
   EXPECT_THAT([&] { jacobi(); }, testing::ThrowsMessage<Error>(HasSubstr("order: serial")));
 }
 

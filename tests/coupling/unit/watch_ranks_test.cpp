@@ -39,11 +39,12 @@ std::vector<double> vectors(const std::vector<Vec3>& points, const std::function
   return values;
 }
 
-std::vector<double> watch(const Interface& whole, const std::map<std::string, WatchParameters>& watched,
+std::vector<double> watch(const Interface& whole,
+                          const std::map<std::string, coupler::WatchParameters>& watched,
                           const std::function<void(const Interface&, Exchange&, Exchange&)>& fill) {
-  std::vector<Side> sides;
+  std::vector<coupler::Side> sides;
   sides.emplace_back(world, "sheet", tests::part_of(world, whole));
-  const WatchIntegrals integrals(world, sides, watched);
+  const coupler::WatchIntegrals integrals(world, sides, watched);
   Exchange given, taken;
   fill(sides[0].interface, given, taken);
   const auto row = integrals.row({given}, {taken});
@@ -116,7 +117,7 @@ TEST(WatchIntegrals, what_has_not_gone_over_yet_is_no_number) {
   EXPECT_TRUE(std::isnan(row[0]) && std::isnan(row[1]));
 }
 
-void expect_refused(const Interface& whole, const WatchParameters& p, const std::string& text) {
+void expect_refused(const Interface& whole, const coupler::WatchParameters& p, const std::string& text) {
   try {
     watch(whole, {{"it", p}}, [](const Interface&, Exchange&, Exchange&) {});
     ADD_FAILURE() << "not refused: " << text;

@@ -14,6 +14,7 @@
 #include "tests/coupling/toy/modal.hpp"
 
 namespace couplet {
+using namespace coupler;
 namespace {
 
 namespace fs = std::filesystem;

@@ -12,6 +12,7 @@
 #include "thermocline/judge/effect_cards.hpp"
 
 namespace couplet::testing {
+using namespace coupler;
 namespace {
 
 using ::testing::ElementsAre;

@@ -99,7 +99,7 @@ GUARD = {
     "fluid_solver": r"couplet::fluid::(FractionalStep<\d>::judge|Fluid<\d>::(refuse_inverted|check_wall_velocity))\(",
     "solid_solver": r"couplet::SolidJudge::(look|see_inertia)\(",
     "mesh_mover": r"couplet::mesh_mover::Guard::refusal\b",
-    "coupler": r"couplet::(Coupler::watch|IterationGuard::pass)\(",
+    "coupler": r"couplet::coupler::(Coupler::watch|IterationGuard::pass)\(",
 }
 
 
