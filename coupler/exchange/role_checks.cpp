@@ -22,7 +22,7 @@ void check_dimensions(const std::vector<Side>& sides, const std::string& structu
 void check_roles(const CouplingParameters& p, const std::vector<Side>& sides) {
   if (p.moves_alone()) return;  // neither has an interface
   if (!p.exchange && p.structure) check_dimensions(sides, p.structure->participant);
-  const auto check = [&](const char* role, const std::optional<CouplingParameters::Role>& who) {
+  const auto check = [&](const char* role, const auto& who) {  // as it is: a Role of it would be a copy
     if (!who) return;
     const auto side = std::ranges::find(sides, who->participant, &Side::name);
     if (side == sides.end()) return;
