@@ -6,8 +6,10 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/body/small_strain.hpp"
 #include "solid_solver/boundary/mesh_checks.hpp"
 #include "solid_solver/boundary/rigid_modes.hpp"
+#include "solid_solver/large_strain/finite_strain.hpp"
 #include "solid_solver/large_strain/updated_lagrangian.hpp"
 #include "solid_solver/method/solution_method.hpp"
 
@@ -41,6 +43,17 @@ FaceGradientScheme scheme_for(const Mesh& mesh, const SolidParameters& parameter
   return scheme;
 }
 
+std::unique_ptr<Equilibrium> make_equilibrium(const Mesh& mesh, const ElasticKernel& kernel,
+                                              const ElasticOperator& rows,
+                                              const SmallStrain::Effects& effects,
+                                              const SolidParameters& parameters) {
+  if (!has_finite_strain(parameters))
+    return std::make_unique<SmallStrain>(mesh, kernel, rows, effects, parameters);
+  if (parameters.method.type == MethodParameters::Type::segregated)
+    return std::make_unique<UpdatedLagrangian>(mesh, rows, parameters);
+  return std::make_unique<FiniteStrain>(mesh, rows, parameters);
+}
+
 }  // namespace
 
 SolidBody::SolidBody(LoadedMesh body, SolidParameters parameters)
@@ -54,21 +67,11 @@ SolidBody::SolidBody(LoadedMesh body, SolidParameters parameters)
       prescribed_(mesh_, boundaries_, elastic_),
       rigid_(mesh_, elastic_, boundaries_.rigid_faces()) {
   check_supports();
-  if (has_finite_strain(parameters_)) make_finite();
+  equilibrium_ = make_equilibrium(mesh_, kernel_, elastic_, effects_, parameters_);
   find_mass();
   if (!parameters_.body_force.empty())
     body_force_ = make_expressions(parameters_.body_force, mesh_.dim, "body-force");
   effects_ = make_effects(mesh_, elastic_, parameters_);
-}
-
-void SolidBody::make_finite() {
-  if (parameters_.method.type == MethodParameters::Type::segregated) {
-    finite_ = std::make_unique<UpdatedLagrangian>(mesh_, elastic_, parameters_);
-    return;
-  }
-  auto newton = std::make_unique<FiniteStrain>(mesh_, elastic_, parameters_);
-  newton_ = newton.get();
-  finite_ = std::move(newton);
 }
 
 void SolidBody::check_supports() const {
@@ -103,7 +106,7 @@ void SolidBody::find_mass() {
   std::vector<double> densities;
   for (Index c = 0; c < mesh_.cells.n_local(); ++c) densities.push_back(density(c));
   has_mass_ = kernel_.set_density(densities);
-  if (newton_) newton_->set_density(densities);
+  equilibrium_->set_density(densities);
 }
 
 bool SolidBody::apply_stiffness() {

@@ -11,8 +11,7 @@
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/boundary/boundaries.hpp"
 #include "solid_solver/boundary/rigid_patches.hpp"
-#include "solid_solver/large_strain/finite_strain.hpp"
-#include "solid_solver/large_strain/large_strain.hpp"
+#include "solid_solver/method/equilibrium.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 #include "solid_solver/thermal/effect.hpp"
 
@@ -41,10 +40,8 @@ class SolidBody final {
   const ElasticOperator& elastic() const { return elastic_; }
   /// The rows of elastic() with the face gradient that was chosen.
   const ElasticKernel& kernel() const { return kernel_; }
-  /// Large strain: in place of the kernel's Hooke's law; null: small.
-  LargeStrain* finite() const { return finite_.get(); }
-  /// The same if Newton's method solves for it, else null.
-  FiniteStrain* newton() const { return newton_; }
+  /// How it resists, at small strain by kernel().
+  Equilibrium& equilibrium() const { return *equilibrium_; }
   /// Patches that move as rigid bodies.
   const RigidPatches& rigid() const { return rigid_; }
   const PrescribedDisplacement& prescribed() const { return prescribed_; }
@@ -62,6 +59,14 @@ class SolidBody final {
   /// Takes the elastic constants that an effect has changed; true: all that was made for the old ones is of no
   /// use any more. Collective.
   bool apply_stiffness();
+  /// Adds the loads of the boundaries at time t that the equilibrium does not take as pressures, as SolidBoundaries does.
+  void add_dead_loads(double t, std::span<double> forces) const {
+    boundaries_.add_forces(t, forces, !equilibrium_->takes_pressure());
+  }
+  /// It knows the pressures at time t that follow the surface. Collective.
+  void place_pressures(double t) const {
+    if (equilibrium_->takes_pressure()) equilibrium_->set_pressure(boundaries_.pressures(t));
+  }
   bool has_body_forces() const { return !body_force_.empty() || !parameters_.gravity.empty(); }
   /// Body forces and weight of the owned cells at time t [N], `dim` values each; empty: none.
   std::vector<double> body_forces(double t) const;
@@ -88,7 +93,6 @@ class SolidBody final {
 
  private:
   void check_supports() const;
-  void make_finite();
   void find_mass();
 
   const Mesh mesh_;
@@ -98,8 +102,7 @@ class SolidBody final {
   SolidBoundaries boundaries_;
   ElasticOperator elastic_;
   ElasticKernel kernel_;
-  std::unique_ptr<LargeStrain> finite_;
-  FiniteStrain* newton_ = nullptr;
+  std::unique_ptr<Equilibrium> equilibrium_;
   bool has_mass_ = false;
   PrescribedDisplacement prescribed_;
   RigidPatches rigid_;

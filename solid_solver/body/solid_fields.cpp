@@ -2,15 +2,6 @@
 #include "solid_solver/body/solid_fields.hpp"
 
 namespace couplet {
-namespace {
-
-Tensor3 symmetric(const Tensor3& gradient) { return 0.5 * (gradient + gradient.transpose()); }
-
-/// Green's strain (F^T F - I) / 2; entry (i, j) of the gradient is d u_j / d x_i.
-Tensor3 green(const Tensor3& gradient) { return symmetric(gradient) + 0.5 * gradient * gradient.transpose(); }
-
-}  // namespace
-
 SolidFields::SolidFields(const SolidBody& body, const SolidState& state, const LastSolve& last)
     : body_(body),
       state_(state),
@@ -44,38 +35,34 @@ std::vector<double> SolidFields::known_acceleration() const {
   return result;
 }
 
+Displaced SolidFields::displaced(std::span<const double> points) const {
+  return {[this] { return body_.unknowns_of(state_.cell_u, state_.face_u); }, state_.known,
+          [this, points](Index first, Index count) {
+            return body_.face_gradients(first, count, displacement(points));
+          },
+          [this, points] { return cell_gradient(points); }};
+}
+
 std::vector<Tensor3> SolidFields::face_stress(Index first, Index count,
                                               std::span<const double> points) const {
-  if (body_.finite()) return finite_face_stress(first, count);
-  std::vector<Tensor3> stress = body_.face_gradients(first, count, displacement(points));
-  for (Index i = 0; i < count; ++i) stress[i] = elastic_.stress(mesh_.owner[first + i], stress[i]);
-  for (const auto& effect : body_.effects()) effect->add_face_stress(first, stress);
-  return stress;
+  return body_.equilibrium().face_stress(displaced(points), first, count);
 }
 
 std::vector<Tensor3> SolidFields::face_strain(Index first, Index count,
                                               std::span<const double> points) const {
   std::vector<Tensor3> strain = body_.face_gradients(first, count, displacement(points));
-  for (Tensor3& e : strain) e = body_.finite() ? green(e) : symmetric(e);
+  body_.equilibrium().to_strain(strain);
   return strain;
 }
 
 std::vector<Tensor3> SolidFields::cell_strain(std::span<const double> points) const {
   std::vector<Tensor3> strain = cell_gradient(points);
-  for (Tensor3& e : strain) e = body_.finite() ? green(e) : symmetric(e);
+  body_.equilibrium().to_strain(strain);
   return strain;
 }
 
 std::vector<Tensor3> SolidFields::cell_stress(std::span<const double> points) const {
-  if (body_.finite()) return finite_cell_stress();
-  std::vector<Tensor3> stress = cell_gradient(points);
-  for (std::size_t c = 0; c < stress.size(); ++c) stress[c] = elastic_.stress(Index(c), stress[c]);
-  for (const auto& effect : body_.effects()) effect->add_cell_stress(stress);
-  // Across a 2-D scene: lambda tr(epsilon) in plane strain (it stands there already), nothing in plane
-  // stress.
-  if (mesh_.dim == 2 && parameters_.plane == SolidParameters::Plane::stress)
-    for (Tensor3& s : stress) s(2, 2) = 0;
-  return stress;
+  return body_.equilibrium().cell_stress(displaced(points));
 }
 
 const PointTensors& SolidFields::point_tensors() const {
@@ -131,7 +118,7 @@ DiscreteStress SolidFields::discrete_stress(std::span<const double> points) cons
 
 std::vector<double> SolidFields::point_stress(std::span<const double> points,
                                               std::span<const std::uint8_t> wanted) const {
-  if (body_.finite()) {
+  if (!body_.equilibrium().is_linear()) {
     const std::vector<Tensor3> faces = face_stress(mesh_.n_interior, mesh_.boundary.n_owned(), points);
     return point_tensors().interpolate(cell_stress(points), faces);
   }

@@ -68,10 +68,7 @@ class SolidFields final {
   DiscreteStress discrete_stress(std::span<const double> points) const;
   std::vector<PatchForce> reactions_by_trial_functions() const;
   ElasticLoads loads_now() const;
-  // Of large strain, finite_fields.cpp.
-  void visit_accepted(const LargeStrain::Take& take) const;
-  std::vector<Tensor3> finite_face_stress(Index first, Index count) const;
-  std::vector<Tensor3> finite_cell_stress() const;
+  Displaced displaced(std::span<const double> points) const;
 
   const SolidBody& body_;
   const SolidState& state_;

@@ -22,8 +22,8 @@ Wrench sum_of(const Wrench& here, MPI_Comm comm) {
 }  // namespace
 
 std::vector<PatchForce> SolidFields::reactions(std::span<const double> points) const {
-  if (body_.kernel().is_symmetric() || body_.finite()) return reactions_by_trial_functions();
-  std::vector<PatchForce> forces;
+  std::vector<PatchForce> forces = reactions_by_trial_functions();
+  if (!forces.empty()) return forces;
   // One pass over the faces between the first and the last that is held, often few of the boundary's.
   Index first = mesh_.n_flux_faces(), end = mesh_.n_interior;
   for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
@@ -45,14 +45,13 @@ std::vector<PatchForce> SolidFields::reactions(std::span<const double> points) c
   return forces;
 }
 
-/// What the symmetric kernel's stress leaves there.
+/// What the stress leaves there; empty: of a gradient without such functions.
 std::vector<PatchForce> SolidFields::reactions_by_trial_functions() const {
   std::vector<PatchForce> forces;
   const std::vector<double> u = body_.unknowns_of(state_.cell_u, state_.face_u);
-  if (body_.finite()) body_.finite()->set_pressure(body_.boundaries().pressures(state_.time));
-  const std::vector<Wrench> held = body_.finite()
-                                       ? body_.finite()->holding_forces(u, state_.known, loads_now())
-                                       : body_.kernel().holding_forces(u, state_.known, loads_now());
+  body_.place_pressures(state_.time);
+  const std::vector<Wrench> held = body_.equilibrium().holding_forces(u, state_.known, loads_now());
+  if (held.empty()) return forces;
   for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
     if (!body_.boundaries().holds(p)) continue;
     forces.push_back({sum_of(held[p], mesh_.comm), mesh_.patches[p].name});
@@ -64,7 +63,7 @@ std::vector<PatchForce> SolidFields::reactions_by_trial_functions() const {
 ElasticLoads SolidFields::loads_now() const {
   ElasticLoads loads;
   loads.faces.assign(std::size_t(mesh_.boundary.n_owned()) * mesh_.dim, 0);
-  body_.boundaries().add_forces(state_.time, loads.faces, !body_.finite());
+  body_.add_dead_loads(state_.time, loads.faces);
   for (std::size_t i = 0; i < last_.interface.size(); ++i) loads.faces[i] += last_.interface[i];
   loads.cells = body_.body_forces(state_.time);
   for (const auto& effect : body_.effects()) {
@@ -76,8 +75,7 @@ ElasticLoads SolidFields::loads_now() const {
 }
 
 Vec3 SolidFields::total_load() const {
-  Vec3 load = last_.body_force + last_.face_force;
-  if (body_.finite()) load += body_.finite()->pressure_force();
+  Vec3 load = last_.body_force + last_.face_force + body_.equilibrium().pressure_force();
   for (int a = 0; a < 3; ++a) load[a] = sum(mesh_.comm, load[a]);
   return load;
 }

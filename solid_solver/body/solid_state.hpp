@@ -9,7 +9,7 @@
 #include "common/parallel/collective.hpp"
 #include "common/time/time_scheme.hpp"
 #include "solid_solver/body/energies.hpp"
-#include "solid_solver/method/solution_method.hpp"
+#include "solid_solver/method/equilibrium.hpp"
 
 namespace couplet {
 
@@ -38,15 +38,6 @@ struct SolidState {
 struct SolverEffort {
   int solves = 0, iterations = 0, inner_iterations = 0;
   double residual = 0;  ///< norm of the last solve's
-};
-
-/// What belongs to one size of the inertia term: factors and preconditioners are made once for it.
-struct SolidSystem {
-  double mass_factor;                      ///< (d + alpha c) / s, see SolidStepper [1/s^2]; 0: static
-  std::vector<double> inertia;             ///< per owned cell: mass factor times mass [N/m]; empty: static
-  std::unique_ptr<SolutionMethod> method;  ///< null: finite strain has its own
-  std::vector<double> node_inertia;        ///< of finite strain: of the unknown nodes; empty: static
-  ResidualProjection* projection() const { return method ? method->projection() : nullptr; }  ///< null: none
 };
 
 /// A stage of the step under way, with all that does not depend on the interface load.

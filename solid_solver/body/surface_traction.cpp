@@ -36,7 +36,7 @@ Tensor3 mean_stress(std::span<const Index> corners, std::span<const double> poin
 std::vector<double> SolidFields::traction(std::span<const Vec3> places,
                                           std::span<const double> point_stress) const {
   const std::size_t n = mesh_.boundary.n_owned(), dim = mesh_.dim;
-  const bool finite = body_.finite() != nullptr;
+  const bool finite = !body_.equilibrium().is_linear();
   const std::vector<SurfaceTraction> known = finite ? std::vector<SurfaceTraction>(n) : known_tractions();
   std::vector<double> result(n * dim);
   for (std::size_t b = 0; b < n; ++b) {

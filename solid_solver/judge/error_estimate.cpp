@@ -45,10 +45,7 @@ double SolidErrorEstimate::mean_square(std::span<const double> cells) const {
 /// Over the size of the solution.
 double SolidErrorEstimate::left_by_solver() const {
   const LastSolve& last = stepper_.last_solve();
-  const double residual = stepper_.effort().residual;
-  if (body_.finite()) return residual;  // relative already
-  const double size = norm(body_.mesh().comm, last.rhs);
-  return size > 0 ? residual / size : 0;
+  return body_.equilibrium().share_left(stepper_.effort().residual, norm(body_.mesh().comm, last.rhs));
 }
 
 /// |u . (b - A u)| / |u . b| of the last static solve, linear: u . b grows by as much as A u misses of b.
@@ -131,10 +128,9 @@ double SolidErrorEstimate::finite_mesh_error() const {
   const SolidState& state = stepper_.state();
   const std::vector<double> unknowns = body_.unknowns_of(state.cell_u, state.face_u);
   const double energy = missed_of_large_strain(state, unknowns);
-  FiniteStrain* newton = body_.newton();
-  if (body_.is_dynamic() || !newton) return energy;
+  if (body_.is_dynamic()) return energy;
   try {
-    return energy * newton->softness(unknowns, state.known);
+    return energy * body_.equilibrium().softness(unknowns, state.known);
   } catch (const SolveFailure&) {
     return ErrorParts::unknown;
   }
@@ -163,7 +159,7 @@ void SolidErrorEstimate::see_step() {
   const StepErrors::Seen step = steps_.add(std::span(before.cell_v).first(n), std::span(now.cell_v).first(n),
                                            now.dt, before.dt, norm(now.cell_u), norm);
   linear_.add({.error = left_by_solver() * step.size, .rate = step.rate, .size = step.size, .dt = step.dt});
-  if (!body_.finite()) see_swing(now, step);
+  if (body_.equilibrium().is_linear()) see_swing(now, step);
 }
 
 /// Half of u . K u is the strain energy, of the gradients without an energy nearly so.
@@ -184,9 +180,9 @@ ErrorParts SolidErrorEstimate::parts() const {
     parts.step = steps_.over_size();
     parts.linear = linear_.over_size();
   } else {
-    parts.linear = body_.finite() ? left_by_solver() : missed_work();
+    parts.linear = body_.equilibrium().is_linear() ? missed_work() : left_by_solver();
   }
-  if (body_.finite()) {
+  if (!body_.equilibrium().is_linear()) {
     parts.mesh = finite_mesh_error();
     return parts;
   }

@@ -18,7 +18,7 @@ SolidJudge::SolidJudge(const SolidBody& body, const SolidStepper& stepper, const
 
 /// Of the accepted state; a doubtful one is told once, loudly. Collective.
 void SolidJudge::look() {
-  if (body_.finite()) return look_at_finite();
+  if (!body_.equilibrium().is_linear()) return look_at_finite();
   const SolidState& state = stepper_.state();
   const std::vector<double> points = fields_.point_displacement();
   const StrainAudit strain = audit_strain(points, !body_.is_dynamic());
@@ -59,7 +59,8 @@ StrainAudit SolidJudge::compared() const {
 void SolidJudge::look_at_finite() {
   if (!body_.is_dynamic() || !body_.prescribed().is_zero()) return;
   const SolidState& state = stepper_.state();
-  const double strain = body_.finite()->energy(body_.unknowns_of(state.cell_u, state.face_u), state.known);
+  const double strain =
+      body_.equilibrium().energy(body_.unknowns_of(state.cell_u, state.face_u), state.known);
   judge_energy(strain,
                "a time scheme that does not conserve the energy of a nonlinear law; a shorter step, "
                "'energy-momentum: true' or 'time-scheme: {type: bathe}' prevents it");
@@ -124,8 +125,7 @@ void SolidJudge::estimate_large_strain() {
 
 void SolidJudge::see_buckling() {
   SolutionMethod* method = stepper_.method();
-  if (body_.finite() || !method || !body_.kernel().is_symmetric() || body_.parameters().output.buckling > 0)
-    return;
+  if (!method || !body_.kernel().is_symmetric() || body_.parameters().output.buckling > 0) return;
   const BucklingEstimate found =
       estimate_buckling(body_, fields_, stepper_.state().time, *method, compression_seen_);
   if (found.factor > 0) buckling_factor_ = std::min(buckling_factor_, found.factor);

@@ -49,9 +49,7 @@ constexpr double drowned = 0.01;
 }  // namespace
 
 FiniteStrain::FiniteStrain(const Mesh& mesh, const ElasticOperator& rows, const SolidParameters& parameters)
-    : mesh_(mesh),
-      geometry_(rows.geometry()),
-      rows_(rows),
+    : LargeStrain(mesh, rows),
       tolerance_(parameters.method.relative_tolerance),
       most_linear_(parameters.method.max_iterations) {
   const Geometry& geometry = rows.geometry();
@@ -90,6 +88,10 @@ FiniteStrain::FiniteStrain(const Mesh& mesh, const ElasticOperator& rows, const 
 std::string FiniteStrain::name() const {
   return fmt::format("Newton's method at large strain{}, symmetric face gradient",
                      by_ == TangentSolver::By::factors ? " (factors of the tangent)" : "");
+}
+
+void FiniteStrain::prepare(const SolidProblem& problem, SolidSystem& system) const {
+  system.node_inertia = couplet::node_inertia(problem);
 }
 
 TangentSolver& FiniteStrain::solver_for(double mass_factor, std::span<const double> node_inertia) {

@@ -32,24 +32,21 @@ class FiniteStrain final : public LargeStrain {
   /// Throws Error for what finite strain cannot have. Mesh and rows by reference. Collective.
   FiniteStrain(const Mesh& mesh, const ElasticOperator& rows, const SolidParameters& parameters);
 
+  bool has_tangent() const override { return true; }
+  using LargeStrain::name;
   std::string name() const override;
+  void prepare(const SolidProblem& problem, SolidSystem& system) const override;
   /// Of the local cells; dynamic analyses.
-  void set_density(std::span<const double> of_cells) { kernel_->set_density(of_cells); }
-  using Load = LargeStrainLoad;
+  void set_density(std::span<const double> of_cells) override { kernel_->set_density(of_cells); }
+  using Load = EquilibriumLoad;
   SolveStatistics solve(const Load& load, std::span<double> u) override;
   void set_pressure(std::vector<double> of_faces) override;
   std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;
   double energy(std::span<const double> unknowns, std::span<const double> known) override;
   void visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) override;
-  /// Of a state at rest in equilibrium: by how much it would give way, over itself, were the whole body softer by a (small)
-  /// share, over that share; of a linear body under loads 1, near a buckling load large. What is moved by prescribed
-  /// displacements gives way to nothing and counts as 1. Throws SolveFailure. Collective.
-  double softness(std::span<const double> unknowns, std::span<const double> known);
-  /// The least x . K x over that of `elastic`, K being the tangent at a state of equilibrium: 1 of a body without load, negative where the
-  /// equilibrium does not hold (an upper bound, hence a proof). Of pressures that follow a surface with a free rim, which
-  /// have no energy, nothing can be said so: 1. `start`: forces without the symmetry of the body. Collective.
+  double softness(std::span<const double> unknowns, std::span<const double> known) override;
   double lowest_stiffness(std::span<const double> unknowns, std::span<const double> known,
-                          const LinearMap& elastic, std::vector<double> start);
+                          const LinearMap& elastic, std::vector<double> start) override;
   Vec3 pressure_force() override { return kernel_->pressure_force(); }
   std::vector<Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
                                      const ElasticLoads& loads) override {
@@ -74,9 +71,6 @@ class FiniteStrain final : public LargeStrain {
   std::string where_worst() const;
   bool is_symmetric(std::span<const double> x, std::span<const double> y);
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
-  const ElasticOperator& rows_;
   TangentSolver::By by_ = TangentSolver::By::frames;
   bool mixed_ = false;       // pressures of their own on the way to equilibrium
   bool is_carried_ = false;  // in the solve under way

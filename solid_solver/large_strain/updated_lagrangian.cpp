@@ -29,9 +29,7 @@ int unknown_condition_of(const BoundaryRow& row) {
 
 UpdatedLagrangian::UpdatedLagrangian(const Mesh& mesh, const ElasticOperator& rows,
                                      const SolidParameters& parameters)
-    : mesh_(mesh),
-      geometry_(rows.geometry()),
-      rows_(rows),
+    : LargeStrain(mesh, rows),
       method_(parameters.method),
       accelerator_(mesh.comm, rows.n_unknowns(), acceleration_of(parameters.method)) {
   const Geometry& geometry = rows.geometry();
@@ -146,7 +144,7 @@ bool UpdatedLagrangian::look(std::span<const double> unknowns, std::span<const d
 }
 
 /// r = b - M m u - A(u) and its norm; infinite where a face is inside out.
-double UpdatedLagrangian::residual(const LargeStrainLoad& load, std::span<const double> u,
+double UpdatedLagrangian::residual(const EquilibriumLoad& load, std::span<const double> u,
                                    std::span<double> r) {
   if (!look(u, load.known)) return std::numeric_limits<double>::infinity();
   std::ranges::fill(r, 0.0);
@@ -162,7 +160,7 @@ std::string UpdatedLagrangian::where_worst() const { return worst_cell(mesh_, ge
 
 /// What is known has moved: the body goes with it as a linear one would. Left to the first guess it would be a jump in
 /// the cells beside it.
-void UpdatedLagrangian::follow_known(const LargeStrainLoad& load, std::span<double> u) {
+void UpdatedLagrangian::follow_known(const EquilibriumLoad& load, std::span<double> u) {
   std::vector<double> change(load.known.begin(), load.known.end());
   for (std::size_t i = 0; i < change.size(); ++i) change[i] -= load.before[i];
   if (!any(mesh_.comm, std::ranges::any_of(change, [](double x) { return x != 0; }))) return;
@@ -170,7 +168,7 @@ void UpdatedLagrangian::follow_known(const LargeStrainLoad& load, std::span<doub
   for (std::size_t i = 0; i < u.size(); ++i) u[i] += du[i];
 }
 
-SolveStatistics UpdatedLagrangian::solve(const LargeStrainLoad& load, std::span<double> u) {
+SolveStatistics UpdatedLagrangian::solve(const EquilibriumLoad& load, std::span<double> u) {
   const auto start = std::chrono::steady_clock::now();
   ScalarSystems& systems = frame().systems(load.mass_factor, load.inertia);
   SolveStatistics statistics;

@@ -25,9 +25,10 @@ class UpdatedLagrangian final : public LargeStrain {
   UpdatedLagrangian(const Mesh& mesh, const ElasticOperator& rows, const SolidParameters& parameters);
   ~UpdatedLagrangian() override;
 
+  using LargeStrain::name;
   std::string name() const override;
   void set_pressure(std::vector<double> of_faces) override { pressure_ = std::move(of_faces); }
-  SolveStatistics solve(const LargeStrainLoad& load, std::span<double> u) override;
+  SolveStatistics solve(const EquilibriumLoad& load, std::span<double> u) override;
   std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;
   double energy(std::span<const double> unknowns, std::span<const double> known) override;
   void visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) override;
@@ -58,14 +59,11 @@ class UpdatedLagrangian final : public LargeStrain {
   void add_forces(std::span<double> result);
   Vec3 present_area(Index f) { return cofactors_of(change_[f]) * frame().area()[f]; }
   Vec3 force_through(Index f);
-  double residual(const LargeStrainLoad& load, std::span<const double> u, std::span<double> r);
-  void follow_known(const LargeStrainLoad& load, std::span<double> u);
+  double residual(const EquilibriumLoad& load, std::span<const double> u, std::span<double> r);
+  void follow_known(const EquilibriumLoad& load, std::span<double> u);
   bool look(std::span<const double> unknowns, std::span<const double> known);
   std::string where_worst() const;
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
-  const ElasticOperator& rows_;
   const MethodParameters method_;
   double noise_ = 0;
   std::unique_ptr<FiniteLaw> law_;

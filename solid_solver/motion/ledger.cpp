@@ -97,10 +97,10 @@ double SolidLedger::kinetic(const SolidState& state, std::span<const double> kno
 void SolidLedger::add_work(const SolvedStage& stage) const {
   if (!body_.has_mass())
     add_face_work(stage);
-  else if (body_.finite())
-    add_finite_work(stage);
-  else
+  else if (body_.equilibrium().is_linear())
     add_symmetric_work(stage);
+  else
+    add_finite_work(stage);
 }
 
 /// By the forces of the faces.
@@ -179,7 +179,7 @@ void SolidLedger::add_finite_work(const SolvedStage& stage) const {
   const auto& [work, last, before, after] = stage;
   const std::vector<double> change = change_over(stage);
   const std::vector<double> loads = mean_of_ends(work, last.load_rows);
-  const std::vector<double> force = body_.finite()->forces(last.unknowns, work.known);
+  const std::vector<double> force = body_.equilibrium().forces(last.unknowns, work.known);
   double inside = 0, outside = 0;
   for (std::size_t i = 0; i < change.size(); ++i) {
     inside += force[i] * change[i];
@@ -279,15 +279,9 @@ SolidEnergies SolidLedger::total(const SolidState& state, std::span<const double
   SolidEnergies e = state.energies;
   e.conserving = parameters_.time_scheme.type == TimeScheme::trapezoidal;
   if (kernel_.is_symmetric()) {
-    const std::vector<double> unknowns = body_.unknowns_of(state.cell_u, state.face_u);
-    if (body_.finite()) {
-      e = summed(e);
-      e.strain = body_.finite()->energy(unknowns, state.known);
-      return e;
-    }
-    const ElasticField u{unknowns, state.known};
-    e.strain = 0.5 * kernel_.product(ElasticPart::stiffness, u, u);
-    return summed(e);
+    e = summed(e);
+    e.strain = body_.equilibrium().energy(body_.unknowns_of(state.cell_u, state.face_u), state.known);
+    return e;
   }
   const BodyField now{state.cell_u, state.face_u, points};
   e.strain = 0.5 * stress_work(now, now, nullptr);

@@ -68,7 +68,7 @@ void SolidStepper::save_state(CheckpointWriter& file) const {
   }
   if (body_.is_dynamic())
     file.write("load-work", std::vector<double>{state_.load_work, state_.energies.initial_kinetic});
-  if (body_.finite()) body_.finite()->save(file);
+  body_.equilibrium().save(file);
 }
 
 void SolidStepper::load_state(CheckpointReader& file) {
@@ -88,8 +88,7 @@ void SolidStepper::load_state(CheckpointReader& file) {
     state_.load_work = work[0];
     state_.energies.initial_kinetic = work[1];
   }
-  if (body_.finite())
-    body_.finite()->load(file, body_.unknowns_of(state_.cell_u, state_.face_u), state_.known);
+  body_.equilibrium().load(file, body_.unknowns_of(state_.cell_u, state_.face_u), state_.known);
 }
 
 void SolidStepper::save_guesses(CheckpointWriter& file) const {

@@ -105,7 +105,7 @@ void SolidStepper::solve(std::vector<double> interface_load) {
     for (std::size_t i = 0; i < stages_.size(); ++i) solve_stage(stages_[i], i == 0);
   } catch (const SolveFailure& failure) {
     // Linear equations: a shorter step meets the same ones.
-    if (body_.is_dynamic() || body_.finite() || step_.scheme != Scheme::standalone) throw;
+    if (body_.is_dynamic() || !body_.equilibrium().is_linear() || step_.scheme != Scheme::standalone) throw;
     throw SchemeFailure("The static step failed, and a shorter step would solve the same equations: {}",
                         failure.what());
   }
@@ -121,7 +121,7 @@ void SolidStepper::solve(std::vector<double> interface_load) {
   elastic_.impose_known(trial_.known, trial_.face_u);
   elastic_.impose_known(trial_.known_rate, trial_.face_v);
   update_trial_ghosts();
-  if (body_.finite()) body_.finite()->end_step(body_.unknowns_of(trial_.cell_u, trial_.face_u), trial_.known);
+  body_.equilibrium().end_step(body_.unknowns_of(trial_.cell_u, trial_.face_u), trial_.known);
   if (parameters_.step_control) judge_step();
 }
 
@@ -138,7 +138,7 @@ void SolidStepper::accept_step() {
   for (const auto& effect : body_.effects()) effect->accept_step();
   for (const StageWork& work : stages_)
     if (ResidualProjection* projection = work.system->projection()) projection->accept();
-  if (body_.finite()) body_.finite()->accept();
+  body_.equilibrium().accept();
   std::swap(state_, trial_);
 }
 

@@ -69,7 +69,7 @@ class SolidStepper final {
   void subtract_prescribed(StageWork& work);
   void add_body_forces(double t, std::span<double> rhs);
   void solve_stage(const StageWork& work, bool first);
-  SolveStatistics solve_finite(const StageWork& work);
+  SolveStatistics find_equilibrium(const StageWork& work);
   void add_inertia(const StageWork& work, const SolidState& now);
   void add_kernel_inertia(const StageWork& work, const SolidState& now, const Levels& known);
   void add_face_forces(const StageWork& work);

@@ -42,11 +42,7 @@ SolidSystem& SolidStepper::system_for(double mass_factor) {
   if (mass_factor > 0)
     for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
       system->inertia.push_back(mass_factor * body_.density(c) * geometry_.volume[c]);
-  if (body_.newton()) {
-    system->node_inertia = node_inertia(problem_of(*system));
-  } else if (!body_.finite()) {
-    system->method = make_solution_method(problem_of(*system), parameters_.method);
-  }
+  body_.equilibrium().prepare(problem_of(*system), *system);
   announce(*system);
   systems_.insert(systems_.begin(), std::move(system));
   return *systems_.front();
@@ -62,7 +58,7 @@ SolidProblem SolidStepper::problem_of(const SolidSystem& system) const {
 }
 
 void SolidStepper::announce(const SolidSystem& system) {
-  const std::string chosen = body_.finite() ? body_.finite()->name() : system.method->name();
+  const std::string chosen = body_.equilibrium().name(system);
   if (chosen == method_announced_) return;
   method_announced_ = chosen;
   log::info("Solution method: {}", chosen);
@@ -83,7 +79,7 @@ void SolidStepper::prepare_stage(StageWork& work) {
   work.face_force.assign(std::size_t(mesh_.boundary.n_owned()) * mesh_.dim, 0);
   add_body_forces(work.place_time, work.rhs);
   for (const auto& effect : body_.effects()) effect->add_loads(work.place_time, kernel_, work.rhs);
-  body_.boundaries().add_forces(work.place_time, work.face_force, !body_.finite());
+  body_.add_dead_loads(work.place_time, work.face_force);
   if (parameters_.output.energies) {
     work.loads = work.rhs;
     work.known.assign(trial_.known.size(), 0);
@@ -104,9 +100,7 @@ void SolidStepper::subtract_prescribed(StageWork& work) {
     if (!work.known_change.empty()) work.known_change[i] = change;
     work.known[i] = start[i] + (place + beta / work.stage.dt) * change;
   }
-  if (body_.finite()) return;  // it takes the known values themselves
-  std::vector<double> still(work.rhs.size(), 0), force(work.rhs.size());
-  kernel_.apply(still, work.known, force);
+  std::vector<double> force = body_.equilibrium().force_of_known(work.known);
   for (std::size_t i = 0; i < force.size(); ++i) work.rhs[i] -= force[i];
   work.known_force = std::move(force);
 }
@@ -136,8 +130,7 @@ void SolidStepper::solve_stage(const StageWork& work, bool first) {
   guess(work, now);
   {
     const log::ScopedTimer timer(log::timers(), "solid: linear solver");
-    const SolveStatistics statistics =
-        body_.finite() ? solve_finite(work) : work.system->method->solve(last_.rhs, last_.unknowns);
+    const SolveStatistics statistics = find_equilibrium(work);
     effort_ = {effort_.solves + 1, effort_.iterations + statistics.iterations,
                effort_.inner_iterations + statistics.inner_iterations, statistics.residual};
   }
@@ -161,16 +154,16 @@ void SolidStepper::solve_stage(const StageWork& work, bool first) {
 }
 
 /// A static guess stands where the known displacements were; a dynamic one has gone on with its own velocity.
-SolveStatistics SolidStepper::solve_finite(const StageWork& work) {
-  body_.finite()->set_pressure(body_.boundaries().pressures(work.place_time));
-  LargeStrainLoad load{last_.rhs, work.known, {}, work.system->mass_factor, parameters_.energy_momentum};
+SolveStatistics SolidStepper::find_equilibrium(const StageWork& work) {
+  body_.place_pressures(work.place_time);
+  EquilibriumLoad load{last_.rhs, work.known, {}, work.system->mass_factor, parameters_.energy_momentum};
   if (!body_.is_dynamic() && !work.known.empty()) load.before = state_.known;
   const std::vector<double> accepted = body_.unknowns_of(state_.cell_u, state_.face_u);
   load.accepted = accepted;
   load.accepted_known = state_.known;
   load.inertia = work.system->inertia;
   load.node_inertia = work.system->node_inertia;
-  return body_.finite()->solve(load, last_.unknowns);
+  return body_.equilibrium().find(load, *work.system, last_.unknowns);
 }
 
 void SolidStepper::add_inertia(const StageWork& work, const SolidState& now) {

@@ -10,9 +10,9 @@
 namespace couplet {
 
 void EquilibriumWatch::see(const SolidBody& body, const SolidStepper& stepper, const SolidFields& fields) {
-  if (body.is_dynamic() || !body.newton() || !body.rigid().empty() || is_told_) return;
+  if (body.is_dynamic() || !body.equilibrium().has_tangent() || !body.rigid().empty() || is_told_) return;
   const SolidState& now = stepper.trial();
-  const double stiffness = body.newton()->lowest_stiffness(
+  const double stiffness = body.equilibrium().lowest_stiffness(
       stepper.last_solve().unknowns, now.known,
       [&](std::span<const double> x, std::span<double> y) { body.kernel().apply(x, {}, y); },
       any_start(body));

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cauchy's stress from the accepted state at large strain.
+// Strain and Cauchy's stress at large strain.
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
-#include "solid_solver/body/solid_fields.hpp"
+#include "solid_solver/large_strain/large_strain.hpp"
 
 namespace couplet {
 
-/// F and P of the accepted state. Collective.
-void SolidFields::visit_accepted(const LargeStrain::Take& take) const {
-  body_.finite()->visit(body_.unknowns_of(state_.cell_u, state_.face_u), state_.known, take);
+/// Green's (F^T F - I) / 2.
+void LargeStrain::to_strain(std::span<Tensor3> gradients) const {
+  for (Tensor3& g : gradients) g = (0.5 * (g + g.transpose()) + 0.5 * g * g.transpose()).eval();
 }
 
-/// Cauchy's stress sigma = P F^T / J of local faces [Pa].
-std::vector<Tensor3> SolidFields::finite_face_stress(Index first, Index count) const {
+/// sigma = P F^T / J.
+std::vector<Tensor3> LargeStrain::face_stress(const Displaced& state, Index first, Index count) {
   std::vector<Tensor3> stress(count, Tensor3::Zero());
-  visit_accepted([&](Index f, const Tensor3& deformation, const Tensor3& p) {
+  visit(state.unknowns(), state.known, [&](Index f, const Tensor3& deformation, const Tensor3& p) {
     if (f < first || f >= first + count) return;
     stress[f - first] = p * deformation.transpose() / deformation.determinant();
   });
@@ -22,10 +22,10 @@ std::vector<Tensor3> SolidFields::finite_face_stress(Index first, Index count) c
 
 /// Of a cell by the pyramids over its faces: sum V_fP P F^T / sum V_fP J, the mean over the deformed cell. The
 /// ghosts' faces are another rank's.
-std::vector<Tensor3> SolidFields::finite_cell_stress() const {
+std::vector<Tensor3> LargeStrain::cell_stress(const Displaced& state) {
   constexpr int size = 10;
   std::vector<double> sums(std::size_t(mesh_.cells.n_local()) * size, 0);
-  visit_accepted([&](Index f, const Tensor3& deformation, const Tensor3& p) {
+  visit(state.unknowns(), state.known, [&](Index f, const Tensor3& deformation, const Tensor3& p) {
     const auto [here, there] = pyramids(mesh_, geometry_, f);
     const Tensor3 tau = p * deformation.transpose();
     const double j = deformation.determinant();

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "solid_solver/method/equilibrium.hpp"
+#include "solid_solver/parameters/parameters.hpp"
+#include "solid_solver/thermal/effect.hpp"
+
+namespace couplet {
+
+/// A(u) = K u in the reference configuration, with the face gradient that was chosen.
+class SmallStrain final : public Equilibrium {
+ public:
+  using Effects = std::vector<std::unique_ptr<SolidEffect>>;
+  /// All by reference.
+  SmallStrain(const Mesh& mesh, const ElasticKernel& kernel, const ElasticOperator& rows,
+              const Effects& effects, const SolidParameters& parameters)
+      : mesh_(mesh), kernel_(kernel), rows_(rows), effects_(effects), parameters_(parameters) {}
+
+  bool is_linear() const override { return true; }
+  std::string name(const SolidSystem& system) const override { return system.method->name(); }
+  void prepare(const SolidProblem& problem, SolidSystem& system) const override;
+  void set_pressure(std::vector<double>) override {}
+  std::vector<double> force_of_known(std::span<const double> known) const override;
+  SolveStatistics find(const EquilibriumLoad& load, SolidSystem& system, std::span<double> u) override;
+  std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;
+  double energy(std::span<const double> unknowns, std::span<const double> known) override;
+  std::vector<Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
+                                     const ElasticLoads& loads) override;
+  double share_left(double residual, double rows) const override { return rows > 0 ? residual / rows : 0; }
+  void to_strain(std::span<Tensor3> gradients) const override;
+  std::vector<Tensor3> face_stress(const Displaced& state, Index first, Index count) override;
+  std::vector<Tensor3> cell_stress(const Displaced& state) override;
+
+ private:
+  const Mesh& mesh_;
+  const ElasticKernel& kernel_;
+  const ElasticOperator& rows_;
+  const Effects& effects_;
+  const SolidParameters& parameters_;
+};
+
+}  // namespace couplet

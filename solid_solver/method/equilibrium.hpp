@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/elasticity/elastic_kernel.hpp"
+#include "common/linalg/linear_map.hpp"
+#include "common/linalg/linear_solver.hpp"
+#include "solid_solver/method/solution_method.hpp"
+
+namespace couplet {
+
+class CheckpointReader;
+class CheckpointWriter;
+
+/// What belongs to one size of the inertia term: factors and preconditioners are made once for it.
+struct SolidSystem {
+  double mass_factor;                      ///< (d + alpha c) / s, see SolidStepper [1/s^2]; 0: static
+  std::vector<double> inertia;             ///< per owned cell: mass factor times mass [N/m]; empty: static
+  std::unique_ptr<SolutionMethod> method;  ///< null: the equilibrium has its own
+  std::vector<double> node_inertia;        ///< of Newton's method: of the unknown nodes; empty: static
+  ResidualProjection* projection() const { return method ? method->projection() : nullptr; }  ///< null: none
+};
+
+/// What must be reached: M m u + A(u) = b, and where it comes from.
+struct EquilibriumLoad {
+  std::span<const double> rows;   ///< b
+  std::span<const double> known;  ///< columns of the operator; empty: zeros
+  std::span<const double>
+      before;                  ///< the known columns of the first guess, from which a first linear step leads
+                               ///< to `known`; empty: the guess has them already
+  double mass_factor = 0;      ///< m
+  bool is_conserving = false;  ///< stress that keeps energy and momenta from the accepted state on
+  std::span<const double> accepted{}, accepted_known{};  ///< the accepted state
+  std::span<const double> inertia{};                     ///< per owned cell, m times mass; empty: static
+  std::span<const double> node_inertia{};                ///< of the unknown nodes, of kernels with mass
+};
+
+/// A displacement, with what can be made of it. Calls are collective.
+struct Displaced {
+  std::function<std::vector<double>()> unknowns;  ///< of ElasticOperator
+  std::span<const double> known;                  ///< its columns
+  /// Gradients of the local faces first, first + 1, ... (`count` of them), and of the owned cells.
+  std::function<std::vector<Tensor3>(Index first, Index count)> face_gradients;
+  std::function<std::vector<Tensor3>()> cell_gradients;
+};
+
+/// How a body resists, at small strain or at large, and how M m u + A(u) = b is solved for it. A state is the unknowns of
+/// ElasticOperator with its known columns. All but the first functions are collective.
+class Equilibrium {
+ public:
+  virtual ~Equilibrium() = default;
+  /// A(u) = K u: solutions can be added, and a shorter step meets the same equations.
+  virtual bool is_linear() const = 0;
+  /// softness() and lowest_stiffness() are known.
+  virtual bool has_tangent() const { return false; }
+  /// Pressures stay normal to the surface that moves, so that they are a part of A: set_pressure().
+  virtual bool takes_pressure() const { return !is_linear(); }
+  /// For the log.
+  virtual std::string name(const SolidSystem& system) const = 0;
+
+  /// Of the local cells [kg/m^3]; dynamic analyses.
+  virtual void set_density(std::span<const double> /*of_cells*/) {}
+  /// What a size of the inertia term needs is made.
+  virtual void prepare(const SolidProblem& problem, SolidSystem& system) const = 0;
+  /// A pressure [Pa] on boundary faces of owned cells, one each, that follows the surface.
+  virtual void set_pressure(std::vector<double> of_faces) = 0;
+  /// What the known columns take from b; empty: find() does it.
+  virtual std::vector<double> force_of_known(std::span<const double> known) const = 0;
+  /// `u`: the first guess on entry. Throws SolveFailure, `u` being of no use then.
+  virtual SolveStatistics find(const EquilibriumLoad& load, SolidSystem& system, std::span<double> u) = 0;
+  /// The end of the step under way, which accept() makes the state that the next one begins at. Throws SolveFailure.
+  virtual void end_step(std::span<const double> /*unknowns*/, std::span<const double> /*known*/) {}
+  virtual void accept() {}
+  virtual void save(CheckpointWriter&) const {}
+  virtual void load(CheckpointReader&, std::span<const double>, std::span<const double>) {}
+
+  /// Inner forces A(u), those of the pressure counted with the opposite sign.
+  virtual std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) = 0;
+  /// Strain energy over all ranks [J].
+  virtual double energy(std::span<const double> unknowns, std::span<const double> known) = 0;
+  /// Resultant of the pressure at the state that was looked at last, this rank's [N].
+  virtual Vec3 pressure_force() { return Vec3::Zero(); }
+  /// Force on the body at each patch at a state under these loads, with its moment about the origin where the body is taken to
+  /// stand; this rank's part. Empty: the gradient has no trial functions, by which that could be told.
+  virtual std::vector<Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
+                                             const ElasticLoads& loads) = 0;
+  /// What find() has left, its `residual`, over the size of the rows.
+  virtual double share_left(double residual, double rows) const = 0;
+
+  /// Displacement gradients, entry (i, j) = d u_j / d x_i, become strains.
+  virtual void to_strain(std::span<Tensor3> gradients) const = 0;
+  /// Cauchy's stress [Pa] of local faces and of owned cells.
+  virtual std::vector<Tensor3> face_stress(const Displaced& state, Index first, Index count) = 0;
+  virtual std::vector<Tensor3> cell_stress(const Displaced& state) = 0;
+
+  /// Of a state at rest in equilibrium: by how much it would give way, over itself, were the whole body softer by a (small)
+  /// share, over that share; of a linear body under loads 1, near a buckling load large. What is moved by prescribed
+  /// displacements gives way to nothing and counts as 1. Throws SolveFailure.
+  virtual double softness(std::span<const double> /*unknowns*/, std::span<const double> /*known*/) {
+    return 1;
+  }
+  /// The least x . K x over that of `elastic`, K being the tangent at a state of equilibrium: 1 of a body without load, negative where the
+  /// equilibrium does not hold (an upper bound, hence a proof). Of pressures that follow a surface with a free rim, which
+  /// have no energy, nothing can be said so: 1. `start`: forces without the symmetry of the body.
+  virtual double lowest_stiffness(std::span<const double> /*unknowns*/, std::span<const double> /*known*/,
+                                  const LinearMap& /*elastic*/, std::vector<double> /*start*/) {
+    return 1;
+  }
+};
+
+}  // namespace couplet
