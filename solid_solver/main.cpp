@@ -8,30 +8,30 @@
 #include "solid_solver/thermal_solid.hpp"
 
 int main(int argc, char** argv) {
-  couplet::SolidParameters parameters;
+  couplet::solid::SolidParameters parameters;
   const couplet::Program program{
       .name = "solid_solver",
       .description =
           "linear thermoelasticity, static or dynamic, and heat conduction, by the finite-volume method",
-      .declare = [&](couplet::config::Section& section) { couplet::declare(section, parameters); },
+      .declare = [&](couplet::config::Section& section) { declare(section, parameters); },
       .make = [&](const couplet::ParticipantContext& context) -> std::unique_ptr<couplet::Participant> {
         couplet::LoadedMesh body =
             couplet::load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension,
-                               parameters.mesh_parameters, {}, couplet::zones_of(parameters.materials), true,
-                               parameters.mesh_scale);
-        const couplet::SolidContext where{context.name, context.output_folder, context.restart_time};
-        if (parameters.analysis == couplet::SolidParameters::Analysis::thermal)
-          return std::make_unique<couplet::ThermalSolid>(std::move(body), parameters, where);
-        return std::make_unique<couplet::Solid>(std::move(body), parameters, where);
+                               parameters.mesh_parameters, {}, couplet::solid::zones_of(parameters.materials),
+                               true, parameters.mesh_scale);
+        const couplet::solid::SolidContext where{context.name, context.output_folder, context.restart_time};
+        if (parameters.analysis == couplet::solid::SolidParameters::Analysis::thermal)
+          return std::make_unique<couplet::solid::ThermalSolid>(std::move(body), parameters, where);
+        return std::make_unique<couplet::solid::Solid>(std::move(body), parameters, where);
       },
       .environment = couplet::petsc_environment,
       .effects =
           [&](const couplet::EffectScene&) {
-            return couplet::effects_of(couplet::solid_effect_cards(), parameters);
+            return couplet::effects_of(couplet::solid::solid_effect_cards(), parameters);
           },
       .choose =
           [&](const couplet::ChoiceScene& scene) {
-            return couplet::choose_effects(
+            return couplet::solid::choose_effects(
                 parameters,
                 couplet::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters,
                                        parameters.mesh_scale),
@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
           },
       .expected =
           [&](const couplet::ChoiceScene& scene) {
-            return couplet::expected_cost(
+            return couplet::solid::expected_cost(
                 parameters, couplet::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters,
                                                    parameters.mesh_scale));
           }};

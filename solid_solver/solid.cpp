@@ -7,7 +7,7 @@
 #include "solid_solver/effects/effect_cards.hpp"
 #include "solid_solver/output/output.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 constexpr int steps_between_looks = 50;  // of a motion at its energy; a look costs less than a step
@@ -109,4 +109,4 @@ void Solid::load(CheckpointReader& file) {
   if (errors_) errors_->restore(errors);
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

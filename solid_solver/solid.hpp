@@ -16,7 +16,7 @@
 #include "solid_solver/judge/judge.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 class SolidOutput;
 
@@ -60,4 +60,4 @@ class Solid final : public Participant, public EstimatesError {
   std::unique_ptr<SolidOutput> output_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -6,7 +6,7 @@
 #include "common/parallel/collective.hpp"
 #include "solid_solver/thermal/thermal_strain.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 ThermalSolid::ThermalSolid(LoadedMesh body, SolidParameters parameters, SolidContext context)
     : mesh_(std::move(body.mesh)),
@@ -112,4 +112,4 @@ std::vector<std::string> ThermalSolid::finish() {
   return sentences;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -18,7 +18,7 @@
 #include "solid_solver/thermal/heat.hpp"
 #include "solid_solver/thermal/heat_errors.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// A solid that conducts heat and does not deform (`analysis: thermal`): no elastic operator is built.
 /// Writes the fields `temperature` and `cell-temperature`, probes.csv, and heat.csv with the heat through
@@ -66,4 +66,4 @@ class ThermalSolid final : public Participant, public EstimatesError {
   std::optional<Series> probe_series_, heat_series_;  // on rank 0
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -21,6 +21,8 @@
 #include "solid_solver/solid.hpp"
 
 namespace couplet::benchmark {
+
+using namespace solid;
 namespace {
 
 // As in the mixed form: what its rows of volumes leave of forces, over b.

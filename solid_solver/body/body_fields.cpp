@@ -4,7 +4,7 @@
 
 #include "solid_solver/body/solid_body.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 template <int D>
@@ -95,4 +95,4 @@ std::vector<Tensor3> SolidBody::face_gradients(Index first, Index count, const B
   return gradients;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

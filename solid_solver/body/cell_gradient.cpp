@@ -5,7 +5,7 @@
 #include "common/fv/point_gradient.hpp"
 #include "solid_solver/body/solid_fields.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 /// Cells all of whose neighbours by vertex are of the same kind and material. Elsewhere the values at points
@@ -61,4 +61,4 @@ std::vector<Tensor3> SolidFields::cell_gradient(std::span<const double> points) 
   return gradient;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

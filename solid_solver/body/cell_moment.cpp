@@ -3,7 +3,7 @@
 
 #include "common/mesh/transpose.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 /// Of the mean over the vertices, in that over the volume: exact for simplices and boxes.
@@ -40,4 +40,4 @@ Csr boundary_faces_of_cells(const Mesh& mesh) {
   return faces;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

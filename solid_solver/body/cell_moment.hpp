@@ -4,11 +4,11 @@
 #include "common/base/types.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Mean of (x - x_c) (x - x_c)^T over a local cell [m^2], from its vertices: exact for simplices and boxes.
 Tensor3 cell_moment(const Mesh& mesh, const Geometry& geometry, Index cell);
 /// Boundary faces of each local cell, counted among all faces.
 Csr boundary_faces_of_cells(const Mesh& mesh);
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Energies of the solid since the start [J] (2-D: per metre depth), each summed over this rank. With F the
 /// loads and x_s the middle of a trapezoidal step, internal work and the others balance to round-off:
@@ -22,4 +22,4 @@ struct SolidEnergies {
   }
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -3,7 +3,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 // Over the sum of the weights; in units of the scale a well-placed sample adds some 0.1 to each.
@@ -73,4 +73,4 @@ void QuadraticFit::solve() {
   coefficients_ = of_rows_.llt().solve(right_of_rows_).reshaped(n, right_.cols());
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

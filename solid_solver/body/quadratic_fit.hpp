@@ -6,7 +6,7 @@
 
 #include "common/base/types.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Least squares of `components` quadratics in the plane or in space,
 ///   f_k(x) = sum_i c_ik phi_i(x),   phi = 1, x_a, x_a x_b (a <= b),   x = (place - centre) / scale,
@@ -45,4 +45,4 @@ class QuadraticFit {
   Eigen::VectorXd right_of_rows_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -3,7 +3,7 @@
 
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 void SmallStrain::prepare(const SolidProblem& problem, SolidSystem& system) const {
   system.method = make_solution_method(problem, parameters_.method);
@@ -57,4 +57,4 @@ std::vector<Tensor3> SmallStrain::cell_stress(const Displaced& state) {
   return stress;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -8,7 +8,7 @@
 #include "solid_solver/parameters/parameters.hpp"
 #include "solid_solver/thermal/effect.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// A(u) = K u in the reference configuration, with the face gradient that was chosen.
 class SmallStrain final : public Equilibrium {
@@ -42,4 +42,4 @@ class SmallStrain final : public Equilibrium {
   const SolidParameters& parameters_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -13,7 +13,7 @@
 #include "solid_solver/large_strain/updated_lagrangian.hpp"
 #include "solid_solver/method/solution_method.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 namespace {
 
@@ -161,4 +161,4 @@ bool SolidBody::wants_acceleration() const {
          });
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -15,7 +15,7 @@
 #include "solid_solver/parameters/parameters.hpp"
 #include "solid_solver/thermal/effect.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// A displacement (or velocity, ...) in all local cells, boundary faces and points, `dim` values each.
 struct BodyField {
@@ -110,4 +110,4 @@ class SolidBody final {
   std::vector<std::unique_ptr<SolidEffect>> effects_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Where a solid stands among the other programs.
 struct SolidContext {
@@ -14,4 +14,4 @@ struct SolidContext {
   double restart_time = std::numeric_limits<double>::quiet_NaN();
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/body/solid_fields.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 SolidFields::SolidFields(const SolidBody& body, const SolidState& state, const LastSolve& last)
     : body_(body),
       state_(state),
@@ -134,4 +134,4 @@ std::vector<double> SolidFields::point_strain(std::span<const double> points) co
                                      face_strain(mesh_.n_interior, mesh_.boundary.n_owned(), points));
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

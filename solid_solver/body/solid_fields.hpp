@@ -12,7 +12,7 @@
 #include "solid_solver/effects/effect_cards.hpp"
 #include "solid_solver/material/stress.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Force on the solid at a constrained patch [N], its moment about the origin [N m]: of the undeformed places, at large strain of
 /// the deformed ones.
@@ -81,4 +81,4 @@ class SolidFields final {
   mutable std::unique_ptr<StressRecovery> recovery_;     // likewise
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -6,7 +6,7 @@
 #include "common/parallel/collective.hpp"
 #include "solid_solver/body/solid_fields.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 /// Over the ranks. Collective.
@@ -108,4 +108,4 @@ double SolidFields::share_of_yield(std::span<const double> points) const {
   return max(mesh_.comm, share);
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -7,7 +7,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 namespace {
 
@@ -113,4 +113,4 @@ Exchange SolidInterface::values(const SolidState& state, double dt) const {
   return out;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

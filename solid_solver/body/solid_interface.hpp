@@ -11,7 +11,7 @@
 #include "solid_solver/body/solid_state.hpp"
 #include "solid_solver/parameters/interface_data.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// What a solid takes through its interface patches and gives there.
 class SolidInterface final {
@@ -37,4 +37,4 @@ class SolidInterface final {
   bool takes_temperature_ = false;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

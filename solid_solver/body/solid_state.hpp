@@ -11,7 +11,7 @@
 #include "solid_solver/body/energies.hpp"
 #include "solid_solver/method/equilibrium.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// One accepted time: `dim` values a local cell or boundary face (ghosts up to date).
 struct SolidState {
@@ -67,4 +67,4 @@ struct LastSolve {
   bool is_known(MPI_Comm comm) const { return !any(comm, rhs.size() != unknowns.size()); }
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

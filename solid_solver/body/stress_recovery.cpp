@@ -9,7 +9,7 @@
 #include "common/mesh/transpose.hpp"
 #include "solid_solver/body/cell_moment.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 // Measured on the fillet of an L-bracket, LE1, LE10 and LE11; the stress hangs little on any of them.
@@ -251,4 +251,4 @@ std::vector<double> StressRecovery::at_points(const DiscreteStress& found,
   return values;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

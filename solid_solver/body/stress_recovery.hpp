@@ -10,7 +10,7 @@
 #include "solid_solver/body/quadratic_fit.hpp"
 #include "solid_solver/material/stress.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// What is known of the traction on a boundary face: projector (stress . n) = traction [Pa], n out of the body.
 struct SurfaceTraction {
@@ -64,4 +64,4 @@ class StressRecovery {
   std::vector<Tensor3> moment_;         // of local cells: mean of (x - x_c) (x - x_c)^T [m^2]
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -4,7 +4,7 @@
 
 #include "solid_solver/body/solid_fields.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 /// Unit normal of a boundary face whose points are at `places`, out of the body as the reference one is.
@@ -49,4 +49,4 @@ std::vector<double> SolidFields::traction(std::span<const Vec3> places,
   return result;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -8,7 +8,7 @@
 #include "common/parallel/collective.hpp"
 #include "solid_solver/boundary/distributed_force.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 // Mean squares of normals along the axis, which the facets of a coarse cylinder still have, and across it, which a
@@ -112,4 +112,4 @@ void BearingLoad::add_forces(double t, std::span<double> forces) const {
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

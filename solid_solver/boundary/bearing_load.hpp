@@ -9,7 +9,7 @@
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/parameters/load_parameters.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// A pin in a hole, or a bush around a shaft: the pressure -q . m pushes on the half of a cylinder where it is positive, m
 /// being the normals across the axis, out of the solid. Of a force F, sum A_i m_i m_i^T q = F over that half: a pressure by the
@@ -44,4 +44,4 @@ class BearingLoad {
   double area_ = 0;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -9,7 +9,7 @@
 #include "common/parallel/collective.hpp"
 #include "solid_solver/boundary/point_loads.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 using Type = SolidCondition::Type;
@@ -279,4 +279,4 @@ void PrescribedDisplacement::evaluate_rate(double t, double dt, std::span<double
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = (values[i] - before[i]) / (2 * h);
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -14,7 +14,7 @@
 #include "solid_solver/boundary/hydrostatic_pressure.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// The boundaries of the YAML on the faces of the mesh.
 class SolidBoundaries {
@@ -108,4 +108,4 @@ class PrescribedDisplacement {
   std::vector<Group> groups_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -8,7 +8,7 @@
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 /// Least over largest extent squared of faces that take a moment about every axis.
@@ -120,4 +120,4 @@ void DistributedForce::add_forces(double t, std::span<double> forces) const {
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

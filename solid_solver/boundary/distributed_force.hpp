@@ -9,7 +9,7 @@
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/parameters/load_parameters.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// A force and a moment shared out over faces by their areas A_i (reference configuration):
 ///
@@ -49,4 +49,4 @@ class DistributedForce {
 Vec3 sum_of(MPI_Comm comm, const Vec3& value);
 Tensor3 sum_of(MPI_Comm comm, const Tensor3& value);
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-namespace couplet {
+namespace couplet::solid {
 
 HydrostaticPressure::HydrostaticPressure(const Mesh& mesh, const Geometry& geometry, const TotalLoad& load,
                                          const std::string& where)
@@ -52,4 +52,4 @@ double HydrostaticPressure::mean(Index face, double level) const {
          (first + second);
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

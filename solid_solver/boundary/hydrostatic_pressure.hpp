@@ -7,7 +7,7 @@
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/parameters/load_parameters.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// rho |g| max(0, level - height) of a liquid at rest, averaged over a face of the reference configuration: exact where the
 /// free surface cuts the face, too.
@@ -35,4 +35,4 @@ double mean_positive(double d0, double d1);
 /// The same on a triangle.
 double mean_positive(double d0, double d1, double d2);
 
-}  // namespace couplet
+}  // namespace couplet::solid

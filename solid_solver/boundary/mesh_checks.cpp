@@ -12,7 +12,7 @@
 #include "common/mesh/quality.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 std::string text_of(const Vec3& x, int dim) {
@@ -64,4 +64,4 @@ void check_mesh(const Mesh& mesh, const Geometry& geometry, const VertexInterpol
         inexact->count, text_of(inexact->first, mesh.dim));
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -4,10 +4,10 @@
 #include "common/fv/vertex_interpolation.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Throws Error for inverted cells and for bent symmetry planes; warns of vertices whose value cannot be
 /// exact for linear fields. Collective.
 void check_mesh(const Mesh& mesh, const Geometry& geometry, const VertexInterpolation& vertices);
 
-}  // namespace couplet
+}  // namespace couplet::solid

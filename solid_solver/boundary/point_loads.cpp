@@ -9,7 +9,7 @@
 #include "common/base/text.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 /// A point further from the nearest face than so many of its widths lies beside the body.
@@ -88,4 +88,4 @@ std::vector<Index> faces_of_point_load(const Mesh& mesh, const Geometry& geometr
   return faces;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -10,7 +10,7 @@
 #include "solid_solver/boundary/distributed_force.hpp"
 #include "solid_solver/parameters/load_parameters.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// The faces of this rank that take a point load: those that are open and have their centre within its radius; without a
 /// radius the nearest face of all ranks, which must be open. `open`: per boundary face of owned cells, whether a force on it has
@@ -18,4 +18,4 @@ namespace couplet {
 std::vector<Index> faces_of_point_load(const Mesh& mesh, const Geometry& geometry, const PointLoad& load,
                                        std::span<const std::uint8_t> open, const std::string& where);
 
-}  // namespace couplet
+}  // namespace couplet::solid

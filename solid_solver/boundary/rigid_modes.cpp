@@ -12,7 +12,7 @@
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 // A motion is free if the supports resist it less than this, relative to the motion they resist most
@@ -227,4 +227,4 @@ void check_supported(const Mesh& mesh, const ElasticOperator& elastic) {
       trouble);
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

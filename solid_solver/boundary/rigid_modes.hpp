@@ -7,7 +7,7 @@
 #include "common/elasticity/elasticity.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Motions without strain that the supports of one body leave free.
 struct FreeMotion {
@@ -24,4 +24,4 @@ std::vector<FreeMotion> free_motions(const Mesh& mesh, const ElasticOperator& el
 /// Throws Error naming the free motions if the supports do not hold all bodies in place. Collective.
 void check_supported(const Mesh& mesh, const ElasticOperator& elastic);
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -9,7 +9,7 @@
 #include "common/parallel/collective.hpp"
 #include "solid_solver/boundary/distributed_force.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 // Least over largest moment of inertia of faces that do not lie on one line.
@@ -84,4 +84,4 @@ void RigidPatches::project(std::span<double> unknowns) const {
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -7,7 +7,7 @@
 #include "common/elasticity/elasticity.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Patches whose faces move as rigid bodies, by small angles: u_i = U + w x (x_i - c) at the centres x_i of their faces (an RBE2 of
 /// finite elements). No penalty and no unknowns of their own: with P the orthogonal projection of the unknowns on such motions,
@@ -37,4 +37,4 @@ class RigidPatches {
   std::vector<Patch> patches_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

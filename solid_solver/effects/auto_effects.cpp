@@ -10,7 +10,7 @@
 
 #include "common/fv/expression.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 /// A ramp of so many periods leaves 1 % of overshoot.
@@ -106,4 +106,4 @@ ExpectedCost expected_cost(const SolidParameters& p, const MeshFacts& mesh) {
   return {mesh.cells, bytes, seconds * cells};
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -8,7 +8,7 @@
 #include "common/mesh/gmsh/mesh_facts.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// `effects: auto` of a solid: its dimension, and whether inertia matters. The estimate of the latter is the
 /// lowest period of a clamped bar of the mesh's box, T = 2 pi L^2/(3.516 h) sqrt(12 rho/E), beside the time in
@@ -19,4 +19,4 @@ std::vector<EffectChoice> choose_effects(const SolidParameters& parameters, cons
 /// By the numbers of configs/cantilever and cook on one rank.
 ExpectedCost expected_cost(const SolidParameters& parameters, const MeshFacts& mesh);
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -9,7 +9,7 @@
 
 #include "solid_solver/method/solution_method.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 using P = SolidParameters;
@@ -224,4 +224,4 @@ const std::array cards{
 
 std::span<const SolidCard> solid_effect_cards() { return cards; }
 
-}  // namespace couplet
+}  // namespace couplet::solid

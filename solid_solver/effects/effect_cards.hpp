@@ -8,7 +8,7 @@
 #include "common/effects/card.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// What a run of the solid has seen that says whether an effect was rightly left out. NaN: not seen.
 struct SolidEvidence {
@@ -32,4 +32,4 @@ using SolidCard = EffectCard<SolidParameters, SolidEvidence>;
 /// All that a solid can simulate beside linear elasticity, in the order in which it is told.
 std::span<const SolidCard> solid_effect_cards();
 
-}  // namespace couplet
+}  // namespace couplet::solid

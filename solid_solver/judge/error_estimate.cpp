@@ -13,7 +13,7 @@
 #include "solid_solver/judge/inner_variation.hpp"
 #include "solid_solver/judge/weighted_estimate.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 constexpr double most_bound = 0.5;
@@ -222,4 +222,4 @@ void SolidErrorEstimate::restore(std::span<const double> state) {
   drift_.restore(drift);
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -13,7 +13,7 @@
 #include "solid_solver/judge/phase_drift.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// What a solid's run leaves in its displacement:
 ///   mesh    by how much the work of the stresses misses the strain energy, which equilibrium would make equal, or,
@@ -60,4 +60,4 @@ class SolidErrorEstimate {
   PhaseDrift drift_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

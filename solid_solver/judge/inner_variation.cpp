@@ -6,7 +6,7 @@
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 double twice_energy(const ElasticOperator& rows, Index cell, const Tensor3& strain) {
@@ -52,4 +52,4 @@ double InnerVariation::missed() const {
   return whole > 0 ? missed / whole : 0;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

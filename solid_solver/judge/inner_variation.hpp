@@ -6,7 +6,7 @@
 #include "common/elasticity/elasticity.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// How stiff the strains of a quadrilateral's four faces make it beside their mean. Over n cells across a bar that bends, the second
 /// moment of area is 1 + 1/(2 n^2) of the right one by the faces' strains and 1 - 1/n^2 by the cells' mean: a third of what they
@@ -34,4 +34,4 @@ class InnerVariation {
   std::vector<double> volume_;   // sum V_fP
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -11,7 +11,7 @@
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 SolidJudge::SolidJudge(const SolidBody& body, const SolidStepper& stepper, const SolidFields& fields)
     : body_(body), stepper_(stepper), fields_(fields), mesh_(body.mesh()), geometry_(body.geometry()) {}
@@ -117,7 +117,7 @@ void SolidJudge::estimate_large_strain() {
   large_strain_.reset();
   try {
     large_strain_ =
-        couplet::estimate_large_strain(body_, stepper_.last_solve().unknowns, stepper_.trial().known);
+        solid::estimate_large_strain(body_, stepper_.last_solve().unknowns, stepper_.trial().known);
   } catch (const SolveFailure& failure) {
     log::warn("output.large-strain-estimate: the estimate failed: {}", failure.what());
   }
@@ -188,4 +188,4 @@ void SolidJudge::load(CheckpointReader& file) {
   largest_strain_energy_ = file.read_scalar("largest-strain-energy");
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -14,7 +14,7 @@
 #include "solid_solver/stability/buckling_estimate.hpp"
 #include "solid_solver/stability/equilibrium.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Whether the answer of a run is to be trusted: what it has seen of itself so far. It says so once, and ends a
 /// run of which nothing is left. All is collective.
@@ -73,4 +73,4 @@ class SolidJudge final {
   Severity strain_told_ = Severity::note, energy_told_ = Severity::note;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -15,7 +15,7 @@
 #include "solid_solver/laws/laws.hpp"
 #include "solid_solver/method/solution_method.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 using Values = std::vector<double>;
@@ -170,4 +170,4 @@ LargeStrainEstimate estimate_large_strain(const SolidBody& body, std::span<const
   return summed(mesh, geometry, u1.unknowns, u2.unknowns, stiffness.solve(r));
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

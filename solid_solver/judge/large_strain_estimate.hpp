@@ -6,7 +6,7 @@
 
 #include "solid_solver/body/solid_body.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// By how much large strain would change the displacement u1 of a linear static solution, the loads being dead.
 /// With the forces F(u) = K u + Q(u, u) + C(u, u, u) + ... of the symmetric gradient at large strain the solution under
@@ -32,4 +32,4 @@ struct LargeStrainEstimate {
 LargeStrainEstimate estimate_large_strain(const SolidBody& body, std::span<const double> unknowns,
                                           std::span<const double> known);
 
-}  // namespace couplet
+}  // namespace couplet::solid

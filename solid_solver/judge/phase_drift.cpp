@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace couplet {
+namespace couplet::solid {
 
 void PhaseDrift::add(double dt, double speed, double size, double kinetic, double strain) {
   if (!std::isfinite(speed + size + kinetic + strain)) return;
@@ -26,4 +26,4 @@ void PhaseDrift::restore(std::span<const double> state) {
   way_ = state[0], size_ = state[1], kinetic_ = state[2], strain_ = state[3];
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace couplet {
+namespace couplet::solid {
 
 /// How far a motion has swung, and with it what a wrong stiffness makes of it. A mesh that is stiffer by a part e swings faster by e/2,
 /// so that after an angle w t the displacement is e w t / 2 of its amplitude off, twice the amplitude at most. Loads that a body follows
@@ -25,4 +25,4 @@ class PhaseDrift {
   double kinetic_ = 0, strain_ = 0;  // integrals [J s]
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -11,7 +11,7 @@
 #include "common/parallel/collective.hpp"
 #include "solid_solver/body/cell_moment.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 constexpr double of_far = 1. / 9;  // weight of a sample at the patch's rim over one in its centre
@@ -126,4 +126,4 @@ double SmoothEnergy::missed(std::span<const double> point_u) const {
   return smooth > 0 ? std::abs(counted / smooth - 1) : 0;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

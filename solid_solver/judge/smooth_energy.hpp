@@ -9,7 +9,7 @@
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/body/quadratic_fit.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// The strain energy of a displacement seen twice: as the operator counts it, by the strains of faces over their pyramids, and smooth,
 /// by a quadratic a cell, fitted to the vertices of the cells that share one with it, integrated over the cell. How much they
@@ -45,4 +45,4 @@ class SmoothEnergy {
   std::vector<double> counted_;  // of owned cells: sum V_fP G : C : G
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

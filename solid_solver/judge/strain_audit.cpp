@@ -15,7 +15,7 @@
 #include "solid_solver/judge/judge.hpp"
 #include "solid_solver/judge/smooth_energy.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 /// From the owner to the node across.
@@ -160,4 +160,4 @@ double SolidJudge::residual_work(std::span<const double> unknowns) const {
   return work;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

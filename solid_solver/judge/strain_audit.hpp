@@ -6,7 +6,7 @@
 
 #include "common/base/severity.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// What a displacement that was found says of itself; over all ranks.
 struct StrainAudit {
@@ -62,4 +62,4 @@ struct EnergyAudit {
   std::string text() const;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

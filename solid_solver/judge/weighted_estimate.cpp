@@ -14,7 +14,7 @@
 #include "solid_solver/material/stress.hpp"
 #include "solid_solver/method/solution_method.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 using Values = std::vector<double>;
@@ -159,4 +159,4 @@ double energy_mesh_error(const SolidBody& body, std::span<const std::span<const 
   return most;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

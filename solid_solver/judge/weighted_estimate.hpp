@@ -5,7 +5,7 @@
 
 #include "solid_solver/body/solid_body.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// What the mesh leaves in the displacement u of a linear static body, over the size of u, where the work of the loads is no measure
 /// of it: heat expands a body everywhere, with far more energy than that by which it bends it. How J = integral of u^2 / 2 answers to
@@ -21,4 +21,4 @@ double weighted_mesh_error(const SolidBody& body, std::span<const double> unknow
 /// shapes. The square of the difference of two gradients' strains, or what InnerVariation takes if that is more. Collective.
 double energy_mesh_error(const SolidBody& body, std::span<const std::span<const double>> shapes);
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -3,7 +3,7 @@
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "solid_solver/large_strain/large_strain.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Green's (F^T F - I) / 2.
 void LargeStrain::to_strain(std::span<Tensor3> gradients) const {
@@ -46,4 +46,4 @@ std::vector<Tensor3> LargeStrain::cell_stress(const Displaced& state) {
   return stress;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

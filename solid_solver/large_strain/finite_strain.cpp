@@ -14,7 +14,7 @@
 #include "solid_solver/method/newton_krylov.hpp"
 #include "solid_solver/method/solution_method.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 // Iterations after which a shorter load step is the cheaper way.
@@ -91,7 +91,7 @@ std::string FiniteStrain::name() const {
 }
 
 void FiniteStrain::prepare(const SolidProblem& problem, SolidSystem& system) const {
-  system.node_inertia = couplet::node_inertia(problem);
+  system.node_inertia = solid::node_inertia(problem);
 }
 
 TangentSolver& FiniteStrain::solver_for(double mass_factor, std::span<const double> node_inertia) {
@@ -340,4 +340,4 @@ void FiniteStrain::visit(std::span<const double> unknowns, std::span<const doubl
   kernel_->visit(take);
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -12,7 +12,7 @@
 #include "solid_solver/method/tangent_solver.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// One iterate of Newton's method.
 struct NewtonIterate {
@@ -85,4 +85,4 @@ class FiniteStrain final : public LargeStrain {
   std::vector<NewtonIterate> iterates_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

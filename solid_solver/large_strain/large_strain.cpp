@@ -10,7 +10,7 @@
 #include "common/fv/face_gradient.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 // Of a stiffness, in a residual that is nothing but rounding.
@@ -57,4 +57,4 @@ std::string worst_cell(const Mesh& mesh, const Geometry& geometry, double ratio,
                      w.x[0], w.x[1], w.x[2], w.ratio);
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

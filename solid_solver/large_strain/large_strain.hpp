@@ -9,7 +9,7 @@
 #include "common/elasticity/elastic_kernel.hpp"
 #include "solid_solver/method/equilibrium.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// How the equilibrium of a body at large strain is found, and what its stress is at a state.
 class LargeStrain : public Equilibrium {
@@ -53,4 +53,4 @@ double rounding_of_motion(const Mesh& mesh, const ElasticOperator& rows);
 /// The face with the smallest det F of all ranks, in words; `face` of this rank, -1: none is below 1. Collective.
 std::string worst_cell(const Mesh& mesh, const Geometry& geometry, double ratio, Index face);
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -8,7 +8,7 @@
 #include "common/parallel/collective.hpp"
 #include "solid_solver/large_strain/finite_strain.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 // Of the solution in which a negative curvature would show, and of the least stiffness once there is one, or nearly.
@@ -70,4 +70,4 @@ bool FiniteStrain::is_symmetric(std::span<const double> x, std::span<const doubl
   return std::abs(one - other) <= symmetric_part * (std::abs(one) + std::abs(other));
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

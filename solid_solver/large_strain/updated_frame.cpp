@@ -7,7 +7,7 @@
 #include "common/elasticity/finite/finite_strain.hpp"
 #include "solid_solver/method/segregated.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 // Of a first guess.
@@ -71,4 +71,4 @@ Tensor3 cofactors_of(const Tensor3& f) {
   return h;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

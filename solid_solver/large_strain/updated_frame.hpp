@@ -9,7 +9,7 @@
 #include "common/elasticity/finite/finite_law.hpp"
 #include "solid_solver/method/scalar_systems.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// The thesis's operators on a body that stands elsewhere: the same mesh in the geometry of its moved vertices, steps 5 to 7 of the
 /// algorithm in thesis 2.7.1.
@@ -40,4 +40,4 @@ void first_piola(const FiniteLaw& law, std::span<const Tensor3> deformation, std
 /// det(F) F^-T
 Tensor3 cofactors_of(const Tensor3& deformation);
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -13,7 +13,7 @@
 #include "solid_solver/laws/laws.hpp"
 #include "solid_solver/method/solution_method.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 constexpr std::array unknown_conditions{"a support or springs", "'zero-normal-gradient'",
@@ -203,4 +203,4 @@ SolveStatistics UpdatedLagrangian::solve(const EquilibriumLoad& load, std::span<
   return statistics;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

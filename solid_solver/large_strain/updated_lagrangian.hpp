@@ -12,7 +12,7 @@
 #include "solid_solver/large_strain/updated_frame.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// The thesis's own large strain, updated Lagrangian, thesis (2.37)-(2.40) and (2.68)-(2.72). Each step is referred to the
 /// place where the body stood at its beginning (index u), whose geometry is made of the vertices that moved along:
@@ -79,4 +79,4 @@ class UpdatedLagrangian final : public LargeStrain {
   Vec3 pressure_force_ = Vec3::Zero();
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

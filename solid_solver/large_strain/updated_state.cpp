@@ -7,7 +7,7 @@
 #include "common/parallel/collective.hpp"
 #include "solid_solver/large_strain/updated_lagrangian.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 constexpr const char* points_on_file = "updated-points";
@@ -107,4 +107,4 @@ void UpdatedLagrangian::load(CheckpointReader& file, std::span<const double> unk
   frame_.reset();
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

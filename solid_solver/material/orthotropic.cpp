@@ -7,7 +7,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 std::string problem_of_numbers(const std::vector<double>& values, bool positive, const char* what) {
@@ -96,4 +96,4 @@ Tensor3 MaterialAxes::at(const Vec3& place) const {
   return axes;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

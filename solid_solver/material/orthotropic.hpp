@@ -8,7 +8,7 @@
 #include "common/elasticity/anisotropic.hpp"
 #include "common/fv/expression.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// A material with three planes of symmetry, and where its axes lie.
 struct Orthotropic {
@@ -40,4 +40,4 @@ class MaterialAxes {
   bool is_constant_ = true;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -7,7 +7,7 @@
 
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 VertexInterpolation::ByFace stencils_of(const Mesh& mesh, const std::vector<bool>& is_symmetry) {
@@ -113,4 +113,4 @@ std::vector<Tensor3> PointTensors::interpolate_full(std::span<const Tensor3> cel
   return tensors;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

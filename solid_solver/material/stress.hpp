@@ -8,7 +8,7 @@
 #include "common/fv/vertex_interpolation.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Symmetric tensors are packed as xx, yy, zz, xy, yz, xz.
 constexpr int tensor_size = 6;
@@ -53,4 +53,4 @@ class PointTensors {
   std::vector<Mirror> mirrors_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -8,7 +8,7 @@
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 // Up to here LU wins in time and has the memory (about 20 kB an unknown in 3-D). Without inertia slender
@@ -109,4 +109,4 @@ SolveStatistics BlockCoupled::solve_corrected(std::span<const double> b, std::sp
   return statistics;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

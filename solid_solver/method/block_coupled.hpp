@@ -9,7 +9,7 @@
 #include "common/linalg/matrix.hpp"
 #include "solid_solver/method/solution_method.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// The thesis's block-coupled method: all displacement components in one assembled matrix (2.77). The
 /// corrected face gradient comes by deferred correction: the assembled matrix solves for what the corrected
@@ -32,4 +32,4 @@ class BlockCoupled final : public SolutionMethod {
   std::vector<double> residual_, step_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -9,7 +9,7 @@
 #include "solid_solver/method/solution_method.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 /// Elastic matrices of the materials at places.
@@ -151,4 +151,4 @@ void check_symmetry(const SolidParameters& p, const Mesh& mesh, const ElasticOpe
         "not the mirror image of the other; use 'frictionless', or align 'material.orthotropic.first-axis'.");
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

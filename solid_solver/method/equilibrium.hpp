@@ -18,6 +18,10 @@ namespace couplet {
 class CheckpointReader;
 class CheckpointWriter;
 
+}  // namespace couplet
+
+namespace couplet::solid {
+
 /// What belongs to one size of the inertia term: factors and preconditioners are made once for it.
 struct SolidSystem {
   double mass_factor;                      ///< (d + alpha c) / s, see SolidStepper [1/s^2]; 0: static
@@ -114,4 +118,4 @@ class Equilibrium {
   }
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

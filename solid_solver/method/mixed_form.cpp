@@ -10,7 +10,7 @@
 #include "common/parallel/collective.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 // What the rows of volumes may leave of forces in K u = b, over b: errors of the mean stress are as large.
@@ -127,4 +127,4 @@ SolveStatistics MixedForm::solve(std::span<const double> b, std::span<double> u)
   return statistics;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -9,7 +9,7 @@
 #include "solid_solver/method/pressure_schur.hpp"
 #include "solid_solver/method/solution_method.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// The symmetric operator with the mean stresses p of its cells as unknowns beside the displacements [boffi2013],
 ///   [ K' + mM    B^T   ] [u]   [b]
@@ -43,4 +43,4 @@ class MixedForm final : public SolutionMethod {
   std::unique_ptr<KrylovSolver> krylov_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

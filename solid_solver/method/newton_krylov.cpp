@@ -11,7 +11,7 @@
 #include "common/log/timer.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 // Aggregates of the rigid coarse space: more gain little and their factors grow.
@@ -220,4 +220,4 @@ SolveStatistics NewtonKrylov::solve(std::span<const double> b, std::span<double>
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -12,7 +12,7 @@
 #include "common/linalg/matrix.hpp"
 #include "solid_solver/method/solution_method.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// BiCGStab on the operator applied matrix-free. One Newton step: the problem is linear. Preconditioned by
 /// the compact component-wise operator and the rigid coarse space (ElasticPreconditioner), or, when the body
@@ -52,4 +52,4 @@ double heaviness(const SolidProblem& problem);
 /// Row sums of the kernel's mass times its factor, one an unknown node; empty: static.
 std::vector<double> node_inertia(const SolidProblem& problem);
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -10,7 +10,7 @@
 #include "common/elasticity/elastic_nodes.hpp"
 #include "common/elasticity/symmetric/symmetric_space.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 // Scales of the elastic part by numerical experiment (in the plane Cook's membrane 8 to 64 a side, in space the elliptic
@@ -176,4 +176,4 @@ void PressureSchur::apply(std::span<const double> r, std::span<double> z) {
   for (double& p : z) p *= unit_;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

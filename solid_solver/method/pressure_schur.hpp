@@ -9,7 +9,7 @@
 #include "common/linalg/matrix.hpp"
 #include "solid_solver/method/solution_method.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Approximate inverse of the Schur complement S = V / K_P + B (K' + mM)^-1 B^T of the mixed form, by a scalar
 /// matrix between the cells of each rank, made once (factors in the plane, conjugate gradients with multigrid in space). V / mu, as for Stokes' equations with elements that are stable, would
@@ -39,4 +39,4 @@ class PressureSchur {
   std::vector<double> between_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 // Of the residual of a component in one outer iteration, as in the thesis.
@@ -120,4 +120,4 @@ int ScalarSystems::find_step(std::span<const double> residual, std::span<double>
   return inner;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -12,7 +12,7 @@
 #include "common/linalg/matrix.hpp"
 #include "solid_solver/parameters/method_parameters.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// The implicit part of the segregated method, thesis (2.66)-(2.69): one scalar system a displacement component, face
 /// coefficient (2 mu + lambda) |S| / (d . n), solved by CG with incomplete Cholesky factors to a hundredth of its
@@ -45,4 +45,4 @@ std::string segregated_name(const MethodParameters& parameters);
 /// What helps the outer iterations on.
 Acceleration acceleration_of(const MethodParameters& parameters);
 
-}  // namespace couplet
+}  // namespace couplet::solid

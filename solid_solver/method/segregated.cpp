@@ -6,7 +6,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 Segregated::Segregated(const SolidProblem& problem, const MethodParameters& parameters)
     : problem_(problem),
@@ -46,4 +46,4 @@ SolveStatistics Segregated::solve(std::span<const double> b, std::span<double> u
   return statistics;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -7,7 +7,7 @@
 #include "solid_solver/method/scalar_systems.hpp"
 #include "solid_solver/method/solution_method.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// The thesis's segregated method: outer iterations that each solve one scalar system a displacement component
 /// (ScalarSystems); what these leave out follows from the last iterate. The outer iteration is plain, or
@@ -28,4 +28,4 @@ class Segregated final : public SolutionMethod {
   std::vector<double> residual_, step_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

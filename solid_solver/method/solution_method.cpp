@@ -13,7 +13,7 @@
 #include "solid_solver/method/newton_krylov.hpp"
 #include "solid_solver/method/segregated.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 using MethodType = MethodParameters::Type;
@@ -183,4 +183,4 @@ double norm(MPI_Comm comm, std::span<const double> values) {
   return std::sqrt(sum(comm, square));
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -13,7 +13,7 @@
 #include "solid_solver/boundary/rigid_patches.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// What a method solves: (diag(inertia) + A) u = b with the rows and unknowns of ElasticOperator. All that is
 /// referred to must outlive the method.
@@ -68,4 +68,4 @@ FaceGradientScheme face_gradient_scheme(const SolidParameters& parameters);
 /// Euclidean norm over all ranks.
 double norm(MPI_Comm comm, std::span<const double> values);
 
-}  // namespace couplet
+}  // namespace couplet::solid

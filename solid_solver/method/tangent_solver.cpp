@@ -10,7 +10,7 @@
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 // Cells below which the rigid motions of aggregates gain nothing, cells an aggregate, and most aggregates.
@@ -197,4 +197,4 @@ SolveStatistics TangentSolver::counted(std::span<const double> r, std::span<doub
   return statistics;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -11,7 +11,7 @@
 #include "common/linalg/krylov.hpp"
 #include "common/linalg/linear_solver.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Solves K(u) du = r for the tangent of a deformed body by conjugate gradients. Preconditioner: the compact
 /// component-wise operator of the undeformed body, made once and applied in the frame that turns with each
@@ -65,4 +65,4 @@ class TangentSolver {
   std::unique_ptr<KrylovSolver> krylov_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -6,7 +6,7 @@
 #include "common/time/time_scheme.hpp"
 #include "solid_solver/body/solid_state.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Combinations of levels for one component after another, of cells or of faces. `start`: the state at the start of
 /// the step, which is the old level of a second stage.
@@ -31,4 +31,4 @@ class History {
   std::span<const double> u_, v_, a_, u_old_, v_old_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -6,7 +6,7 @@
 #include "common/elasticity/vector_at.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 /// A displacement with ghosts and points.
@@ -295,4 +295,4 @@ SolidEnergies SolidLedger::summed(SolidEnergies e) const {
   return e;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -8,7 +8,7 @@
 #include "solid_solver/body/solid_body.hpp"
 #include "solid_solver/body/solid_state.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Between which states a stage led, and what was solved for it. The sums go into `after`.
 struct SolvedStage {
@@ -57,4 +57,4 @@ class SolidLedger final {
   const ElasticKernel& kernel_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

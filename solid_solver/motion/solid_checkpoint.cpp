@@ -11,7 +11,7 @@
 #include "solid_solver/method/newton_krylov.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 namespace {
 
@@ -120,4 +120,4 @@ void SolidStepper::load_guesses(CheckpointReader& file) {
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -9,7 +9,7 @@
 #include "common/base/error.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 SolidStepper::SolidStepper(SolidBody& body)
     : body_(body),
@@ -150,4 +150,4 @@ void SolidStepper::release_solver() {
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -12,7 +12,7 @@
 #include "solid_solver/body/solid_state.hpp"
 #include "solid_solver/motion/ledger.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// The motion of a body in the reference configuration. A dynamic step runs through the stages of its time
 /// scheme (common/time). At the place of a stage x is the displacement, v = c x + v_h the velocity and
@@ -97,4 +97,4 @@ class SolidStepper final {
   LastSolve last_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

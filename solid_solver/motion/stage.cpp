@@ -9,7 +9,7 @@
 #include "solid_solver/motion/history.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 // Systems of other step sizes that are kept: a step that was halved soon comes back to its length.
@@ -214,4 +214,4 @@ void SolidStepper::add_face_forces(const StageWork& work) {
   last_.face_force = kernel_.add_face_forces(force, last_.rhs);
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

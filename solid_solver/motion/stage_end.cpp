@@ -3,7 +3,7 @@
 #include "solid_solver/motion/history.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 // For iterative methods: where the accepted motion leads, so that equal loads give equal answers.
 // Thesis (2.73): u^n + a v^n; (2.74): and a^2 / (2 dt^n) (v^n - v^{n-1}), a the way to the place of the
@@ -127,4 +127,4 @@ void SolidStepper::finish_acceleration() {
   elastic_.join_twins(trial_.face_acceleration);
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

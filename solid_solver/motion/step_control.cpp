@@ -7,7 +7,7 @@
 #include "common/parallel/collective.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 // The next step aims below the tolerance by this factor, so that few steps are refused.
@@ -51,4 +51,4 @@ double SolidStepper::suggest_dt() const {
   return safety * state_.dt * std::pow(room, 1. / (local_error(parameters_.time_scheme).order + 1));
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

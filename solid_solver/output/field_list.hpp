@@ -10,7 +10,7 @@
 #include "common/io/field_writer.hpp"
 #include "solid_solver/material/stress.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Fields together with the values that were made for them.
 class FieldList {
@@ -35,4 +35,4 @@ class FieldList {
   std::deque<std::vector<double>> values_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

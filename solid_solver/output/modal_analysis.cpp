@@ -12,7 +12,7 @@
 #include "common/mesh/extent.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 // Of mu / (rho L^2): below the first bending of a body a hundred times longer than thick, and above what the rounding
@@ -213,4 +213,4 @@ ModalModel modal_model(const SolidProblem& problem, const EigenModes& modes) {
   return model;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

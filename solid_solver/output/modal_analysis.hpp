@@ -9,7 +9,7 @@
 #include "solid_solver/body/solid_body.hpp"
 #include "solid_solver/method/solution_method.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// K of free vibrations, with a kernel that has M; none where the kernel has no mass of its own. `body` by reference.
 std::optional<SolidProblem> vibration(const SolidBody& body);
@@ -26,4 +26,4 @@ EigenModes solid_modes(const SolidProblem& problem, MethodParameters method,
 /// ascending boundary_id; of a plane body the depth is 1 m and the third component 0. Collective.
 ModalModel modal_model(const SolidProblem& problem, const EigenModes& modes);
 
-}  // namespace couplet
+}  // namespace couplet::solid

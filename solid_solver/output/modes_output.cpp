@@ -16,7 +16,7 @@
 #include "solid_solver/stability/buckling.hpp"
 #include "solid_solver/stability/buckling_estimate.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 /// [kg]
@@ -134,4 +134,4 @@ void SolidOutput::write_buckling() {
   if (!found.factor.empty()) tell_buckling(mesh.comm, found.factor.front(), "");
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -18,7 +18,7 @@
 #include "solid_solver/output/field_list.hpp"
 #include "solid_solver/output/spectrum.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 using Place = OutputField::Place;
@@ -194,4 +194,4 @@ void SolidOutput::write_effort(double time) {
   solver_series_->row(row);
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

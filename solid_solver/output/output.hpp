@@ -15,7 +15,7 @@
 #include "solid_solver/output/probes.hpp"
 #include "solid_solver/output/surfaces.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// The files of a solid: fields, surfaces, probes.csv, reactions.csv, solver.csv. They are opened when first written
 /// to.
@@ -57,4 +57,4 @@ class SolidOutput {
   std::optional<Series> probe_series_, reaction_series_, solver_series_, energy_series_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -9,7 +9,7 @@
 #include "common/parallel/collective.hpp"
 #include "solid_solver/material/stress.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 bool is_stress(std::string_view field) {
@@ -120,4 +120,4 @@ std::vector<double> SolidProbes::sample(std::span<const double> points) const {
   return row;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -10,7 +10,7 @@
 #include "solid_solver/body/solid_body.hpp"
 #include "solid_solver/body/solid_fields.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// The probes of a solid: which columns they fill, and their values.
 class SolidProbes {
@@ -43,4 +43,4 @@ class SolidProbes {
   std::vector<std::uint8_t> stressed_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

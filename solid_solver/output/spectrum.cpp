@@ -8,7 +8,7 @@
 #include "common/linalg/dense_eigenvalues.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 /// A column by column, from unit vectors; rows rank by rank. On rank 0.
@@ -100,4 +100,4 @@ std::vector<std::complex<double>> eigenvalues(const SolidBody& body) {
                   [&](std::span<const double> x, std::span<double> y) { kernel.apply(x, still, y); });
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -9,7 +9,7 @@
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/body/solid_body.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// y = A x on the packed rows of this rank (owned cells, then unknown faces); collective.
 using ElasticApplication = std::function<void(std::span<const double> x, std::span<double> y)>;
@@ -32,4 +32,4 @@ std::vector<std::complex<double>> symmetric_spectrum(const Mesh& mesh, std::size
 /// Those of a body, see above. Collective.
 std::vector<std::complex<double>> eigenvalues(const SolidBody& body);
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -4,7 +4,7 @@
 #include "solid_solver/material/stress.hpp"
 #include "solid_solver/output/field_list.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 using Place = OutputField::Place;
 
@@ -34,4 +34,4 @@ void SolidSurfaces::write(double time, std::span<const double> points, std::span
   for (std::size_t i = 0; i < series_.patches().size(); ++i) series_.write(i, time, places, fields.list);
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

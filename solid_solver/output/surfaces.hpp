@@ -9,7 +9,7 @@
 #include "solid_solver/body/solid_context.hpp"
 #include "solid_solver/body/solid_fields.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// surface-<patch>.h5 of the patches in `output.surfaces`: displacement and stress at the points, traction of the faces, and
 /// what effects know there (temperature, heat flux).
@@ -29,4 +29,4 @@ class SolidSurfaces {
   bool is_open_ = false;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

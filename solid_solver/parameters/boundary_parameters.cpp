@@ -4,7 +4,7 @@
 #include "common/base/constants.hpp"
 #include "common/fv/expression.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 using Type = SolidCondition::Type;
@@ -181,4 +181,4 @@ void declare(config::Section& s, SolidBoundary& b, const int& dimension) {
       "face applies");
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

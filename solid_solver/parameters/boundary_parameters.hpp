@@ -9,7 +9,7 @@
 #include "common/config/section.hpp"
 #include "solid_solver/parameters/load_parameters.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// What happens on a patch or a part of it. The members below `type` are used by the types that name them.
 struct SolidCondition {
@@ -69,4 +69,4 @@ bool has_no_energy(const SolidCondition& condition);
 /// `dimension`: of the scene; read before the boundaries, so it is a reference.
 void declare(config::Section& section, SolidBoundary& boundary, const int& dimension);
 
-}  // namespace couplet
+}  // namespace couplet::solid

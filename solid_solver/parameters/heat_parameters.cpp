@@ -4,7 +4,7 @@
 #include "common/fv/expression.hpp"
 #include "common/fv/table.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 using Text = std::optional<config::ExpressionText>;
@@ -107,4 +107,4 @@ void declare(config::Section& s, ThermalExpansion& e) {
       .doc("temperature of zero thermal strain");
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

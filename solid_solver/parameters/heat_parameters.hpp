@@ -7,7 +7,7 @@
 
 #include "common/config/section.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Thermal properties of a material; each is needed by the effects that use it only. Tables are of T [K].
 struct HeatMaterial {
@@ -49,4 +49,4 @@ void declare(config::Section& section, HeatMaterial& material);
 void declare(config::Section& section, HeatParameters& heat);
 void declare(config::Section& section, ThermalExpansion& expansion);
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -11,7 +11,7 @@
 #include "common/base/point_tree.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 /// A face, the faces around it, and what turns the differences of their values into a gradient (3 x k).
@@ -155,4 +155,4 @@ std::vector<double> InterfaceTemperature::with_others(const std::vector<double>&
   return values;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -11,7 +11,7 @@
 #include "common/coupling/participant.hpp"
 #include "common/parallel/index_map.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// What the solid takes through its interface patches.
 struct InterfaceData {
@@ -90,4 +90,4 @@ class InterfaceTemperature final {
   std::vector<FaceInterpolation> at_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

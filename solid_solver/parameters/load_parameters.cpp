@@ -8,7 +8,7 @@
 #include "common/base/error.hpp"
 #include "common/fv/expression.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 using Texts = std::vector<config::ExpressionText>;
@@ -138,4 +138,4 @@ void declare(config::Section& s, PointLoad& load, const int& dimension) {
       "moment");
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -7,7 +7,7 @@
 #include "common/base/types.hpp"
 #include "common/config/section.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Loads by their total: of the patches of type force, remote-load, bearing-load and hydrostatic-pressure. In 2-D forces and
 /// moments are those of one metre of depth.
@@ -34,4 +34,4 @@ void declare_bearing_load(config::Section& section, TotalLoad& load, const int& 
 void declare_hydrostatic_pressure(config::Section& section, TotalLoad& load, const int& dimension);
 void declare(config::Section& section, PointLoad& load, const int& dimension);
 
-}  // namespace couplet
+}  // namespace couplet::solid

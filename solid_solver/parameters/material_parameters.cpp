@@ -7,7 +7,7 @@
 #include "common/config/pairs.hpp"
 #include "solid_solver/laws/laws.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 void declare_law(config::Section& s, SolidMaterial& m) {
@@ -95,4 +95,4 @@ std::vector<std::vector<std::string>> zones_of(const ZoneMaterials& materials) {
   return zones;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -10,7 +10,7 @@
 #include "solid_solver/material/orthotropic.hpp"
 #include "solid_solver/parameters/heat_parameters.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 struct SolidMaterial {
   double density = 0;         // [kg/m^3]
@@ -38,4 +38,4 @@ void declare(config::Section& section, ZoneMaterial& material, bool is_elastic =
 /// The zones of each material, as the mesh wants them (RawMesh::materials).
 std::vector<std::vector<std::string>> zones_of(const ZoneMaterials& materials);
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -3,7 +3,7 @@
 
 #include "common/linalg/residual_projection.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 void declare(config::Section& s, MethodParameters& m) {
   using Type = MethodParameters::Type;
@@ -107,4 +107,4 @@ void declare(config::Section& s, MethodParameters& m) {
           "step fails");
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -3,7 +3,7 @@
 
 #include "common/config/section.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// How the equations of a step are solved.
 struct MethodParameters {
@@ -30,4 +30,4 @@ struct MethodParameters {
 
 void declare(config::Section& section, MethodParameters& method);
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -7,7 +7,7 @@
 
 #include "common/base/text.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 const std::vector<std::string> probe_fields{"displacement", "velocity",          "acceleration",
@@ -75,4 +75,4 @@ void declare(config::Section& s, SolidOutputParameters& o) {
           "buckling' 4");
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -7,7 +7,7 @@
 #include "common/base/types.hpp"
 #include "common/config/section.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 struct SolidProbe {
   Vec3 point = Vec3::Zero();
@@ -35,4 +35,4 @@ struct SolidOutputParameters {
 void declare(config::Section& section, SolidProbe& probe);
 void declare(config::Section& section, SolidOutputParameters& output);
 
-}  // namespace couplet
+}  // namespace couplet::solid

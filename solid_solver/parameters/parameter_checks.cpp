@@ -7,7 +7,7 @@
 
 #include "common/fv/expression.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 /// Of any condition, those of parts of patches too.
@@ -290,4 +290,4 @@ void check_orthotropic(config::Section& s, SolidParameters& p) {
       p.materials.empty() ? "material" : "materials");
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

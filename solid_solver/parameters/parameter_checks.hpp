@@ -3,7 +3,7 @@
 
 #include "solid_solver/parameters/parameters.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Rules between the keys of a solid, each told at the key to change.
 void check_together(config::Section& section, SolidParameters& parameters);
@@ -17,4 +17,4 @@ void check_large_strain_estimate(config::Section& section, SolidParameters& para
 /// What an orthotropic material cannot have.
 void check_orthotropic(config::Section& section, SolidParameters& parameters);
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -7,7 +7,7 @@
 #include "common/fv/expression.hpp"
 #include "solid_solver/parameters/parameter_checks.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 bool takes_temperature(const SolidParameters& p) { return p.interface_data && p.interface_data->temperature; }
@@ -195,4 +195,4 @@ void declare(config::Section& s, SolidParameters& p) {
   check_large_strain_estimate(s, p);
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -16,7 +16,7 @@
 #include "solid_solver/parameters/output_parameters.hpp"
 #include "solid_solver/parameters/time_parameters.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 struct SolidParameters {
   enum class Analysis { static_, dynamic, thermal, buckling };  // buckling: static_ once it is read
@@ -94,4 +94,4 @@ ElasticBody elastic_body(const SolidParameters& parameters, const Mesh& mesh, co
 /// symmetry. Collective.
 void check_symmetry(const SolidParameters& parameters, const Mesh& mesh, const ElasticOperator& rows);
 
-}  // namespace couplet
+}  // namespace couplet::solid

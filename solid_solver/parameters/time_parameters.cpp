@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/parameters/time_parameters.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 void declare(config::Section& s, SolidDamping& d) {
   s.value("mass", d.mass)
@@ -25,4 +25,4 @@ void declare(config::Section& s, TimeStepControl& c) {
       .doc("target accuracy of the displacement, rms over the volume; one step may contribute a tenth of it");
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

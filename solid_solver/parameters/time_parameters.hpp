@@ -4,7 +4,7 @@
 #include "common/config/section.hpp"
 #include "common/time/time_scheme.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Rayleigh damping C = mass M + stiffness K, thesis (2.79).
 struct SolidDamping {
@@ -20,4 +20,4 @@ struct TimeStepControl {
 void declare(config::Section& section, SolidDamping& damping);
 void declare(config::Section& section, TimeStepControl& control);
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -10,7 +10,7 @@
 #include "common/modes/largest_ratios.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 // Ratios sought beyond those wanted, for a gap in which the pivots are counted.
@@ -141,4 +141,4 @@ EigenModes preloaded_modes(const SolidBody& body, const Prestress& prestress, in
   return lowest_modes(mesh.comm, body.elastic().n_unknowns(), of, n, -shift);
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

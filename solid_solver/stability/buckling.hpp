@@ -6,7 +6,7 @@
 #include "common/modes/lowest_modes.hpp"
 #include "solid_solver/stability/prestress.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// (K + lambda K_sigma) x = 0: the given loads times lambda make the equilibrium of the linear theory neutral.
 struct Buckling {
@@ -22,4 +22,4 @@ Buckling find_buckling(const SolidBody& body, const Prestress& prestress, int n)
 /// SolveFailure, also where the equilibrium is not stable. Collective.
 EigenModes preloaded_modes(const SolidBody& body, const Prestress& prestress, int n);
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -13,7 +13,7 @@
 #include "common/parallel/collective.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 // Compressive strain times (L/t)^2: a clamped column reaches three times less than Euler's load at 0.07 (thickness by slenderness(): of a
@@ -89,4 +89,4 @@ BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fie
   return {-1 / least.value, found.iterations + least.iterations};
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

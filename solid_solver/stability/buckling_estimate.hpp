@@ -6,7 +6,7 @@
 #include "solid_solver/method/solution_method.hpp"
 #include "solid_solver/stability/prestress.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// The lowest load factor of a linear static run, if it is low.
 struct BucklingEstimate {
@@ -26,4 +26,4 @@ void tell_buckling(MPI_Comm comm, double factor, const char* how);
 BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fields, double time,
                                    SolutionMethod& method, double& compression_seen);
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -7,7 +7,7 @@
 #include "common/parallel/collective.hpp"
 #include "solid_solver/stability/prestress.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 void EquilibriumWatch::see(const SolidBody& body, const SolidStepper& stepper, const SolidFields& fields) {
   if (body.is_dynamic() || !body.equilibrium().has_tangent() || !body.rigid().empty() || is_told_) return;
@@ -47,4 +47,4 @@ void EquilibriumWatch::see(const SolidBody& body, const SolidStepper& stepper, c
            "the linear body gives load factors and shapes"});
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

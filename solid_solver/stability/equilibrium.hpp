@@ -4,7 +4,7 @@
 #include "solid_solver/body/solid_fields.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Whether the equilibria that a static run at large strain finds hold: the least x . K x of the tangent K over that of the
 /// undeformed elastic body is 1 without load, passes through zero where stability is lost, and is negative beyond.
@@ -22,4 +22,4 @@ class EquilibriumWatch {
   bool is_told_ = false;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -8,7 +8,7 @@
 #include "common/mesh/extent.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 Prestress prestress_of(const SolidBody& body, const SolidFields& fields, double time) {
   const Geometry& geometry = body.geometry();
@@ -49,4 +49,4 @@ std::vector<double> any_start(const SolidBody& body) {
   return start;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

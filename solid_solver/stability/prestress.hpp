@@ -4,7 +4,7 @@
 #include "common/elasticity/prestress/stress_stiffness.hpp"
 #include "solid_solver/body/solid_fields.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Of the linear solution that the fields hold, under the pressures at `time` (type: pressure), which follow the surface; tractions and
 /// forces keep their direction. Collective.
@@ -17,4 +17,4 @@ double compression(const Mesh& mesh, const Prestress& prestress);
 /// starts.
 std::vector<double> any_start(const SolidBody& body);
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -3,7 +3,7 @@
 
 #include "solid_solver/thermal/thermal_strain.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 std::vector<std::unique_ptr<SolidEffect>> make_effects(const Mesh& mesh, const ElasticOperator& elastic,
                                                        const SolidParameters& parameters) {
@@ -14,4 +14,4 @@ std::vector<std::unique_ptr<SolidEffect>> make_effects(const Mesh& mesh, const E
   return effects;
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

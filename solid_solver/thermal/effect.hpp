@@ -15,7 +15,7 @@
 #include "solid_solver/effects/effect_cards.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Something beside linear elasticity that loads the solid (thermal strain, ...). A scene has those that its
 /// YAML asks for; Solid keeps them in a list and calls them in its order. As for a Participant, only
@@ -68,4 +68,4 @@ class SolidEffect {
 std::vector<std::unique_ptr<SolidEffect>> make_effects(const Mesh& mesh, const ElasticOperator& elastic,
                                                        const SolidParameters& parameters);
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -9,7 +9,7 @@
 #include "common/log/timer.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 // Up to here LU wins in time and has the memory.
@@ -369,4 +369,4 @@ void Heat::load(CheckpointReader& file) {
   state_.steps = static_cast<int>(file.read_scalar("heat-steps"));
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

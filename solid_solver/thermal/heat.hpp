@@ -15,7 +15,7 @@
 #include "solid_solver/thermal/heat_boundaries.hpp"
 #include "solid_solver/thermal/heat_swing.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// What conduction needs to know of one material.
 struct HeatProperties {
@@ -106,4 +106,4 @@ class Heat final {
   std::optional<HeatSwing> swing_;  // of the one scheme that does not damp
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

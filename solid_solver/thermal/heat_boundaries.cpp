@@ -6,7 +6,7 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 using Kind = HeatBoundary::Type;
@@ -113,4 +113,4 @@ void HeatBoundaries::fluxes(double t, std::span<double> heat, std::span<double> 
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

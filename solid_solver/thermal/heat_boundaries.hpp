@@ -9,7 +9,7 @@
 #include "common/fv/expression.hpp"
 #include "solid_solver/parameters/heat_parameters.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// What the YAML says of the temperature on the patches of the mesh.
 class HeatBoundaries final {
@@ -42,4 +42,4 @@ class HeatBoundaries final {
   std::vector<HeatCondition> conditions_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -8,7 +8,7 @@
 #include "common/base/saved_numbers.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 TimeSchemeParameters scheme_of(HeatParameters::Scheme scheme) {
@@ -130,4 +130,4 @@ void HeatErrors::restore(std::span<const double> state) {
   steps_.restore(saved.rest());
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -10,7 +10,7 @@
 #include "common/time/velocity_errors.hpp"
 #include "solid_solver/thermal/heat.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// What a run of heat conduction leaves in its temperature, over the size of the temperature's variation: its distance from
 /// the mean temperature before the first step, or of a steady field from its own mean.
@@ -45,4 +45,4 @@ class HeatErrors {
   VelocityErrors steps_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

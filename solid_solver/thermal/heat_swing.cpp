@@ -9,7 +9,7 @@
 #include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 constexpr int patience = 4;              // turns in a row
@@ -58,4 +58,4 @@ void HeatSwing::accepted(const Mesh& mesh, const Geometry& geometry, const std::
            time, size, highest_ - lowest_)});
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -5,7 +5,7 @@
 
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Says once where the temperature swings to and fro from step to step: the trapezoidal rule turns modes that its step does
 /// not resolve (a shock, a large Fourier number) round in each step in place of damping them: amplification
@@ -24,4 +24,4 @@ class HeatSwing {
   bool told_ = false;
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -9,7 +9,7 @@
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 namespace {
 
 std::vector<std::string> symmetry_patches(const SolidParameters& parameters) {
@@ -422,4 +422,4 @@ void ThermalStrain::add_evidence(SolidEvidence& evidence) const {
   evidence.temperature_range = max(mesh_->comm, highest_) - min(mesh_->comm, lowest_);
 }
 
-}  // namespace couplet
+}  // namespace couplet::solid

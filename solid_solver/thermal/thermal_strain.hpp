@@ -13,7 +13,7 @@
 #include "solid_solver/thermal/heat.hpp"
 #include "solid_solver/thermal/heat_errors.hpp"
 
-namespace couplet {
+namespace couplet::solid {
 
 /// Conduction for this mesh and these parameters (`parameters.heat` must be there). Collective.
 std::unique_ptr<Heat> make_heat(const Mesh& mesh, const Geometry& geometry,
@@ -114,4 +114,4 @@ class ThermalStrain final : public SolidEffect {
   double lowest_ = 0, highest_ = 0;              // temperatures seen on this rank
 };
 
-}  // namespace couplet
+}  // namespace couplet::solid

@@ -4,6 +4,8 @@
 #include "tests/contract/standalone_suite.hpp"
 
 namespace couplet::contract {
+
+using namespace solid;
 namespace {
 
 using Kinematics = SolidParameters::Kinematics;

@@ -4,6 +4,8 @@
 
 namespace couplet::fuzz {
 
+using namespace solid;
+
 std::string ProgramUnderTest::name() const { return "solid_solver"; }
 
 ProgramKind ProgramUnderTest::fresh() const {

@@ -13,6 +13,7 @@
 
 namespace couplet::testing {
 using namespace coupler;
+using namespace solid;
 namespace {
 
 using ::testing::ElementsAre;

@@ -7,6 +7,8 @@
 #include "solid_solver/effects/auto_effects.hpp"
 
 namespace couplet::testing {
+
+using namespace solid;
 namespace {
 
 using config::ExpressionText;

@@ -15,6 +15,8 @@
 
 namespace couplet::testing {
 
+using namespace solid;
+
 using HeatType = HeatBoundary::Type;
 using HeatScheme = HeatParameters::Scheme;
 

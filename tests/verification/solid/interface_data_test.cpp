@@ -12,6 +12,9 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet {
+
+using namespace solid;
+
 namespace {
 
 using testing::boundary;

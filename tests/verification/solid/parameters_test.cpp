@@ -7,6 +7,8 @@
 #include "common/config/load.hpp"
 
 namespace couplet {
+
+using namespace solid;
 namespace {
 
 using ::testing::AllOf;

@@ -15,6 +15,8 @@
 
 namespace couplet::testing {
 
+using namespace solid;
+
 using Type = SolidBoundary::Type;
 using FaceGradient = MethodParameters::FaceGradient;
 
