@@ -88,7 +88,7 @@ void Coupler::finalise(const std::string& problem) {
 
 void Coupler::tell_work() const {
   const WorkGuard::Verdict v =
-      work_guard_.verdict(parameters_.mapping.type == MappingParameters::Type::nearest);
+      work_guard_.verdict(parameters_.mapping.type == MappingParameters::Type::nearest, !schedule_.iterates);
   if (v.text.empty()) return;
   if (v.sound) return log::info("{}", v.text);
   log::finding(comm_rank(comm_), {.id = "interface-work",

@@ -176,7 +176,7 @@ std::optional<std::string> WorkGuard::accepted(double fluid, double structure, S
       window, last.given, last.taken, cure_of_oscillation(scheme));
 }
 
-WorkGuard::Verdict WorkGuard::verdict(bool by_nearest) const {
+WorkGuard::Verdict WorkGuard::verdict(bool by_nearest, bool lagging) const {
   if (steps_ == 0 || exchanged_ == 0) return {};
   const double apart = std::abs(fluid_ - structure_), net = std::min(std::abs(fluid_), std::abs(structure_)),
                energy = energy_ > 0 ? energy_ : stored_, against = std::max(net, energy);
@@ -184,11 +184,14 @@ WorkGuard::Verdict WorkGuard::verdict(bool by_nearest) const {
   // Nothing but noise has gone over where all of it is apart by rounding alone.
   v.part = apart <= 1e-12 * exchanged_ ? 0 : apart / std::max(against, 1e-12 * exchanged_);
   v.sound = v.part < sound_part;
-  v.useless = apart / exchanged_ >= useless_part && steps_ >= judged_steps;
+  v.useless = !lagging && apart / exchanged_ >= useless_part && steps_ >= judged_steps;
   v.text = fmt::format(
       "interface work of {} steps: fluid gave {:.6g} J, structure took {:.6g} J, {:.2g} % of the {} apart: {}",
       steps_, fluid_, structure_, 100 * v.part, net >= energy ? "net work" : "structure's largest energy",
       v.sound ? "closed."
+      : lagging
+          ? "NOT CLOSED: in explicit coupling load and motion belong to different times, and loads alternate from step to "
+            "step; 'scheme: semi-implicit' closes it."
       : by_nearest
           ? "NOT CLOSED: `mapping.type: nearest` transfers motion and load by maps that are not transposes "
             "of each other; `projection` conserves the work on any meshes."

@@ -84,7 +84,10 @@ class WorkGuard {
   };
   /// What is apart is compared with the smaller of the net works, or with the largest energy of the structure where that is
   /// more: work that went there and back again hides nothing. `by_nearest`: motion and load went by the nearest.
-  Verdict verdict(bool by_nearest = false) const;
+  /// `lagging`: one pass per step, where the wall that the fluid sees is extrapolated and its velocity jitters about the
+  /// structure's: loads alternate from step to step, and the works part, while the motion may be right to parts in a
+  /// thousand. That proves no uselessness (growth is the business of accepted()).
+  Verdict verdict(bool by_nearest = false, bool lagging = false) const;
   /// Energy of the structures after a step [J]; NaN: not known. Until one is, the largest net work taken stands for it.
   void energy(double value) { energy_ = value > energy_ ? value : energy_; }
 

@@ -149,6 +149,11 @@ TEST(WorkGuard, a_guess_that_jitters_parts_the_work_but_is_no_instability) {
   for (int n = 0; n < 200; ++n)
     EXPECT_FALSE(guard.accepted(n % 2 ? -0.8 : 0.4, 0.35 + 0.05 * std::sin(n), Scheme::explicit_)) << n;
   EXPECT_FALSE(guard.verdict().sound) << "it is said at the end";
+  EXPECT_TRUE(guard.verdict().useless);  // of an iteration
+  const WorkGuard::Verdict lagging = guard.verdict(true, true);
+  EXPECT_FALSE(lagging.useless) << "the motion may be right";
+  EXPECT_FALSE(lagging.sound);
+  EXPECT_THAT(lagging.text, HasSubstr("in explicit coupling load and motion belong to different times"));
 }
 
 TEST(WorkGuard, an_answer_is_useless_where_half_of_the_work_is_apart_and_not_before) {
