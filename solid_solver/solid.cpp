@@ -68,7 +68,10 @@ std::vector<EffectVerdict> Solid::audit() const {
 }
 
 std::vector<std::string> Solid::finish() {
-  if (body_.is_dynamic()) judge_.look();
+  if (body_.is_dynamic()) {
+    judge_.look();
+    judge_.see_buckling();
+  }
   const SolidOutputParameters& chosen = body_.parameters().output;
   if (chosen.buckling > 0) output_->write_buckling();
   if (chosen.modes > 0 && !body_.is_dynamic()) output_->write_preloaded_modes();

@@ -9,6 +9,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/base/units.hpp"
 #include "common/csv/csv_reader.hpp"
 
 namespace couplet {
@@ -27,13 +28,37 @@ std::size_t find_column(const std::filesystem::path& file, const std::vector<std
     return static_cast<std::size_t>(*number) - 1;
   }
   auto found = std::ranges::find(names, column);
-  if (found == names.end())
-    found =
-        std::ranges::find_if(names, [&](const std::string& n) { return csv::heading_of(n).name == column; });
-  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  const auto is_called = [&](const std::string& n) {
+    return n == column || csv::heading_of(n).name == column;
+  };
+  if (found == names.end()) found = std::ranges::find_if(names, is_called);
+  if (found != names.end()) {
+    if (found == names.begin())
+      throw Error(
+          "{}: '{}' is the first column, which holds the table's points; the values must be in another one.",
+          file.string(), column);
+    if (std::find_if(found + 1, names.end(), is_called) != names.end())
+      throw Error("{}: more than one column is called '{}'. Give its number.", file.string(), column);
+    return static_cast<std::size_t>(found - names.begin());
+  }
   throw Error("{}: the table's column '{}' does not exist. {}", file.string(), column,
               names.empty() ? "Its first line contains no names; give the number of a column, from 2."
                             : did_you_mean(column, names, "columns"));
+}
+
+/// Throws Error where a name ends in a unit in round brackets: such a unit would not be read.
+void check_brackets(const csv::CsvReader& rows, const std::string& name) {
+  const std::size_t open = name.rfind('(');
+  if (!name.ends_with(')') || open == std::string::npos) return;
+  const std::string unit(trim(std::string_view(name).substr(open + 1, name.size() - open - 2)));
+  try {
+    parse_unit(unit);
+  } catch (const Error&) {
+    return;  // as y(t)
+  }
+  if (!unit.empty() && !csv::number_of(unit))
+    throw Error("{}: '{}' has its unit in round brackets, where it is not read. Write '{}[{}]'.",
+                rows.place_of_names(), name, name.substr(0, open), unit);
 }
 
 }  // namespace
@@ -96,7 +121,11 @@ Table read_table(const std::filesystem::path& file, const std::string& column, T
   std::vector<double> at, values;
   std::optional<std::size_t> wanted;
   while (rows.next()) {
-    if (!wanted) wanted = find_column(file, names, column, rows.cells().size());
+    if (!wanted) {
+      wanted = find_column(file, names, column, rows.cells().size());
+      for (const std::size_t i : {std::size_t(0), *wanted})
+        if (i < names.size()) check_brackets(rows, names[i]);
+    }
     at.push_back(rows.number(0, names.empty() ? "the point in column 1" : names[0]));
     values.push_back(rows.number(
         *wanted, names.empty() ? fmt::format("the value in column {}", *wanted + 1) : names[*wanted]));

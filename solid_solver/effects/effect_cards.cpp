@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/csv/cells.hpp"
 #include "solid_solver/method/solution_method.hpp"
 
 namespace couplet::solid {
@@ -109,16 +110,30 @@ V judge_incompressibility(const P& p, const E&) {
             "with one volume strain per cell");
 }
 
-// The strain of a free body with a coefficient of 1e-5 1/K beside the largest gradient of the displacement.
+/// The largest coefficient that the case gives as a number [1/K].
+std::optional<double> largest_expansion(const P& p) {
+  std::optional<double> largest;
+  for (const SolidMaterial& m : materials_of(p))
+    if (m.heat.expansion)
+      if (const auto given = csv::number_of(m.heat.expansion->text))
+        largest = std::max(largest.value_or(0), std::abs(*given));
+  return largest;
+}
+
+// The strain of a free body beside the largest gradient of the displacement: with the material's own coefficient from the reference
+// temperature that `thermal-expansion` would have by default, else with 1e-5 1/K over the range of temperatures, since nobody says then
+// at which one the body is free of stress.
 V judge_thermal_strain(const P& p, const E& e) {
   if (!is_elastic(p)) return {};
-  const double strain = 1e-5 * e.temperature_range;
+  const auto own = largest_expansion(p);
+  const double coefficient = own.value_or(1e-5),
+               change = own ? std::fmax(e.temperature_range, e.temperature_change) : e.temperature_range,
+               strain = coefficient * change;
   return verdict(
       strain / std::max(e.largest_gradient, 1e-300), 0.02,
       fmt::format(
-          "a temperature range of {:.3g} K would strain a free body with 1e-5 1/K by {:.2g}; max |grad u| = "
-          "{:.2g}",
-          e.temperature_range, strain, e.largest_gradient),
+          "a temperature {} of {:.3g} K would strain a free body with {:.3g} 1/K by {:.2g}; max |grad u| = {:.2g}",
+          own ? "change" : "range", change, coefficient, strain, e.largest_gradient),
       "use 'thermal-expansion'", strain / std::max(e.largest_gradient, 1e-300));
 }
 

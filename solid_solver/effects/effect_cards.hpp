@@ -20,6 +20,7 @@ struct SolidEvidence {
   double inertia_over_load = unknown;    ///< of a static run with several steps
   double coupling_number = unknown;      ///< stiffening by the heat of deformation, thesis (2.27)
   double temperature_range = unknown;    ///< of a run that knows a temperature [K]
+  double temperature_change = unknown;   ///< of the same: largest distance from the reference temperature [K]
   std::string large_strain{};            ///< what it would change, where that was asked for
   double large_strain_change = unknown;  ///< the same over the displacement [1]; NaN: there is no equilibrium
   bool large_strain_estimated = false;   ///< it was asked for

@@ -18,6 +18,8 @@ struct BucklingEstimate {
 
 /// A finding, where `factor` is below `low`; `how` goes before it. Collective.
 void tell_buckling(MPI_Comm comm, double factor, const char* how);
+/// Of a body in motion, whose inertia may outlast a short load: never `wrong`. Collective.
+void tell_dynamic_buckling(MPI_Comm comm, double factor);
 
 /// Conjugate gradients on K + 3 K_sigma with the preconditioner of `method` meet a negative curvature where the factor is below 3: one
 /// loose solution more. Nothing is done where the compression is far

@@ -419,7 +419,10 @@ void ThermalStrain::judge(std::vector<std::string>& sentences) const {
 
 void ThermalStrain::add_evidence(SolidEvidence& evidence) const {
   if (const double number = coupling_number(); number > 0) evidence.coupling_number = number;
-  evidence.temperature_range = max(mesh_->comm, highest_) - min(mesh_->comm, lowest_);
+  const double high = max(mesh_->comm, highest_), low = min(mesh_->comm, lowest_),
+               reference = parameters_.expansion.value_or(ThermalExpansion{}).reference_temperature;
+  evidence.temperature_range = high - low;
+  evidence.temperature_change = std::max(std::abs(high - reference), std::abs(low - reference));
 }
 
 }  // namespace couplet::solid

@@ -107,6 +107,18 @@ TEST(EffectCards, solid_verdicts_turn_at_their_thresholds) {
   EXPECT_FALSE(sound("geometric non-linearity", {.largest_gradient = 0.0201}, p));
   EXPECT_TRUE(sound("thermal strain", {.largest_gradient = 0.01, .temperature_range = 19}, p));
   EXPECT_FALSE(sound("thermal strain", {.largest_gradient = 0.01, .temperature_range = 21}, p));
+  // With a coefficient of its own, from the reference temperature on; without one a uniform temperature may be that of no stress.
+  SolidParameters warm = p;
+  warm.material.heat.expansion = config::ExpressionText{"2e-5"};
+  EXPECT_TRUE(sound("thermal strain",
+                    {.largest_gradient = 0.01, .temperature_range = 0, .temperature_change = 9}, warm));
+  EXPECT_FALSE(sound("thermal strain",
+                     {.largest_gradient = 0.01, .temperature_range = 0, .temperature_change = 11}, warm));
+  EXPECT_TRUE(sound("thermal strain",
+                    {.largest_gradient = 0.01, .temperature_range = 0, .temperature_change = 400}, p));
+  warm.material.heat.expansion = config::ExpressionText{"1e-7"};
+  EXPECT_TRUE(sound("thermal strain",
+                    {.largest_gradient = 0.01, .temperature_range = 400, .temperature_change = 400}, warm));
   EXPECT_TRUE(sound("thermoelastic coupling", {.coupling_number = 0.049}, p));
   EXPECT_FALSE(sound("thermoelastic coupling", {.coupling_number = 0.051}, p));
   EXPECT_TRUE(sound("yielding", {.share_of_yield = 0.99}, p));

@@ -109,6 +109,22 @@ TEST(Table, with_decimal_commas_is_refused_with_its_line) {
                   HasSubstr(file.name() + ":2: '0,0' has a decimal comma; write 0.0; expected t here")));
 }
 
+TEST(Table, columns_that_may_be_meant_otherwise_are_refused) {
+  const auto refused = [](const std::string& text, const std::string& column, const std::string& why) {
+    const CsvFile file(text);
+    EXPECT_THAT([&] { read_table(file.path(), column, Outside::clamp); },
+                ThrowsMessage<Error>(HasSubstr(why)));
+  };
+  refused("x (m),p (kPa)\n0,1\n1,2\n", "p (kPa)", "'x (m)' has its unit in round brackets");
+  refused("x,p (kPa)\n0,1\n1,2\n", "2", "Write 'p [kPa]'");
+  refused("x,p,p\n0,1,2\n1,2,3\n", "p", "more than one column is called 'p'");
+  refused("p,x\n0,1\n1,2\n", "p", "'p' is the first column, which holds the table's points");
+  for (const char* name : {"p [kPa]", "p(x)", "p (upper side)", "p (2)"}) {
+    const CsvFile file(std::string("x,") + name + "\n0,1\n1,2\n");
+    EXPECT_NO_THROW(read_table(file.path(), "2", Outside::clamp)) << name;
+  }
+}
+
 TEST(Table, places_in_a_file_that_do_not_grow_are_refused_with_their_line) {
   const CsvFile file("t,p\n0,1\n2,2\n1,3\n");
   EXPECT_THAT([&] { read_table(file.path(), "2", Outside::clamp); },

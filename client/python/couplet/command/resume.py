@@ -28,7 +28,7 @@ def run(arguments):
     record = folders.read_record(folder)
     expect(record, f"{arguments.folder}: was not started by couplet run (no {folders.RECORD}). Continue with: couplet run CASE --restart {arguments.folder / 'checkpoints'}")
     expect(folders.checkpoint(folder), f"{arguments.folder}: no complete checkpoint to continue from; `simulation.checkpoint.interval` writes them. Start again: couplet run {shlex.quote(str(record['case']))}")
-    flags = [*without_restart(record["flags"]), "--restart", str(folder / "checkpoints")]
+    flags = [*without_restart(record["flags"]), "--restart", str(folder / "checkpoints" / folders.checkpoint(folder))]
     job = Job(Case(record["case"], pathlib.Path(record["bin"]).parent), record["ranks"], [*record["sets"], f"simulation.output.folder={folder}", *arguments.set],
               flags, record["alone"], record["with"])
     if arguments.print:

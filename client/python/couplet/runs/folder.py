@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The output folder of a job: who is at work in it, and how it was started."""
+import calendar
 import json
 import os
 import pathlib
@@ -7,7 +8,7 @@ import signal
 import sys
 import time
 
-LOCK, RECORD = ".checkpoints.lock", "job.json"
+LOCK, RECORD, STAMP = ".checkpoints.lock", "job.json", "%Y-%m-%dT%H:%M:%SZ"
 
 
 def fields_of(pid):
@@ -69,8 +70,11 @@ def wait_for_end(folder, seconds):
 
 
 def checkpoint(folder):
-    """(time [s], name) of the complete checkpoint that has gone furthest; None if there is none."""
-    sets = sorted(file.parent.name for file in (pathlib.Path(folder) / "checkpoints").glob("step-*/set.txt"))
+    """Name of the complete checkpoint that has gone furthest; of those that the run on record wrote, or an earlier one that it continued;
+    None if there is none. Another run's, left in the folder, may belong to another case."""
+    record = read_record(folder)
+    began = 0 if "--restart" in record.get("flags", ()) else calendar.timegm(time.strptime(record["started"], STAMP)) if "started" in record else 0
+    sets = sorted(file.parent.name for file in (pathlib.Path(folder) / "checkpoints").glob("step-*/set.txt") if file.stat().st_mtime >= began)
     return sets[-1] if sets else None
 
 

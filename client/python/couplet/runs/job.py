@@ -73,7 +73,7 @@ class Job:
 
     def record(self):
         return {"case": self.case.file.absolute(), "bin": self.case.build / "bin", "ranks": self.ranks, "sets": self.sets, "flags": self.flags, "alone": self.alone,
-                "with": self.played_by, "command": self.command, "started": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())}
+                "with": self.played_by, "command": self.command, "started": time.strftime(folders.STAMP, time.gmtime(time.time() - (time.monotonic() - self.started)))}
 
     # -- while it runs ------------------------------------------------------------------------------------------------
     def on_signal(self, number, _):
@@ -164,6 +164,8 @@ class Job:
     def last_words(self):
         if self.pages.killed and not self.asked:
             return culprit(self.pages.killed, [(name, int(self.ranks.get(name, 1))) for name in ((self.alone,) if self.alone else (COUPLER, *self.case.participants))])
+        if self.process.returncode < 0:
+            return f"mpirun was ended by signal {-self.process.returncode} ({signal.strsignal(-self.process.returncode)})"
         return last_words("\n".join(self.last))
 
 
