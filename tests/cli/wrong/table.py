@@ -207,7 +207,7 @@ case.yaml:16:7: participants.solid.boundaries.bottom.type: this required key is 
 case.yaml:14:7: participants.solid.boundaries.left.value: give either 'value' (all components) or 'components' (the prescribed ones of x, y, z).
 """, ("value: [0, 0]", "")),
     solid("key of another boundary type", """
-case.yaml:16:28: participants.solid.boundaries.bottom.value: this key is not valid here; it requires type: fixed-displacement or type: traction or type: pressure or type: force or type: spring.
+case.yaml:16:28: participants.solid.boundaries.bottom.value: this key is not valid here; it requires type: fixed-displacement or type: traction or type: pressure or type: force or type: roller or type: spring.
 """, ("bottom: {type: free}", "bottom: {type: free, value: [0, 0]}")),
     solid("boundaries as a list", """
 case.yaml:13:5: participants.solid.boundaries: expected a mapping with one entry for each patch, found a list.

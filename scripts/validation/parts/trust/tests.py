@@ -92,12 +92,12 @@ def within(counts, pattern):
 # What a program does in a step, and what of it are guards: the end of a run, files and verdicts on left-out effects are none.
 STEPS = {
     "fluid_solver": r"couplet::fluid::FluidParticipant<\d>::(begin_step|solve|accept_step)\b",
-    "solid_solver": r"couplet::Solid::(begin_step|solve|accept_step)\b",
+    "solid_solver": r"couplet::solid::Solid::(begin_step|solve|accept_step)\b",
     "mesh_mover": r"couplet::mesh_mover::Mover::(begin_step|solve|accept_step)\b",
 }
 GUARD = {
     "fluid_solver": r"couplet::fluid::(FractionalStep<\d>::judge|Fluid<\d>::(refuse_inverted|check_wall_velocity))\(",
-    "solid_solver": r"couplet::SolidJudge::(look|see_inertia)\(",
+    "solid_solver": r"couplet::solid::SolidJudge::(look|see_inertia)\(",
     "mesh_mover": r"couplet::mesh_mover::Guard::refusal\b",
     "coupler": r"couplet::coupler::(Coupler::watch|IterationGuard::pass)\(",
 }
