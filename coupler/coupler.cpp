@@ -33,8 +33,9 @@ std::vector<std::string> labels_of(const CouplingParameters& p, const std::vecto
 
 }  // namespace
 
-Coupler::Coupler(MPI_Comm comm, const CouplingParameters& parameters, const SimulationParameters& simulation,
-                 std::vector<std::unique_ptr<Channel>> channels, CouplerFolders folders)
+Coupler::Coupler(MPI_Comm comm, const CouplingParameters& parameters,
+                 const app::SimulationParameters& simulation,
+                 std::vector<std::unique_ptr<coupling::Channel>> channels, CouplerFolders folders)
     : comm_(comm),
       parameters_(parameters),
       simulation_(simulation),
@@ -71,15 +72,15 @@ CouplingParameters with_roles(CouplingParameters p, const CouplerChannels& c) {
   return p;
 }
 
-std::vector<std::unique_ptr<Channel>> list(CouplerChannels c) {
-  std::vector<std::unique_ptr<Channel>> channels;
+std::vector<std::unique_ptr<coupling::Channel>> list(CouplerChannels c) {
+  std::vector<std::unique_ptr<coupling::Channel>> channels;
   for (auto* one : {&c.fluid, &c.structure, &c.mesh}) channels.push_back(std::move(*one));
   return channels;
 }
 
 }  // namespace
 
-Coupler::Coupler(const CouplingParameters& parameters, const SimulationParameters& simulation,
+Coupler::Coupler(const CouplingParameters& parameters, const app::SimulationParameters& simulation,
                  CouplerChannels channels, CouplerFolders folders)
     // Braces: the names are read before the channels are taken away.
     : Coupler{MPI_COMM_SELF, with_roles(parameters, channels), simulation, list(std::move(channels)),
@@ -98,8 +99,8 @@ std::vector<Partner*> Coupler::everyone() {
 }
 
 void Coupler::initialise() {
-  enter_(Phase::initialise, {});
-  std::vector<Interface> interfaces = initialise_all(everyone());
+  enter_(app::Phase::initialise, {});
+  std::vector<coupling::Interface> interfaces = initialise_all(everyone());
   check_introductions(parameters_, partners_);
   for (std::size_t i = 0; i < partners_.size(); ++i)
     if (auto* foreign = dynamic_cast<ForeignFluid*>(partners_[i].channel.get()))
@@ -132,31 +133,31 @@ void Coupler::initialise() {
   if (lag_ && !lag_->possible()) lag_.reset();
 }
 
-std::optional<StepFailure> Coupler::attempt(const Step& step) {
-  if (!diverged_.empty()) return StepFailure(diverged_, false);
-  enter_(Phase::begin_step, step.time);
+std::optional<app::StepFailure> Coupler::attempt(const coupling::Step& step) {
+  if (!diverged_.empty()) return app::StepFailure(diverged_, false);
+  enter_(app::Phase::begin_step, step.time);
   for (Partner& p : partners_) p.seconds = 0;
   data_guard_->start_step();
   try {
     solve(step);
   } catch (const SchemeFailure& failure) {
-    return StepFailure(failure.what(), false);
+    return app::StepFailure(failure.what(), false);
   } catch (const SolveFailure& failure) {
     return cause_of(failure.what());
   }
   return {};
 }
 
-void Coupler::solve(const Step& step) {
-  Step begun = step;
+void Coupler::solve(const coupling::Step& step) {
+  coupling::Step begun = step;
   begun.waveform = schedule_.waveform;
   look_at_lag(begun);
-  ask_all(everyone(), {Op::begin_step, begun, {}, 0, -1, ""});
-  enter_(Phase::solve, step.time);
+  ask_all(everyone(), {coupling::Op::begin_step, begun, {}, 0, -1, ""});
+  enter_(app::Phase::solve, step.time);
   if (volume_level_) volume_level_->start_step(step.dt);
   bool first = true;
-  std::vector<Exchange> outputs;
-  const auto pass_from = [&](std::vector<Exchange> known) {
+  std::vector<coupling::Exchange> outputs;
+  const auto pass_from = [&](std::vector<coupling::Exchange> known) {
     give_back(std::move(outputs));
     const bool shows_times = first && schedule_.iterates && unknown_->asked_within();
     outputs = pass(std::move(known), std::exchange(first, false));
@@ -164,7 +165,7 @@ void Coupler::solve(const Step& step) {
       accelerator_ = make_accelerator(parameters_.acceleration, comm_);
   };
   const FixedPointMap map = [&](const Iterate& x) {
-    std::vector<Exchange> known(partners_.size());
+    std::vector<coupling::Exchange> known(partners_.size());
     unknown_->scatter(x, known);
     pass_from(std::move(known));
     if (answered_anew_ && accelerator_) accelerator_->map_changed();
@@ -174,7 +175,7 @@ void Coupler::solve(const Step& step) {
       history_.now.unknown.empty() && history_.now.rider.empty() && !unknown_->parts().empty();
   if (begins || unknown_->parts().empty()) {
     // Data that nobody has given yet are missing from this first pass.
-    pass_from(std::vector<Exchange>(partners_.size()));
+    pass_from(std::vector<coupling::Exchange>(partners_.size()));
     if (!unknown_->scaled()) unknown_->scale(outputs);
     last_ = {unknown_->gather(outputs), unknown_->gather(outputs), {}, 1};
   }
@@ -207,14 +208,14 @@ void Coupler::solve(const Step& step) {
   last_dt_ = step.dt;
 }
 
-void Coupler::give_back(std::vector<Exchange> given) {
+void Coupler::give_back(std::vector<coupling::Exchange> given) {
   for (std::size_t i = 0; i < given.size(); ++i) partners_[i].channel->reuse(std::move(given[i]));
 }
 
 void Coupler::accept(double time, int output) {
-  enter_(Phase::accept, {});
-  ask_all(everyone(), {Op::accept_step, {}, {}, time, output, ""});
-  enter_(Phase::accept, time);
+  enter_(app::Phase::accept, {});
+  ask_all(everyone(), {coupling::Op::accept_step, {}, {}, time, output, ""});
+  enter_(app::Phase::accept, time);
   // Scales are found after the first step, and hold from then on.
   if (!unknown_->scaled() && unknown_->complete(given_)) {
     unknown_->scale(given_);
@@ -246,7 +247,7 @@ std::string Coupler::run() {
   double restart_time = std::numeric_limits<double>::quiet_NaN();
   if (!folders_.restart.empty()) {
     load();
-    restart_time = read_run_state(folders_.restart).time;
+    restart_time = app::read_run_state(folders_.restart).time;
   }
   std::vector<std::string> names;
   for (const Partner& p : partners_) names.push_back(p.name());
@@ -255,13 +256,17 @@ std::string Coupler::run() {
   if (parameters_.interface_output)
     interface_output_.emplace(comm_, folders_.output / "interface", sides_, restart_time);
   monitor_->start(partners_);
-  StepActions actions;
-  actions.attempt = [&](const Step& step) { return attempt(step); };
+  app::StepActions actions;
+  actions.attempt = [&](const coupling::Step& step) { return attempt(step); };
   actions.accept = [&](double time, int output) { accept(time, output); };
-  actions.write_start = [&](int output) { ask_all(everyone(), {Op::write_output, {}, {}, 0, output, ""}); };
+  actions.write_start = [&](int output) {
+    ask_all(everyone(), {coupling::Op::write_output, {}, {}, 0, output, ""});
+  };
   actions.save = [&](const std::filesystem::path& folder) { save(folder); };
   actions.stateless = stateless;
-  actions.report = [&](const Step& step, double time) { monitor_->step(step, time, last_, partners_); };
+  actions.report = [&](const coupling::Step& step, double time) {
+    monitor_->step(step, time, last_, partners_);
+  };
   actions.advised_dt = [&] { return advised_dt(everyone()); };
   std::string problem = loop_.run(actions);
   finalise(problem);

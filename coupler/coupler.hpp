@@ -40,7 +40,7 @@ struct CouplerFolders {
 
 /// Channels by role, for callers without configuration: the roles take the channels' names.
 struct CouplerChannels {
-  std::unique_ptr<Channel> fluid, structure, mesh;  ///< mesh may be empty
+  std::unique_ptr<coupling::Channel> fluid, structure, mesh;  ///< mesh may be empty
 };
 
 /// Drives any number of participants from start to end: Links say who gives what to whom, the Schedule in
@@ -49,13 +49,15 @@ struct CouplerChannels {
 class Coupler {
  public:
   /// `channels`: to everyone of the schedule, in any order.
-  Coupler(MPI_Comm comm, const CouplingParameters& parameters, const SimulationParameters& simulation,
-          std::vector<std::unique_ptr<Channel>> channels, CouplerFolders folders);
+  Coupler(MPI_Comm comm, const CouplingParameters& parameters, const app::SimulationParameters& simulation,
+          std::vector<std::unique_ptr<coupling::Channel>> channels, CouplerFolders folders);
   /// In one process.
-  Coupler(const CouplingParameters& parameters, const SimulationParameters& simulation,
+  Coupler(const CouplingParameters& parameters, const app::SimulationParameters& simulation,
           CouplerChannels channels, CouplerFolders folders);
   /// Called when the coupler turns to another phase, with the time if there is one.
-  void on_phase(std::function<void(Phase, std::optional<double>)> callback) { enter_ = std::move(callback); }
+  void on_phase(std::function<void(app::Phase, std::optional<double>)> callback) {
+    enter_ = std::move(callback);
+  }
   /// Initialises, runs, finalises. Returns an empty text, or why the run stopped before its end.
   std::string run();
 
@@ -64,10 +66,10 @@ class Coupler {
   int halvings() const { return loop_.halvings(); }
   long iterations() const { return iterations_; }
   /// The budget of the whole job, once it has ended well.
-  const ErrorParts& errors() const { return found_; }
+  const coupling::ErrorParts& errors() const { return found_; }
   /// What each has given in the last pass, in the order of the schedule's everyone().
-  const std::vector<Exchange>& given() const { return given_; }
-  const Exchange& given_by(const std::string& name) const { return given_[index_of(name)]; }
+  const std::vector<coupling::Exchange>& given() const { return given_; }
+  const coupling::Exchange& given_by(const std::string& name) const { return given_[index_of(name)]; }
 
  private:
   std::size_t index_of(const std::string& name) const;
@@ -77,35 +79,35 @@ class Coupler {
   void exchange_initial_values();
   void load();
   void save(const std::filesystem::path& folder);
-  std::optional<StepFailure> attempt(const Step& step);
+  std::optional<app::StepFailure> attempt(const coupling::Step& step);
   /// Why a step failed: what the coupling itself does comes before what a participant reports.
-  StepFailure cause_of(const std::string& reported) const;
-  void solve(const Step& step);
+  app::StepFailure cause_of(const std::string& reported) const;
+  void solve(const coupling::Step& step);
   /// One pass from x, the explicit scheme's step.
-  void pass_once(const Step& step, const FixedPointMap& map);
+  void pass_once(const coupling::Step& step, const FixedPointMap& map);
   /// Where values within the step are asked for: the first pass, whose times they are iterated on at from then on.
   std::optional<Iterate> look_within(const FixedPointMap& map);
   /// What comes back in a step half as long, of some steps of explicit coupling before they begin.
-  void look_at_lag(Step step);
+  void look_at_lag(coupling::Step step);
   /// One pass through the group from what is known to what all give.
-  std::vector<Exchange> pass(std::vector<Exchange> known, bool first);
-  void ask(std::size_t i, const std::vector<Exchange>& known, bool move_mesh);
-  void guess_motion(const std::vector<Exchange>& known, bool first);
-  void answer(std::size_t i, Exchange& given, bool move_mesh);
+  std::vector<coupling::Exchange> pass(std::vector<coupling::Exchange> known, bool first);
+  void ask(std::size_t i, const std::vector<coupling::Exchange>& known, bool move_mesh);
+  void guess_motion(const std::vector<coupling::Exchange>& known, bool first);
+  void answer(std::size_t i, coupling::Exchange& given, bool move_mesh);
   /// To the channels, for the next replies.
-  void give_back(std::vector<Exchange> given);
-  void hold_volume(std::size_t i, std::vector<Exchange>& known);
+  void give_back(std::vector<coupling::Exchange> given);
+  void hold_volume(std::size_t i, std::vector<coupling::Exchange>& known);
   void accept(double time, int output);
   /// A step that `at-max-iterations: accept` takes as it is: the first one, and each that is ten times worse, is a finding.
   void report_unconverged(double time);
   void watch(double time, const std::vector<SideBalance>& balances);
   void finalise(const std::string& problem);
   void tell_work() const;
-  void tell_errors(std::vector<NamedErrors> participants);
+  void tell_errors(std::vector<coupling::NamedErrors> participants);
 
   MPI_Comm comm_;
   CouplingParameters parameters_;
-  SimulationParameters simulation_;
+  app::SimulationParameters simulation_;
   Schedule schedule_;
   CouplerFolders folders_;
   std::vector<Partner> partners_;   // in the order of the schedule's everyone()
@@ -118,12 +120,12 @@ class Coupler {
   std::optional<Monitor> monitor_;
   std::optional<InterfaceOutput> interface_output_;  // none: not asked for
   std::optional<WatchIntegrals> watched_;            // the same
-  StepLoop loop_;
-  std::unique_ptr<Accelerator> accelerator_;  // none: one pass a step
-  History history_;                           // of accepted steps; empty before all has been given
-  FixedPointResult last_;                     // of the step just solved
-  std::vector<Exchange> given_, taken_;       // by each in its last pass
-  Exchange guess_;                            // of the motion, that the mover has been given
+  app::StepLoop loop_;
+  std::unique_ptr<Accelerator> accelerator_;       // none: one pass a step
+  History history_;                                // of accepted steps; empty before all has been given
+  FixedPointResult last_;                          // of the step just solved
+  std::vector<coupling::Exchange> given_, taken_;  // by each in its last pass
+  coupling::Exchange guess_;                       // of the motion, that the mover has been given
   IterationGuard iteration_guard_;
   OscillationGuard oscillation_guard_;
   WorkGuard work_guard_;
@@ -133,14 +135,14 @@ class Coupler {
   std::optional<CouplingErrorEstimate> errors_;  // none: not wanted, or nothing is iterated
   std::optional<LagEstimate> lag_;               // none: not wanted, not explicit, or it could not tell
   std::optional<LagEstimate::Look> half_;        // of the step under way; none: it is not looked at
-  ErrorParts found_;                             // of all participants, at the end
+  coupling::ErrorParts found_;                   // of all participants, at the end
   std::string diverged_;                         // empty: no guard has fired
   double worst_accepted_ = 0;                    // relative residual of a step that was accepted unconverged
   bool warned_ = false;
   bool answered_anew_ = false;  // somebody in the last pass
   double last_dt_ = 0;
   long iterations_ = 0;
-  std::function<void(Phase, std::optional<double>)> enter_ = [](Phase, std::optional<double>) {};
+  std::function<void(app::Phase, std::optional<double>)> enter_ = [](app::Phase, std::optional<double>) {};
 };
 
 }  // namespace couplet::coupler

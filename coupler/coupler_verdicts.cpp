@@ -14,7 +14,7 @@ namespace {
 double energy_of_structures(const std::vector<Side>& sides, const std::vector<Partner>& partners) {
   double total = 0;
   for (std::size_t i = 0; i < sides.size(); ++i)
-    if (std::ranges::find(sides[i].interface.takes, "N", &Interface::Datum::unit) !=
+    if (std::ranges::find(sides[i].interface.takes, "N", &coupling::Interface::Datum::unit) !=
         sides[i].interface.takes.end())
       total += partners[i].report.energy;
   return total;
@@ -37,9 +37,9 @@ void Coupler::report_unconverged(double time) {
     return;
   }
   worst_accepted_ = residual;
-  log::finding(comm_rank(comm_),
+  log::finding(parallel::comm_rank(comm_),
                {.id = "unconverged-step",
-                .severity = residual < useless_residual ? Severity::warning : Severity::wrong,
+                .severity = residual < useless_residual ? base::Severity::warning : base::Severity::wrong,
                 .number = residual,
                 .limit = parameters_.convergence.relative,
                 .sentence = text,
@@ -58,11 +58,12 @@ void Coupler::watch(double time, const std::vector<SideBalance>& balances) {
     if (!reason) reason = parted;
   }
   for (std::string& still : still_guard_->accepted(given_, taken_))
-    log::finding(comm_rank(comm_), {.id = "structure-at-rest",
-                                    .sentence = fmt::format("t = {:g} s: {}", time, std::move(still))});
+    log::finding(
+        parallel::comm_rank(comm_),
+        {.id = "structure-at-rest", .sentence = fmt::format("t = {:g} s: {}", time, std::move(still))});
   for (log::Finding& finding : data_guard_->accepted(given_, last_dt_)) {
     finding.sentence = fmt::format("t = {:g} s: {}", time, finding.sentence);
-    log::finding(comm_rank(comm_), finding);
+    log::finding(parallel::comm_rank(comm_), finding);
   }
   audit_->loads(given_);
   audit_->tell(parameters_, time);
@@ -70,19 +71,19 @@ void Coupler::watch(double time, const std::vector<SideBalance>& balances) {
   if (parameters_.on_divergence == CouplingParameters::OnDivergence::stop)
     diverged_ = *reason;
   else if (!warned_)
-    log::finding(comm_rank(comm_), {.id = swings ? "interface-oscillation" : "interface-work-grows",
-                                    .severity = Severity::wrong,
-                                    .sentence = fmt::format("t = {:g} s: {}", time, *reason)});
+    log::finding(parallel::comm_rank(comm_), {.id = swings ? "interface-oscillation" : "interface-work-grows",
+                                              .severity = base::Severity::wrong,
+                                              .sentence = fmt::format("t = {:g} s: {}", time, *reason)});
   warned_ = true;
 }
 
 /// `problem`: why the run stopped before its end; then nothing is said of what its answer errs by.
 void Coupler::finalise(const std::string& problem) {
-  enter_(Phase::finalise, {});
+  enter_(app::Phase::finalise, {});
   log::info("{}", monitor_->summary(loop_.halvings()));
   tell_work();
   audit_->tell_at_end(parameters_, problem.empty());
-  std::vector<NamedErrors> parts = finalise_all(everyone(), problem);
+  std::vector<coupling::NamedErrors> parts = finalise_all(everyone(), problem);
   if (simulation_.error_estimate && problem.empty()) tell_errors(std::move(parts));
 }
 
@@ -91,24 +92,26 @@ void Coupler::tell_work() const {
       work_guard_.verdict(parameters_.mapping.type == MappingParameters::Type::nearest, !schedule_.iterates);
   if (v.text.empty()) return;
   if (v.sound) return log::info("{}", v.text);
-  log::finding(comm_rank(comm_), {.id = "interface-work",
-                                  .severity = v.useless ? Severity::wrong : Severity::warning,
-                                  .number = v.part,
-                                  .limit = WorkGuard::sound_part,
-                                  .sentence = v.text});
+  log::finding(parallel::comm_rank(comm_),
+               {.id = "interface-work",
+                .severity = v.useless ? base::Severity::wrong : base::Severity::warning,
+                .number = v.part,
+                .limit = WorkGuard::sound_part,
+                .sentence = v.text});
 }
 
-void Coupler::tell_errors(std::vector<NamedErrors> participants) {
-  ErrorParts mine = audit_->parts(parameters_);
+void Coupler::tell_errors(std::vector<coupling::NamedErrors> participants) {
+  coupling::ErrorParts mine = audit_->parts(parameters_);
   if (errors_) mine.coupling = errors_->over_size();
   if (mine.known() || !mine.omittable.empty()) participants.push_back({"coupling", std::move(mine)});
-  found_ = largest(participants);
-  for (const std::string& sentence : error_sentences(participants)) log::info("{}", sentence);
-  if (const auto finding = worthless(participants)) log::finding(comm_rank(comm_), *finding);
+  found_ = coupling::largest(participants);
+  for (const std::string& sentence : coupling::error_sentences(participants)) log::info("{}", sentence);
+  if (const auto finding = coupling::worthless(participants))
+    log::finding(parallel::comm_rank(comm_), *finding);
   if (!schedule_.iterates) log::info("{}", lag_ ? lag_->sentence(participants) : LagEstimate::not_possible());
 }
 
-StepFailure Coupler::cause_of(const std::string& reported) const {
+app::StepFailure Coupler::cause_of(const std::string& reported) const {
   // Without the advice that goes with it: a smaller step or another mesh would not help.
   const std::string met = reported.substr(0, reported.find(". Try ") + 1);
   const auto then = [&](const std::string& cause) {
@@ -127,7 +130,7 @@ StepFailure Coupler::cause_of(const std::string& reported) const {
   if (!swings && mechanics_->knows_work()) swings = work_guard_.suspects(parameters_.scheme);
   if (swings && parameters_.on_divergence == CouplingParameters::OnDivergence::stop)
     return {then(*swings), false};
-  return StepFailure(reported + data_guard_->silent());
+  return app::StepFailure(reported + data_guard_->silent());
 }
 
 }  // namespace couplet::coupler

@@ -10,22 +10,23 @@
 
 namespace {
 
-int run(const couplet::Job& job, const couplet::coupler::CouplingParameters& read) {
+int run(const couplet::app::Job& job, const couplet::coupler::CouplingParameters& read) {
   using namespace couplet;
   const coupler::CouplingParameters parameters = read.in_force();
-  log::info("{}", summary(effects_of(coupler::coupling_effect_cards(), parameters)));
-  std::vector<std::unique_ptr<Channel>> channels;
-  for (const Member& m : job.members)
-    if (m.participant != coupler_name)
-      channels.push_back(std::make_unique<MpiChannel>(m.participant, job.connect(m.participant), job.comm));
+  log::info("{}", effects::summary(effects::effects_of(coupler::coupling_effect_cards(), parameters)));
+  std::vector<std::unique_ptr<coupling::Channel>> channels;
+  for (const app::Member& m : job.members)
+    if (m.participant != app::coupler_name)
+      channels.push_back(
+          std::make_unique<coupling::MpiChannel>(m.participant, job.connect(m.participant), job.comm));
   coupler::Coupler coupler(job.comm, parameters, job.simulation, std::move(channels),
                            {job.output_folder, job.checkpoints, job.restart_folder});
-  coupler.on_phase([&](Phase phase, std::optional<double> time) {
+  coupler.on_phase([&](app::Phase phase, std::optional<double> time) {
     if (time) job.watch->set_time(*time);
     job.enter(phase);
   });
   const auto start = std::chrono::steady_clock::now();
-  RunReport report(job, false);
+  app::RunReport report(job, false);
   const std::string problem = coupler.run();
   report.total(coupler.time(), long(coupler.steps()), coupler.iterations());
   report.finish(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), problem,
@@ -40,12 +41,13 @@ int run(const couplet::Job& job, const couplet::coupler::CouplingParameters& rea
 
 int main(int argc, char** argv) {
   couplet::coupler::CouplingParameters parameters;
-  const couplet::ProgramKind kind{
+  const couplet::app::ProgramKind kind{
       "coupler",
       "couples a fluid, a structure and a mesh mover, or participants of any kind, each a separate program",
       true, [&](couplet::config::Section& section) { declare(section, parameters); },
-      [&](const couplet::EffectScene&) {
-        return couplet::effects_of(couplet::coupler::coupling_effect_cards(), parameters.in_force());
+      [&](const couplet::effects::EffectScene&) {
+        return couplet::effects::effects_of(couplet::coupler::coupling_effect_cards(), parameters.in_force());
       }};
-  return couplet::run_job(argc, argv, kind, [&](const couplet::Job& job) { return run(job, parameters); });
+  return couplet::app::run_job(argc, argv, kind,
+                               [&](const couplet::app::Job& job) { return run(job, parameters); });
 }

@@ -6,16 +6,16 @@
 
 namespace couplet::coupler {
 
-void Coupler::ask(std::size_t i, const std::vector<Exchange>& known, bool move_mesh) {
+void Coupler::ask(std::size_t i, const std::vector<coupling::Exchange>& known, bool move_mesh) {
   // The moved one blocks until the mesh has been moved: the mover's command goes out first.
   const bool with_mover = move_mesh && schedule_.mover && partners_[i].name() == *schedule_.moved;
-  if (with_mover) partners_.front().send({Op::solve, {}, guess_, 0, -1, ""});
-  Command command{Op::solve, {}, links_->input(i, known), 0, -1, ""};
+  if (with_mover) partners_.front().send({coupling::Op::solve, {}, guess_, 0, -1, ""});
+  coupling::Command command{coupling::Op::solve, {}, links_->input(i, known), 0, -1, ""};
   partners_[i].send(command);
   taken_[i] = std::move(command.data);
 }
 
-void Coupler::answer(std::size_t i, Exchange& given, bool move_mesh) {
+void Coupler::answer(std::size_t i, coupling::Exchange& given, bool move_mesh) {
   const bool with_mover = move_mesh && schedule_.mover && partners_[i].name() == *schedule_.moved;
   // A failed motion makes the moved one fail too; the mover knows the reason. Both replies are always taken.
   std::optional<SolveFailure> mover_failed;
@@ -27,7 +27,7 @@ void Coupler::answer(std::size_t i, Exchange& given, bool move_mesh) {
     }
   }
   try {
-    Reply reply = partners_[i].receive();
+    coupling::Reply reply = partners_[i].receive();
     partners_[i].channel->reuse(std::exchange(given, std::move(reply.data)));
     answered_anew_ = answered_anew_ || reply.anew;
   } catch (const SolveFailure&) {
@@ -43,17 +43,17 @@ void Coupler::exchange_initial_values() {
     given_[i] = std::move(partners_[i].initial);
     require_finite(comm_, given_[i], sides_[i].interface, sides_[i].interface.gives, partners_[i].name());
   }
-  const std::vector<Exchange> initial = given_;
+  const std::vector<coupling::Exchange> initial = given_;
   for (std::size_t i = 0; i < partners_.size(); ++i) {
     if (initial[i].empty()) continue;
-    partners_[i].send({Op::start, {}, links_->input(i, initial), 0, -1, ""});
+    partners_[i].send({coupling::Op::start, {}, links_->input(i, initial), 0, -1, ""});
     partners_[i].receive();
   }
   if (unknown_->complete(given_) || unknown_->start_at_rest(given_)) history_.now = unknown_->gather(given_);
 }
 
 /// After `i` has answered, where fluids are closed.
-void Coupler::hold_volume(std::size_t i, std::vector<Exchange>& known) {
+void Coupler::hold_volume(std::size_t i, std::vector<coupling::Exchange>& known) {
   volume_level_->loaded(i, taken_[i], known[i]);
   if (i != volume_level_->structures().back()) return;
   volume_level_->find(known, [&] {
@@ -65,11 +65,11 @@ void Coupler::hold_volume(std::size_t i, std::vector<Exchange>& known) {
 }
 
 /// What the mover gets: the motion that is known before anybody has answered in this pass.
-void Coupler::guess_motion(const std::vector<Exchange>& known, bool first) {
+void Coupler::guess_motion(const std::vector<coupling::Exchange>& known, bool first) {
   if (first || !schedule_.mesh_on_guess) guess_ = links_->input(0, known);
 }
 
-std::vector<Exchange> Coupler::pass(std::vector<Exchange> known, bool first) {
+std::vector<coupling::Exchange> Coupler::pass(std::vector<coupling::Exchange> known, bool first) {
   const bool move_mesh = schedule_.mover && (first || schedule_.moves_in_each_pass);
   if (move_mesh) guess_motion(known, first);
   ++iterations_;
@@ -83,7 +83,7 @@ std::vector<Exchange> Coupler::pass(std::vector<Exchange> known, bool first) {
     return known;
   }
   for (const std::size_t i : group_) ask(i, known, move_mesh);
-  std::vector<Exchange> given = known;
+  std::vector<coupling::Exchange> given = known;
   std::string failures;
   bool hopeless = false;
   for (const std::size_t i : group_) {
@@ -100,14 +100,14 @@ std::vector<Exchange> Coupler::pass(std::vector<Exchange> known, bool first) {
 }
 
 /// Tries a step half as long, two passes, which are forgotten; pass_once() has the whole one.
-void Coupler::look_at_lag(Step step) {
+void Coupler::look_at_lag(coupling::Step step) {
   half_.reset();
   if (!lag_ || history_.now.rider.empty() || !CouplingAudit::looks_at(step.number)) return;
   step.dt /= 2;
-  std::vector<Exchange> outputs;
+  std::vector<coupling::Exchange> outputs;
   bool first = true;
   const auto answer_to = [&](const Iterate& x) {
-    std::vector<Exchange> known(partners_.size());
+    std::vector<coupling::Exchange> known(partners_.size());
     unknown_->scatter(x, known);
     give_back(std::move(outputs));
     outputs = pass(std::move(known), std::exchange(first, false));
@@ -115,7 +115,7 @@ void Coupler::look_at_lag(Step step) {
     return unknown_->gather(outputs);
   };
   try {
-    ask_all(everyone(), {Op::begin_step, step, {}, 0, -1, ""});
+    ask_all(everyone(), {coupling::Op::begin_step, step, {}, 0, -1, ""});
     LagEstimate::Look look;
     look.x = predict(*unknown_, history_, step.dt, schedule_.predictor);
     look.image = answer_to(look.x);
@@ -134,12 +134,12 @@ std::optional<Iterate> Coupler::look_within(const FixedPointMap& map) {
   return image;
 }
 
-void Coupler::pass_once(const Step& step, const FixedPointMap& map) {
+void Coupler::pass_once(const coupling::Step& step, const FixedPointMap& map) {
   last_.image = map(last_.x);
   last_.residual = worst(unknown_->measure(last_.x, last_.image));
   last_.iterations = 1;
   // Not where sub-steps see a line through what was given: each pass would bend it.
-  if (step.scheme != Scheme::explicit_ || !schedule_.sub_steps.empty() ||
+  if (step.scheme != coupling::Scheme::explicit_ || !schedule_.sub_steps.empty() ||
       !CouplingAudit::looks_for_causes_at(step.number))
     return;
   const bool at_start = !CouplingAudit::looks_at(step.number);

@@ -8,13 +8,13 @@
 namespace couplet::coupler {
 namespace {
 
-void write(CheckpointWriter& file, const std::string& name, const Iterate& x) {
+void write(io::CheckpointWriter& file, const std::string& name, const Iterate& x) {
   file.write(name, x.unknown);
   file.write(name + "-rider", x.rider);
 }
 
 /// As much as the coupling has unknowns and values that ride along, or nothing.
-Iterate read(CheckpointReader& file, const std::string& name, const Unknown& unknown) {
+Iterate read(io::CheckpointReader& file, const std::string& name, const Unknown& unknown) {
   return {file.read_or_none(name, unknown.n_unknown()),
           file.read_or_none(name + "-rider", unknown.n_rider())};
 }
@@ -22,9 +22,9 @@ Iterate read(CheckpointReader& file, const std::string& name, const Unknown& unk
 }  // namespace
 
 void Coupler::save(const std::filesystem::path& folder) {
-  enter_(Phase::save, {});
-  ask_all(everyone(), {Op::save, {}, {}, 0, -1, folder.string()});
-  CheckpointWriter file(comm_, folder / "coupler.h5");
+  enter_(app::Phase::save, {});
+  ask_all(everyone(), {coupling::Op::save, {}, {}, 0, -1, folder.string()});
+  io::CheckpointWriter file(comm_, folder / "coupler.h5");
   write(file, "now", history_.now);
   write(file, "old", history_.old);
   write(file, "older", history_.older);
@@ -48,8 +48,8 @@ void Coupler::save(const std::filesystem::path& folder) {
 }
 
 void Coupler::load() {
-  enter_(Phase::load, {});
-  CheckpointReader file(comm_, folders_.restart / "coupler.h5");
+  enter_(app::Phase::load, {});
+  io::CheckpointReader file(comm_, folders_.restart / "coupler.h5");
   history_.now = read(file, "now", *unknown_);
   history_.old = read(file, "old", *unknown_);
   history_.older = read(file, "older", *unknown_);
@@ -72,9 +72,9 @@ void Coupler::load() {
   if (lag_ && !lag.empty())
     for (std::size_t k = 0; auto* field : lag_->fields())
       *field = file.read_or_none("lag-" + std::to_string(k++), unknown_->n_rider());
-  const RunState state = read_run_state(folders_.restart);
+  const app::RunState state = app::read_run_state(folders_.restart);
   loop_.restart(state);
-  ask_all(everyone(), {Op::load, {}, {}, state.time, -1, folders_.restart.string()});
+  ask_all(everyone(), {coupling::Op::load, {}, {}, state.time, -1, folders_.restart.string()});
   log::info("continues from {} at t = {:g} s", folders_.restart.string(), state.time);
 }
 

@@ -9,54 +9,54 @@
 
 int main(int argc, char** argv) {
   couplet::fluid::FluidParameters parameters;
-  const couplet::Program program{
+  const couplet::app::Program program{
       .name = "fluid_solver",
       .description =
           "incompressible or weakly compressible flow on a moving mesh, second order in space and time",
       .declare = [&](couplet::config::Section& section) { couplet::fluid::declare(section, parameters); },
       .make =
-          [&](const couplet::ParticipantContext& context) {
-            couplet::LoadedMesh loaded =
-                couplet::load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension,
-                                   parameters.mesh_parameters, couplet::fluid::periodic_patches(parameters),
-                                   {}, false, parameters.mesh_scale);
+          [&](const couplet::app::ParticipantContext& context) {
+            couplet::mesh::LoadedMesh loaded = couplet::mesh::load_mesh(
+                context.comm, context.case_folder / parameters.mesh, parameters.dimension,
+                parameters.mesh_parameters, couplet::fluid::periodic_patches(parameters), {}, false,
+                parameters.mesh_scale);
             for (auto& [patch, boundary] : parameters.boundaries)  // files lie beside the case
               if (boundary.table)
                 boundary.table->file = (context.case_folder / boundary.table->file).string();
             couplet::fluid::MotionLink link;
             if (context.mesh_peer != MPI_COMM_NULL)
-              link = [peer = context.mesh_peer](const couplet::Mesh& m,
+              link = [peer = context.mesh_peer](const couplet::mesh::Mesh& m,
                                                 std::span<const couplet::Vec3> points) {
-                return couplet::make_mesh_motion_source(peer, m, points);
+                return couplet::coupling::make_mesh_motion_source(peer, m, points);
               };
             return couplet::fluid::make_participant(
                 std::move(loaded), parameters, {context.name, context.output_folder, context.restart_time},
                 link);
           },
-      .environment = couplet::petsc_environment,
+      .environment = couplet::linalg::petsc_environment,
       .effects =
-          [&](const couplet::EffectScene& scene) {
-            return couplet::effects_of(
+          [&](const couplet::effects::EffectScene& scene) {
+            return couplet::effects::effects_of(
                 couplet::fluid::fluid_effect_cards(),
                 couplet::fluid::FluidScene{parameters, scene.has_mover || parameters.motion, scene.coupled});
           },
       .choose =
-          [&](const couplet::ChoiceScene& scene) {
+          [&](const couplet::effects::ChoiceScene& scene) {
             return couplet::fluid::choose_effects(
                 parameters,
-                couplet::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters,
-                                       parameters.mesh_scale),
+                couplet::mesh::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters,
+                                             parameters.mesh_scale),
                 scene);
           },
       .expected =
-          [&](const couplet::ChoiceScene& scene) {
+          [&](const couplet::effects::ChoiceScene& scene) {
             return couplet::fluid::expected_cost(
-                parameters, couplet::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters,
-                                                   parameters.mesh_scale));
+                parameters, couplet::mesh::facts_of_file(scene.folder / parameters.mesh,
+                                                         parameters.mesh_parameters, parameters.mesh_scale));
           },
       .problems_of_files =
           [&](const std::filesystem::path& folder) {
             return couplet::fluid::problems_of_files(parameters, folder);
           }};
-  return couplet::run_program(argc, argv, program);
+  return couplet::app::run_program(argc, argv, program);
 }

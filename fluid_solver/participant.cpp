@@ -29,7 +29,7 @@ constexpr double near_limit = 0.1;
 }  // namespace
 
 template <int D>
-FluidParticipant<D>::FluidParticipant(LoadedMesh loaded, const FluidParameters& parameters,
+FluidParticipant<D>::FluidParticipant(mesh::LoadedMesh loaded, const FluidParameters& parameters,
                                       FluidContext context, const MotionLink& link)
     : mesh_(std::move(loaded.mesh)),
       fluid_(std::make_unique<Fluid<D>>(mesh_, loaded.geometry, parameters, bool(link) || parameters.motion)),
@@ -45,8 +45,8 @@ FluidParticipant<D>::FluidParticipant(LoadedMesh loaded, const FluidParameters& 
 }
 
 template <int D>
-void FluidParticipant<D>::set_up_interface(const Geometry& geometry) {
-  interface_ = std::make_unique<InterfaceMap>(mesh_, fluid_->boundary().interface_patches());
+void FluidParticipant<D>::set_up_interface(const mesh::Geometry& geometry) {
+  interface_ = std::make_unique<coupling::InterfaceMap>(mesh_, fluid_->boundary().interface_patches());
   description_ = interface_->describe(geometry);
   const std::vector<Index>& points = interface_->points();
   std::vector<Index> row;
@@ -78,9 +78,10 @@ void FluidParticipant<D>::set_up_motion() {
     throw Error(
         "motion: this fluid has a mesh mover, which already moves its mesh. Remove one of them; a wall that "
         "a mesh mover moves by itself ('type: moving' there) has type 'body' here.");
-  prescribed_ = std::make_unique<PrescribedMotion>(*parameters.motion, D);
+  prescribed_ = std::make_unique<fv::PrescribedMotion>(*parameters.motion, D);
   const double start = fluid_->state().time;
-  const double largest = max(mesh_.comm, prescribed_->largest_displacement(fluid_->points_at_rest(), start));
+  const double largest =
+      parallel::max(mesh_.comm, prescribed_->largest_displacement(fluid_->points_at_rest(), start));
   if (largest > 0)
     throw Error(
         "motion: at t = {:g} s it displaces the mesh by up to {:.3g} m, but the fluid starts from the "
@@ -89,14 +90,15 @@ void FluidParticipant<D>::set_up_motion() {
 }
 
 template <int D>
-Interface FluidParticipant<D>::initialise() {
+coupling::Interface FluidParticipant<D>::initialise() {
   if (!interface_) return {};
-  Interface description = description_;  // of this rank, which may hold no part; the data are those of all
-  using Place = Interface::Place;
+  coupling::Interface description =
+      description_;  // of this rank, which may hold no part; the data are those of all
+  using Place = coupling::Interface::Place;
   description.takes = {{"displacement", "m", Place::vertices}, {"velocity", "m/s", Place::vertices}};
   description.gives = {{"pressure-force", "N", Place::faces}, {"viscous-force", "N", Place::faces}};
   if (yields()) {
-    const Interface::Datum own{"own-wall-force", "N", Place::faces, 1};
+    const coupling::Interface::Datum own{"own-wall-force", "N", Place::faces, 1};
     description.takes.push_back(own);
     description.gives.push_back(own);
     if (fluid_->boundary().asks_for_mass())
@@ -114,7 +116,7 @@ void FluidParticipant<D>::tell_impulse() const {
   Vectors<D> w(mesh_.boundary.n_owned()), no_turn;
   const double speed = set_body_start(mesh_, fluid_->points_at_rest(), boundary, *fluid_->parameters().motion,
                                       step_.time, w, no_turn);
-  if (speed > 0 && comm_rank(mesh_.comm) == 0)
+  if (speed > 0 && parallel::comm_rank(mesh_.comm) == 0)
     log::warn(
         "motion: at t = {:g} s its bodies already move at {:.3g} m/s in a fluid at rest, so the first step "
         "is an impulse (its forces scale with one over the step). Let the motion start from rest (ramp), or "
@@ -123,7 +125,7 @@ void FluidParticipant<D>::tell_impulse() const {
 }
 
 template <int D>
-void FluidParticipant<D>::begin_step(const Step& step) {
+void FluidParticipant<D>::begin_step(const coupling::Step& step) {
   if (step.number == 0 || holds_volume()) check_cavity(*fluid_, step.scheme);
   step_ = step;
   if (step.number == 0) tell_impulse();
@@ -143,7 +145,7 @@ std::vector<Vec3> FluidParticipant<D>::receive_points() {
 }
 
 template <int D>
-Exchange FluidParticipant<D>::forces() const {
+coupling::Exchange FluidParticipant<D>::forces() const {
   if (!interface_) return {};
   const std::vector<Index>& faces = interface_->faces();
   std::vector<double> pressure(faces.size() * D), viscous(faces.size() * D);
@@ -152,7 +154,7 @@ Exchange FluidParticipant<D>::forces() const {
     Eigen::Map<Vec<D>>(pressure.data() + i * D) = fluid_->pressure_force()[b];
     Eigen::Map<Vec<D>>(viscous.data() + i * D) = fluid_->viscous_force()[b];
   }
-  Exchange out;
+  coupling::Exchange out;
   out["pressure-force"] = interface_->gather_faces(pressure, D);
   out["viscous-force"] = interface_->gather_faces(viscous, D);
   if (yields()) {
@@ -171,9 +173,9 @@ Exchange FluidParticipant<D>::forces() const {
 /// further pass but the audit's, which measures how much of a change comes back: it must not miss it (1 % more iterations).
 template <int D>
 double FluidParticipant<D>::answer() const {
-  return !interface_ || step_.scheme == Scheme::standalone ? 0
-         : step_.scheme == Scheme::semi_implicit           ? 0.1
-                                                           : 1e-3;
+  return !interface_ || step_.scheme == coupling::Scheme::standalone ? 0
+         : step_.scheme == coupling::Scheme::semi_implicit           ? 0.1
+                                                                     : 1e-3;
 }
 
 template <int D>
@@ -183,7 +185,7 @@ void FluidParticipant<D>::prepare(const Vectors<D>& w) {
   if (!predicted_) {
     fluid_->prepare(points_, w);
     renewal_.start(w);
-    predicted_ = step_.scheme == Scheme::semi_implicit;
+    predicted_ = step_.scheme == coupling::Scheme::semi_implicit;
     return;
   }
   if (!renewal_.wanted(mesh_.comm, w, fluid_->unseen_share(w))) return;
@@ -192,10 +194,10 @@ void FluidParticipant<D>::prepare(const Vectors<D>& w) {
 }
 
 template <int D>
-Exchange FluidParticipant<D>::solve(const Exchange& in) {
+coupling::Exchange FluidParticipant<D>::solve(const coupling::Exchange& in) {
   if (!predicted_) points_ = receive_points();
   const Vectors<D> w = wall_velocity(in);
-  if (yields() && step_.scheme != Scheme::standalone) {
+  if (yields() && step_.scheme != coupling::Scheme::standalone) {
     if (fluid_->boundary().asks_for_mass()) take_wall_mass(in);
     fluid_->yield_from(wall_load(in));
   }
@@ -207,8 +209,8 @@ Exchange FluidParticipant<D>::solve(const Exchange& in) {
 }
 
 template <int D>
-StepReport FluidParticipant<D>::accept_step() {
-  if (step_.scheme == Scheme::semi_implicit) {
+coupling::StepReport FluidParticipant<D>::accept_step() {
+  if (step_.scheme == coupling::Scheme::semi_implicit) {
     ++steps_;
     renewed_steps_ += renewal_.count() > 0 ? 1 : 0;
     largest_unseen_ = std::max(largest_unseen_, fluid_->unseen_share(w_));
@@ -231,8 +233,8 @@ StepReport FluidParticipant<D>::accept_step() {
 }
 
 template <int D>
-void FluidParticipant<D>::save(CheckpointWriter& file) const {
-  write_numbering(file, mesh_);
+void FluidParticipant<D>::save(io::CheckpointWriter& file) const {
+  io::write_numbering(file, mesh_);
   write_state(file, fluid_->state(), fluid_->parameters().is_compressible());
   fluid_->solvers().save(file);
   if (statistics_) statistics_->save(file);
@@ -241,8 +243,8 @@ void FluidParticipant<D>::save(CheckpointWriter& file) const {
 }
 
 template <int D>
-void FluidParticipant<D>::load(CheckpointReader& file) {
-  check_numbering(file, mesh_);
+void FluidParticipant<D>::load(io::CheckpointReader& file) {
+  io::check_numbering(file, mesh_);
   fluid_->restore(read_state<D>(file, mesh_, fluid_->moving() ? nullptr : fluid_->state().placement,
                                 fluid_->parameters().is_compressible()));
   fluid_->solvers().load(file);
@@ -273,7 +275,8 @@ template <int D>
 std::vector<std::string> FluidParticipant<D>::finish() {
   if (steps_unseen_ > 0) doubt_given_step(step_.dt / fluid_->statistics().sub_steps);
   for (std::string& doubt : openings_->doubts())
-    log::finding(comm_rank(mesh_.comm), {.id = "flow-through-openings", .sentence = std::move(doubt)});
+    log::finding(parallel::comm_rank(mesh_.comm),
+                 {.id = "flow-through-openings", .sentence = std::move(doubt)});
   std::vector<std::string> sentences;
   if (statistics_ && !(statistics_->duration() > 0))
     sentences.push_back(
@@ -294,8 +297,9 @@ std::vector<std::string> FluidParticipant<D>::finish() {
 template class FluidParticipant<2>;
 template class FluidParticipant<3>;
 
-std::unique_ptr<Participant> make_participant(LoadedMesh loaded, const FluidParameters& parameters,
-                                              FluidContext context, const MotionLink& link) {
+std::unique_ptr<coupling::Participant> make_participant(mesh::LoadedMesh loaded,
+                                                        const FluidParameters& parameters,
+                                                        FluidContext context, const MotionLink& link) {
   if (parameters.dimension == 2)
     return std::make_unique<FluidParticipant<2>>(std::move(loaded), parameters, std::move(context), link);
   return std::make_unique<FluidParticipant<3>>(std::move(loaded), parameters, std::move(context), link);

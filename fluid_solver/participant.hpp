@@ -23,8 +23,8 @@ namespace couplet::fluid {
 struct FluidEvidence;
 
 /// Makes the link to a mesh mover once the mesh has its final place; empty for a mesh at rest.
-using MotionLink =
-    std::function<std::unique_ptr<MeshMotionSource>(const Mesh&, std::span<const Vec3> points)>;
+using MotionLink = std::function<std::unique_ptr<coupling::MeshMotionSource>(const mesh::Mesh&,
+                                                                             std::span<const Vec3> points)>;
 
 /// The fluid seen from outside. Takes "velocity" (and "displacement", which the mesh mover uses) at the
 /// interface vertices, gives "pressure-force" and "viscous-force" on the interface faces, acting on the
@@ -39,47 +39,49 @@ using MotionLink =
 ///   implicit, explicit every solve() moves the mesh and starts from level n
 ///   standalone         interfaces are walls at rest; bodies move as the case prescribes, in every scheme
 template <int D>
-class FluidParticipant final : public Participant, public EstimatesError {
+class FluidParticipant final : public coupling::Participant, public coupling::EstimatesError {
  public:
-  FluidParticipant(LoadedMesh loaded, const FluidParameters& parameters, FluidContext context,
+  FluidParticipant(mesh::LoadedMesh loaded, const FluidParameters& parameters, FluidContext context,
                    const MotionLink& link);
 
-  Interface initialise() override;
-  void begin_step(const Step& step) override;
-  Exchange solve(const Exchange& in) override;
+  coupling::Interface initialise() override;
+  void begin_step(const coupling::Step& step) override;
+  coupling::Exchange solve(const coupling::Exchange& in) override;
   bool answered_anew() const override { return renewed_now_; }
-  StepReport accept_step() override;
-  void save(CheckpointWriter& file) const override;
-  void load(CheckpointReader& file) override;
+  coupling::StepReport accept_step() override;
+  void save(io::CheckpointWriter& file) const override;
+  void load(io::CheckpointReader& file) override;
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
-  std::vector<EffectVerdict> audit() const override;
+  std::vector<effects::EffectVerdict> audit() const override;
   std::vector<std::string> finish() override;
   void collect_errors() override { errors_.emplace(*fluid_); }
-  ErrorParts error_parts() const override { return errors_ ? errors_->parts() : ErrorParts{}; }
+  coupling::ErrorParts error_parts() const override {
+    return errors_ ? errors_->parts() : coupling::ErrorParts{};
+  }
 
   const Fluid<D>& fluid() const { return *fluid_; }
 
  private:
-  Vectors<D> wall_velocity(const Exchange& in) const;
-  Vectors<D> wall_turn(const Exchange& in) const;
-  std::vector<Vec3> body_velocities(const Patch& patch) const;
-  std::vector<double> wall_load(const Exchange& in) const;
-  void take_wall_mass(const Exchange& in);
+  Vectors<D> wall_velocity(const coupling::Exchange& in) const;
+  Vectors<D> wall_turn(const coupling::Exchange& in) const;
+  std::vector<Vec3> body_velocities(const mesh::Patch& patch) const;
+  std::vector<double> wall_load(const coupling::Exchange& in) const;
+  void take_wall_mass(const coupling::Exchange& in);
   /// By the case, or by a mesh mover that moves some by itself.
   bool moves_bodies() const { return prescribed_ || (motion_ && !fluid_->boundary().body_patches().empty()); }
   bool yields() const { return interface_ && fluid_->boundary().yields(); }
-  double wall_displacement(const Exchange& in) const;
-  bool stands_still() const { return interface_ && !motion_ && step_.scheme != Scheme::standalone; }
+  double wall_displacement(const coupling::Exchange& in) const;
+  bool stands_still() const { return interface_ && !motion_ && step_.scheme != coupling::Scheme::standalone; }
   bool holds_volume() const { return fluid_->parameters().volume_level == VolumeLevelBy::structure; }
   double answer() const;
   void prepare(const Vectors<D>& w);
   void set_up_motion();
-  void set_up_interface(const Geometry& geometry);
+  void set_up_interface(const mesh::Geometry& geometry);
   void tell_impulse() const;
   void add_body_velocity(Vectors<D>& w) const;
   std::vector<Vec3> receive_points();
-  Exchange forces() const;
+  coupling::Exchange forces() const;
   void tell_sub_steps();
   void see_given_step();
   std::vector<Index> moving_faces() const;
@@ -88,20 +90,20 @@ class FluidParticipant final : public Participant, public EstimatesError {
   void add_motion(FluidEvidence& evidence) const;
   void doubt_given_step(double size);
 
-  const Mesh mesh_;
+  const mesh::Mesh mesh_;
   std::unique_ptr<Fluid<D>> fluid_;
-  std::unique_ptr<InterfaceMap> interface_;       // null: no interface patch
-  Interface description_;                         // of what this rank has of it
-  Csr interface_vertices_;                        // per interface face: entries of interface_->points()
-  std::vector<double> interface_area_;            // per interface face, at rest [m^2]
-  std::vector<double> cell_height_;               // of the cells beside them, at rest [m]
-  std::unique_ptr<MeshMotionSource> motion_;      // by a mesh mover
-  std::unique_ptr<PrescribedMotion> prescribed_;  // by the case
+  std::unique_ptr<coupling::InterfaceMap> interface_;   // null: no interface patch
+  coupling::Interface description_;                     // of what this rank has of it
+  mesh::Csr interface_vertices_;                        // per interface face: entries of interface_->points()
+  std::vector<double> interface_area_;                  // per interface face, at rest [m^2]
+  std::vector<double> cell_height_;                     // of the cells beside them, at rest [m]
+  std::unique_ptr<coupling::MeshMotionSource> motion_;  // by a mesh mover
+  std::unique_ptr<fv::PrescribedMotion> prescribed_;    // by the case
   std::optional<RunningStatistics<D>> statistics_;
   std::optional<FluidErrorEstimate<D>> errors_;  // none: not wanted
   FluidOutput<D> output_;
   std::optional<Openings> openings_;
-  Step step_;
+  coupling::Step step_;
   std::vector<Vec3> points_;  // of the first guess; semi-implicit only
   bool predicted_ = false;    // in the step under way
   bool renewed_now_ = false;  // the prediction, in the last pass
@@ -121,7 +123,8 @@ class FluidParticipant final : public Participant, public EstimatesError {
 };
 
 /// The participant of the dimension that the parameters name.
-std::unique_ptr<Participant> make_participant(LoadedMesh loaded, const FluidParameters& parameters,
-                                              FluidContext context, const MotionLink& link);
+std::unique_ptr<coupling::Participant> make_participant(mesh::LoadedMesh loaded,
+                                                        const FluidParameters& parameters,
+                                                        FluidContext context, const MotionLink& link);
 
 }  // namespace couplet::fluid

@@ -17,13 +17,13 @@ namespace couplet::fluid {
 namespace {
 
 /// Largest extent of the points [m]. Collective.
-double size_of(const Mesh& mesh, std::span<const Vec3> centres) {
+double size_of(const mesh::Mesh& mesh, std::span<const Vec3> centres) {
   constexpr double far = std::numeric_limits<double>::max();
   double square = 0;
   for (int c = 0; c < mesh.dim; ++c) {
     double low = far, high = -far;
     for (const Vec3& x : centres) low = std::min(low, x[c]), high = std::max(high, x[c]);
-    square = std::max(square, std::pow(max(mesh.comm, high) - min(mesh.comm, low), 2));
+    square = std::max(square, std::pow(parallel::max(mesh.comm, high) - parallel::min(mesh.comm, low), 2));
   }
   return std::sqrt(square);
 }
@@ -34,7 +34,7 @@ double size_of(const Mesh& mesh, std::span<const Vec3> centres) {
 template <int D>
 std::vector<Index> FluidParticipant<D>::moving_faces() const {
   std::vector<Index> faces;
-  for (const Patch& patch : mesh_.patches) {
+  for (const mesh::Patch& patch : mesh_.patches) {
     const GivenBy by = condition_of(fluid_->parameters().boundaries.at(patch.name)).velocity;
     if (by != GivenBy::structure && by != GivenBy::motion) continue;
     for (Index f = patch.first; f < patch.first + patch.count; ++f) faces.push_back(f);
@@ -59,7 +59,7 @@ void FluidParticipant<D>::see_motion() {
     sums[0] += swept.back();
   }
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) sums[1] += latest->p[c] * now.volume[c];
-  for (const Patch& patch : mesh_.patches)
+  for (const mesh::Patch& patch : mesh_.patches)
     if (condition_of(p.boundaries.at(patch.name)).passage == Passage::in)
       for (Index f = patch.first; f < patch.first + patch.count; ++f) {
         sums[2] += latest->p[mesh_.owner[f]] * now.area[f].norm();
@@ -78,7 +78,7 @@ void FluidParticipant<D>::see_ringing() {
   if (!known || known->scheme != WaveScheme::trapezoidal) return;
   const double share = RingingWatch::share(mesh_, fluid_->state());
   if (!ringing_.add(share)) return;
-  log::finding(comm_rank(mesh_.comm),
+  log::finding(parallel::comm_rank(mesh_.comm),
                {.id = "ringing-pressure",
                 .number = share,
                 .limit = RingingWatch::limit,
@@ -104,21 +104,21 @@ void FluidParticipant<D>::add_motion(FluidEvidence& evidence) const {
 }
 
 template <int D>
-std::vector<EffectVerdict> FluidParticipant<D>::audit() const {
+std::vector<effects::EffectVerdict> FluidParticipant<D>::audit() const {
   FluidEvidence evidence{.largest_peclet = fluid_->sizes().largest_peclet(fluid_->state()),
                          .largest_yplus = 0};
-  for (const Patch& patch : mesh_.patches)
+  for (const mesh::Patch& patch : mesh_.patches)
     if (is_wall(fluid_->parameters().boundaries.at(patch.name)))
       evidence.largest_yplus = std::max(evidence.largest_yplus, summarise_wall(*fluid_, patch).largest_yplus);
   double speed = 0;
   for (const Vec<D>& u : fluid_->state().u) speed = std::max(speed, u.squaredNorm());
-  evidence.largest_speed = std::sqrt(max(mesh_.comm, speed));
+  evidence.largest_speed = std::sqrt(parallel::max(mesh_.comm, speed));
   // The pressure of the first step is the impulse that sets the fluid in motion.
   if (const auto latest = fluid_->pressure(); latest && step_.number > 0) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
       low = std::min(low, latest->p[c]), high = std::max(high, latest->p[c]);
-    evidence.pressure_range = max(mesh_.comm, high) - min(mesh_.comm, low);
+    evidence.pressure_range = parallel::max(mesh_.comm, high) - parallel::min(mesh_.comm, low);
   }
   if (stands_still()) evidence.wall_displacement = displacement_;
   if (!fluid_->moving()) evidence.through_walls = through_moving_walls(*fluid_);
@@ -132,23 +132,24 @@ std::vector<EffectVerdict> FluidParticipant<D>::audit() const {
     double largest = 0;
     for (const double eddy : fluid_->state().eddy) largest = std::max(largest, eddy);
     evidence.eddy_viscosity =
-        max(mesh_.comm, largest) * fluid_->parameters().density / fluid_->parameters().viscosity;
+        parallel::max(mesh_.comm, largest) * fluid_->parameters().density / fluid_->parameters().viscosity;
   }
   if (const EnergyLedger& ledger = fluid_->state().ledger; ledger.is_judged())
     evidence.energy_excess = ledger.excess / ledger.reference;
-  const FluidScene scene{fluid_->parameters(), fluid_->moving(), step_.scheme != Scheme::standalone};
-  return couplet::audit(fluid_effect_cards(), scene, evidence);
+  const FluidScene scene{fluid_->parameters(), fluid_->moving(),
+                         step_.scheme != coupling::Scheme::standalone};
+  return couplet::effects::audit(fluid_effect_cards(), scene, evidence);
 }
 
 template std::vector<Index> FluidParticipant<2>::moving_faces() const;
 template void FluidParticipant<2>::see_motion();
 template void FluidParticipant<2>::see_ringing();
 template void FluidParticipant<2>::add_motion(FluidEvidence&) const;
-template std::vector<EffectVerdict> FluidParticipant<2>::audit() const;
+template std::vector<effects::EffectVerdict> FluidParticipant<2>::audit() const;
 template std::vector<Index> FluidParticipant<3>::moving_faces() const;
 template void FluidParticipant<3>::see_motion();
 template void FluidParticipant<3>::see_ringing();
 template void FluidParticipant<3>::add_motion(FluidEvidence&) const;
-template std::vector<EffectVerdict> FluidParticipant<3>::audit() const;
+template std::vector<effects::EffectVerdict> FluidParticipant<3>::audit() const;
 
 }  // namespace couplet::fluid

@@ -39,7 +39,7 @@ void FluidParticipant<D>::doubt_given_step(double size) {
   if (!by.friction || size <= far_above * by.limit || size / by.limit <= 2 * doubted_times_) return;
   doubted_times_ = size / by.limit;
   log::finding(
-      comm_rank(mesh_.comm),
+      parallel::comm_rank(mesh_.comm),
       {.id = "given-step",
        .number = size / by.limit,
        .limit = far_above,
@@ -61,13 +61,13 @@ void FluidParticipant<D>::tell_sub_steps() {
   told_sub_steps_ = now;
   const double end = step_.time + step_.dt;
   if (const auto own = fluid_->parameters().time_step) {
-    if (comm_rank(mesh_.comm) == 0)
+    if (parallel::comm_rank(mesh_.comm) == 0)
       log::info("t = {:.6g} s: {} sub-steps of {:.3g} s: time-step is {:.3g} s", end, now, step_.dt / now,
                 *own);
     return;
   }
   const StepLimiter limiter = fluid_->sizes().limiter(fluid_->state());
-  if (comm_rank(mesh_.comm) == 0)
+  if (parallel::comm_rank(mesh_.comm) == 0)
     log::info(
         "t = {:.6g} s: {} sub-steps of {:.3g} s; {} in cell {} at ({:.4g}, {:.4g}, {:.4g}) m limits them to "
         "{:.3g} s, of which {:.0f} % are used",

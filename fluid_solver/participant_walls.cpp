@@ -12,7 +12,7 @@ namespace couplet::fluid {
 
 /// One a corner of each face of the patch, at the end of the step. After receive_points().
 template <int D>
-std::vector<Vec3> FluidParticipant<D>::body_velocities(const Patch& patch) const {
+std::vector<Vec3> FluidParticipant<D>::body_velocities(const mesh::Patch& patch) const {
   std::vector<Vec3> corners;
   if (!prescribed_) {
     const std::vector<double>& given = motion_->velocity();
@@ -34,7 +34,7 @@ std::vector<Vec3> FluidParticipant<D>::body_velocities(const Patch& patch) const
 /// At the faces of bodies the mean of the velocities of their points, as at an interface.
 template <int D>
 void FluidParticipant<D>::add_body_velocity(Vectors<D>& w) const {
-  for (const Patch* patch : fluid_->boundary().body_patches()) {
+  for (const mesh::Patch* patch : fluid_->boundary().body_patches()) {
     const std::vector<Vec3> velocities = body_velocities(*patch);
     auto next = velocities.begin();
     for (Index f = patch->first; f < patch->first + patch->count; ++f) {
@@ -48,12 +48,12 @@ void FluidParticipant<D>::add_body_velocity(Vectors<D>& w) const {
 
 /// See turn_of(); nothing where no wall turns. After prepare(), which knows the points.
 template <int D>
-Vectors<D> FluidParticipant<D>::wall_turn(const Exchange& in) const {
-  const bool coupled = interface_ && step_.scheme != Scheme::standalone;
+Vectors<D> FluidParticipant<D>::wall_turn(const coupling::Exchange& in) const {
+  const bool coupled = interface_ && step_.scheme != coupling::Scheme::standalone;
   if (!coupled && !moves_bodies()) return {};
   Vectors<D> turn(mesh_.boundary.n_owned(), Vec<D>::Zero());
   const std::vector<Vec3>& points = points_.empty() ? fluid_->points_at_rest() : points_;
-  for (const Patch* patch : fluid_->boundary().body_patches())
+  for (const mesh::Patch* patch : fluid_->boundary().body_patches())
     fluid::set_turn<D>(mesh_, *patch, points, body_velocities(*patch), turn);
   if (!coupled) return turn;
   const auto given = in.find("velocity");
@@ -76,8 +76,8 @@ Vectors<D> FluidParticipant<D>::wall_turn(const Exchange& in) const {
 
 /// w at a face is the mean of the velocities of its vertices.
 template <int D>
-Vectors<D> FluidParticipant<D>::wall_velocity(const Exchange& in) const {
-  const bool coupled = interface_ && step_.scheme != Scheme::standalone;
+Vectors<D> FluidParticipant<D>::wall_velocity(const coupling::Exchange& in) const {
+  const bool coupled = interface_ && step_.scheme != coupling::Scheme::standalone;
   if (!coupled && !moves_bodies()) return {};
   Vectors<D> w(mesh_.boundary.n_owned(), Vec<D>::Zero());
   if (moves_bodies()) add_body_velocity(w);
@@ -97,7 +97,7 @@ Vectors<D> FluidParticipant<D>::wall_velocity(const Exchange& in) const {
 
 /// The pressure that the structure has answered to, per boundary face [Pa]; nothing at the very start.
 template <int D>
-std::vector<double> FluidParticipant<D>::wall_load(const Exchange& in) const {
+std::vector<double> FluidParticipant<D>::wall_load(const coupling::Exchange& in) const {
   std::vector<double> load(mesh_.boundary.n_owned(), 0.);
   const auto given = in.find("own-wall-force");
   const std::vector<double> at_faces =
@@ -110,7 +110,7 @@ std::vector<double> FluidParticipant<D>::wall_load(const Exchange& in) const {
 
 /// `impedance: structure`.
 template <int D>
-void FluidParticipant<D>::take_wall_mass(const Exchange& in) {
+void FluidParticipant<D>::take_wall_mass(const coupling::Exchange& in) {
   const auto given = in.find("surface-density");
   const std::vector<double> masses =
       interface_->scatter_faces(given == in.end() ? std::vector<double>{} : given->second, 1);
@@ -122,7 +122,7 @@ void FluidParticipant<D>::take_wall_mass(const Exchange& in) {
 /// Of the faces of the interface: largest mean displacement over the height of the cell beside them.
 /// Collective.
 template <int D>
-double FluidParticipant<D>::wall_displacement(const Exchange& in) const {
+double FluidParticipant<D>::wall_displacement(const coupling::Exchange& in) const {
   const auto given = in.find("displacement");
   const std::vector<double> at_points =
       interface_->scatter_vertices(given == in.end() ? std::vector<double>{} : given->second, D);
@@ -135,22 +135,22 @@ double FluidParticipant<D>::wall_displacement(const Exchange& in) const {
     mean /= static_cast<double>(vertices.size());
     largest = std::max(largest, mean.norm() / cell_height_[i]);
   }
-  return max(mesh_.comm, largest);
+  return parallel::max(mesh_.comm, largest);
 }
 
-template std::vector<Vec3> FluidParticipant<2>::body_velocities(const Patch&) const;
+template std::vector<Vec3> FluidParticipant<2>::body_velocities(const mesh::Patch&) const;
 template void FluidParticipant<2>::add_body_velocity(Vectors<2>&) const;
-template Vectors<2> FluidParticipant<2>::wall_turn(const Exchange&) const;
-template Vectors<2> FluidParticipant<2>::wall_velocity(const Exchange&) const;
-template std::vector<double> FluidParticipant<2>::wall_load(const Exchange&) const;
-template void FluidParticipant<2>::take_wall_mass(const Exchange&);
-template double FluidParticipant<2>::wall_displacement(const Exchange&) const;
-template std::vector<Vec3> FluidParticipant<3>::body_velocities(const Patch&) const;
+template Vectors<2> FluidParticipant<2>::wall_turn(const coupling::Exchange&) const;
+template Vectors<2> FluidParticipant<2>::wall_velocity(const coupling::Exchange&) const;
+template std::vector<double> FluidParticipant<2>::wall_load(const coupling::Exchange&) const;
+template void FluidParticipant<2>::take_wall_mass(const coupling::Exchange&);
+template double FluidParticipant<2>::wall_displacement(const coupling::Exchange&) const;
+template std::vector<Vec3> FluidParticipant<3>::body_velocities(const mesh::Patch&) const;
 template void FluidParticipant<3>::add_body_velocity(Vectors<3>&) const;
-template Vectors<3> FluidParticipant<3>::wall_turn(const Exchange&) const;
-template Vectors<3> FluidParticipant<3>::wall_velocity(const Exchange&) const;
-template std::vector<double> FluidParticipant<3>::wall_load(const Exchange&) const;
-template void FluidParticipant<3>::take_wall_mass(const Exchange&);
-template double FluidParticipant<3>::wall_displacement(const Exchange&) const;
+template Vectors<3> FluidParticipant<3>::wall_turn(const coupling::Exchange&) const;
+template Vectors<3> FluidParticipant<3>::wall_velocity(const coupling::Exchange&) const;
+template std::vector<double> FluidParticipant<3>::wall_load(const coupling::Exchange&) const;
+template void FluidParticipant<3>::take_wall_mass(const coupling::Exchange&);
+template double FluidParticipant<3>::wall_displacement(const coupling::Exchange&) const;
 
 }  // namespace couplet::fluid

@@ -18,7 +18,7 @@ constexpr double least_extent = 1e-10;
 
 }  // namespace
 
-AffineFit::AffineFit(const Mesh& mesh, const Geometry& geometry, std::vector<Index> points)
+AffineFit::AffineFit(const mesh::Mesh& mesh, const mesh::Geometry& geometry, std::vector<Index> points)
     : mesh_(mesh), geometry_(geometry), points_(std::move(points)) {
   const auto over_owned = [&](auto&& add) {
     for (const Index v : points_)

@@ -18,7 +18,7 @@ class AffineFit {
   using Coefficients = std::array<double, most>;  // a, b_x, b_y, b_z
 
   /// `points`: local points, ghosts too. Collective.
-  AffineFit(const Mesh& mesh, const Geometry& geometry, std::vector<Index> points);
+  AffineFit(const mesh::Mesh& mesh, const mesh::Geometry& geometry, std::vector<Index> points);
   /// Least squares of component `component` of `values` (dim per local point). Nothing if it leaves more than
   /// round-off at any point. Collective.
   std::optional<Coefficients> operator()(std::span<const double> values, int component) const;
@@ -27,8 +27,8 @@ class AffineFit {
   int count() const { return mesh_.dim + 1; }
 
  private:
-  const Mesh& mesh_;
-  const Geometry& geometry_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
   std::vector<Index> points_;
   double n_ = 0;
   Vec3 centre_ = Vec3::Zero();

@@ -5,7 +5,7 @@
 
 namespace couplet::mesh_mover {
 
-const CellCorners& corners_of(CellType type) {
+const CellCorners& corners_of(mesh::CellType type) {
   static const CellCorners triangle{
       {{0, 1}, {1, 2}, {2, 0}}, {{0, 1, 2, -1}, {1, 2, 0, -1}, {2, 0, 1, -1}}, 2 / std::sqrt(3.0)};
   static const CellCorners quadrilateral{{{0, 1}, {1, 2}, {2, 3}, {3, 0}},
@@ -31,17 +31,17 @@ const CellCorners& corners_of(CellType type) {
                                    {{0, 1, 3, 4}, {1, 2, 0, 4}, {2, 3, 1, 4}, {3, 0, 2, 4}},
                                    std::sqrt(2.0)};
   switch (type) {
-    case CellType::triangle:
+    case mesh::CellType::triangle:
       return triangle;
-    case CellType::quadrilateral:
+    case mesh::CellType::quadrilateral:
       return quadrilateral;
-    case CellType::tetrahedron:
+    case mesh::CellType::tetrahedron:
       return tetrahedron;
-    case CellType::hexahedron:
+    case mesh::CellType::hexahedron:
       return hexahedron;
-    case CellType::prism:
+    case mesh::CellType::prism:
       return prism;
-    case CellType::pyramid:
+    case mesh::CellType::pyramid:
       return pyramid;
   }
   return triangle;

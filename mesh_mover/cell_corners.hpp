@@ -18,6 +18,6 @@ struct CellCorners {
   std::vector<CellCorner> corners;
   double scale = 1;  ///< of the Jacobian of the ideal cell
 };
-const CellCorners& corners_of(CellType type);
+const CellCorners& corners_of(mesh::CellType type);
 
 }  // namespace couplet::mesh_mover

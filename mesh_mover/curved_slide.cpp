@@ -15,7 +15,7 @@ namespace {
 constexpr double flat = 1e-9;
 
 /// Collective.
-bool is_flat(const Mesh& mesh, const Geometry& geometry, const Patch& patch) {
+bool is_flat(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch) {
   Vec3 sum = Vec3::Zero();
   for (Index f = patch.first; f < patch.first + patch.count; ++f) sum += geometry.face_area[f];
   MPI_Allreduce(MPI_IN_PLACE, sum.data(), 3, MPI_DOUBLE, MPI_SUM, mesh.comm);
@@ -24,26 +24,26 @@ bool is_flat(const Mesh& mesh, const Geometry& geometry, const Patch& patch) {
   double off = 0;
   for (Index f = patch.first; f < patch.first + patch.count; ++f)
     off = std::max(off, 1 - std::abs(geometry.face_area[f].normalized().dot(normal)));
-  return max(mesh.comm, off) <= flat;
+  return parallel::max(mesh.comm, off) <= flat;
 }
 
 }  // namespace
 
-CurvedSlide::CurvedSlide(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters)
+CurvedSlide::CurvedSlide(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters)
     : mesh_(mesh), geometry_(geometry) {
   std::vector<char> held(mesh.points.n_local(), 0);  // by a patch that does not slide
-  const auto for_points = [&](const Patch& patch, const auto& action) {
+  const auto for_points = [&](const mesh::Patch& patch, const auto& action) {
     for (const auto& [first, count] :
          {std::pair{patch.first, patch.count}, {patch.ghost_first, patch.ghost_count}})
       for (Index f = first; f < first + count; ++f)
         for (const Index v : mesh.face_points[f]) action(v);
   };
-  const auto slides = [&](const Patch& patch) {
+  const auto slides = [&](const mesh::Patch& patch) {
     return parameters.boundaries.at(patch.name).motion == BoundaryMotion::slip;
   };
-  for (const Patch& patch : mesh.patches)
+  for (const mesh::Patch& patch : mesh.patches)
     if (!slides(patch)) for_points(patch, [&](Index v) { held[v] = 1; });
-  for (const Patch& patch : mesh.patches) {
+  for (const mesh::Patch& patch : mesh.patches) {
     if (!slides(patch) || is_flat(mesh, geometry, patch)) continue;
     Curved curved;
     for_points(patch, [&](Index v) {
@@ -67,7 +67,7 @@ CurvedSlide::CurvedSlide(const Mesh& mesh, const Geometry& geometry, const Param
     for (const Part& part : mine)
       for (const Vec3& corner : {part.a, part.b, part.c})
         flat_parts.insert(flat_parts.end(), corner.data(), corner.data() + 3);
-    const std::vector<double> all = all_gather(mesh.comm, flat_parts);
+    const std::vector<double> all = parallel::all_gather(mesh.comm, flat_parts);
     mine.clear();
     for (std::size_t i = 0; i + 9 <= all.size(); i += 9)
       add(Eigen::Map<const Vec3>(&all[i]), Eigen::Map<const Vec3>(&all[i + 3]),
@@ -89,9 +89,9 @@ Vec3 CurvedSlide::nearest(const Curved& patch, const Vec3& x) const {
       best = nearest.place;
     };
     if (part.b == part.c)
-      consider(nearest_on_segment(part.a, part.b, x));
+      consider(base::nearest_on_segment(part.a, part.b, x));
     else
-      consider(nearest_on_triangle(part.a, part.b, part.c, x));
+      consider(base::nearest_on_triangle(part.a, part.b, part.c, x));
   }
   return best;
 }

@@ -14,7 +14,7 @@ namespace couplet::mesh_mover {
 class CurvedSlide {
  public:
   /// Collective.
-  CurvedSlide(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters);
+  CurvedSlide(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters);
   bool empty() const { return patches_.empty(); }
   /// `displacement`: dim values per local point [m], ghosts current. Gives the same.
   void put_back(std::vector<double>& displacement) const;
@@ -30,8 +30,8 @@ class CurvedSlide {
   };
   Vec3 nearest(const Curved& patch, const Vec3& x) const;
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
   std::vector<Curved> patches_;
 };
 

@@ -35,7 +35,7 @@ void reduce(MPI_Comm comm, int measure, Worst& worst, bool any_here) {
   const double none = least_is_worst(measure) ? std::numeric_limits<double>::infinity() : -1;
   const Entry here{any_here ? worst.value : none, static_cast<double>(worst.cell), worst.place.x(),
                    worst.place.y(), worst.place.z()};
-  const std::vector<Entry> all = all_gather(comm, std::vector<Entry>{here});
+  const std::vector<Entry> all = parallel::all_gather(comm, std::vector<Entry>{here});
   const Entry& best = *std::ranges::min_element(all, [&](const Entry& a, const Entry& b) {
     if (a.value != b.value) return least_is_worst(measure) ? a.value < b.value : a.value > b.value;
     return a.number < b.number;
@@ -45,7 +45,7 @@ void reduce(MPI_Comm comm, int measure, Worst& worst, bool any_here) {
 
 }  // namespace
 
-Guard::Guard(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters)
+Guard::Guard(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters)
     : mesh_(mesh),
       geometry_(geometry),
       smallest_volume_ratio_(parameters.smallest_volume_ratio),
@@ -79,7 +79,8 @@ Guard::Shape Guard::shape(Index cell, std::span<const Vec3> points) const {
   return s;
 }
 
-double Guard::value(MeshState::Measure measure, Index cell, const Geometry& moved, const Shape& s) const {
+double Guard::value(MeshState::Measure measure, Index cell, const mesh::Geometry& moved,
+                    const Shape& s) const {
   const double ratio = moved.volume[cell] / geometry_.volume[cell];
   const auto log2 = [](double x) {
     return x > 0 ? std::abs(std::log2(x)) : std::numeric_limits<double>::infinity();
@@ -100,14 +101,14 @@ double Guard::value(MeshState::Measure measure, Index cell, const Geometry& move
   }
 }
 
-std::vector<double> Guard::of_cells(MeshState::Measure measure, const Geometry& moved) const {
+std::vector<double> Guard::of_cells(MeshState::Measure measure, const mesh::Geometry& moved) const {
   std::vector<double> values(mesh_.cells.n_local(), 0.0);
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
     values[c] = value(measure, c, moved, shape(c, moved.points));
   return values;
 }
 
-double Guard::largest_angle(const Geometry& moved, Index& cell) const {
+double Guard::largest_angle(const mesh::Geometry& moved, Index& cell) const {
   double least = 2;
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
@@ -121,7 +122,7 @@ double Guard::largest_angle(const Geometry& moved, Index& cell) const {
   return std::acos(std::clamp(least, -1.0, 1.0)) * 180 / std::numbers::pi;
 }
 
-MeshState Guard::measure(const Geometry& moved) const {
+MeshState Guard::measure(const mesh::Geometry& moved) const {
   MeshState state;
   std::array<Index, MeshState::n_measures> cell{};
   const bool any_here = mesh_.cells.n_owned() > 0;
@@ -148,14 +149,14 @@ MeshState Guard::measure(const Geometry& moved) const {
   return state;
 }
 
-std::string Guard::refusal(const Geometry& moved) const {
+std::string Guard::refusal(const mesh::Geometry& moved) const {
   const auto at = [](const Vec3& x) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", x.x(), x.y(), x.z()); };
-  if (const auto trouble = find_inverted(mesh_, moved))
+  if (const auto trouble = mesh::find_inverted(mesh_, moved))
     return fmt::format(
         "inverts cell {} at {} (volume {:.3e} m^3). Try a smaller step, more stiffening, another 'method', "
         "or a coarser mesh there.",
         trouble->cell_id, at(trouble->centre), trouble->volume);
-  if (const auto trouble = find_crossed(mesh_, moved))
+  if (const auto trouble = mesh::find_crossed(mesh_, moved))
     return fmt::format(
         "makes cell {} at {} intersect itself. Try a smaller step, more stiffening, another 'method', or a "
         "coarser mesh there.",

@@ -33,26 +33,26 @@ extern const std::array<const char*, MeshState::n_measures> measure_names;
 /// f_AR = |log2(AR/AR0)|, AR = (longest edge)^dim / V [stein2003].
 class Guard {
  public:
-  Guard(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters);
+  Guard(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters);
 
   /// Collective.
-  MeshState measure(const Geometry& moved) const;
+  MeshState measure(const mesh::Geometry& moved) const;
   /// Per local cell, of one measure but the angle.
-  std::vector<double> of_cells(MeshState::Measure measure, const Geometry& moved) const;
+  std::vector<double> of_cells(MeshState::Measure measure, const mesh::Geometry& moved) const;
   /// What is beyond a limit, as a sentence; empty: nothing. Inverted cells, cells that cross themselves, and what
   /// the parameters ask for. Collective.
-  std::string refusal(const Geometry& moved) const;
+  std::string refusal(const mesh::Geometry& moved) const;
 
  private:
   struct Shape {
     double longest = 0, shortest = 0, jacobian = 0;
   };
   Shape shape(Index cell, std::span<const Vec3> points) const;
-  double value(MeshState::Measure measure, Index cell, const Geometry& moved, const Shape& shape) const;
-  double largest_angle(const Geometry& moved, Index& cell) const;
+  double value(MeshState::Measure measure, Index cell, const mesh::Geometry& moved, const Shape& shape) const;
+  double largest_angle(const mesh::Geometry& moved, Index& cell) const;
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
   double smallest_volume_ratio_;
   GuardParameters limits_;
   std::vector<double> longest_;  // edge of each owned cell in the reference mesh [m]

@@ -12,14 +12,14 @@ namespace {
 constexpr double axis_tolerance = 1e-6, least_cosine = 0.02;
 
 /// The axis a patch is normal to. Collective.
-int normal_axis(const Mesh& mesh, const Geometry& geometry, const Patch& patch) {
+int normal_axis(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch) {
   std::array<double, 3> off{};
   for (Index f = patch.first; f < patch.first + patch.count; ++f) {
     const Vec3 n = geometry.face_area[f].normalized();
     for (int c = 0; c < 3; ++c) off[c] = std::max(off[c], 1 - std::abs(n[c]));
   }
   for (int c = 0; c < mesh.dim; ++c)
-    if (max(mesh.comm, off[c]) < axis_tolerance) return c;
+    if (parallel::max(mesh.comm, off[c]) < axis_tolerance) return c;
   throw Error(
       "Patch '{}' slides (type: slip), but is not a plane normal to a coordinate axis. Use type: fixed, "
       "rotate the mesh to align the plane, or use 'method: pseudo-solid', which slides along any surface.",
@@ -30,12 +30,12 @@ int normal_axis(const Mesh& mesh, const Geometry& geometry, const Patch& patch) 
 
 /// Laplacian::Equation: components that hold the same patches share it.
 struct Laplacian::Equation {
-  std::unique_ptr<SparseMatrix> matrix;
-  std::unique_ptr<LinearSolver> solver;
+  std::unique_ptr<linalg::SparseMatrix> matrix;
+  std::unique_ptr<linalg::LinearSolver> solver;
   std::vector<double> diagonal;
 };
 
-Laplacian::Laplacian(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters,
+Laplacian::Laplacian(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters,
                      std::span<const double> volumes)
     : mesh_(mesh),
       geometry_(geometry),
@@ -74,12 +74,13 @@ Laplacian::Laplacian(const Mesh& mesh, const Geometry& geometry, const Parameter
     }
     for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
       if (held_[patch_of_[f - mesh_.n_interior]][c]) add(mesh_.owner[f], mesh_.owner[f], coefficient_[f]);
-    equation->matrix = std::make_unique<SparseMatrix>(mesh_.comm, mesh_.cells.n_owned(), row, column);
+    equation->matrix = std::make_unique<linalg::SparseMatrix>(mesh_.comm, mesh_.cells.n_owned(), row, column);
     equation->matrix->fill(value);
-    LinearOptions options = parameters.linear;
-    if (dim_ == 2 && options.method == LinearMethod::direct_symmetric)
-      options.method = LinearMethod::direct_planar;
-    equation->solver = std::make_unique<LinearSolver>("the mesh displacement", *equation->matrix, options);
+    linalg::LinearOptions options = parameters.linear;
+    if (dim_ == 2 && options.method == linalg::LinearMethod::direct_symmetric)
+      options.method = linalg::LinearMethod::direct_planar;
+    equation->solver =
+        std::make_unique<linalg::LinearSolver>("the mesh displacement", *equation->matrix, options);
     equation_[c] = equation;
   }
 }
@@ -89,7 +90,7 @@ void Laplacian::set_kinds(const Parameters& parameters) {
   patch_of_.assign(mesh_.boundary.n_local(), 0);
   kind_.assign(mesh_.points.n_local(), {PointKind::interior, PointKind::interior, PointKind::interior});
   for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
-    const Patch& patch = mesh_.patches[p];
+    const mesh::Patch& patch = mesh_.patches[p];
     const BoundaryMotion motion = parameters.boundaries.at(patch.name).motion;
     const int axis = motion == BoundaryMotion::slip ? normal_axis(mesh_, geometry_, patch) : -1;
     std::array<bool, 3> held{};
@@ -166,10 +167,10 @@ void Laplacian::set_weights() {
 }
 
 void Laplacian::set_coefficients(double stiffening, std::span<const double> volumes) {
-  const Geometry& g = geometry_;
+  const mesh::Geometry& g = geometry_;
   double volume = 0;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) volume += volumes[c];
-  const double mean = sum(mesh_.comm, volume) / static_cast<double>(mesh_.cells.n_global());
+  const double mean = parallel::sum(mesh_.comm, volume) / static_cast<double>(mesh_.cells.n_global());
   const auto stiffness = [&](Index c) { return std::pow(volumes[c] / mean, -stiffening); };  // (4.12)
   coefficient_.resize(mesh_.n_flux_faces());
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
@@ -210,7 +211,7 @@ void Laplacian::solve_cells(int c, std::span<const double> prescribed, std::vect
     std::fill(x.begin(), x.end(), 0.0);
   } else {
     const double floor = 1e-15 * std::sqrt(scale[0]) + 1e-300;
-    const SolveStatistics s = equation_[c]->solver->solve(b, x, relative_tolerance_, floor);
+    const linalg::SolveStatistics s = equation_[c]->solver->solve(b, x, relative_tolerance_, floor);
     last_.iterations += s.iterations;
     last_.seconds += s.seconds;
   }

@@ -31,7 +31,7 @@ class Laplacian final : public MotionMethod {
  public:
   /// `volumes`: V of (4.12) per local cell; empty: those of the mesh. Throws Error if no patch holds the mesh
   /// or a slip patch is not normal to an axis.
-  Laplacian(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters,
+  Laplacian(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters,
             std::span<const double> volumes = {});
 
   std::vector<double> solve(std::span<const double> prescribed) override;
@@ -40,9 +40,11 @@ class Laplacian final : public MotionMethod {
   /// dim per local cell: the initial guess of the next solve, for checkpoints.
   std::vector<double>& cell_displacement() { return cell_displacement_; }
   const std::vector<double>& cell_displacement() const { return cell_displacement_; }
-  SolveStatistics last() const override { return last_; }
-  void save(CheckpointWriter& file) const override { file.write("cell-displacement", cell_displacement_); }
-  void load(CheckpointReader& file) override { file.read("cell-displacement", cell_displacement_); }
+  linalg::SolveStatistics last() const override { return last_; }
+  void save(io::CheckpointWriter& file) const override {
+    file.write("cell-displacement", cell_displacement_);
+  }
+  void load(io::CheckpointReader& file) override { file.read("cell-displacement", cell_displacement_); }
 
  private:
   enum class PointKind : char { interior, fixed, interface };
@@ -59,17 +61,17 @@ class Laplacian final : public MotionMethod {
   void combine(int component, const AffineFit::Coefficients& coefficients, std::vector<double>& points);
   void make_shapes(int component);
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
   int dim_;
-  PeriodicPoints periodic_;
+  mesh::PeriodicPoints periodic_;
   double relative_tolerance_;
   std::vector<std::array<bool, 3>> held_;       // per patch and component: Dirichlet
   std::vector<int> patch_of_;                   // per boundary face
   std::vector<std::array<PointKind, 3>> kind_;  // per local point and component
   std::vector<Index> interface_points_;
   std::vector<double> coefficient_;  // per flux face: E |S| / (d.n)
-  Csr around_;                       // per local point: local cells around it
+  mesh::Csr around_;                 // per local point: local cells around it
   std::vector<double> weight_;       // with around_.index
   std::array<std::shared_ptr<Equation>, 3> equation_;
   std::vector<double> cell_displacement_;  // dim per local cell; also the next initial guess
@@ -78,7 +80,7 @@ class Laplacian final : public MotionMethod {
   };
   std::array<std::unique_ptr<AffineFit>, 3> fit_;  // of the moved points, per component
   std::array<std::vector<Shape>, 3> shapes_;       // per component, empty: not needed so far
-  SolveStatistics last_;
+  linalg::SolveStatistics last_;
 };
 
 }  // namespace couplet::mesh_mover

@@ -6,20 +6,20 @@
 
 int main(int argc, char** argv) {
   couplet::mesh_mover::Parameters parameters;
-  couplet::Program program{
+  couplet::app::Program program{
       .name = "mesh_mover",
       .description =
           "moves the mesh points with the interface or as prescribed, by a Laplacian, an elastic body or "
           "rotations",
       .declare = [&](couplet::config::Section& s) { couplet::mesh_mover::declare(s, parameters); },
       .make =
-          [&](const couplet::ParticipantContext& context) {
+          [&](const couplet::app::ParticipantContext& context) {
             return std::make_unique<couplet::mesh_mover::Mover>(parameters, context);
           },
-      .environment = couplet::petsc_environment,
+      .environment = couplet::linalg::petsc_environment,
       .effects =
-          [&](const couplet::EffectScene&) {
-            return couplet::effects_of(couplet::mesh_mover::effect_cards(), parameters);
+          [&](const couplet::effects::EffectScene&) {
+            return couplet::effects::effects_of(couplet::mesh_mover::effect_cards(), parameters);
           }};
-  return couplet::run_program(argc, argv, program);
+  return couplet::app::run_program(argc, argv, program);
 }

@@ -17,10 +17,10 @@ class MotionMethod {
   /// Result: dim values per local point [m], ghosts up to date. Throws SolveFailure. Collective.
   virtual std::vector<double> solve(std::span<const double> prescribed) = 0;
   /// Of the last solve.
-  virtual SolveStatistics last() const = 0;
+  virtual linalg::SolveStatistics last() const = 0;
   /// What the next solve starts from. Collective.
-  virtual void save(CheckpointWriter& file) const = 0;
-  virtual void load(CheckpointReader& file) = 0;
+  virtual void save(io::CheckpointWriter& file) const = 0;
+  virtual void load(io::CheckpointReader& file) = 0;
 };
 
 }  // namespace couplet::mesh_mover

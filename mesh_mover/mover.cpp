@@ -21,27 +21,27 @@ namespace {
 // Of the distance of periodic patches: how far apart their sides may move.
 constexpr double most_torn = 1e-9;
 
-LoadedMesh load_checked(const Parameters& parameters, const ParticipantContext& context) {
+mesh::LoadedMesh load_checked(const Parameters& parameters, const app::ParticipantContext& context) {
   std::map<std::string, std::string> partner_of;
   for (const auto& [name, boundary] : parameters.boundaries)
     if (boundary.motion == BoundaryMotion::periodic) partner_of[name] = boundary.partner;
-  LoadedMesh loaded =
-      load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension,
-                parameters.mesh_parameters, periodic_pairs(partner_of), {}, false, parameters.mesh_scale);
-  const Mesh& mesh = loaded.mesh;
+  mesh::LoadedMesh loaded = mesh::load_mesh(
+      context.comm, context.case_folder / parameters.mesh, parameters.dimension, parameters.mesh_parameters,
+      mesh::periodic_pairs(partner_of), {}, false, parameters.mesh_scale);
+  const mesh::Mesh& mesh = loaded.mesh;
   std::string patches;
-  for (const Patch& p : mesh.patches) patches += (patches.empty() ? "'" : ", '") + p.name + "'";
+  for (const mesh::Patch& p : mesh.patches) patches += (patches.empty() ? "'" : ", '") + p.name + "'";
   for (const auto& [name, boundary] : parameters.boundaries)
     if (!mesh.find_patch(name))
       throw Error("participants.{}.boundaries: the mesh has no patch '{}'; it has {}.", context.name, name,
                   patches);
-  for (const Patch& p : mesh.patches)
+  for (const mesh::Patch& p : mesh.patches)
     if (!parameters.boundaries.contains(p.name))
       throw Error(
           "participants.{}.boundaries: patch '{}' has no entry; give it type: interface, moving, fixed, slip, "
           "free or periodic.",
           context.name, p.name);
-  if (const auto fold = find_fold(mesh, loaded.geometry))
+  if (const auto fold = mesh::find_fold(mesh, loaded.geometry))
     throw Error(
         "participants.{}.mesh: the mesh is folded at ({:.4g}, {:.4g}, {:.4g}) m: cell {} (counted from 0 in "
         "the file) is not behind its face there. Cells overlap or are bent over; remesh there.",
@@ -58,10 +58,10 @@ std::vector<std::string> interface_patches(const Parameters& parameters) {
 
 }  // namespace
 
-Mover::Mover(const Parameters& parameters, const ParticipantContext& context)
+Mover::Mover(const Parameters& parameters, const app::ParticipantContext& context)
     : Mover(load_checked(parameters, context), parameters, context) {}
 
-Mover::Mover(LoadedMesh loaded, const Parameters& parameters, const ParticipantContext& context)
+Mover::Mover(mesh::LoadedMesh loaded, const Parameters& parameters, const app::ParticipantContext& context)
     : name_(context.name),
       parameters_(parameters),
       mesh_(std::move(loaded.mesh)),
@@ -78,29 +78,30 @@ Mover::Mover(LoadedMesh loaded, const Parameters& parameters, const ParticipantC
     log::warn("participant '{}': no patch moves (type: moving, or interface in a coupled job).", name_);
   make_method();
   if (parameters.method == Method::automatic) choose_method(context.simulation.end_time);
-  if (parameters.form == Form::automatic && comm_rank(mesh_.comm) == 0)
+  if (parameters.form == Form::automatic && parallel::comm_rank(mesh_.comm) == 0)
     log::info(
         "mesh motion: displacements from the reference mesh (form: total), so the mesh depends only on the "
         "current interface");
   if (context.mesh_peer != MPI_COMM_NULL)
-    sink_ = make_mesh_motion_sink(context.mesh_peer, mesh_, geometry_.points);
+    sink_ = coupling::make_mesh_motion_sink(context.mesh_peer, mesh_, geometry_.points);
   if (!context.coupled && !context.output_folder.empty())
-    fields_ = std::make_unique<FieldWriter>(mesh_, geometry_.points, context.output_folder, name_, true,
-                                            context.restart_time);
-  if (comm_rank(mesh_.comm) != 0) return;
+    fields_ = std::make_unique<io::FieldWriter>(mesh_, geometry_.points, context.output_folder, name_, true,
+                                                context.restart_time);
+  if (parallel::comm_rank(mesh_.comm) != 0) return;
   std::vector<std::string> columns{"time [s]"};
   columns.insert(columns.end(), measure_names.begin(), measure_names.end());
   for (const char* column :
        {"cell with the least scaled Jacobian [-]", "its x [m]", "its y [m]", "its z [m]"})
     columns.push_back(column);
-  quality_ = std::make_unique<Series>(context.output_folder / "quality.csv", columns, context.restart_time);
+  quality_ =
+      std::make_unique<io::Series>(context.output_folder / "quality.csv", columns, context.restart_time);
 }
 
 void Mover::set_up_moving() {
-  for (const Patch& patch : mesh_.patches) {
+  for (const mesh::Patch& patch : mesh_.patches) {
     const Boundary& boundary = parameters_.boundaries.at(patch.name);
     if (boundary.motion != BoundaryMotion::moving) continue;
-    Moving moving{{}, PrescribedMotion(boundary.prescribed, mesh_.dim)};
+    Moving moving{{}, fv::PrescribedMotion(boundary.prescribed, mesh_.dim)};
     for (const auto& [first, count] :
          {std::pair{patch.first, patch.count}, {patch.ghost_first, patch.ghost_count}})
       for (Index f = first; f < first + count; ++f)
@@ -113,10 +114,10 @@ void Mover::set_up_moving() {
 
 /// On the geometry as read, or on that of the last accepted step.
 void Mover::make_method() {
-  const Geometry* at = &geometry_;
+  const mesh::Geometry* at = &geometry_;
   if (incremental()) {
     place();  // displacement_ is accepted_ where a method is made
-    if (!base_) base_ = std::make_unique<Geometry>();
+    if (!base_) base_ = std::make_unique<mesh::Geometry>();
     *base_ = moved_;
     at = base_.get();
   }
@@ -139,18 +140,18 @@ void Mover::make_method() {
   }
 }
 
-Interface Mover::initialise() {
-  Interface interface = interface_.describe(geometry_);
+coupling::Interface Mover::initialise() {
+  coupling::Interface interface = interface_.describe(geometry_);
   // All ranks say so, whether or not they hold a part of the interface: rank 0 may hold none.
   if (!interface_patches(parameters_).empty())
-    interface.takes = {{"displacement", "m", Interface::Place::vertices}};
+    interface.takes = {{"displacement", "m", coupling::Interface::Place::vertices}};
   return interface;
 }
 
-void Mover::begin_step(const Step& step) { step_ = step; }
+void Mover::begin_step(const coupling::Step& step) { step_ = step; }
 
 /// dim values per local point, of points on patches that move; relative to the mesh of the method.
-std::vector<double> Mover::prescribed(const Exchange& in) const {
+std::vector<double> Mover::prescribed(const coupling::Exchange& in) const {
   const int dim = mesh_.dim;
   std::vector<double> values(displacement_.size(), 0.0);
   for (const Moving& moving : moving_) {
@@ -194,7 +195,7 @@ void Mover::place() {
   points = geometry_.points;
   for (std::size_t v = 0; v < points.size(); ++v)
     for (int c = 0; c < mesh_.dim; ++c) points[v][c] += displacement_[v * mesh_.dim + c];
-  moved_ = compute_geometry(mesh_, std::move(points));
+  moved_ = mesh::compute_geometry(mesh_, std::move(points));
   placed_ = true;
 }
 
@@ -204,14 +205,14 @@ void Mover::refuse_torn() const {
   const double gap = periodic_.largest_gap(displacement_, mesh_.dim);
   double size = 0;
   for (const Vec3& shift : mesh_.neighbour_shift) size = std::max(size, shift.norm());
-  if (gap > most_torn * max(mesh_.comm, size))
+  if (gap > most_torn * parallel::max(mesh_.comm, size))
     throw SolveFailure(
         "participant '{}': the motion from t = {:.6g} s separates the two sides of periodic patches by "
         "{:.3g} m: both must move alike.",
         name_, step_.time, gap);
 }
 
-Exchange Mover::solve(const Exchange& in) {
+coupling::Exchange Mover::solve(const coupling::Exchange& in) {
   placed_ = false;
   try {
     displacement_ = method_->solve(prescribed(in));
@@ -237,8 +238,8 @@ Exchange Mover::solve(const Exchange& in) {
   return {};
 }
 
-StepReport Mover::accept_step() {
-  const StepReport report{.dt = step_.dt, .iterations = method_->last().iterations};
+coupling::StepReport Mover::accept_step() {
+  const coupling::StepReport report{.dt = step_.dt, .iterations = method_->last().iterations};
   accepted_ = displacement_;
   if (incremental()) make_method();
   return report;
@@ -249,15 +250,15 @@ MeshState Mover::state() {
   return guard_.measure(moved_);
 }
 
-void Mover::save(CheckpointWriter& file) const {
-  write_numbering(file, mesh_);
+void Mover::save(io::CheckpointWriter& file) const {
+  io::write_numbering(file, mesh_);
   file.write("displacement", accepted_);
   file.write_scalar("barrier-in-force", parameters_.method == Method::barrier ? 1 : 0);
   if (!incremental()) method_->save(file);  // else it starts from nothing in each step
 }
 
-void Mover::load(CheckpointReader& file) {
-  check_numbering(file, mesh_);
+void Mover::load(io::CheckpointReader& file) {
+  io::check_numbering(file, mesh_);
   file.read("displacement", accepted_);
   if (file.read_scalar("barrier-in-force") > 0 && parameters_.method == Method::automatic)
     use_barrier("it was in force when the checkpoint was written");
@@ -282,7 +283,7 @@ void Mover::write_monitors(double time) {
 void Mover::write_output(double time, int) {
   if (!fields_) return;
   place();
-  using Place = OutputField::Place;
+  using Place = io::OutputField::Place;
   const std::vector<double> volume = guard_.of_cells(MeshState::volume_ratio, moved_),
                             jacobian = guard_.of_cells(MeshState::scaled_jacobian, moved_),
                             edges = guard_.of_cells(MeshState::edge_ratio, moved_);

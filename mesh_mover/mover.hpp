@@ -25,40 +25,40 @@ namespace couplet::mesh_mover {
 /// case prescribes, and sends the displacement of every point to the fluid, rank to rank. Alone it writes the
 /// moved mesh. In the total form the motion depends on the given displacement alone, so there is no state but
 /// the last accepted motion (a warm start); in the incremental form each step starts from the accepted mesh.
-class Mover final : public Participant {
+class Mover final : public coupling::Participant {
  public:
-  Mover(const Parameters& parameters, const ParticipantContext& context);
+  Mover(const Parameters& parameters, const app::ParticipantContext& context);
 
-  Interface initialise() override;
-  void begin_step(const Step& step) override;
-  Exchange solve(const Exchange& in) override;
-  StepReport accept_step() override;
-  void save(CheckpointWriter& file) const override;
-  void load(CheckpointReader& file) override;
+  coupling::Interface initialise() override;
+  void begin_step(const coupling::Step& step) override;
+  coupling::Exchange solve(const coupling::Exchange& in) override;
+  coupling::StepReport accept_step() override;
+  void save(io::CheckpointWriter& file) const override;
+  void load(io::CheckpointReader& file) override;
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
 
-  const Mesh& mesh() const { return mesh_; }
+  const mesh::Mesh& mesh() const { return mesh_; }
   /// Of the points as read.
-  const Geometry& geometry() const { return geometry_; }
+  const mesh::Geometry& geometry() const { return geometry_; }
   /// dim values per local point, of the last solve [m].
   const std::vector<double>& displacement() const { return displacement_; }
   /// Of the mesh of the last solve. Collective.
   MeshState state();
 
  private:
-  Mover(LoadedMesh loaded, const Parameters& parameters, const ParticipantContext& context);
+  Mover(mesh::LoadedMesh loaded, const Parameters& parameters, const app::ParticipantContext& context);
   struct Moving {
     std::vector<Index> points;  // local
-    PrescribedMotion motion;
+    fv::PrescribedMotion motion;
   };
   bool incremental() const { return parameters_.form == Form::incremental; }
   void set_up_moving();
   void make_method();
   void use_barrier(const std::string& reason);
   void choose_method(double end);
-  void leave_laplacian(const Exchange& in);
-  std::vector<double> prescribed(const Exchange& in) const;
+  void leave_laplacian(const coupling::Exchange& in);
+  std::vector<double> prescribed(const coupling::Exchange& in) const;
   /// Of the points of patches that move by themselves, zero elsewhere; empty without such patches.
   std::vector<double> body_velocities() const;
   void refuse_torn() const;
@@ -67,22 +67,22 @@ class Mover final : public Participant {
 
   std::string name_;
   Parameters parameters_;
-  const Mesh mesh_;
-  const Geometry geometry_;
-  PeriodicPoints periodic_;
-  std::unique_ptr<Geometry> base_;  // incremental: that of the last step
+  const mesh::Mesh mesh_;
+  const mesh::Geometry geometry_;
+  mesh::PeriodicPoints periodic_;
+  std::unique_ptr<mesh::Geometry> base_;  // incremental: that of the last step
   Guard guard_;
   CurvedSlide curved_;
   std::unique_ptr<MotionMethod> method_;
-  InterfaceMap interface_;
+  coupling::InterfaceMap interface_;
   std::vector<Moving> moving_;
-  std::unique_ptr<MeshMotionSink> sink_;
-  Step step_;
+  std::unique_ptr<coupling::MeshMotionSink> sink_;
+  coupling::Step step_;
   std::vector<double> displacement_, accepted_;
   bool placed_ = false;  // the next one is that of displacement_
-  Geometry moved_;
-  std::unique_ptr<Series> quality_;
-  std::unique_ptr<FieldWriter> fields_;  // alone only
+  mesh::Geometry moved_;
+  std::unique_ptr<io::Series> quality_;
+  std::unique_ptr<io::FieldWriter> fields_;  // alone only
 };
 
 }  // namespace couplet::mesh_mover

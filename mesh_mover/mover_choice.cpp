@@ -19,7 +19,7 @@ constexpr int looks_ahead = 40;
 void Mover::use_barrier(const std::string& reason) {
   parameters_.method = Method::barrier;
   make_method();
-  if (comm_rank(mesh_.comm) == 0) log::info("auto: method: barrier ({})", reason);
+  if (parallel::comm_rank(mesh_.comm) == 0) log::info("auto: method: barrier ({})", reason);
 }
 
 /// Looks ahead: the Laplacian moves the mesh to some times of the run.
@@ -38,7 +38,7 @@ void Mover::choose_method(double end) {
     }
   if (parameters_.method == Method::automatic) {
     make_method();
-    if (comm_rank(mesh_.comm) == 0)
+    if (parallel::comm_rank(mesh_.comm) == 0)
       log::info(
           "auto: method: laplacian (no prescribed motion inverts a cell); barrier from the first motion that does");
   }
@@ -48,7 +48,7 @@ void Mover::choose_method(double end) {
 }
 
 /// Where the Laplacian's mesh is refused the barrier moves it, from now on.
-void Mover::leave_laplacian(const Exchange& in) {
+void Mover::leave_laplacian(const coupling::Exchange& in) {
   place();
   const std::string refusal = guard_.refusal(moved_);
   if (refusal.empty() || !periodic_.empty()) return;  // no barrier across periodic patches

@@ -12,7 +12,7 @@ void declare_boundary(config::Section& s, Boundary& b) {
        {"moving", BoundaryMotion::moving,
         [&b](config::Section& v) {
           v.section(
-              "motion", [&b](config::Section& m) { couplet::declare(m, b.prescribed, false); },
+              "motion", [&b](config::Section& m) { couplet::fv::declare(m, b.prescribed, false); },
               "the motion of the patch, relative to the reference mesh");
         }},
        {"fixed", BoundaryMotion::fixed, nothing},
@@ -119,7 +119,8 @@ void declare(config::Section& section, Parameters& p) {
       "linear-solver",
       [&](config::Section& s) {
         s.choice("method", p.linear.method,
-                 {{"direct", LinearMethod::direct_symmetric}, {"cg-multigrid", LinearMethod::cg_multigrid}})
+                 {{"direct", linalg::LinearMethod::direct_symmetric},
+                  {"cg-multigrid", linalg::LinearMethod::cg_multigrid}})
             .doc(
                 "direct: one factorisation for the whole run (best below about 100 000 cells; not available "
                 "for a pseudo-solid in 3-D or with periodic patches); cg-multigrid: conjugate gradients "

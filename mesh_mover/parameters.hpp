@@ -27,8 +27,8 @@ inline bool is_given(BoundaryMotion m) {
 
 struct Boundary {
   BoundaryMotion motion = BoundaryMotion::fixed;
-  MotionParameters prescribed;  ///< of `moving`
-  std::string partner;          ///< of `periodic`
+  fv::MotionParameters prescribed;  ///< of `moving`
+  std::string partner;              ///< of `periodic`
 };
 
 enum class Method {
@@ -73,8 +73,8 @@ struct Parameters {
   double smallest_volume_ratio = 0.0;
   GuardParameters guard;
   std::map<std::string, Boundary> boundaries;
-  LinearOptions linear{
-      .method = LinearMethod::direct_symmetric, .relative_tolerance = 1e-10, .max_iterations = 500};
+  linalg::LinearOptions linear{
+      .method = linalg::LinearMethod::direct_symmetric, .relative_tolerance = 1e-10, .max_iterations = 500};
 };
 
 void declare(config::Section& section, Parameters& parameters);

@@ -11,24 +11,25 @@
 namespace couplet::mesh_mover {
 namespace {
 
-BoundaryRow row_of(BoundaryMotion motion) {
+elastic::BoundaryRow row_of(BoundaryMotion motion) {
   switch (motion) {
     case BoundaryMotion::slip:
-      return mirror_row();
+      return elastic::mirror_row();
     case BoundaryMotion::free:
-      return free_row();
+      return elastic::free_row();
     default:
-      return fixed_row();
+      return elastic::fixed_row();
   }
 }
 
 // (4.12), relative to the mean volume; mu and lambda of E and nu in plane strain or three dimensions.
-std::vector<LameConstants> stiffness(const Mesh& mesh, const Parameters& p, std::span<const double> volumes) {
+std::vector<elastic::LameConstants> stiffness(const mesh::Mesh& mesh, const Parameters& p,
+                                              std::span<const double> volumes) {
   double volume = 0;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += volumes[c];
-  const double mean = sum(mesh.comm, volume) / static_cast<double>(mesh.cells.n_global());
+  const double mean = parallel::sum(mesh.comm, volume) / static_cast<double>(mesh.cells.n_global());
   const double nu = p.poisson_ratio;
-  std::vector<LameConstants> lame(mesh.cells.n_local());
+  std::vector<elastic::LameConstants> lame(mesh.cells.n_local());
   for (std::size_t c = 0; c < lame.size(); ++c) {
     const double e = std::pow(volumes[c] / mean, -p.stiffening);
     lame[c] = {e / (2 * (1 + nu)), e * nu / ((1 + nu) * (1 - 2 * nu))};
@@ -38,16 +39,16 @@ std::vector<LameConstants> stiffness(const Mesh& mesh, const Parameters& p, std:
 
 }  // namespace
 
-PseudoSolid::PseudoSolid(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters,
+PseudoSolid::PseudoSolid(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters,
                          std::span<const double> volumes)
     : mesh_(mesh),
       dim_(mesh.dim),
       options_{parameters.linear.relative_tolerance, parameters.linear.max_iterations, true},
       given_point_(mesh.points.n_local(), 0),
       given_face_(mesh.boundary.n_local(), 0) {
-  std::vector<BoundaryRow> of_patches;
+  std::vector<elastic::BoundaryRow> of_patches;
   bool held = false;
-  for (const Patch& patch : mesh.patches) {
+  for (const mesh::Patch& patch : mesh.patches) {
     const BoundaryMotion motion = parameters.boundaries.at(patch.name).motion;
     of_patches.push_back(row_of(motion));
     // The faces of periodic patches are interior ones.
@@ -62,36 +63,36 @@ PseudoSolid::PseudoSolid(const Mesh& mesh, const Geometry& geometry, const Param
   }
   if (!held) throw Error("No patch holds the mesh: at least one needs type: fixed, moving or interface.");
   // A point on several patches: what holds it wins over what moves it, so that corners stay closed.
-  for (const Patch& patch : mesh.patches)
+  for (const mesh::Patch& patch : mesh.patches)
     if (parameters.boundaries.at(patch.name).motion == BoundaryMotion::fixed)
       for (const auto& [first, count] :
            {std::pair{patch.first, patch.count}, {patch.ghost_first, patch.ghost_count}})
         for (Index f = first; f < first + count; ++f)
           for (const Index v : mesh.face_points[f]) given_point_[v] = 0;
-  ElasticBody body;
+  elastic::ElasticBody body;
   body.lame = stiffness(mesh, parameters, volumes.empty() ? std::span(geometry.volume) : volumes);
-  rows_ = std::make_unique<ElasticOperator>(mesh, geometry, boundary_of_patches(mesh, of_patches),
-                                            std::move(body));
-  kernel_ = std::make_unique<ElasticKernel>(mesh, *rows_, FaceGradientScheme::symmetric);
+  rows_ = std::make_unique<elastic::ElasticOperator>(
+      mesh, geometry, elastic::boundary_of_patches(mesh, of_patches), std::move(body));
+  kernel_ = std::make_unique<elastic::ElasticKernel>(mesh, *rows_, elastic::FaceGradientScheme::symmetric);
   unknowns_.assign(rows_->n_unknowns(), 0.0);
   make_solver(parameters.linear);
 }
 
-void PseudoSolid::make_solver(const LinearOptions& options) {
+void PseudoSolid::make_solver(const linalg::LinearOptions& options) {
   const bool joined =
-      any(mesh_.comm, !mesh_.neighbour_shift.empty());  // its points have nodes on other ranks
-  if (options.method == LinearMethod::direct_symmetric && dim_ == 2 && !joined) {
-    matrix_ = std::make_unique<SparseMatrix>(symmetric_matrix(mesh_, *rows_, {}));
-    LinearOptions of_factors;
-    of_factors.method = LinearMethod::direct_planar;
-    factors_ = std::make_unique<LinearSolver>("the mesh displacement", *matrix_, of_factors);
+      parallel::any(mesh_.comm, !mesh_.neighbour_shift.empty());  // its points have nodes on other ranks
+  if (options.method == linalg::LinearMethod::direct_symmetric && dim_ == 2 && !joined) {
+    matrix_ = std::make_unique<linalg::SparseMatrix>(elastic::symmetric_matrix(mesh_, *rows_, {}));
+    linalg::LinearOptions of_factors;
+    of_factors.method = linalg::LinearMethod::direct_planar;
+    factors_ = std::make_unique<linalg::LinearSolver>("the mesh displacement", *matrix_, of_factors);
   } else {
-    ElasticPreconditioner::Options of_multigrid;
-    of_multigrid.scheme = FaceGradientScheme::symmetric;
-    multigrid_ =
-        std::make_unique<ElasticPreconditioner>(mesh_, *rows_, std::span<const double>{}, of_multigrid);
+    elastic::ElasticPreconditioner::Options of_multigrid;
+    of_multigrid.scheme = elastic::FaceGradientScheme::symmetric;
+    multigrid_ = std::make_unique<elastic::ElasticPreconditioner>(mesh_, *rows_, std::span<const double>{},
+                                                                  of_multigrid);
   }
-  krylov_ = std::make_unique<KrylovSolver>(
+  krylov_ = std::make_unique<linalg::KrylovSolver>(
       "the mesh displacement", mesh_.comm, unknowns_.size(),
       [this](std::span<const double> x, std::span<double> y) { kernel_->apply(x, {}, y); },
       [this](std::span<const double> r, std::span<double> z) {
@@ -121,7 +122,7 @@ std::vector<double> PseudoSolid::solve(std::span<const double> prescribed) {
   last_ = {};
   std::vector<double> displacement(std::size_t(mesh_.points.n_local()) * dim_, 0.0);
   const std::vector<double> g = known(prescribed);
-  const bool moves = any(mesh_.comm, std::ranges::any_of(g, [](double v) { return v != 0; }));
+  const bool moves = parallel::any(mesh_.comm, std::ranges::any_of(g, [](double v) { return v != 0; }));
   if (!moves) {
     std::ranges::fill(unknowns_, 0.0);
     return displacement;

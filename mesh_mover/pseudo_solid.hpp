@@ -19,31 +19,31 @@ namespace couplet::mesh_mover {
 class PseudoSolid final : public MotionMethod {
  public:
   /// `volumes`: V of (4.12) per local cell; empty: those of the mesh. Throws Error if no patch holds the mesh.
-  PseudoSolid(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters,
+  PseudoSolid(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters,
               std::span<const double> volumes = {});
 
   std::vector<double> solve(std::span<const double> prescribed) override;
-  SolveStatistics last() const override { return last_; }
-  void save(CheckpointWriter& file) const override { file.write("pseudo-solid", unknowns_); }
-  void load(CheckpointReader& file) override { file.read("pseudo-solid", unknowns_); }
+  linalg::SolveStatistics last() const override { return last_; }
+  void save(io::CheckpointWriter& file) const override { file.write("pseudo-solid", unknowns_); }
+  void load(io::CheckpointReader& file) override { file.read("pseudo-solid", unknowns_); }
 
  private:
-  void make_solver(const LinearOptions& options);
+  void make_solver(const linalg::LinearOptions& options);
   /// Displacement of what is held and moved, a known column each; the motion is taken from `prescribed`.
   std::vector<double> known(std::span<const double> prescribed) const;
 
-  const Mesh& mesh_;
+  const mesh::Mesh& mesh_;
   int dim_;
-  KrylovOptions options_;
+  linalg::KrylovOptions options_;
   std::vector<char> given_point_, given_face_;  // per local point, boundary face: it moves as prescribed
-  std::unique_ptr<ElasticOperator> rows_;
-  std::unique_ptr<ElasticKernel> kernel_;
-  std::unique_ptr<SparseMatrix> matrix_;  // with factors_
-  std::unique_ptr<LinearSolver> factors_;
-  std::unique_ptr<ElasticPreconditioner> multigrid_;  // or this
-  std::unique_ptr<KrylovSolver> krylov_;
+  std::unique_ptr<elastic::ElasticOperator> rows_;
+  std::unique_ptr<elastic::ElasticKernel> kernel_;
+  std::unique_ptr<linalg::SparseMatrix> matrix_;  // with factors_
+  std::unique_ptr<linalg::LinearSolver> factors_;
+  std::unique_ptr<elastic::ElasticPreconditioner> multigrid_;  // or this
+  std::unique_ptr<linalg::KrylovSolver> krylov_;
   std::vector<double> unknowns_;  // also the next initial guess
-  SolveStatistics last_;
+  linalg::SolveStatistics last_;
 };
 
 }  // namespace couplet::mesh_mover

@@ -36,7 +36,7 @@ Vec3 rotation_vector(const Tensor3& m, const Vec3& before) {
   return angle * axis;
 }
 
-std::vector<Index> points_of(const Mesh& mesh, const Patch& patch) {
+std::vector<Index> points_of(const mesh::Mesh& mesh, const mesh::Patch& patch) {
   std::vector<Index> points;
   for (const auto& [first, count] :
        {std::pair{patch.first, patch.count}, {patch.ghost_first, patch.ghost_count}})
@@ -49,7 +49,7 @@ std::vector<Index> points_of(const Mesh& mesh, const Patch& patch) {
 
 }  // namespace
 
-Rotations::Rotations(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters,
+Rotations::Rotations(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters,
                      std::span<const double> volumes)
     : mesh_(mesh), geometry_(geometry), dim_(mesh.dim), rest_(mesh, geometry, parameters, volumes) {
   find_bodies(parameters);
@@ -57,7 +57,7 @@ Rotations::Rotations(const Mesh& mesh, const Geometry& geometry, const Parameter
 }
 
 void Rotations::find_bodies(const Parameters& parameters) {
-  for (const Patch& patch : mesh_.patches) {
+  for (const mesh::Patch& patch : mesh_.patches) {
     if (!is_given(parameters.boundaries.at(patch.name).motion)) continue;
     Body body;
     body.name = patch.name;
@@ -72,22 +72,22 @@ void Rotations::find_bodies(const Parameters& parameters) {
     body.centre = Vec3(sums[0], sums[1], sums[2]) / std::max(sums[3], 1.0);
     for (const Index v : body.points)
       body.inner = std::max(body.inner, (geometry_.points[v] - body.centre).norm());
-    body.inner = max(mesh_.comm, body.inner);
+    body.inner = parallel::max(mesh_.comm, body.inner);
     bodies_.push_back(std::move(body));
   }
 }
 
 void Rotations::find_room(const Parameters& parameters) {
-  const PeriodicPoints periodic(mesh_, geometry_);  // nothing turns across them
+  const mesh::PeriodicPoints periodic(mesh_, geometry_);  // nothing turns across them
   for (Body& body : bodies_) {
     double nearest = std::numeric_limits<double>::max();
-    for (const Patch& patch : mesh_.patches)
+    for (const mesh::Patch& patch : mesh_.patches)
       if (patch.name != body.name && parameters.boundaries.at(patch.name).motion != BoundaryMotion::free)
         for (const Index v : points_of(mesh_, patch))
           nearest = std::min(nearest, (geometry_.points[v] - body.centre).norm());
     for (const Index v : periodic.points())
       nearest = std::min(nearest, (geometry_.points[v] - body.centre).norm());
-    body.outer = min(mesh_.comm, nearest);
+    body.outer = parallel::min(mesh_.comm, nearest);
     if (!(body.outer > least_room * body.inner))
       throw Error(
           "method: rotations: patch '{}' extends {:.3g} m from its centre ({:.4g}, {:.4g}, {:.4g}) m, but "
@@ -163,14 +163,14 @@ std::vector<double> Rotations::solve(std::span<const double> prescribed) {
   return displacement;
 }
 
-void Rotations::save(CheckpointWriter& file) const {
+void Rotations::save(io::CheckpointWriter& file) const {
   rest_.save(file);
   for (const Body& body : bodies_)
     for (int c = 0; c < 3; ++c)
       file.write_scalar("rotation-" + std::to_string(c) + "-" + body.name, body.theta[c]);
 }
 
-void Rotations::load(CheckpointReader& file) {
+void Rotations::load(io::CheckpointReader& file) {
   rest_.load(file);
   for (Body& body : bodies_)
     for (int c = 0; c < 3; ++c)

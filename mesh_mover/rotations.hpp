@@ -23,13 +23,13 @@ namespace couplet::mesh_mover {
 class Rotations final : public MotionMethod {
  public:
   /// Throws Error where a body has no room to turn.
-  Rotations(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters,
+  Rotations(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters,
             std::span<const double> volumes = {});
 
   std::vector<double> solve(std::span<const double> prescribed) override;
-  SolveStatistics last() const override { return rest_.last(); }
-  void save(CheckpointWriter& file) const override;
-  void load(CheckpointReader& file) override;
+  linalg::SolveStatistics last() const override { return rest_.last(); }
+  void save(io::CheckpointWriter& file) const override;
+  void load(io::CheckpointReader& file) override;
 
  private:
   struct Body {
@@ -45,8 +45,8 @@ class Rotations final : public MotionMethod {
   /// Displacement by the rotations alone, dim values a local point.
   std::vector<double> turned() const;
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
   int dim_;
   Laplacian rest_;
   std::vector<Body> bodies_;

@@ -45,13 +45,13 @@ void Structure::find_rotations() {
   const std::vector<double>& omega = share_->omega();
   if (std::ranges::none_of(omega, [](double w) { return w == 0; })) return;
   std::vector<double> flat(3 * omega.size(), 0);
-  if (comm_rank(context_.comm) == 0)
+  if (parallel::comm_rank(context_.comm) == 0)
     for (std::size_t m = 0; m < omega.size(); ++m)
       if (omega[m] == 0) {
-        const Vec3 turn = rigid_motion(built_.model, m).rotation;
+        const Vec3 turn = modes::rigid_motion(built_.model, m).rotation;
         for (int c = 0; c < 3; ++c) flat[3 * m + c] = turn[c];
       }
-  broadcast(context_.comm, flat);
+  mesh::broadcast(context_.comm, flat);
   for (std::size_t m = 0; m < omega.size(); ++m) rotations_.emplace_back(&flat[3 * m]);
 }
 
@@ -75,7 +75,7 @@ double Structure::in_plane_share() const {
 }
 
 /// The forces of a fluid along the normal, as pressures on the cells: what the modes left out would see of them.
-void Structure::take_fluid(const Exchange& in) {
+void Structure::take_fluid(const coupling::Exchange& in) {
   fluid_pressure_.clear();
   const auto given = in.find("pressure-force");
   if (given == in.end() || given->second.empty()) return;
@@ -93,7 +93,7 @@ void Structure::look_at_modes() {
   const bool power_of_two = (steps & (steps - 1)) == 0;
   if (!(steps <= 8 || power_of_two || step_.is_last)) return;
   const double t = step_.time + 0.5 * step_.dt;
-  on_root(context_.comm, [&] {
+  mesh::on_root(context_.comm, [&] {
     look_at_pressure(t);
     if (!truncation_) return;
     std::vector<double> pressure;
@@ -134,10 +134,10 @@ double Structure::mesh_gap() const {
   return all > 0 ? with_corners(std::sqrt(apart / all), built_.kinks) : PlateEvidence::unknown;
 }
 
-std::vector<EffectVerdict> Structure::audit() const {
+std::vector<effects::EffectVerdict> Structure::audit() const {
   // What rank 0 knows of the whole surface decides on all ranks alike.
   std::vector<double> seen(8, PlateEvidence::unknown);
-  if (comm_rank(context_.comm) == 0) {
+  if (parallel::comm_rank(context_.comm) == 0) {
     double size = 0;
     for (const Vec3& x : built_.model.vertices)
       size = std::max(size, (x - built_.model.vertices.front()).norm());
@@ -151,7 +151,7 @@ std::vector<EffectVerdict> Structure::audit() const {
     if (truncation_) seen[5] = truncation_->share();
     if (on_modes_.most > 0) seen[7] = std::sqrt(on_modes_.part / on_modes_.most);
   }
-  broadcast(context_.comm, seen);
+  mesh::broadcast(context_.comm, seen);
   PlateEvidence evidence;
   evidence.displacement_over_size = seen[0];
   evidence.displacement_over_thickness = seen[1];
@@ -177,19 +177,19 @@ std::vector<EffectVerdict> Structure::audit() const {
         parameters_, resolution_ ? evidence.step.last_mode_omega : share_->omega().back());
   if (parameters_.analysis == Parameters::Analysis::dynamic && largest_exchange_ > 0)
     evidence.energy_mismatch = worst_mismatch_ / largest_exchange_;
-  return couplet::audit(plate_effect_cards(), PlateScene{parameters_}, evidence);
+  return couplet::effects::audit(plate_effect_cards(), PlateScene{parameters_}, evidence);
 }
 
 /// Where the modes come from a file nothing is known of their mesh. A load that cells do not resolve is an error of them.
-ErrorParts Structure::error_parts() const {
-  ErrorParts parts;
+coupling::ErrorParts Structure::error_parts() const {
+  coupling::ErrorParts parts;
   if (step_errors_ && resolution_) parts.step = step_errors_->over_size();
   std::vector<double> gap(1, PlateEvidence::unknown);
-  if (!parameters_.modes_file && comm_rank(context_.comm) == 0) {
+  if (!parameters_.modes_file && parallel::comm_rank(context_.comm) == 0) {
     gap[0] = mesh_gap();
     if (within_[1] > 0) gap[0] += std::sqrt(within_[0] / within_[1]);
   }
-  broadcast(context_.comm, gap);
+  mesh::broadcast(context_.comm, gap);
   parts.mesh = gap[0];
   return parts;
 }

@@ -15,7 +15,7 @@ namespace {
 
 using S = PlateScene;
 using E = PlateEvidence;
-using V = std::optional<EffectVerdict>;
+using V = std::optional<effects::EffectVerdict>;
 
 std::string when(bool on, const char* reason) { return on ? reason : ""; }
 bool is_dynamic(const S& s) { return s.parameters.analysis == Parameters::Analysis::dynamic; }
@@ -25,17 +25,18 @@ bool is_dynamic(const S& s) { return s.parameters.analysis == Parameters::Analys
 V judge_rotation(const S&, const E& e) {
   // A rigid body that turns by 0.25 rad is stretched by 1 / cos, 3 %.
   if (!std::isnan(e.rotation))
-    return verdict(e.rotation, 0.25, fmt::format("rigid rotation = {:.2g} rad", e.rotation),
-                   "linear modes move a body along its tangent: use a program for finite strain",
-                   1 / std::max(0.1, std::cos(e.rotation)) - 1);
-  return verdict(e.displacement_over_size, 0.25,
-                 fmt::format("max displacement / structure size = {:.2g}", e.displacement_over_size),
-                 "modes are linear and cannot describe large rotations: use a program for finite strain",
-                 0.6 * e.displacement_over_size * e.displacement_over_size);
+    return effects::verdict(e.rotation, 0.25, fmt::format("rigid rotation = {:.2g} rad", e.rotation),
+                            "linear modes move a body along its tangent: use a program for finite strain",
+                            1 / std::max(0.1, std::cos(e.rotation)) - 1);
+  return effects::verdict(
+      e.displacement_over_size, 0.25,
+      fmt::format("max displacement / structure size = {:.2g}", e.displacement_over_size),
+      "modes are linear and cannot describe large rotations: use a program for finite strain",
+      0.6 * e.displacement_over_size * e.displacement_over_size);
 }
 
 V judge_in_plane(const S& s, const E& e) {
-  return verdict(
+  return effects::verdict(
       e.in_plane_share, 0.01,
       fmt::format(
           "in-plane share of {1} = {0:.2g}", e.in_plane_share,
@@ -47,10 +48,11 @@ V judge_in_plane(const S& s, const E& e) {
 
 V judge_kept(const S& s, const E& e) {
   if (is_dynamic(s))
-    return verdict(e.modes_apart, 0.05,
-                   fmt::format("compliance of the loads in truncated modes = {:.2g}", e.modes_apart),
-                   "the loads excite truncated modes: keep more modes ('modes.number')", e.modes_apart);
-  return verdict(
+    return effects::verdict(e.modes_apart, 0.05,
+                            fmt::format("compliance of the loads in truncated modes = {:.2g}", e.modes_apart),
+                            "the loads excite truncated modes: keep more modes ('modes.number')",
+                            e.modes_apart);
+  return effects::verdict(
       e.modes_apart, 0.05, fmt::format("truncation error of the deflection = {:.2g}", e.modes_apart),
       "fields and probes show the full deflection, but modal.csv and the interface only the modes: keep "
       "more modes ('modes.number')",
@@ -60,21 +62,22 @@ V judge_kept(const S& s, const E& e) {
 // A mode answers a load of frequency f as 1 / (1 - (f / f_mode)^2): at two thirds of its own frequency with 1.8 times
 // what the static measure counts, and near it without limit.
 V judge_load_beyond(const S&, const E& e) {
-  return verdict(e.step.load_over_last, 2. / 3,
-                 fmt::format("load frequency {:.3g} Hz = {:.2g} of the highest retained mode's",
-                             e.step.load_omega / (2 * std::numbers::pi), e.step.load_over_last),
-                 "truncated modes may resonate: keep modes up to 1.5 times that frequency ('modes.number')");
+  return effects::verdict(
+      e.step.load_over_last, 2. / 3,
+      fmt::format("load frequency {:.3g} Hz = {:.2g} of the highest retained mode's",
+                  e.step.load_omega / (2 * std::numbers::pi), e.step.load_over_last),
+      "truncated modes may resonate: keep modes up to 1.5 times that frequency ('modes.number')");
 }
 
 V judge_velocity(const S&, const E& e) {
-  return verdict(e.velocity_lost, 0.1,
-                 fmt::format("initial kinetic energy outside the modes = {:.2g}", e.velocity_lost),
-                 "a uniform velocity near supports needs many modes: keep more, or use 'initial-amplitudes'",
-                 0.5 * e.velocity_lost);  // of an energy
+  return effects::verdict(
+      e.velocity_lost, 0.1, fmt::format("initial kinetic energy outside the modes = {:.2g}", e.velocity_lost),
+      "a uniform velocity near supports needs many modes: keep more, or use 'initial-amplitudes'",
+      0.5 * e.velocity_lost);  // of an energy
 }
 
 V judge_within(const S&, const E& e) {
-  return verdict(
+  return effects::verdict(
       e.within_faces, 0.05,
       fmt::format("error of the load's effect on the modes with one force per face = {:.2g}", e.within_faces),
       "the pressure varies within a face: refine the mesh there", e.within_faces);
@@ -82,7 +85,7 @@ V judge_within(const S&, const E& e) {
 
 // Cells of h in half a wave of n cells: (pi / n)^2 / 12 a direction; 0.1 is four cells in both.
 V judge_mesh(const S&, const E& e) {
-  return verdict(
+  return effects::verdict(
       e.mesh_gap, 0.1,
       fmt::format("deflection of cell centres against their corners = {:.2g} (rms over the motion)",
                   e.mesh_gap),
@@ -92,7 +95,7 @@ V judge_mesh(const S&, const E& e) {
 // A plate that is held all round is stiffened by its stretch as 1 + 0.5 (w/h)^2, more or less by its edges.
 V judge_stretch(const S&, const E& e) {
   const double stiffening = 0.5 * e.displacement_over_thickness * e.displacement_over_thickness;
-  return verdict(
+  return effects::verdict(
       e.displacement_over_thickness, e.stretch_limit,
       fmt::format("held on opposite sides: max deflection / thickness = {:.2g}",
                   e.displacement_over_thickness),
@@ -104,7 +107,7 @@ V judge_stretch(const S&, const E& e) {
 // A force at the middle of each face does not see what lies between them.
 V judge_lost(const S&, const E& e) {
   if (!e.load_lost) return {};
-  return EffectVerdict{
+  return effects::EffectVerdict{
       "", 1, 0.5, "the prescribed pressures were 0 at every face centre in every step",
       "a load smaller than a face or shorter than a step is lost: refine, or distribute it over a face or a "
       "step with the same resultant"};
@@ -113,7 +116,7 @@ V judge_lost(const S&, const E& e) {
 // Rounding alone: the modes do not move along the forces, or these cancel.
 V judge_no_part(const S&, const E& e) {
   if (!(e.load_on_modes < 1e-9)) return {};
-  return EffectVerdict{
+  return effects::EffectVerdict{
       "", 1, 0.5,
       fmt::format("modal load of the prescribed pressures = {:.1g} of what it would be along the motion",
                   e.load_on_modes),
@@ -125,7 +128,7 @@ V judge_no_part(const S&, const E& e) {
 // Mindlin's plate against Kirchhoff's: rotary inertia and shear lower omega^2 by (k h)^2 (1/12 + 1/(5 (1 - nu)))
 // of it, omega by 2 % where half a wave, pi / k, is ten thicknesses long.
 V judge_shear(const S& s, const E& e) {
-  return verdict(
+  return effects::verdict(
       e.thickness_over_wave, 0.1,
       fmt::format("thickness / half the wavelength of the highest mode {1} = {0:.2g}", e.thickness_over_wave,
                   is_dynamic(s) ? "with 1 % of the motion" : "kept"),
@@ -138,8 +141,9 @@ V judge_shear(const S& s, const E& e) {
 V judge_step(const S&, const E& e) {
   const StepEvidence& step = e.step;
   if (!(step.coarse_share > 0))
-    return verdict(step.coarse_share, 0.1, "no oscillating mode has fewer than ten steps per period", "");
-  return verdict(
+    return effects::verdict(step.coarse_share, 0.1, "no oscillating mode has fewer than ten steps per period",
+                            "");
+  return effects::verdict(
       step.coarse_share, 0.1,
       fmt::format("modes with fewer than ten steps per period (first: mode {}, {:.2g} steps) make up {:.2g} "
                   "of the displacement (rms)",
@@ -150,7 +154,7 @@ V judge_step(const S&, const E& e) {
 
 V judge_resonance(const S&, const E& e) {
   const StepEvidence& step = e.step;
-  return verdict(
+  return effects::verdict(
       step.resonance_error, 0.1,
       fmt::format("mode {} is near resonance (amplification {:.2g}): displacement error by the step's "
                   "frequency error = {:.2g}",
@@ -159,7 +163,7 @@ V judge_resonance(const S&, const E& e) {
 }
 
 V judge_load(const S&, const E& e) {
-  return verdict(
+  return effects::verdict(
       e.step.load_apart, 0.1,
       fmt::format("load at mid-step against its mean over the step: difference {:.2g} of the load (rms)",
                   e.step.load_apart),
@@ -169,7 +173,7 @@ V judge_load(const S&, const E& e) {
 // A body on a seat: the time of an impact is wrong by a third of a step and its speed after it by as much of the
 // impact; twenty steps a contact are 1 % (docs/plate.md).
 V judge_contact(const S&, const E& e) {
-  return verdict(
+  return effects::verdict(
       e.step.contact_share, 0.1,
       fmt::format("an impact on the seat lasts {:.2g} s (pi sqrt(m / kappa)), one step is {:.2g} of that",
                   e.step.contact_time, e.step.contact_share),
@@ -192,7 +196,7 @@ std::string contact_asked_by(const S& s) {
 }
 
 V judge_energy(const S&, const E& e) {
-  V v = verdict(
+  V v = effects::verdict(
       e.energy_mismatch, 0.01,
       fmt::format("max error of the energy balance (4.29-4.31) / largest energy = {:.2g}", e.energy_mismatch),
       "use a smaller step, or 'trapezoidal' with 'contact.rule: conserving'");

@@ -41,7 +41,7 @@ struct PlateEvidence {
   StepEvidence step{};
 };
 
-using PlateCard = EffectCard<PlateScene, PlateEvidence>;
+using PlateCard = effects::EffectCard<PlateScene, PlateEvidence>;
 /// All that a modal structure can simulate beside its modes, in the order in which it is told.
 std::span<const PlateCard> plate_effect_cards();
 

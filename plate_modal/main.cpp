@@ -7,20 +7,20 @@
 
 int main(int argc, char** argv) {
   couplet::plate::Parameters parameters;
-  const couplet::Program program{
+  const couplet::app::Program program{
       .name = "plate_modal",
       .description = "a thin plate, or any linear structure, by modal superposition",
       .declare = [&](couplet::config::Section& s) { couplet::plate::declare(s, parameters); },
       .make =
-          [&](const couplet::ParticipantContext& c) {
+          [&](const couplet::app::ParticipantContext& c) {
             return std::make_unique<couplet::plate::Structure>(
                 parameters, couplet::plate::PlateContext{c.comm, c.name, c.case_folder, c.output_folder,
                                                          c.restart_time, c.simulation.time_step});
           },
-      .environment = couplet::petsc_environment,
+      .environment = couplet::linalg::petsc_environment,
       .effects =
-          [&](const couplet::EffectScene& scene) {
-            return couplet::effects_of(
+          [&](const couplet::effects::EffectScene& scene) {
+            return couplet::effects::effects_of(
                 couplet::plate::plate_effect_cards(),
                 couplet::plate::PlateScene{parameters, scene.coupled, scene.time_step});
           },
@@ -28,5 +28,5 @@ int main(int argc, char** argv) {
           [&](const std::filesystem::path& folder) {
             return couplet::plate::problems_of_files(parameters, folder);
           }};
-  return couplet::run_program(argc, argv, program);
+  return couplet::app::run_program(argc, argv, program);
 }

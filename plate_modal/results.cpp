@@ -33,15 +33,16 @@ std::array<double, 3> nearest_in_triangle(const Vec3& a, const Vec3& b, const Ve
 }
 
 /// The whole surface on rank 0 as a mesh to be written; the other ranks hold nothing of it.
-Mesh surface_mesh(MPI_Comm comm, const ModalModel& model) {
-  Mesh mesh;
+mesh::Mesh surface_mesh(MPI_Comm comm, const modes::ModalModel& model) {
+  mesh::Mesh mesh;
   mesh.comm = comm;
   mesh.dim = 3;
-  mesh.cells = IndexMap(comm, model.faces.size(), {}, {});
-  mesh.points = IndexMap(comm, Index(model.vertices.size()), {}, {});
+  mesh.cells = parallel::IndexMap(comm, model.faces.size(), {}, {});
+  mesh.points = parallel::IndexMap(comm, Index(model.vertices.size()), {}, {});
   mesh.cell_points = model.faces;
   for (Index f = 0; f < model.faces.size(); ++f)
-    mesh.cell_type.push_back(model.faces[f].size() == 3 ? CellType::triangle : CellType::quadrilateral);
+    mesh.cell_type.push_back(model.faces[f].size() == 3 ? mesh::CellType::triangle
+                                                        : mesh::CellType::quadrilateral);
   mesh.cell_id.resize(model.faces.size());
   mesh.point_id.resize(model.vertices.size());
   std::iota(mesh.cell_id.begin(), mesh.cell_id.end(), 0);
@@ -55,7 +56,7 @@ std::vector<std::string> numbered(const std::string& before, int n, const std::s
   return result;
 }
 
-Vec3 place_in(const ModalModel& model, const SurfacePlace& place) {
+Vec3 place_in(const modes::ModalModel& model, const SurfacePlace& place) {
   Vec3 x = Vec3::Zero();
   for (std::size_t i = 0; i < place.vertices.size(); ++i)
     x += place.weights[i] * model.vertices[place.vertices[i]];
@@ -64,8 +65,8 @@ Vec3 place_in(const ModalModel& model, const SurfacePlace& place) {
 
 /// What a mesh in other lengths would show at once.
 void tell_size(const Structure& structure) {
-  const ModalModel& model = structure.model();
-  const Vec3 side = extent_of(model);
+  const modes::ModalModel& model = structure.model();
+  const Vec3 side = modes::extent_of(model);
   std::string slender;
   if (const double h = structure.parameters().thickness; structure.parameters().mesh && h > 0) {
     Vec3 sorted = side;
@@ -78,7 +79,7 @@ void tell_size(const Structure& structure) {
 
 }  // namespace
 
-SurfacePlace nearest_place(const ModalModel& model, const Vec3& point) {
+SurfacePlace nearest_place(const modes::ModalModel& model, const Vec3& point) {
   SurfacePlace best;
   best.distance = std::numeric_limits<double>::infinity();
   for (Index f = 0; f < model.faces.size(); ++f) {
@@ -100,10 +101,10 @@ SurfacePlace nearest_place(const ModalModel& model, const Vec3& point) {
 PlateResults::PlateResults(const Structure& structure)
     : structure_(structure),
       active_(!structure.context().output_folder.empty()),
-      root_(comm_rank(structure.context().comm) == 0),
+      root_(parallel::comm_rank(structure.context().comm) == 0),
       surface_(surface_mesh(structure.context().comm, structure.model())) {
-  const ModalModel& model = structure.model();
-  on_root(structure.context().comm, [&] {
+  const modes::ModalModel& model = structure.model();
+  mesh::on_root(structure.context().comm, [&] {
     double size = 0;
     for (const Vec3& x : model.vertices) size = std::max(size, (x - model.vertices.front()).norm());
     for (const auto& [name, probe] : structure.parameters().probes) {
@@ -124,8 +125,8 @@ PlateResults::PlateResults(const Structure& structure)
   });
 }
 
-Series& PlateResults::series(std::optional<Series>& one, const char* file,
-                             const std::vector<std::string>& columns) {
+io::Series& PlateResults::series(std::optional<io::Series>& one, const char* file,
+                                 const std::vector<std::string>& columns) {
   if (!one)
     one.emplace(structure_.context().output_folder / file, columns, structure_.context().restart_time);
   return *one;
@@ -147,29 +148,29 @@ void PlateResults::write_start() {
 }
 
 void PlateResults::write_frequencies() {
-  const ModalModel& model = structure_.model();
-  Series file(structure_.context().output_folder / "frequencies.csv",
-              {"mode", "frequency [Hz]", "effective mass x [kg]", "effective mass y [kg]",
-               "effective mass z [kg]", "largest displacement [1/sqrt(kg)]"});
+  const modes::ModalModel& model = structure_.model();
+  io::Series file(structure_.context().output_folder / "frequencies.csv",
+                  {"mode", "frequency [Hz]", "effective mass x [kg]", "effective mass y [kg]",
+                   "effective mass z [kg]", "largest displacement [1/sqrt(kg)]"});
   const std::size_t n = model.n_modes();
   for (std::size_t m = 0; m < n; ++m) {
     std::vector<double> row{double(m + 1), model.frequency[m]};
     for (int c = 0; c < 3; ++c) row.push_back(std::pow(model.participation[std::size_t(c) * n + m], 2));
-    row.push_back(largest_displacement(model, m));
+    row.push_back(modes::largest_displacement(model, m));
     file.row(row);
   }
 }
 
 void PlateResults::write_shapes() {
-  const ModalModel& model = structure_.model();
+  const modes::ModalModel& model = structure_.model();
   const std::size_t n = structure_.share().n_modes();
-  FieldWriter writer(surface_, model.vertices, structure_.context().output_folder, "modes-shapes", false,
-                     std::numeric_limits<double>::quiet_NaN());
+  io::FieldWriter writer(surface_, model.vertices, structure_.context().output_folder, "modes-shapes", false,
+                         std::numeric_limits<double>::quiet_NaN());
   for (std::size_t m = 0; m < n; ++m) {
     std::vector<double> shape(model.vertex_shape.size() / n);
-    const double largest = root_ ? largest_displacement(model, m) : 1;
+    const double largest = root_ ? modes::largest_displacement(model, m) : 1;
     for (std::size_t i = 0; i < shape.size(); ++i) shape[i] = model.vertex_shape[i * n + m] / largest;
-    writer.write(double(m + 1), {}, {{"mode", "", OutputField::Place::points, 3, shape}});
+    writer.write(double(m + 1), {}, {{"mode", "", io::OutputField::Place::points, 3, shape}});
   }
 }
 
@@ -185,8 +186,8 @@ void PlateResults::write_fields(double time) {
     fields_.emplace(surface_, structure_.model().vertices, structure_.context().output_folder,
                     structure_.context().name, true, structure_.context().restart_time);
   fields_->write(time, places,
-                 {{"displacement", "m", OutputField::Place::points, 3, u},
-                  {"velocity", "m/s", OutputField::Place::points, 3, v}});
+                 {{"displacement", "m", io::OutputField::Place::points, 3, u},
+                  {"velocity", "m/s", io::OutputField::Place::points, 3, v}});
 }
 
 void PlateResults::write_series(double time) {

@@ -18,7 +18,7 @@ struct SurfacePlace {
   double distance = 0;  ///< from the place asked for [m]
 };
 /// The nearest place of a surface, with linear weights in triangles (a quadrilateral is two of them).
-SurfacePlace nearest_place(const ModalModel& model, const Vec3& point);
+SurfacePlace nearest_place(const modes::ModalModel& model, const Vec3& point);
 
 /// The files of a structure: frequencies.csv, modal.csv, energies.csv, contact.csv, probes.csv, the moving
 /// surface and the shapes of its modes. Opened when first written to; nothing without an output folder.
@@ -35,14 +35,16 @@ class PlateResults final {
   void write_shapes();
   void write_contact(double time);
   void write_energies(double time);
-  Series& series(std::optional<Series>& one, const char* file, const std::vector<std::string>& columns);
+  io::Series& series(std::optional<io::Series>& one, const char* file,
+                     const std::vector<std::string>& columns);
 
   const Structure& structure_;
   bool active_, root_;
-  Mesh surface_;  // the whole surface on rank 0, the places of its points being the vertices of the model
+  mesh::Mesh
+      surface_;  // the whole surface on rank 0, the places of its points being the vertices of the model
   std::vector<SurfacePlace> probes_;
-  std::optional<FieldWriter> fields_;
-  std::optional<Series> modal_, energies_, contact_, probe_series_, static_;
+  std::optional<io::FieldWriter> fields_;
+  std::optional<io::Series> modal_, energies_, contact_, probe_series_, static_;
 };
 
 }  // namespace couplet::plate

@@ -22,13 +22,13 @@ void Structure::solve_static(double t, std::span<const double> fluid) {
   const bool first = !repeats_;
   repeats_ = trial_.q == solved_ && trial_.q == state_.q;
   if (repeats_) {
-    if (first && comm_rank(context_.comm) == 0)
+    if (first && parallel::comm_rank(context_.comm) == 0)
       log::info("the loads do not change from step to step, so the constant deflection is written once");
     return;
   }
   solved_ = trial_.q;
   std::vector<double> by_modes = share_->gather_vertices(trial_.q);
-  on_root(context_.comm, [&] {
+  mesh::on_root(context_.comm, [&] {
     look_at_pressure(t);
     if (!built_.plate) return;
     direct_ = direct_deflection(t);
@@ -65,7 +65,7 @@ std::vector<double> Structure::cell_pressures(double t) const {
 
 std::vector<double> Structure::direct_deflection(double t) const {
   const PlateModel& plate = *built_.plate;
-  const EigenModes one{{0}, {plate.deflect(plate.load_of(cell_pressures(t)))}, 0, 0};
+  const modes::EigenModes one{{0}, {plate.deflect(plate.load_of(cell_pressures(t)))}, 0, 0};
   return skin_of(plate, one, parameters_.placement, parameters_.wetted,
                  std::vector<bool>(plate.surface().patches.size(), false))
       .vertex_shape;

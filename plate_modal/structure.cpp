@@ -21,7 +21,7 @@ void refuse_wound_springs(const Contact& contact, const Share& share, std::span<
   double size = 0;
   for (const Vec3& x : share.centres()) size = std::max(size, (x - share.centres().front()).norm());
   const Contact::Place place = contact.deepest(q);
-  if (place.depth <= 1e-9 * couplet::max(share.comm(), size)) return;
+  if (place.depth <= 1e-9 * couplet::parallel::max(share.comm(), size)) return;
   throw Error(
       "contact: initially the structure is {:.3g} m inside the seat, deepest at ({:g}, {:g}, {:g}). Lower "
       "'height' (it counts from the origin along the direction; a side of a plate is half a thickness from "
@@ -82,13 +82,13 @@ double rate_of_decay(std::span<const double> omega, std::span<const double> c, s
 
 }  // namespace
 
-Structure::Structure(Parameters parameters, PlateContext context, const RawMesh* raw)
+Structure::Structure(Parameters parameters, PlateContext context, const mesh::RawMesh* raw)
     : parameters_(with_unit_directions(std::move(parameters))),
       context_(std::move(context)),
       built_(build_model(parameters_, context_, raw)),
       share_(std::make_unique<Share>(context_.comm, built_.model)) {
   const Parameters& p = parameters_;
-  if (comm_rank(context_.comm) == 0) {
+  if (parallel::comm_rank(context_.comm) == 0) {
     if (!built_.outline.empty()) log::warn("{}", built_.outline);
     if (!built_.note.empty()) log::warn("{}", built_.note);
     if (p.modes_file)
@@ -114,7 +114,7 @@ Structure::Structure(Parameters parameters, PlateContext context, const RawMesh*
   if (contact_ && !p.contact->starts_inside) refuse_wound_springs(*contact_, *share_, state_.q);
   results_ = std::make_unique<PlateResults>(*this);
   find_rotations();
-  on_root(context_.comm, [&] {
+  mesh::on_root(context_.comm, [&] {
     if (built_.plate && resolution_)
       truncation_ = std::make_unique<Truncation>(*built_.plate, built_.model, p.placement.normal());
   });
@@ -128,7 +128,7 @@ void Structure::make_contact() {
   contact_ = std::make_unique<Contact>(*share_, *p.contact, p.placement.normal(),
                                        p.contact->stiffness ? 0 : seat_stiffness(p));
   const double shortest = std::numbers::pi / std::sqrt(contact_->largest_stiffness());
-  if (comm_rank(context_.comm) != 0) return;
+  if (parallel::comm_rank(context_.comm) != 0) return;
   const double steps = shortest / context_.time_step;
   const std::string text = fmt::format(
       "contact: over all faces it lasts {:.3g} s (pi sqrt(m / kappa)), over part of them longer", shortest);
@@ -156,22 +156,22 @@ ModalState Structure::initial_state() const {
   if (std::ssize(parameters_.initial_amplitudes) > std::ssize(q))
     throw Error("initial-amplitudes: {} are given for {} modes.", parameters_.initial_amplitudes.size(),
                 q.size());
-  if (comm_rank(context_.comm) == 0)
-    for (std::size_t m = 0; m < q.size(); ++m) largest[m] = largest_displacement(built_.model, m);
-  broadcast(context_.comm, largest);
+  if (parallel::comm_rank(context_.comm) == 0)
+    for (std::size_t m = 0; m < q.size(); ++m) largest[m] = modes::largest_displacement(built_.model, m);
+  mesh::broadcast(context_.comm, largest);
   for (std::size_t m = 0; m < parameters_.initial_amplitudes.size(); ++m)
     q[m] = parameters_.initial_amplitudes[m] / largest[m];
   return oscillators_->start(std::move(q), std::move(v));
 }
 
-Interface Structure::initialise() {
-  Interface interface = share_->describe();
-  interface.takes = {{"pressure-force", "N", Interface::Place::faces},
-                     {"viscous-force", "N", Interface::Place::faces}};
-  interface.gives = {{"displacement", "m", Interface::Place::vertices},
-                     {"velocity", "m/s", Interface::Place::vertices}};
+coupling::Interface Structure::initialise() {
+  coupling::Interface interface = share_->describe();
+  interface.takes = {{"pressure-force", "N", coupling::Interface::Place::faces},
+                     {"viscous-force", "N", coupling::Interface::Place::faces}};
+  interface.gives = {{"displacement", "m", coupling::Interface::Place::vertices},
+                     {"velocity", "m/s", coupling::Interface::Place::vertices}};
   if (parameters_.surface_density)
-    interface.gives.push_back({"surface-density", "kg/m^2", Interface::Place::faces, 1});
+    interface.gives.push_back({"surface-density", "kg/m^2", coupling::Interface::Place::faces, 1});
   results_->write_start();
   return interface;
 }
@@ -195,7 +195,7 @@ void Structure::refuse_made_energy() const {
           : "a smaller 'simulation.time-step'");
 }
 
-Exchange Structure::solve(const Exchange& in) {
+coupling::Exchange Structure::solve(const coupling::Exchange& in) {
   std::vector<double> fluid(share_->n_modes(), 0);
   for (const char* name : {"pressure-force", "viscous-force"}) {
     const auto given = in.find(name);
@@ -216,9 +216,9 @@ Exchange Structure::solve(const Exchange& in) {
   } else if (parameters_.analysis == Parameters::Analysis::static_) {
     solve_static(step_.time + step_.dt, fluid);
   }
-  Exchange out;
+  coupling::Exchange out;
   std::vector<double> u = share_->gather_vertices(trial_.q), v = share_->gather_vertices(trial_.v);
-  if (comm_rank(context_.comm) != 0) return out;
+  if (parallel::comm_rank(context_.comm) != 0) return out;
   trial_largest_ = largest_of(direct_.empty() ? u : direct_);
   out["displacement"] = std::move(u);
   out["velocity"] = std::move(v);
@@ -246,7 +246,7 @@ void Structure::look_at_step() {
                         step_.dt);
 }
 
-StepReport Structure::accept_step() {
+coupling::StepReport Structure::accept_step() {
   std::swap(state_, trial_);
   met_seat_ = met_seat_ || state_.energies.impact_work != 0;
   if (step_errors_ && resolution_)  // trial_ is what it started from
@@ -288,7 +288,7 @@ std::vector<std::string> Structure::finish() {
   return said;
 }
 
-void Structure::save(CheckpointWriter& file) const {
+void Structure::save(io::CheckpointWriter& file) const {
   file.write("omega", share_->omega());
   for (const auto& [name, values] : {std::pair{"q", &state_.q},
                                      {"v", &state_.v},
@@ -308,7 +308,7 @@ void Structure::save(CheckpointWriter& file) const {
   file.write("errors", step_errors_ ? step_errors_->state() : std::vector<double>{});
 }
 
-void Structure::load(CheckpointReader& file) {
+void Structure::load(io::CheckpointReader& file) {
   if (file.read("omega") != share_->omega())
     throw Error(
         "The checkpoint was written with other modes than this run uses: mesh, material, thickness, "
@@ -327,7 +327,7 @@ void Structure::load(CheckpointReader& file) {
   for (double* part : {&e.kinetic, &e.strain, &e.gravity, &e.contact, &e.initial, &e.load_work,
                        &e.impact_work, &e.damping_loss, &worst_mismatch_, &largest_exchange_, &largest_true_})
     *part = kept[i++];
-  take_changed_energy(*oscillators_, comm_rank(context_.comm) == 0, state_);
+  take_changed_energy(*oscillators_, parallel::comm_rank(context_.comm) == 0, state_);
   std::vector<double> largest(7), left_out(2);
   file.read("largest", largest);
   largest_ = largest[0], largest_rotation_ = largest[1];

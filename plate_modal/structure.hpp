@@ -22,30 +22,30 @@ class PlateResults;
 
 /// A structure by superposition of its modes, as a participant: takes the forces on the faces of its surface,
 /// gives displacement and velocity of its vertices.
-class Structure final : public Participant, public EstimatesError {
+class Structure final : public coupling::Participant, public coupling::EstimatesError {
  public:
   /// `raw`: mid-surface on rank 0 in place of the mesh that the parameters name. Collective.
-  Structure(Parameters parameters, PlateContext context, const RawMesh* raw = nullptr);
+  Structure(Parameters parameters, PlateContext context, const mesh::RawMesh* raw = nullptr);
   ~Structure() override;
 
-  Interface initialise() override;
-  void begin_step(const Step& step) override { step_ = step; }
-  Exchange solve(const Exchange& in) override;
-  StepReport accept_step() override;
-  void save(CheckpointWriter& file) const override;
-  void load(CheckpointReader& file) override;
+  coupling::Interface initialise() override;
+  void begin_step(const coupling::Step& step) override { step_ = step; }
+  coupling::Exchange solve(const coupling::Exchange& in) override;
+  coupling::StepReport accept_step() override;
+  void save(io::CheckpointWriter& file) const override;
+  void load(io::CheckpointReader& file) override;
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
-  std::vector<EffectVerdict> audit() const override;
+  std::vector<effects::EffectVerdict> audit() const override;
   std::vector<std::string> finish() override;
   void collect_errors() override { step_errors_.emplace(parameters_.time_scheme); }
-  ErrorParts error_parts() const override;
+  coupling::ErrorParts error_parts() const override;
 
   const Parameters& parameters() const { return parameters_; }
   const PlateContext& context() const { return context_; }
   const Share& share() const { return *share_; }
   const ModalState& state() const { return state_; }
-  const ModalModel& model() const { return built_.model; }  ///< on rank 0
+  const modes::ModalModel& model() const { return built_.model; }  ///< on rank 0
   const Contact* contact() const { return contact_.get(); }
   /// Static analysis: largest deflections of the plate itself and by its modes, largest difference [m]; rank
   /// 0.
@@ -71,7 +71,7 @@ class Structure final : public Participant, public EstimatesError {
   void solve_static(double t, std::span<const double> fluid);
   std::vector<double> direct_deflection(double t) const;
   std::vector<double> cell_pressures(double t) const;
-  void take_fluid(const Exchange& in);
+  void take_fluid(const coupling::Exchange& in);
   void look_at_modes();
   void look_at_pressure(double t);
   double mesh_gap() const;
@@ -82,16 +82,16 @@ class Structure final : public Participant, public EstimatesError {
   std::unique_ptr<Share> share_;
   std::unique_ptr<Contact> contact_;  // none: no seat in this scene
   std::unique_ptr<Oscillators> oscillators_;
-  std::unique_ptr<PressureLoad> pressure_;     // none: no pressures of the case
-  std::unique_ptr<Resolution> resolution_;     // of a dynamic analysis
-  std::optional<VelocityErrors> step_errors_;  // of modes of unit mass; none: not wanted
+  std::unique_ptr<PressureLoad> pressure_;           // none: no pressures of the case
+  std::unique_ptr<Resolution> resolution_;           // of a dynamic analysis
+  std::optional<time::VelocityErrors> step_errors_;  // of modes of unit mass; none: not wanted
   std::vector<double> gravity_;
   ModalState state_, trial_;
   std::vector<double> direct_;  // static deflection of the plate itself, 3 a vertex on rank 0
   std::optional<Deflection> deflection_;
   std::vector<double> solved_;  // static analysis: the modes that direct_ and deflection_ belong to
   bool repeats_ = false;
-  Step step_;
+  coupling::Step step_;
   double worst_mismatch_ = 0, largest_exchange_ = 0;
   double largest_true_ = 0;  // largest energy that the scheme did not make, or work of the loads [J]
   double largest_ = 0, trial_largest_ = 0;  // displacement of any vertex [m], on rank 0

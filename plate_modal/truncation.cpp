@@ -13,14 +13,14 @@ namespace {
 double square_of_omega(double frequency) { return std::pow(2 * std::numbers::pi * frequency, 2); }
 
 /// The square of the first frequency above 0 [1/s^2].
-double first_elastic(const ModalModel& model) {
+double first_elastic(const modes::ModalModel& model) {
   for (const double f : model.frequency)
     if (f > 0) return square_of_omega(f);
   return 1;
 }
 
 /// Sixteen points of equal weight: middles of the pieces of two halvings.
-std::vector<Vec3> points_within(const ModalModel& model, std::span<const Index> face) {
+std::vector<Vec3> points_within(const modes::ModalModel& model, std::span<const Index> face) {
   std::vector<Vec3> points;
   const auto at = [&](std::size_t i) -> const Vec3& { return model.vertices[face[i]]; };
   if (face.size() == 4) {
@@ -45,7 +45,7 @@ std::vector<Vec3> points_within(const ModalModel& model, std::span<const Index> 
 }
 
 /// Component of a shape along a direction at entry i, mode m.
-double along(const ModalModel& model, const std::vector<double>& shape, std::size_t i, std::size_t m,
+double along(const modes::ModalModel& model, const std::vector<double>& shape, std::size_t i, std::size_t m,
              const Vec3& direction) {
   const std::size_t n = model.n_modes();
   const double* u = shape.data() + 3 * i * n + m;
@@ -54,7 +54,8 @@ double along(const ModalModel& model, const std::vector<double>& shape, std::siz
 
 }  // namespace
 
-Truncation::Truncation(PlateModel& plate, const ModalModel& model, const Vec3& normal) : plate_(plate) {
+Truncation::Truncation(PlateModel& plate, const modes::ModalModel& model, const Vec3& normal)
+    : plate_(plate) {
   const bool moves = model.frequency.front() == 0;
   const double shift = moves ? first_elastic(model) : 0;
   if (moves) plate.stiffen(shift);
@@ -63,8 +64,9 @@ Truncation::Truncation(PlateModel& plate, const ModalModel& model, const Vec3& n
   for (std::size_t c = 0; c < areas.size(); ++c)
     for (std::size_t m = 0; m < model.n_modes(); ++m)
       means_.push_back(areas[c] * along(model, model.face_shape, c, m, normal));
-  solver_ = std::make_unique<LinearSolver>("deflection beyond the modes", plate.stiffness(),
-                                           LinearOptions{.method = LinearMethod::direct_symmetric});
+  solver_ = std::make_unique<linalg::LinearSolver>(
+      "deflection beyond the modes", plate.stiffness(),
+      linalg::LinearOptions{.method = linalg::LinearMethod::direct_symmetric});
 }
 
 void Truncation::look(std::span<const double> pressure) {
@@ -83,8 +85,8 @@ void Truncation::look(std::span<const double> pressure) {
   sums_[1] += all;
 }
 
-std::vector<double> mesh_gaps(const ModalModel& model, std::size_t cells, const Vec3& normal) {
-  const std::vector<Vec3> areas = face_areas(model);
+std::vector<double> mesh_gaps(const modes::ModalModel& model, std::size_t cells, const Vec3& normal) {
+  const std::vector<Vec3> areas = modes::face_areas(model);
   std::vector<double> gaps(model.n_modes(), 0);
   for (std::size_t m = 0; m < gaps.size(); ++m) {
     double apart = 0, all = 0;
@@ -102,12 +104,12 @@ std::vector<double> mesh_gaps(const ModalModel& model, std::size_t cells, const 
   return gaps;
 }
 
-WithinFaces within_faces(const ModalModel& model, const PressureLoad& load, double t) {
+WithinFaces within_faces(const modes::ModalModel& model, const PressureLoad& load, double t) {
   WithinFaces seen;
   if (load.is_uniform()) return seen;
   const std::size_t n = model.n_modes();
   std::vector<double> middle(n, 0), fine(n, 0);
-  const std::vector<Vec3> areas = face_areas(model), centres = face_centres(model);
+  const std::vector<Vec3> areas = modes::face_areas(model), centres = modes::face_centres(model);
   try {
     for (std::size_t f = 0; f < areas.size(); ++f) {
       const double at_middle = load.push(areas[f], centres[f], t);
@@ -136,10 +138,10 @@ WithinFaces within_faces(const ModalModel& model, const PressureLoad& load, doub
   return seen;
 }
 
-LoadOnModes load_on_modes(const ModalModel& model, const PressureLoad& load, double t) {
+LoadOnModes load_on_modes(const modes::ModalModel& model, const PressureLoad& load, double t) {
   const std::size_t n = model.n_modes();
   std::vector<double> part(n, 0), most(n, 0);
-  const std::vector<Vec3> areas = face_areas(model), centres = face_centres(model);
+  const std::vector<Vec3> areas = modes::face_areas(model), centres = modes::face_centres(model);
   try {
     for (std::size_t f = 0; f < areas.size(); ++f) {
       const double pressure = load.push(areas[f], centres[f], t);

@@ -19,7 +19,7 @@ namespace couplet::plate {
 class Truncation final {
  public:
   /// Stiffens `plate` by s M: it is of no other use then.
-  Truncation(PlateModel& plate, const ModalModel& model, const Vec3& normal);
+  Truncation(PlateModel& plate, const modes::ModalModel& model, const Vec3& normal);
 
   /// `pressure`: one a cell [Pa], along the normal.
   void look(std::span<const double> pressure);
@@ -34,26 +34,26 @@ class Truncation final {
   const PlateModel& plate_;
   std::vector<double> stiffness_;  // omega^2 + s of each mode [1/s^2]
   std::vector<double> means_;      // area times the mean deflection of a cell, cell by cell
-  std::unique_ptr<LinearSolver> solver_;
+  std::unique_ptr<linalg::LinearSolver> solver_;
   std::vector<double> sums_{0, 0};  // compliance left out, compliance
 };
 
 /// Of each mode: how far the mean of a cell's corners is from the cell's mean deflection, rms over that of the latter:
 /// (pi / n)^2 / 12 in each direction of a wave with n cells in half of it. `cells`: faces of the first side.
-std::vector<double> mesh_gaps(const ModalModel& model, std::size_t cells, const Vec3& normal);
+std::vector<double> mesh_gaps(const modes::ModalModel& model, std::size_t cells, const Vec3& normal);
 
 /// What a force at the middle of each face makes of pressures that vary within the faces, on the modes of a structure.
 struct WithinFaces {
   double apart = 0, size = 0;  ///< squares over all modes, each over (omega^2 + omega_1^2)
 };
 /// Against sixteen points a face. Zeros for pressures that are the same everywhere, or have no value at t. On rank 0.
-WithinFaces within_faces(const ModalModel& model, const PressureLoad& load, double t);
+WithinFaces within_faces(const modes::ModalModel& model, const PressureLoad& load, double t);
 
 /// Squares over all modes: of the loads of pressures on them, and of what these would be if every force lay along the
 /// motion of its face. Zeros where a pressure has no value at t. On rank 0.
 struct LoadOnModes {
   double part = 0, most = 0;
 };
-LoadOnModes load_on_modes(const ModalModel& model, const PressureLoad& load, double t);
+LoadOnModes load_on_modes(const modes::ModalModel& model, const PressureLoad& load, double t);
 
 }  // namespace couplet::plate

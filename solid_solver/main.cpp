@@ -9,39 +9,40 @@
 
 int main(int argc, char** argv) {
   couplet::solid::SolidParameters parameters;
-  const couplet::Program program{
+  const couplet::app::Program program{
       .name = "solid_solver",
       .description =
           "linear thermoelasticity, static or dynamic, and heat conduction, by the finite-volume method",
       .declare = [&](couplet::config::Section& section) { declare(section, parameters); },
-      .make = [&](const couplet::ParticipantContext& context) -> std::unique_ptr<couplet::Participant> {
-        couplet::LoadedMesh body =
-            couplet::load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension,
-                               parameters.mesh_parameters, {}, couplet::solid::zones_of(parameters.materials),
-                               true, parameters.mesh_scale);
+      .make = [&](const couplet::app::ParticipantContext& context)
+          -> std::unique_ptr<couplet::coupling::Participant> {
+        couplet::mesh::LoadedMesh body = couplet::mesh::load_mesh(
+            context.comm, context.case_folder / parameters.mesh, parameters.dimension,
+            parameters.mesh_parameters, {}, couplet::solid::zones_of(parameters.materials), true,
+            parameters.mesh_scale);
         const couplet::solid::SolidContext where{context.name, context.output_folder, context.restart_time};
         if (parameters.analysis == couplet::solid::SolidParameters::Analysis::thermal)
           return std::make_unique<couplet::solid::ThermalSolid>(std::move(body), parameters, where);
         return std::make_unique<couplet::solid::Solid>(std::move(body), parameters, where);
       },
-      .environment = couplet::petsc_environment,
+      .environment = couplet::linalg::petsc_environment,
       .effects =
-          [&](const couplet::EffectScene&) {
-            return couplet::effects_of(couplet::solid::solid_effect_cards(), parameters);
+          [&](const couplet::effects::EffectScene&) {
+            return couplet::effects::effects_of(couplet::solid::solid_effect_cards(), parameters);
           },
       .choose =
-          [&](const couplet::ChoiceScene& scene) {
+          [&](const couplet::effects::ChoiceScene& scene) {
             return couplet::solid::choose_effects(
                 parameters,
-                couplet::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters,
-                                       parameters.mesh_scale),
+                couplet::mesh::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters,
+                                             parameters.mesh_scale),
                 scene);
           },
       .expected =
-          [&](const couplet::ChoiceScene& scene) {
+          [&](const couplet::effects::ChoiceScene& scene) {
             return couplet::solid::expected_cost(
-                parameters, couplet::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters,
-                                                   parameters.mesh_scale));
+                parameters, couplet::mesh::facts_of_file(scene.folder / parameters.mesh,
+                                                         parameters.mesh_parameters, parameters.mesh_scale));
           }};
-  return couplet::run_program(argc, argv, program);
+  return couplet::app::run_program(argc, argv, program);
 }

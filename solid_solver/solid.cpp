@@ -14,7 +14,7 @@ constexpr int steps_between_looks = 50;  // of a motion at its energy; a look co
 
 }  // namespace
 
-Solid::Solid(LoadedMesh body, SolidParameters parameters, SolidContext context)
+Solid::Solid(mesh::LoadedMesh body, SolidParameters parameters, SolidContext context)
     : context_(std::move(context)),
       body_(std::move(body), std::move(parameters)),
       interface_(body_),
@@ -25,7 +25,7 @@ Solid::Solid(LoadedMesh body, SolidParameters parameters, SolidContext context)
 
 Solid::~Solid() = default;
 
-void Solid::begin_step(const Step& step) {
+void Solid::begin_step(const coupling::Step& step) {
   const SolidOutputParameters& chosen = body_.parameters().output;
   dt_ = step.dt;
   stepper_.begin_step(step, !interface_.takes_temperature());
@@ -33,7 +33,7 @@ void Solid::begin_step(const Step& step) {
   if (chosen.modes > 0 && body_.is_dynamic() && step.number == 0) output_->write_modes(errors_.has_value());
 }
 
-Exchange Solid::solve(const Exchange& in) {
+coupling::Exchange Solid::solve(const coupling::Exchange& in) {
   if (interface_.takes_temperature()) {
     interface_.take_temperature(in);
     stepper_.prepare_loads();
@@ -42,7 +42,7 @@ Exchange Solid::solve(const Exchange& in) {
   return interface_.values(stepper_.trial(), dt_);
 }
 
-StepReport Solid::accept_step() {
+coupling::StepReport Solid::accept_step() {
   if (!body_.is_dynamic()) judge_.see_inertia();
   judge_.see_equilibrium();
   if (body_.parameters().output.large_strain_estimate) judge_.estimate_large_strain();
@@ -63,8 +63,8 @@ void Solid::collect_errors() {
   for (const auto& effect : body_.effects()) effect->collect_errors();
 }
 
-std::vector<EffectVerdict> Solid::audit() const {
-  return couplet::audit(solid_effect_cards(), body_.parameters(), judge_.evidence());
+std::vector<effects::EffectVerdict> Solid::audit() const {
+  return couplet::effects::audit(solid_effect_cards(), body_.parameters(), judge_.evidence());
 }
 
 std::vector<std::string> Solid::finish() {
@@ -95,7 +95,7 @@ void Solid::write_monitors(double time) {
   output_->write_series(time, fields_.point_displacement());
 }
 
-void Solid::save(CheckpointWriter& file) const {
+void Solid::save(io::CheckpointWriter& file) const {
   stepper_.save_state(file);
   judge_.save(file);
   for (const auto& effect : body_.effects()) effect->save(file);
@@ -103,7 +103,7 @@ void Solid::save(CheckpointWriter& file) const {
   file.write("errors-and-drift", errors_ ? errors_->state() : std::vector<double>{});
 }
 
-void Solid::load(CheckpointReader& file) {
+void Solid::load(io::CheckpointReader& file) {
   stepper_.load_state(file);
   judge_.load(file);
   for (const auto& effect : body_.effects()) effect->load(file);

@@ -21,27 +21,29 @@ namespace couplet::solid {
 class SolidOutput;
 
 /// An elastic solid as a participant: its rooms, and in which order they are asked.
-class Solid final : public Participant, public EstimatesError {
+class Solid final : public coupling::Participant, public coupling::EstimatesError {
  public:
   /// Collective over mesh.comm.
-  Solid(LoadedMesh body, SolidParameters parameters, SolidContext context);
+  Solid(mesh::LoadedMesh body, SolidParameters parameters, SolidContext context);
   ~Solid() override;
 
-  Interface initialise() override { return interface_.description(); }
+  coupling::Interface initialise() override { return interface_.description(); }
   double suggest_dt() override {
-    return body_.parameters().step_control ? stepper_.suggest_dt() : Participant::suggest_dt();
+    return body_.parameters().step_control ? stepper_.suggest_dt() : coupling::Participant::suggest_dt();
   }
-  void begin_step(const Step& step) override;
-  Exchange solve(const Exchange& in) override;
-  StepReport accept_step() override;
-  void save(CheckpointWriter& file) const override;
-  void load(CheckpointReader& file) override;
+  void begin_step(const coupling::Step& step) override;
+  coupling::Exchange solve(const coupling::Exchange& in) override;
+  coupling::StepReport accept_step() override;
+  void save(io::CheckpointWriter& file) const override;
+  void load(io::CheckpointReader& file) override;
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
-  std::vector<EffectVerdict> audit() const override;
+  std::vector<effects::EffectVerdict> audit() const override;
   std::vector<std::string> finish() override;
   void collect_errors() override;
-  ErrorParts error_parts() const override { return errors_ ? errors_->parts() : ErrorParts{}; }
+  coupling::ErrorParts error_parts() const override {
+    return errors_ ? errors_->parts() : coupling::ErrorParts{};
+  }
 
   const SolidBody& body() const { return body_; }
   const SolidStepper& stepper() const { return stepper_; }

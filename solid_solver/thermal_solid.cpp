@@ -8,7 +8,7 @@
 
 namespace couplet::solid {
 
-ThermalSolid::ThermalSolid(LoadedMesh body, SolidParameters parameters, SolidContext context)
+ThermalSolid::ThermalSolid(mesh::LoadedMesh body, SolidParameters parameters, SolidContext context)
     : mesh_(std::move(body.mesh)),
       geometry_(std::move(body.geometry)),
       parameters_(std::move(parameters)),
@@ -20,28 +20,28 @@ ThermalSolid::ThermalSolid(LoadedMesh body, SolidParameters parameters, SolidCon
     surfaces_.emplace(mesh_, geometry_.points, parameters_.output.surfaces, "output.surfaces");
 }
 
-Interface ThermalSolid::initialise() {
-  Interface none;
+coupling::Interface ThermalSolid::initialise() {
+  coupling::Interface none;
   none.dim = mesh_.dim;
   return none;
 }
 
-void ThermalSolid::begin_step(const Step& step) {
+void ThermalSolid::begin_step(const coupling::Step& step) {
   if (!(step.dt > 0)) throw Error("The solid received a step of {} s; it must be above 0.", step.dt);
   step_ = step;
 }
 
-Exchange ThermalSolid::solve(const Exchange&) {
+coupling::Exchange ThermalSolid::solve(const coupling::Exchange&) {
   heat_->solve(step_);
   return {};
 }
 
-void ThermalSolid::save(CheckpointWriter& file) const {
+void ThermalSolid::save(io::CheckpointWriter& file) const {
   heat_->save(file);
   file.write("errors", errors_ ? errors_->state() : std::vector<double>{});
 }
 
-void ThermalSolid::load(CheckpointReader& file) {
+void ThermalSolid::load(io::CheckpointReader& file) {
   heat_->load(file);
   const std::vector<double> errors = file.read("errors");
   if (errors_) errors_->restore(errors);
@@ -54,8 +54,8 @@ void ThermalSolid::write_output(double time, int) {
                     context_.restart_time);
   const std::vector<double> points = heat_->point_temperature(heat_->accepted());
   fields_->write(time, geometry_.points,
-                 {{"temperature", "K", OutputField::Place::points, 1, points},
-                  {"cell-temperature", "K", OutputField::Place::cells, 1, heat_->accepted().cells}});
+                 {{"temperature", "K", io::OutputField::Place::points, 1, points},
+                  {"cell-temperature", "K", io::OutputField::Place::cells, 1, heat_->accepted().cells}});
   if (surfaces_) write_surfaces(time, points);
 }
 
@@ -65,8 +65,8 @@ void ThermalSolid::write_surfaces(double time, std::span<const double> points) {
   const std::vector<double> inflow = heat_->boundary_inflow();
   for (std::size_t i = 0; i < surfaces_->patches().size(); ++i)
     surfaces_->write(i, time, geometry_.points,
-                     {{"temperature", "K", OutputField::Place::points, 1, points},
-                      {"heat-flux", "W/m^2", OutputField::Place::cells, 1, inflow}});
+                     {{"temperature", "K", io::OutputField::Place::points, 1, points},
+                      {"heat-flux", "W/m^2", io::OutputField::Place::cells, 1, inflow}});
 }
 
 void ThermalSolid::write_monitors(double time) {
@@ -78,11 +78,11 @@ void ThermalSolid::write_monitors(double time) {
 void ThermalSolid::write_probes(double time) {
   const std::vector<double> points = heat_->point_temperature(heat_->accepted());
   std::vector<double> row{time};
-  for (const Probe& probe : probes_) {
+  for (const io::Probe& probe : probes_) {
     const std::vector<double> value = probe.sample(points, 1);
     row.insert(row.end(), value.begin(), value.end());
   }
-  if (comm_rank(mesh_.comm) != 0) return;
+  if (parallel::comm_rank(mesh_.comm) != 0) return;
   if (!probe_series_) {
     std::vector<std::string> columns{"time [s]"};
     for (const auto& [name, probe] : parameters_.probes) columns.push_back(name + " temperature [K]");
@@ -96,7 +96,7 @@ void ThermalSolid::write_heat(double time) {
   std::vector<double> row{time};
   for (const PatchHeat& h : heat) row.push_back(h.heat);
   row.push_back(heat_->stored_heat());
-  if (comm_rank(mesh_.comm) != 0) return;
+  if (parallel::comm_rank(mesh_.comm) != 0) return;
   if (!heat_series_) {
     std::vector<std::string> columns{"time [s]"};
     for (const PatchHeat& h : heat) columns.push_back(h.patch + " [W]");

@@ -23,28 +23,30 @@ namespace couplet::solid {
 /// A solid that conducts heat and does not deform (`analysis: thermal`): no elastic operator is built.
 /// Writes the fields `temperature` and `cell-temperature`, probes.csv, and heat.csv with the heat through
 /// each patch.
-class ThermalSolid final : public Participant, public EstimatesError {
+class ThermalSolid final : public coupling::Participant, public coupling::EstimatesError {
  public:
   /// Collective over mesh.comm.
-  ThermalSolid(LoadedMesh body, SolidParameters parameters, SolidContext context);
+  ThermalSolid(mesh::LoadedMesh body, SolidParameters parameters, SolidContext context);
 
-  Interface initialise() override;
-  void begin_step(const Step& step) override;
-  Exchange solve(const Exchange& in) override;
-  StepReport accept_step() override {
+  coupling::Interface initialise() override;
+  void begin_step(const coupling::Step& step) override;
+  coupling::Exchange solve(const coupling::Exchange& in) override;
+  coupling::StepReport accept_step() override {
     if (errors_) errors_->see_step(heat_->accepted(), heat_->trial());
     heat_->accept_step();
     return {.dt = step_.dt};
   }
-  void save(CheckpointWriter& file) const override;
-  void load(CheckpointReader& file) override;
+  void save(io::CheckpointWriter& file) const override;
+  void load(io::CheckpointReader& file) override;
   void collect_errors() override { errors_.emplace(mesh_, geometry_, parameters_.heat.value()); }
-  ErrorParts error_parts() const override { return errors_ ? errors_->parts(*heat_) : ErrorParts{}; }
+  coupling::ErrorParts error_parts() const override {
+    return errors_ ? errors_->parts(*heat_) : coupling::ErrorParts{};
+  }
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
   std::vector<std::string> finish() override;
 
-  const Mesh& mesh() const { return mesh_; }
+  const mesh::Mesh& mesh() const { return mesh_; }
   const Heat& heat() const { return *heat_; }
 
  private:
@@ -52,18 +54,18 @@ class ThermalSolid final : public Participant, public EstimatesError {
   void write_heat(double time);
   void write_surfaces(double time, std::span<const double> points);
 
-  const Mesh mesh_;
-  const Geometry geometry_;
+  const mesh::Mesh mesh_;
+  const mesh::Geometry geometry_;
   const SolidParameters parameters_;
   const SolidContext context_;
   std::unique_ptr<Heat> heat_;
   std::optional<HeatErrors> errors_;  // none: not wanted
-  Step step_;
-  std::vector<Probe> probes_;
-  std::optional<FieldWriter> fields_;
-  std::optional<SurfaceSeries> surfaces_;
+  coupling::Step step_;
+  std::vector<io::Probe> probes_;
+  std::optional<io::FieldWriter> fields_;
+  std::optional<io::SurfaceSeries> surfaces_;
   bool surfaces_open_ = false;
-  std::optional<Series> probe_series_, heat_series_;  // on rank 0
+  std::optional<io::Series> probe_series_, heat_series_;  // on rank 0
 };
 
 }  // namespace couplet::solid

@@ -6,22 +6,22 @@
 
 int main(int argc, char** argv) {
   couplet::thermocline::ElementParameters parameters;
-  couplet::Program program{
+  couplet::app::Program program{
       .name = "thermocline",
       .description =
           "a packed-bed thermocline tank: bed, filler mechanics, shell, insulation, ullage, ground, plant",
       .declare = [&](couplet::config::Section& s) { couplet::thermocline::declare(s, parameters); },
       .make =
-          [&](const couplet::ParticipantContext& context) {
+          [&](const couplet::app::ParticipantContext& context) {
             return couplet::thermocline::make_element(parameters, context);
           },
       .effects =
-          [&](const couplet::EffectScene&) {
-            return couplet::effects_of(couplet::thermocline::effect_cards(), parameters);
+          [&](const couplet::effects::EffectScene&) {
+            return couplet::effects::effects_of(couplet::thermocline::effect_cards(), parameters);
           },
       .problems_of_files =
           [&](const std::filesystem::path& folder) {
             return couplet::thermocline::problems_of_files(parameters, folder);
           }};
-  return couplet::run_program(argc, argv, program);
+  return couplet::app::run_program(argc, argv, program);
 }

@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
   MPI_Init(&argc, &argv);
   int code = 1;
   try {
-    const couplet::PetscEnvironment environment(MPI_COMM_WORLD);
+    const couplet::linalg::PetscEnvironment environment(MPI_COMM_WORLD);
     code = couplet::benchmark::run_matrix(argv[2], argv[3]);
   } catch (const couplet::Error& e) {
     std::fprintf(stderr, "%s\n", e.what());

@@ -10,6 +10,7 @@
 #include "common/linalg/petsc_environment.hpp"
 
 namespace couplet::benchmark {
+using namespace linalg;
 namespace {
 
 // One solve takes less than what the clock of processor time tells apart.
@@ -68,7 +69,7 @@ Result solve_by_program(const System& system, SparseMatrix& matrix, std::span<co
   const Meter whole(system.comm);
   LinearSolver solver("pressure", matrix, {.method = method});
   solver.restore({.is_due = false,
-                  .is_single = method == LinearMethod::cg_single && comm_size(system.comm) == 1,
+                  .is_single = method == LinearMethod::cg_single && parallel::comm_size(system.comm) == 1,
                   .most_iterations = 500});
   result.setup = whole.seconds();
   matrix.fill(now);
@@ -86,12 +87,12 @@ Result solve_by_program(const System& system, SparseMatrix& matrix, std::span<co
 
 int run_matrix(const std::string& folder, const std::string& how) {
   MPI_Comm comm = MPI_COMM_WORLD;
-  const std::string ranks = std::to_string(comm_size(comm));
+  const std::string ranks = std::to_string(parallel::comm_size(comm));
   std::ifstream about(folder + "/about-" + ranks);
   System system{comm, {}, {}, {}, 0, {}};
   about >> system.wanted;
   PetscInt rows = 0;
-  for (int r = 0; r <= comm_rank(comm); ++r) about >> rows;
+  for (int r = 0; r <= parallel::comm_rank(comm); ++r) about >> rows;
   if (!about) throw Error("{} holds no system of {} ranks (record.c).", folder, ranks);
   const Mat a = read_matrix(comm, folder + "/A-" + ranks, rows),
             p = read_matrix(comm, folder + "/P-" + ranks, rows);

@@ -24,9 +24,9 @@ class Meter {
     seconds_ = now();
   }
   /// Of all ranks [s].
-  double seconds() const { return sum(comm_, now() - seconds_); }
+  double seconds() const { return parallel::sum(comm_, now() - seconds_); }
   /// Of all ranks [MB]: at the most, and what is left of it.
-  double peak() const { return sum(comm_, of_process("VmHWM:") - megabytes_); }
+  double peak() const { return parallel::sum(comm_, of_process("VmHWM:") - megabytes_); }
 
  private:
   static double now() {

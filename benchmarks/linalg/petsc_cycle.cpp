@@ -8,6 +8,7 @@
 #include "common/linalg/petsc_check.hpp"
 
 namespace couplet::benchmark {
+using namespace linalg;
 namespace {
 
 struct Component {
@@ -49,7 +50,8 @@ Component component_of(const ComponentMultigrid::Rows& rows, const ComponentMult
 
 }  // namespace
 
-ComponentCycle petsc_cycle(ComponentMultigrid::Rows rows, const ComponentMultigrid::Options& options) {
+elastic::ComponentCycle petsc_cycle(ComponentMultigrid::Rows rows,
+                                    const ComponentMultigrid::Options& options) {
   auto components = std::make_shared<std::vector<Component>>();
   for (int c = 0; c < ComponentMultigrid::lanes; ++c) {
     float off = 0;  // unused lanes are empty

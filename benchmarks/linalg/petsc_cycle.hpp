@@ -6,6 +6,7 @@
 namespace couplet::benchmark {
 
 /// What ComponentMultigrid does, by a preconditioner of PETSc for each component (its options without a prefix). Collective.
-ComponentCycle petsc_cycle(ComponentMultigrid::Rows rows, const ComponentMultigrid::Options& options);
+elastic::ComponentCycle petsc_cycle(linalg::ComponentMultigrid::Rows rows,
+                                    const linalg::ComponentMultigrid::Options& options);
 
 }  // namespace couplet::benchmark

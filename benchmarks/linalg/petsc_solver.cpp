@@ -10,6 +10,7 @@
 #include "common/linalg/petsc_check.hpp"
 
 namespace couplet::benchmark {
+using namespace linalg;
 namespace {
 
 constexpr int most_starts = 8;
@@ -20,7 +21,7 @@ constexpr double short_enough = 0.1;
 double norm(MPI_Comm comm, const std::vector<double>& v) {
   double square = 0;
   for (const double x : v) square += x * x;
-  return std::sqrt(sum(comm, square));
+  return std::sqrt(parallel::sum(comm, square));
 }
 
 double true_residual(const System& system, const std::vector<double>& x) {
@@ -138,8 +139,8 @@ void print(const System& system, const Result& result, const std::string& note) 
     for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= system.solution[i];
     error = norm(system.comm, difference) / norm(system.comm, system.solution);
   }
-  const GlobalIndex rows = sum(system.comm, GlobalIndex(system.b.size()));
-  if (comm_rank(system.comm) == 0)
+  const GlobalIndex rows = parallel::sum(system.comm, GlobalIndex(system.b.size()));
+  if (parallel::comm_rank(system.comm) == 0)
     fmt::print(
         "RESULT {{\"unknowns\": {}, \"iterations\": {}, \"setup\": {:.4g}, \"solve\": {:.4g}, "
         "\"megabytes\": {:.1f}, \"residual\": {:.3g}, \"tolerance\": {:.3g}, \"error\": {:.3g}, "

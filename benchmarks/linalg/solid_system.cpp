@@ -21,6 +21,7 @@
 #include "solid_solver/solid.hpp"
 
 namespace couplet::benchmark {
+using namespace linalg;
 
 using namespace solid;
 namespace {
@@ -40,19 +41,19 @@ SolidProblem problem_of(const SolidBody& body) {
 /// The step as the program makes it: what it was loaded with and what came out.
 void record(Solid& solid, const Files& files) {
   solid.initialise();
-  solid.begin_step({0, 1, Scheme::standalone, 0});
+  solid.begin_step({0, 1, coupling::Scheme::standalone, 0});
   solid.solve({});
   const LastSolve& last = solid.stepper().last_solve();
   const MPI_Comm comm = solid.body().mesh().comm;
   write_vector(comm, files.of("b"), last.rhs);
   write_vector(comm, files.of("solution"), last.unknowns);
-  if (comm_rank(comm) == 0)
+  if (parallel::comm_rank(comm) == 0)
     std::printf("RESULT {\"note\": \"%s\"}\n", solid.stepper().method()->name().c_str());
 }
 
 /// Rigid motions for aggregation, which moves nodes and knows their places.
 void add_rigid_motions(const SolidBody& body, Mat p) {
-  const Mesh& mesh = body.mesh();
+  const mesh::Mesh& mesh = body.mesh();
   std::vector<double> places;
   const auto add = [&](const Vec3& x) {
     for (int a = 0; a < mesh.dim; ++a) places.push_back(x[a]);
@@ -72,7 +73,7 @@ void add_rigid_motions(const SolidBody& body, Mat p) {
 Result by_assembled(const System& system, const SolidBody& body, const std::string& options,
                     std::string& note) {
   const Meter assembling(system.comm);
-  const SparseMatrix matrix = symmetric_matrix(body.mesh(), body.elastic(), {});
+  const SparseMatrix matrix = elastic::symmetric_matrix(body.mesh(), body.elastic(), {});
   Mat p = matrix.petsc();
   char text[200];
   std::vector<double> of_kernel(system.b.size()), of_matrix(system.b.size());
@@ -83,7 +84,8 @@ Result by_assembled(const System& system, const SolidBody& body, const std::stri
     squares[0] += (of_kernel[i] - of_matrix[i]) * (of_kernel[i] - of_matrix[i]);
     squares[1] += of_kernel[i] * of_kernel[i];
   }
-  const double difference = std::sqrt(sum(system.comm, squares[0]) / sum(system.comm, squares[1]));
+  const double difference =
+      std::sqrt(parallel::sum(system.comm, squares[0]) / parallel::sum(system.comm, squares[1]));
   const bool is_same = difference < 1e-7;
   MatInfo
       info;  // entries of 8 bytes with columns of 4; it knows no more of a matrix that was made of triplets
@@ -150,11 +152,11 @@ Result by_cycle(const System& system, const SolidBody& body, const std::string& 
   }
   const double choosing = whole.seconds();
   petsc_check(PetscOptionsInsertString(nullptr, options.c_str()));
-  ElasticPreconditioner::Options of;
+  elastic::ElasticPreconditioner::Options of;
   of.scheme = problem.kernel.scheme();
   of.cycle = petsc_cycle;
-  ElasticPreconditioner preconditioner(problem.mesh, problem.elastic, {}, of);
-  std::optional<CurrentRigidModes> modes;
+  elastic::ElasticPreconditioner preconditioner(problem.mesh, problem.elastic, {}, of);
+  std::optional<elastic::CurrentRigidModes> modes;
   if (aggregates > 0) {
     modes.emplace(problem.mesh, problem.elastic, aggregates, std::vector<double>{});
     modes->update(at_rest(problem.mesh));
@@ -175,7 +177,7 @@ Result by_cycle(const System& system, const SolidBody& body, const std::string& 
 }
 
 void measure(const SolidBody& body, const Files& files, const std::string& how) {
-  const Mesh& mesh = body.mesh();
+  const mesh::Mesh& mesh = body.mesh();
   const auto rows = static_cast<PetscInt>(body.elastic().n_unknowns());
   const SolidProblem problem = problem_of(body);
   System system{mesh.comm,
@@ -208,14 +210,14 @@ void measure(const SolidBody& body, const Files& files, const std::string& how) 
 
 int run_solid(const std::string& folder, const std::string& how, int argc, char** argv) {
   SolidParameters parameters;
-  Program program{.name = "solid_solver", .description = "benchmarks/linalg", .declare = {}, .make = {}};
+  app::Program program{.name = "solid_solver", .description = "benchmarks/linalg", .declare = {}, .make = {}};
   program.declare = [&](config::Section& section) { declare(section, parameters); };
   program.environment = petsc_environment;
-  program.make = [&](const ParticipantContext& context) -> std::unique_ptr<Participant> {
-    LoadedMesh loaded = load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension,
-                                  parameters.mesh_parameters, {}, zones_of(parameters.materials), true,
-                                  parameters.mesh_scale);
-    const Files files{folder, std::to_string(comm_size(context.comm))};
+  program.make = [&](const app::ParticipantContext& context) -> std::unique_ptr<coupling::Participant> {
+    mesh::LoadedMesh loaded = mesh::load_mesh(context.comm, context.case_folder / parameters.mesh,
+                                              parameters.dimension, parameters.mesh_parameters, {},
+                                              zones_of(parameters.materials), true, parameters.mesh_scale);
+    const Files files{folder, std::to_string(parallel::comm_size(context.comm))};
     if (how == "record") {
       Solid solid(std::move(loaded), parameters, {context.name, context.output_folder, context.restart_time});
       record(solid, files);
@@ -228,7 +230,7 @@ int run_solid(const std::string& folder, const std::string& how, int argc, char*
     MPI_Finalize();
     std::_Exit(0);  // there is no run to go on with
   };
-  return run_program(argc, argv, program);
+  return app::run_program(argc, argv, program);
 }
 
 }  // namespace couplet::benchmark

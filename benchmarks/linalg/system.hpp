@@ -13,7 +13,7 @@ namespace couplet::benchmark {
 /// A x = b of a program, rows of this rank, and the norm of the residual at which the program stops.
 struct System {
   MPI_Comm comm;
-  LinearMap apply;  ///< as the program applies it
+  linalg::LinearMap apply;  ///< as the program applies it
   std::vector<double> b, guess;
   double wanted;
   std::vector<double> solution;  ///< the program's own; empty: not known
@@ -28,7 +28,7 @@ struct Result {
 
 /// PETSc's KSP with these options. `p`: what the preconditioner is made from; null: `inverse` in its place. `a`: null: the
 /// operator is applied by the program. Begins again until the true residual is small enough. Collective.
-Result solve_by_petsc(const System& system, Mat a, Mat p, const LinearMap& inverse,
+Result solve_by_petsc(const System& system, Mat a, Mat p, const linalg::LinearMap& inverse,
                       const std::string& options);
 
 /// One line of JSON with the true residual over the wanted one and the distance from the program's solution. Collective.

@@ -28,7 +28,7 @@
 #include "common/parallel/collective.hpp"
 #include "common/parallel/mpi_start.hpp"
 
-namespace couplet {
+namespace couplet::app {
 namespace {
 
 constexpr int exit_failed = 1, exit_configuration = 2, exit_stopped = 3, exit_wrong = 4;
@@ -49,7 +49,7 @@ Attendant introduce(const CommandLine& command_line, const ProgramKind& kind, co
   self.restart = command_line.restart_folder.string();
   self.named = !command_line.participant.empty();
   self.application = application_number();
-  self.world_rank = comm_rank(MPI_COMM_WORLD);
+  self.world_rank = parallel::comm_rank(MPI_COMM_WORLD);
   self.errors = file.errors;
   return self;
 }
@@ -85,18 +85,18 @@ void prepare(Job& job, const CommandLine& command_line, bool is_coupler) {
   job.checkpoints = output / "checkpoints";
   std::error_code failed;
   if (job.rank == 0) std::filesystem::create_directories(job.output_folder, failed);
-  if (any(job.comm, bool(failed)))
+  if (parallel::any(job.comm, bool(failed)))
     throw Error("Cannot create the output folder {} ({}). It is set by `simulation.output.folder` of {}.",
                 job.output_folder.string(), failed.message(), command_line.case_file.string());
   for (const std::filesystem::path& folder : {job.output_folder, job.checkpoints})
-    if (any(job.comm, job.rank == 0 && std::filesystem::is_symlink(folder)))
+    if (parallel::any(job.comm, job.rank == 0 && std::filesystem::is_symlink(folder)))
       throw Error(
           "{} is a symbolic link; a run does not write through symbolic links. Move it, or set another "
           "`simulation.output.folder`.",
           folder.string());
   const bool is_driver = job.alone || is_coupler;
-  if (any(job.comm, job.rank == 0 && (!lock(job.output_folder / ".lock") ||
-                                      (is_driver && !lock(output / ".checkpoints.lock")))))
+  if (parallel::any(job.comm, job.rank == 0 && (!lock(job.output_folder / ".lock") ||
+                                                (is_driver && !lock(output / ".checkpoints.lock")))))
     throw Error(
         "The output folder {} is in use by another job that is still running. Wait for it to end, or choose "
         "another folder with --set simulation.output.folder=....",
@@ -113,7 +113,7 @@ void prepare(Job& job, const CommandLine& command_line, bool is_coupler) {
   std::fflush(nullptr);
   // MPI_Abort would add a page of its own to the sentence. Open MPI's launcher ends a job as well when one of its
   // processes leaves with such a code, and a process alone has nobody to end.
-  if (has_open_mpi_launcher() || comm_size(MPI_COMM_WORLD) == 1) ::_exit(code);
+  if (parallel::has_open_mpi_launcher() || parallel::comm_size(MPI_COMM_WORLD) == 1) ::_exit(code);
   MPI_Abort(MPI_COMM_WORLD, code);
   std::abort();
 }
@@ -130,7 +130,7 @@ MPI_Comm join_the_job() {
   try {
     return shake_hands(MPI_COMM_WORLD);
   } catch (const HandshakeFailure& failure) {
-    if (failure.speaker == comm_rank(MPI_COMM_WORLD))
+    if (failure.speaker == parallel::comm_rank(MPI_COMM_WORLD))
       fmt::print(stderr, "couplet: The job cannot start: {}\n", failure.what());
     leave(exit_configuration);
   }
@@ -143,31 +143,31 @@ int speaker(const std::vector<Attendant>& attendants) {
   return 0;
 }
 
-std::string ids_of(Severity least, bool with_neglected) {
+std::string ids_of(base::Severity least, bool with_neglected) {
   std::vector<std::string> ids;
   for (const log::Finding& f : log::findings())
     if (f.severity >= least && !log::is_accepted(f.id) && std::ranges::count(ids, f.id) == 0 &&
         (with_neglected || log::finding_id(f.id).about == log::FindingId::About::answer))
       ids.push_back(f.id);
-  return join(ids);
+  return base::join(ids);
 }
 
 /// Of a run that has reached its end.
 int code_of_findings(const Job& job, CommandLine::Strict strict) {
   using enum CommandLine::Strict;
-  if (const int n = log::count(Severity::wrong, true); n > 0) {
+  if (const int n = log::count(base::Severity::wrong, true); n > 0) {
     if (job.rank == 0)
       log::error(
           "The result is useless ({}, see above): exit code {}. To accept it anyway: '--accept ID' for all "
           "programs, or 'simulation.accept: [ID]'.",
-          ids_of(Severity::wrong, true), exit_wrong);
+          ids_of(base::Severity::wrong, true), exit_wrong);
     return exit_wrong;
   }
-  const int n = strict == no ? 0 : log::count(Severity::warning, strict == effects);
+  const int n = strict == no ? 0 : log::count(base::Severity::warning, strict == effects);
   if (n == 0) return 0;
   if (job.rank == 0)
     log::error("--strict: the result is questionable ({} warning{} above: {}); the run counts as failed.", n,
-               n == 1 ? "" : "s", ids_of(Severity::warning, strict == effects));
+               n == 1 ? "" : "s", ids_of(base::Severity::warning, strict == effects));
   return exit_failed;
 }
 
@@ -184,7 +184,7 @@ int leave_together(MPI_Comm programs, int code) {
   std::array<int, 2> worst{code != 0 && code != exit_wrong, code == exit_wrong};
   MPI_Request all_here;
   MPI_Iallreduce(MPI_IN_PLACE, worst.data(), 2, MPI_INT, MPI_MAX, programs, &all_here);
-  wait_politely(all_here, "the other programs to end");
+  coupling::wait_politely(all_here, "the other programs to end");
   MPI_Finalize();
   return agreed(worst, code);
 }
@@ -198,7 +198,7 @@ int attend(const CommandLine& command_line, const ProgramKind& kind, const CaseF
     const std::vector<Attendant> attendants = roll_call(MPI_COMM_WORLD, introduce(command_line, kind, file));
     Job job;
     job.members = members(attendants);
-    const int world_rank = comm_rank(MPI_COMM_WORLD);
+    const int world_rank = parallel::comm_rank(MPI_COMM_WORLD);
     int color = 0, rank = 0;
     for (const Member& m : job.members)
       if (m.participant == file.participant) color = int(&m - job.members.data());
@@ -216,7 +216,7 @@ int attend(const CommandLine& command_line, const ProgramKind& kind, const CaseF
     }
     if (!all_agree_to_start(MPI_COMM_WORLD, false)) return exit_configuration;
     MPI_Comm_split(MPI_COMM_WORLD, color, world_rank, &job.comm);
-    job.rank = comm_rank(job.comm);
+    job.rank = parallel::comm_rank(job.comm);
     watch.set_rank(job.rank);
     job.name = file.participant;
     job.alone = verdict.alone;
@@ -271,7 +271,7 @@ int run_job(int argc, char** argv, const ProgramKind& kind, const std::function<
 
   // Read where the geometry is meshed, far from here.
   if (command_line.allow_commands) ::setenv("COUPLET_ALLOW_COMMANDS", "1", 1);
-  prepare_mpi_start();
+  parallel::prepare_mpi_start();
   const CaseFile file = read_case(command_line, kind);
   const std::string label = file.participant.empty() ? kind.name : file.participant;
   // MPI's own start takes seconds on a busy machine.
@@ -289,4 +289,4 @@ int run_job(int argc, char** argv, const ProgramKind& kind, const std::function<
   return agreed_code;
 }
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -14,7 +14,7 @@
 #include "common/app/watch/fault_injection.hpp"
 #include "common/app/watch/watch.hpp"
 
-namespace couplet {
+namespace couplet::app {
 
 /// One program's place in a job that has passed its roll call.
 struct Job {
@@ -25,19 +25,19 @@ struct Job {
   std::vector<Member> members;
   const config::Document* document = nullptr;
   SimulationParameters simulation;
-  std::filesystem::path case_folder;     ///< folder of the YAML
-  std::filesystem::path output_folder;   ///< <output>/<name>, made already
-  std::filesystem::path checkpoints;     ///< <output>/checkpoints
-  std::filesystem::path restart_folder;  ///< the checkpoint to continue from; empty: fresh start
-  double restart_time;                   ///< its time [s]; NaN: fresh start
-  std::vector<EffectChoice> choices;     ///< of `effects: auto`
+  std::filesystem::path case_folder;           ///< folder of the YAML
+  std::filesystem::path output_folder;         ///< <output>/<name>, made already
+  std::filesystem::path checkpoints;           ///< <output>/checkpoints
+  std::filesystem::path restart_folder;        ///< the checkpoint to continue from; empty: fresh start
+  double restart_time;                         ///< its time [s]; NaN: fresh start
+  std::vector<effects::EffectChoice> choices;  ///< of `effects: auto`
   Watch* watch = nullptr;
   FaultInjection* faults = nullptr;
 
   /// Tells the other processes what this one does from now on.
   void enter(Phase phase) const {
     watch->enter(phase);
-    faults->at(couplet::name(phase));
+    faults->at(couplet::app::name(phase));
   }
   const Member* find(const std::string& participant) const;
   /// Intercommunicator between this participant and another; both call it, in an order that cannot deadlock:
@@ -51,4 +51,4 @@ struct Job {
 /// signal, saved; 4 done, but a finding of severity `wrong` was not accepted.
 int run_job(int argc, char** argv, const ProgramKind& kind, const std::function<int(const Job&)>& run);
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -11,17 +11,17 @@
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::app {
 namespace {
 
-Scheme scheme_of(const Job& job) {
-  if (job.alone) return Scheme::standalone;
+coupling::Scheme scheme_of(const Job& job) {
+  if (job.alone) return coupling::Scheme::standalone;
   const bool moves_alone = !config::text_of(*job.document, "coupling.structure.participant") &&
                            config::texts_of(*job.document, "coupling.exchange.participants").empty();
-  if (moves_alone) return Scheme::explicit_;  // a fluid and its mesh: there is nothing to iterate
+  if (moves_alone) return coupling::Scheme::explicit_;  // a fluid and its mesh: there is nothing to iterate
   const std::string word = config::text_of(*job.document, "coupling.scheme").value_or("semi-implicit");
-  if (word == "explicit") return Scheme::explicit_;
-  return word == "implicit" ? Scheme::implicit : Scheme::semi_implicit;
+  if (word == "explicit") return coupling::Scheme::explicit_;
+  return word == "implicit" ? coupling::Scheme::implicit : coupling::Scheme::semi_implicit;
 }
 
 /// The rank-to-rank link between fluid and mesh mover, if this participant is one of them.
@@ -37,7 +37,7 @@ MPI_Comm connect_mesh_peer(const Job& job) {
 /// What is in force, defaults included, beside the results.
 void write_effective(const Job& job, const Program& program) {
   if (job.rank != 0) return;
-  std::ofstream file(own_file(job.output_folder / "effective.yaml"));
+  std::ofstream file(base::own_file(job.output_folder / "effective.yaml"));
   file << config::effective(program.declare);
 }
 
@@ -59,15 +59,15 @@ int run(const Job& job, const Program& program) {
     context.mesh_peer = connect_mesh_peer(job);
   }
   write_effective(job, program);
-  log::info("{} runs '{}' with {} rank{}", program.name, job.name, comm_size(job.comm),
-            comm_size(job.comm) == 1 ? "" : "s");
-  for (const EffectChoice& choice : job.choices) log::info("{}", text(choice));
+  log::info("{} runs '{}' with {} rank{}", program.name, job.name, parallel::comm_size(job.comm),
+            parallel::comm_size(job.comm) == 1 ? "" : "s");
+  for (const effects::EffectChoice& choice : job.choices) log::info("{}", effects::text(choice));
   if (program.effects) {
     const bool has_mover = config::text_of(*job.document, "coupling.mesh.participant").has_value();
-    log::info("{}",
-              summary(program.effects({!job.alone, !job.alone && has_mover, job.simulation.time_step})));
+    log::info("{}", effects::summary(
+                        program.effects({!job.alone, !job.alone && has_mover, job.simulation.time_step})));
   }
-  const std::unique_ptr<Participant> participant = program.make(context);
+  const std::unique_ptr<coupling::Participant> participant = program.make(context);
   return job.alone ? run_alone(job, *participant) : run_coupled(job, coupler, *participant);
 }
 
@@ -80,4 +80,4 @@ int run_program(int argc, char** argv, const Program& program) {
   return run_job(argc, argv, kind, [&](const Job& job) { return run(job, program); });
 }
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -18,7 +18,7 @@
 #include "common/effects/choice.hpp"
 #include "common/effects/expected.hpp"
 
-namespace couplet {
+namespace couplet::app {
 
 /// What a program gets to build its participant from, after configuration was validated and MPI set up.
 struct ParticipantContext {
@@ -28,7 +28,7 @@ struct ParticipantContext {
   std::filesystem::path output_folder;  ///< <output>/<name>, made already
   SimulationParameters simulation;
   bool coupled = false;  ///< false: standalone run
-  Scheme scheme = Scheme::standalone;
+  coupling::Scheme scheme = coupling::Scheme::standalone;
   /// Intercommunicator to the mesh mover (for a fluid) or to the fluid (for a mover); MPI_COMM_NULL without
   /// one.
   MPI_Comm mesh_peer = MPI_COMM_NULL;
@@ -42,16 +42,16 @@ struct Program {
   /// Declares the parameters of `participants.<name>`; called for checking, documentation and reading.
   config::Section::Declare declare;
   /// Called once after reading; the parameters are those that `declare` filled.
-  std::function<std::unique_ptr<Participant>(const ParticipantContext&)> make;
+  std::function<std::unique_ptr<coupling::Participant>(const ParticipantContext&)> make;
   /// What the program's libraries need from before the participant is made until after it is gone (petsc_environment());
   /// empty: nothing. A program without one links no PETSc, whose libraries take 60 ms to load.
   std::function<std::shared_ptr<void>(MPI_Comm)> environment = {};
   /// What the program can simulate, looked at with the parameters that `declare` filled; empty: not told.
-  std::function<std::vector<Effect>(const EffectScene&)> effects = {};
+  std::function<std::vector<effects::Effect>(const effects::EffectScene&)> effects = {};
   /// What `simulation.effects: auto` decides where the YAML leaves it open; empty: nothing.
-  std::function<std::vector<EffectChoice>(const ChoiceScene&)> choose = {};
+  std::function<std::vector<effects::EffectChoice>(const effects::ChoiceScene&)> choose = {};
   /// Memory and time of a step to be expected, for --explain; empty: not told.
-  std::function<ExpectedCost(const ChoiceScene&)> expected = {};
+  std::function<effects::ExpectedCost(const effects::ChoiceScene&)> expected = {};
   /// For --check: what is wrong with the files that the parameters name; empty: nothing but what every program's
   /// --check sees.
   std::function<std::vector<ProblemOfKey>(const std::filesystem::path& case_folder)> problems_of_files = {};
@@ -63,4 +63,4 @@ struct Program {
 /// Runs alone (one program in the MPI job) or as part of a coupled job. Returns the exit code.
 int run_program(int argc, char** argv, const Program& program);
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -9,14 +9,14 @@
 #include "common/log/finding.hpp"
 #include "common/log/timer.hpp"
 
-namespace couplet {
+namespace couplet::app {
 
-void report(int rank, double time, const EffectVerdict& v) {
+void report(int rank, double time, const effects::EffectVerdict& v) {
   log::finding(rank, {.id = v.id(),
                       .severity = v.severity(),
                       .number = v.number,
                       .limit = v.threshold,
-                      .sentence = fmt::format("t = {:g} s: {}", time, without_advice(v)),
+                      .sentence = fmt::format("t = {:g} s: {}", time, effects::without_advice(v)),
                       .advice = v.recommendation});
 }
 
@@ -29,15 +29,16 @@ void RunAudit::accepted(double time, bool output) {
 std::vector<std::string> RunAudit::closing_lines(bool with_sound) {
   look();
   std::vector<std::string> lines;
-  for (const EffectVerdict& verdict : trail_.worst())
-    if (!(verdict.saves > 0) && (with_sound || !verdict.sound())) lines.push_back(text(verdict));
+  for (const effects::EffectVerdict& verdict : trail_.worst())
+    if (!(verdict.saves > 0) && (with_sound || !verdict.sound())) lines.push_back(effects::text(verdict));
   return lines;
 }
 
 void RunAudit::look() {
   const auto start = std::chrono::steady_clock::now();
-  for (const EffectVerdict& verdict : trail_.news(participant_.audit())) report(rank_, time_, verdict);
+  for (const effects::EffectVerdict& verdict : trail_.news(participant_.audit()))
+    report(rank_, time_, verdict);
   log::timers().add("audit", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 }
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -6,16 +6,16 @@
 
 #include "common/coupling/participant.hpp"
 
-namespace couplet {
+namespace couplet::app {
 
 /// A verdict that is not sound as a finding.
-void report(int rank, double time, const EffectVerdict& verdict);
+void report(int rank, double time, const effects::EffectVerdict& verdict);
 
 /// Asks a participant during its run what it left out. What has become unsound is a finding (common/log/finding.hpp), told
 /// at once.
 class RunAudit {
  public:
-  RunAudit(int rank, const Participant& participant) : rank_(rank), participant_(participant) {}
+  RunAudit(int rank, const coupling::Participant& participant) : rank_(rank), participant_(participant) {}
   /// After an accepted step. Asks at outputs, after 1, 2, 4, 8 ... steps and after each hundredth: a part of a
   /// per cent of a run, and early where it matters most. Collective.
   void accepted(double time, bool output);
@@ -23,16 +23,16 @@ class RunAudit {
   /// that failed, what was seen until then proves nothing sound. Collective.
   std::vector<std::string> closing_lines(bool with_sound = true);
   /// What that makes of the answer, by the worst of the run: for the error budget.
-  ModelError model() const { return model_error(trail_.worst()); }
+  effects::ModelError model() const { return effects::model_error(trail_.worst()); }
 
  private:
   void look();
 
   int rank_;
-  const Participant& participant_;
+  const coupling::Participant& participant_;
   long steps_ = 0;
   double time_ = 0;
-  AuditTrail trail_;
+  effects::AuditTrail trail_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::app

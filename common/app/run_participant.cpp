@@ -20,7 +20,7 @@
 #include "common/log/timer.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -29,24 +29,24 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-Phase phase_of(Op op) {
+Phase phase_of(coupling::Op op) {
   switch (op) {
-    case Op::initialise:
+    case coupling::Op::initialise:
       return Phase::initialise;
-    case Op::begin_step:
+    case coupling::Op::begin_step:
       return Phase::begin_step;
-    case Op::start:
-    case Op::solve:
+    case coupling::Op::start:
+    case coupling::Op::solve:
       return Phase::solve;
-    case Op::accept_step:
+    case coupling::Op::accept_step:
       return Phase::accept;
-    case Op::write_output:
+    case coupling::Op::write_output:
       return Phase::output;
-    case Op::save:
+    case coupling::Op::save:
       return Phase::save;
-    case Op::load:
+    case coupling::Op::load:
       return Phase::load;
-    case Op::finalise:
+    case coupling::Op::finalise:
       return Phase::finalise;
   }
   return Phase::waiting;
@@ -61,17 +61,17 @@ class Bookkeeping {
     job_.enter(Phase::waiting);
   }
   void waited() { log::timers().add("waiting for the coupler", seconds_since(since_)); }
-  void received(const Command& command) {
+  void received(const coupling::Command& command) {
     since_ = Clock::now();
     processor_since_ = RunReport::processor_seconds();
-    if (command.op == Op::begin_step) job_.watch->set_time(command.step.time);
+    if (command.op == coupling::Op::begin_step) job_.watch->set_time(command.step.time);
     job_.enter(phase_of(command.op));
   }
-  void done(const Command& command) {
+  void done(const coupling::Command& command) {
     const double seconds = seconds_since(since_);
-    log::timers().add(couplet::name(command.op), seconds);
+    log::timers().add(couplet::coupling::name(command.op), seconds);
     report_.spent(seconds, RunReport::processor_seconds() - processor_since_);
-    if (command.op == Op::accept_step) job_.watch->set_time(command.time);
+    if (command.op == coupling::Op::accept_step) job_.watch->set_time(command.time);
   }
 
  private:
@@ -84,29 +84,30 @@ class Bookkeeping {
 /// The estimate of the run's error, from a participant that can tell it and a case that wants it.
 class Errors {
  public:
-  Errors(const Job& job, Participant& participant)
+  Errors(const Job& job, coupling::Participant& participant)
       : name_(job.name),
         wanted_(job.simulation.error_estimate),
-        source_(job.simulation.error_estimate ? dynamic_cast<EstimatesError*>(&participant) : nullptr) {
+        source_(job.simulation.error_estimate ? dynamic_cast<coupling::EstimatesError*>(&participant)
+                                              : nullptr) {
     if (source_) source_->collect_errors();
   }
   /// After the last step, with what neglected effects make of the answer. Collective.
-  void find(ModelError model) {
+  void find(effects::ModelError model) {
     if (source_) parts_ = source_->error_parts();
     if (!wanted_) return;
     parts_.model = model.sum;
     parts_.model_by = std::move(model.largest);
     parts_.omittable = std::move(model.omittable);
   }
-  const ErrorParts& parts() const { return parts_; }
-  std::vector<std::string> sentences() const { return error_sentences({{name_, parts_}}); }
-  std::optional<log::Finding> worthless() const { return couplet::worthless({{name_, parts_}}); }
+  const coupling::ErrorParts& parts() const { return parts_; }
+  std::vector<std::string> sentences() const { return coupling::error_sentences({{name_, parts_}}); }
+  std::optional<log::Finding> worthless() const { return couplet::coupling::worthless({{name_, parts_}}); }
 
  private:
   std::string name_;
   bool wanted_;
-  EstimatesError* source_;  // null: none
-  ErrorParts parts_;
+  coupling::EstimatesError* source_;  // null: none
+  coupling::ErrorParts parts_;
 };
 
 /// How a run is told of at its end.
@@ -116,7 +117,7 @@ struct Closing {
       false;  ///< what it left out then counts only where it was not sound, and nothing says what its answer errs by
 };
 
-void closing_words(const Job& job, Participant& participant, RunAudit& audit, Errors& errors,
+void closing_words(const Job& job, coupling::Participant& participant, RunAudit& audit, Errors& errors,
                    const Closing& closing, double seconds) {
   std::vector<std::string> sentences = participant.finish();
   for (std::string& line : audit.closing_lines(!closing.has_failed)) sentences.push_back(std::move(line));
@@ -132,7 +133,7 @@ void closing_words(const Job& job, Participant& participant, RunAudit& audit, Er
   if (closing.is_alone)
     if (const auto finding = errors.worthless()) log::finding(job.rank, *finding);
   const double mine = RunReport::peak_memory();
-  const double most = max(job.comm, mine), all = sum(job.comm, mine);
+  const double most = parallel::max(job.comm, mine), all = parallel::sum(job.comm, mine);
   if (job.rank != 0) return;
   for (const std::string& sentence : sentences) log::info("{}", sentence);
   log::info("{}", log::timers().table("time of '" + job.name + "'", seconds));
@@ -143,15 +144,15 @@ void closing_words(const Job& job, Participant& participant, RunAudit& audit, Er
 /// Commands to the participant from its own loop, with the same bookkeeping as in a coupled run.
 class OwnCommands {
  public:
-  OwnCommands(const Job& job, Participant& participant, RunReport& run, RunAudit& audit)
+  OwnCommands(const Job& job, coupling::Participant& participant, RunReport& run, RunAudit& audit)
       : job_(job), participant_(participant), run_(run), audit_(audit), books_(job, run) {}
-  Reply operator()(const Command& command) {
+  coupling::Reply operator()(const coupling::Command& command) {
     books_.received(command);
-    const Reply reply = carry_out(command, participant_, job_.name, job_.comm);
+    const coupling::Reply reply = coupling::carry_out(command, participant_, job_.name, job_.comm);
     books_.done(command);
-    if (reply.status == Reply::Status::ok) advised_dt_ = std::min(reply.suggested_dt, advised_dt_);
+    if (reply.status == coupling::Reply::Status::ok) advised_dt_ = std::min(reply.suggested_dt, advised_dt_);
     seconds_ += reply.seconds;
-    if (command.op == Op::accept_step) {
+    if (command.op == coupling::Op::accept_step) {
       report_ = reply.report;
       report_.seconds = std::exchange(seconds_, 0.0);
       run_.accepted(command.time, reply.report);
@@ -159,35 +160,35 @@ class OwnCommands {
     }
     return reply;
   }
-  std::optional<StepFailure> attempt(const Step& step) {
-    Command command{Op::begin_step, step, {}, 0, -1, ""};
-    for (const Op op : {Op::begin_step, Op::solve}) {
+  std::optional<StepFailure> attempt(const coupling::Step& step) {
+    coupling::Command command{coupling::Op::begin_step, step, {}, 0, -1, ""};
+    for (const coupling::Op op : {coupling::Op::begin_step, coupling::Op::solve}) {
       command.op = op;
-      if (const Reply reply = (*this)(command); reply.status != Reply::Status::ok)
-        return StepFailure(reply.text, reply.status != Reply::Status::hopeless);
+      if (const coupling::Reply reply = (*this)(command); reply.status != coupling::Reply::Status::ok)
+        return StepFailure(reply.text, reply.status != coupling::Reply::Status::hopeless);
     }
     return {};
   }
   void accept(double time, int output) {
     advised_dt_ = std::numeric_limits<double>::infinity();
-    must({Op::accept_step, {}, {}, time, output, ""});
+    must({coupling::Op::accept_step, {}, {}, time, output, ""});
   }
   /// A command that is no step: its failure is the end.
-  void must(const Command& command) {
-    const Reply reply = (*this)(command);
-    if (reply.status != Reply::Status::ok) throw SolveFailure(reply.text);
+  void must(const coupling::Command& command) {
+    const coupling::Reply reply = (*this)(command);
+    if (reply.status != coupling::Reply::Status::ok) throw SolveFailure(reply.text);
   }
   double advised_dt() const { return advised_dt_; }
   /// Of the last accepted step.
-  const StepReport& report() const { return report_; }
+  const coupling::StepReport& report() const { return report_; }
 
  private:
   const Job& job_;
-  Participant& participant_;
+  coupling::Participant& participant_;
   RunReport& run_;
   RunAudit& audit_;
   Bookkeeping books_;
-  StepReport report_;
+  coupling::StepReport report_;
   double seconds_ = 0;  // since the last accepted step
   double advised_dt_ = std::numeric_limits<double>::infinity();
 };
@@ -196,7 +197,7 @@ class OwnCommands {
 class Console {
  public:
   explicit Console(const SimulationParameters& simulation) : end_(simulation.end_time) {}
-  void step(const Step& step, double time) {
+  void step(const coupling::Step& step, double time) {
     if (!begun_) begun_ = {Clock::now(), time};
     if (seconds_since(last_) < 0.5 && time < end_) return;
     last_ = Clock::now();
@@ -217,27 +218,29 @@ class Console {
 
 }  // namespace
 
-int run_alone(const Job& job, Participant& participant) {
+int run_alone(const Job& job, coupling::Participant& participant) {
   RunReport run(job);
   Errors errors(job, participant);
   RunAudit audit(job.rank, participant);
   OwnCommands command(job, participant, run, audit);
-  StepLoop loop(job.comm, job.simulation, Scheme::standalone, job.checkpoints);
+  StepLoop loop(job.comm, job.simulation, coupling::Scheme::standalone, job.checkpoints);
   Console console(job.simulation);
-  command.must({Op::initialise, {}, {}, 0, -1, ""});
+  command.must({coupling::Op::initialise, {}, {}, 0, -1, ""});
   if (!job.restart_folder.empty()) {
-    command.must({Op::load, {}, {}, 0, -1, job.restart_folder.string()});
+    command.must({coupling::Op::load, {}, {}, 0, -1, job.restart_folder.string()});
     loop.restart(read_run_state(job.restart_folder));
     log::info("continues from {} at t = {:g} s", job.restart_folder.string(), job.restart_time);
   }
   StepActions actions;
-  actions.attempt = [&](const Step& step) { return command.attempt(step); };
+  actions.attempt = [&](const coupling::Step& step) { return command.attempt(step); };
   actions.accept = [&](double time, int output) { command.accept(time, output); };
-  actions.write_start = [&](int output) { command.must({Op::write_output, {}, {}, 0, output, ""}); };
-  actions.save = [&](const std::filesystem::path& folder) {
-    command.must({Op::save, {}, {}, 0, -1, folder.string()});
+  actions.write_start = [&](int output) {
+    command.must({coupling::Op::write_output, {}, {}, 0, output, ""});
   };
-  actions.report = [&](const Step& step, double time) { console.step(step, time); };
+  actions.save = [&](const std::filesystem::path& folder) {
+    command.must({coupling::Op::save, {}, {}, 0, -1, folder.string()});
+  };
+  actions.report = [&](const coupling::Step& step, double time) { console.step(step, time); };
   actions.advised_dt = [&] { return command.advised_dt(); };
   const std::string problem = loop.run(actions);
   job.enter(Phase::finalise);
@@ -249,30 +252,30 @@ int run_alone(const Job& job, Participant& participant) {
   return 1;
 }
 
-int run_coupled(const Job& job, MPI_Comm coupler, Participant& participant) {
+int run_coupled(const Job& job, MPI_Comm coupler, coupling::Participant& participant) {
   const auto start = Clock::now();
   RunReport run(job);
   RunAudit audit(job.rank, participant);
   Errors errors(job, participant);
   Bookkeeping books(job, run);
-  ServeObserver observer;
+  coupling::ServeObserver observer;
   observer.waiting = [&] { books.waiting(); };
-  observer.received = [&](const Command& command) {
+  observer.received = [&](const coupling::Command& command) {
     books.waited();
     books.received(command);
-    if (command.op != Op::finalise) return;
+    if (command.op != coupling::Op::finalise) return;
     closing_words(job, participant, audit, errors, {.is_alone = false, .has_failed = !command.folder.empty()},
                   seconds_since(start));
     run.finish(seconds_since(start), "", errors.parts());
   };
   observer.last_word = [&] { return errors.parts().text(); };
-  observer.done = [&](const Command& command) { books.done(command); };
-  observer.accepted = [&](const Command& command, const StepReport& report) {
+  observer.done = [&](const coupling::Command& command) { books.done(command); };
+  observer.accepted = [&](const coupling::Command& command, const coupling::StepReport& report) {
     run.accepted(command.time, report);
     audit.accepted(command.time, command.output >= 0);
   };
-  serve(coupler, job.comm, job.name, participant, observer);
+  coupling::serve(coupler, job.comm, job.name, participant, observer);
   return 0;
 }
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -15,7 +15,7 @@
 #include "common/log/timer.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::app {
 namespace {
 
 const char* const summary_file = "run.json";
@@ -40,7 +40,7 @@ std::string phases() {
   return "{" + out + (out.empty() ? "}" : "\n  }");
 }
 
-std::string json(const ErrorParts& e) {
+std::string json(const coupling::ErrorParts& e) {
   const auto number = [](double value) {
     return std::isfinite(value) ? fmt::format("{:.6g}", value) : "null";
   };
@@ -78,7 +78,7 @@ RunReport::RunReport(const Job& job, bool with_steps) : job_(job) {
         job.restart_time);
 }
 
-void RunReport::accepted(double time, StepReport report) {
+void RunReport::accepted(double time, coupling::StepReport report) {
   report.seconds = std::exchange(since_accepted_, 0.0);
   time_ = time;
   ++count_;
@@ -88,20 +88,21 @@ void RunReport::accepted(double time, StepReport report) {
       std::array{time, report.dt, double(report.iterations), report.error, report.energy, report.seconds});
 }
 
-void RunReport::finish(double wall, const std::string& problem, const ErrorParts& errors) {
-  const double cpu = sum(job_.comm, processor_seconds()), working = sum(job_.comm, working_);
-  const double most = max(job_.comm, peak_memory()), all = sum(job_.comm, peak_memory());
+void RunReport::finish(double wall, const std::string& problem, const coupling::ErrorParts& errors) {
+  const double cpu = parallel::sum(job_.comm, processor_seconds()),
+               working = parallel::sum(job_.comm, working_);
+  const double most = parallel::max(job_.comm, peak_memory()), all = parallel::sum(job_.comm, peak_memory());
   if (job_.rank != 0) return;
-  std::ofstream file(own_file(job_.output_folder / summary_file));
+  std::ofstream file(base::own_file(job_.output_folder / summary_file));
   file << fmt::format(
       "{{\n  \"participant\": {},\n  \"version\": {},\n  \"ranks\": {},\n"
       "  \"state\": \"{}\",\n  \"reason\": {},\n  \"time\": {:.17g},\n  \"steps\": {},\n"
       "  \"iterations\": {},\n  \"wall\": {:.6g},\n  \"processor\": {:.6g},\n  \"processor-working\": "
       "{:.6g},\n  \"memory-most\": {:.6g},\n"
       "  \"memory-all\": {:.6g},\n  \"errors\": {},\n  \"findings\": {},\n  \"phases\": {}\n}}\n",
-      quoted(job_.name), quoted(version_text()), comm_size(job_.comm), problem.empty() ? "ended" : "failed",
-      quoted(problem), time_, count_, iterations_, wall, cpu, working, most, all, json(errors),
-      log::findings_as_json(), phases());
+      quoted(job_.name), quoted(version_text()), parallel::comm_size(job_.comm),
+      problem.empty() ? "ended" : "failed", quoted(problem), time_, count_, iterations_, wall, cpu, working,
+      most, all, json(errors), log::findings_as_json(), phases());
 }
 
-}  // namespace couplet
+}  // namespace couplet::app

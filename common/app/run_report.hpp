@@ -11,7 +11,7 @@
 #include "common/coupling/participant.hpp"
 #include "common/io/series.hpp"
 
-namespace couplet {
+namespace couplet::app {
 
 struct Job;
 
@@ -32,13 +32,13 @@ class RunReport {
     working_ += processor;
   }
   /// `time`: the end of the step [s]; report.seconds is replaced by those spent since the last call.
-  void accepted(double time, StepReport report);
+  void accepted(double time, coupling::StepReport report);
   /// In place of accepted(): all steps of the run at once, for who keeps the steps otherwise.
   void total(double time, long steps, long iterations) {
     time_ = time, count_ = steps, iterations_ = iterations;
   }
   /// Collective over job.comm. `wall` [s]; `problem`: why the run ended early, empty if it did not.
-  void finish(double wall, const std::string& problem, const ErrorParts& errors);
+  void finish(double wall, const std::string& problem, const coupling::ErrorParts& errors);
 
   /// User and system seconds of this process since it began.
   static double processor_seconds();
@@ -47,9 +47,9 @@ class RunReport {
 
  private:
   const Job& job_;
-  std::optional<Series> steps_;
+  std::optional<io::Series> steps_;
   double since_accepted_ = 0, working_ = 0, time_ = 0;
   long count_ = 0, iterations_ = 0;
 };
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-namespace couplet {
+namespace couplet::base {
 
 /// The unit of a key that takes a difference of temperatures: a dimension apart from temperatures above absolute zero.
 inline constexpr std::string_view kelvin_difference = "K difference";
@@ -13,4 +13,4 @@ inline constexpr std::string_view kelvin_difference = "K difference";
 /// are the same in K and degC, everything else is in SI.
 constexpr bool needs_unit(std::string_view unit) { return unit == "K" || unit == "rad" || unit == "rad/s"; }
 
-}  // namespace couplet
+}  // namespace couplet::base

@@ -5,11 +5,11 @@
 #include <limits>
 #include <numbers>
 
-namespace couplet {
+namespace couplet::base {
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 inline constexpr double degree = std::numbers::pi / 180;  // [rad]
 /// In the columns of tables.
 inline constexpr std::array<const char*, 3> axis_letters{"x", "y", "z"};
 
-}  // namespace couplet
+}  // namespace couplet::base

@@ -7,7 +7,7 @@
 
 #include "common/base/types.hpp"
 
-namespace couplet {
+namespace couplet::base {
 
 /// Numbers 0 to n - 1 that are joined pair by pair: which belong together.
 class DisjointSets {
@@ -27,4 +27,4 @@ class DisjointSets {
   std::vector<Index> up_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::base

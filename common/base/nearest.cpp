@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace couplet {
+namespace couplet::base {
 
 Nearest<2> nearest_on_segment(const Vec3& a, const Vec3& b, const Vec3& x) {
   const Vec3 d = b - a;
@@ -37,4 +37,4 @@ Nearest<3> nearest_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, cons
   return best;
 }
 
-}  // namespace couplet
+}  // namespace couplet::base

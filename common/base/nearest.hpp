@@ -5,7 +5,7 @@
 
 #include "common/base/types.hpp"
 
-namespace couplet {
+namespace couplet::base {
 
 /// The place of a segment (n = 2) or a triangle (n = 3) that lies nearest to a point.
 template <int n>
@@ -22,4 +22,4 @@ Nearest<2> nearest_on_segment(const Vec3& a, const Vec3& b, const Vec3& x);
 /// of the parts (Ericson, Real-Time Collision Detection, 2005, section 3.4), then the edges.
 Nearest<3> nearest_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x);
 
-}  // namespace couplet
+}  // namespace couplet::base

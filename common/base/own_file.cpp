@@ -6,7 +6,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::base {
 
 const std::filesystem::path& own_file(const std::filesystem::path& file) {
   std::error_code ignored;
@@ -25,4 +25,4 @@ void flush_to_disk(const std::filesystem::path& path) {
   ::close(file);
 }
 
-}  // namespace couplet
+}  // namespace couplet::base

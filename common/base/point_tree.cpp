@@ -6,7 +6,7 @@
 #include <limits>
 #include <nanoflann.hpp>
 
-namespace couplet {
+namespace couplet::base {
 namespace {
 
 struct Cloud {
@@ -68,4 +68,4 @@ std::vector<Index> PointTree::within(const Vec3& p, double distance) const {
   return indices;
 }
 
-}  // namespace couplet
+}  // namespace couplet::base

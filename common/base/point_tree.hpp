@@ -6,7 +6,7 @@
 
 #include "common/base/types.hpp"
 
-namespace couplet {
+namespace couplet::base {
 
 /// Nearest points by a k-d tree: n log n to build, log n a question. The points must outlive it.
 class PointTree {
@@ -25,4 +25,4 @@ class PointTree {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::base

@@ -8,7 +8,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::base {
 
 /// Numbers out of a checkpoint that say themselves how many follow: taken one after the other, and none that is not there.
 /// Throws Error.
@@ -47,4 +47,4 @@ class SavedNumbers final {
   const char* what_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::base

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-namespace couplet {
+namespace couplet::base {
 
 /// How much a finding says about the answer of a run.
 enum class Severity {
@@ -14,4 +14,4 @@ constexpr const char* name(Severity s) {
   return s == Severity::note ? "note" : s == Severity::warning ? "warning" : "wrong";
 }
 
-}  // namespace couplet
+}  // namespace couplet::base

@@ -9,7 +9,7 @@
 #include <limits>
 #include <numeric>
 
-namespace couplet {
+namespace couplet::base {
 
 std::string_view trim(std::string_view text) {
   const std::string_view blanks = " \t\r\n";
@@ -97,4 +97,4 @@ std::size_t stable_hash(std::string_view text) {
   return hash;
 }
 
-}  // namespace couplet
+}  // namespace couplet::base

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace couplet {
+namespace couplet::base {
 
 std::string_view trim(std::string_view text);
 std::vector<std::string> split(std::string_view text, char separator);
@@ -28,4 +28,4 @@ bool is_kebab_case(std::string_view name);
 /// The same on every machine and in every build (FNV-1a, 64 bit).
 std::size_t stable_hash(std::string_view text);
 
-}  // namespace couplet
+}  // namespace couplet::base

@@ -11,7 +11,7 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 
-namespace couplet {
+namespace couplet::base {
 namespace {
 
 struct Symbol {
@@ -268,4 +268,4 @@ std::string format_quantity(double value, std::string_view unit) {
   return unit.empty() || unit == "1" ? fmt::format("{}", value) : fmt::format("{} {}", value, unit);
 }
 
-}  // namespace couplet
+}  // namespace couplet::base

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace couplet {
+namespace couplet::base {
 
 /// value in SI = factor * number + offset. Exponents of kg, m, s, K; angles are plain numbers (rad = 1).
 struct Unit {
@@ -35,4 +35,4 @@ double parse_quantity(std::string_view text, std::string_view unit);
 /// "0.1 m", or "0.1" without a unit; shortest text that reads back as the same number.
 std::string format_quantity(double value, std::string_view unit);
 
-}  // namespace couplet
+}  // namespace couplet::base

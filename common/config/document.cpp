@@ -144,7 +144,7 @@ YAML::Node parse_yaml(const std::string& text, const std::string& name) {
           name, second->line + 1, second->column + 1);
     return root;
   } catch (const YAML::Exception& error) {
-    const std::vector<std::string> lines = split(text, '\n');
+    const std::vector<std::string> lines = base::split(text, '\n');
     const auto line = static_cast<std::size_t>(std::max(error.mark.line, 0));
     throw Error("{}:{}:{}: this is not valid YAML: {}.", name, line + 1, error.mark.column + 1,
                 explain(error.msg, line < lines.size() ? lines[line] : ""));
@@ -175,7 +175,7 @@ YAML::Node step_into(const YAML::Node& node, const std::string& path, const std:
         "{}: '{}' does not exist {}. {} (A missing mapping can be set as a whole: --set '{}={{key: "
         "value}}'.)",
         option, part, path.empty() ? std::string("at the top level") : fmt::format("in '{}'", path),
-        did_you_mean(part, key_names(node), "keys"), join_path(path, part));
+        base::did_you_mean(part, key_names(node), "keys"), join_path(path, part));
   return entry.node;
 }
 
@@ -218,7 +218,7 @@ Document Document::parse(const std::string& text, const std::string& name) {
   } catch (const Error& error) {
     throw Error("{}:1:1: {}", name, error.what());
   }
-  if (!inspection.messages.empty()) throw Error(join(format_all(name, inspection.messages), "\n"));
+  if (!inspection.messages.empty()) throw Error(base::join(format_all(name, inspection.messages), "\n"));
   return document;
 }
 
@@ -228,10 +228,10 @@ void Document::set(const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0)
     throw Error("{}: expected key=value, for example --set simulation.end-time='2 s'.", option);
-  const std::string path(trim(assignment.substr(0, equals)));
+  const std::string path(base::trim(assignment.substr(0, equals)));
   if (std::any_of(path.begin(), path.end(), is_control))
     throw Error("{}: the key contains a control character; remove it.", option);
-  const std::vector<std::string> parts = split(path, '.');
+  const std::vector<std::string> parts = base::split(path, '.');
   YAML::Node value;
   try {
     value = YAML::Load(assignment.substr(equals + 1));
@@ -278,7 +278,7 @@ const std::string& Document::name() const { return content_->name; }
 std::size_t Document::hash() const {
   std::string all = content_->text;
   for (const auto& [path, option] : content_->overrides) all += '\0' + option;
-  return stable_hash(all);
+  return base::stable_hash(all);
 }
 
 Place place_of(const YAML::Node& node) {

@@ -29,11 +29,11 @@ struct Si {
 };
 
 std::optional<Si> in_si(const std::string& text) {
-  const auto quantity = split_quantity(text);
+  const auto quantity = base::split_quantity(text);
   if (!quantity) return {};
   if (quantity->unit.empty()) return Si{quantity->number, {}};
   try {
-    const Unit unit = parse_unit(quantity->unit);
+    const base::Unit unit = base::parse_unit(quantity->unit);
     return Si{unit.factor * quantity->number + unit.offset, unit.dimension};
   } catch (const Error&) {
     return {};

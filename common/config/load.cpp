@@ -24,7 +24,7 @@ Located locate(const Document::Content& content, const std::string& path) {
   // reset(), not =: assigning one YAML::Node to another changes the tree.
   result.entry.node.reset(content.root);
   if (path.empty()) return result;
-  for (const std::string& part : split(path, '.')) {
+  for (const std::string& part : base::split(path, '.')) {
     const Entry next = find(result.entry.node, part);
     result.entry.found = next.found;
     if (!next.found) {
@@ -51,7 +51,7 @@ std::vector<std::string> load(const Document& document, const std::string& path,
                         content.root.IsSequence() ? "a list" : fmt::format("'{}'", content.root.Scalar()))};
   const Located located = locate(content, path);
   if (!located.entry.found) {
-    const auto meant = closest(located.missing, located.present);
+    const auto meant = base::closest(located.missing, located.present);
     const std::string text = meant ? fmt::format("this section is missing. Did you write '{}'?", *meant)
                                    : std::string("this section is missing.");
     return format_all(content.name,
@@ -65,7 +65,7 @@ std::vector<std::string> load(const Document& document, const std::string& path,
 
 void load_or_throw(const Document& document, const std::string& path, const Section::Declare& declare) {
   const std::vector<std::string> messages = load(document, path, declare);
-  if (!messages.empty()) throw Error(join(messages, "\n"));
+  if (!messages.empty()) throw Error(base::join(messages, "\n"));
 }
 
 std::vector<std::string> keys_of(const Document& document, const std::string& path) {

@@ -18,9 +18,9 @@ namespace {
 std::vector<double> values_of_table(const std::string& text) {
   std::vector<double> values;
   if (!text.starts_with("table(") || !text.ends_with(")")) return values;
-  const std::vector<std::string> parts = split(text.substr(6, text.size() - 7), ',');
+  const std::vector<std::string> parts = base::split(text.substr(6, text.size() - 7), ',');
   for (std::size_t i = 3; i < parts.size(); i += 2) {
-    const auto number = split_quantity(parts[i]);
+    const auto number = base::split_quantity(parts[i]);
     if (!number || !number->unit.empty()) return {};
     values.push_back(number->number);
   }
@@ -28,7 +28,7 @@ std::vector<double> values_of_table(const std::string& text) {
 }
 
 std::vector<double> values_of(const ExpressionText& text) {
-  const auto number = split_quantity(text.text);
+  const auto number = base::split_quantity(text.text);
   if (number && number->unit.empty()) return {number->number};
   return values_of_table(text.text);
 }

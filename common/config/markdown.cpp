@@ -12,7 +12,7 @@ namespace couplet::config {
 namespace {
 
 /// A bar would end the table's cell.
-std::string cell(const std::string& text) { return join(split(text, '|'), "\\|"); }
+std::string cell(const std::string& text) { return base::join(base::split(text, '|'), "\\|"); }
 
 std::string code(const std::string& text) { return text.empty() ? text : fmt::format("`{}`", text); }
 
@@ -29,7 +29,7 @@ std::string row(const Item& item) {
   switch (item.kind) {
     case Item::Kind::key:
     case Item::Kind::variant:
-      if (!item.words.empty()) range = fmt::format("`{}`", join(item.words, "`, `"));
+      if (!item.words.empty()) range = fmt::format("`{}`", base::join(item.words, "`, `"));
       if (const std::string usual = usual_text(facts); !usual.empty())
         range += (range.empty() ? "" : "; ") + usual;
       if (facts.size) type += fmt::format(" ({})", *facts.size);

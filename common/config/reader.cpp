@@ -16,7 +16,9 @@ namespace {
 
 constexpr const char* missing_key = "this required key is missing";
 
-std::string one_of(const std::vector<std::string>& words) { return fmt::format("one of: {}", join(words)); }
+std::string one_of(const std::vector<std::string>& words) {
+  return fmt::format("one of: {}", base::join(words));
+}
 
 /// The keys a declaration makes at its own level; touches no member.
 class NameCollector final : public Visitor {
@@ -104,7 +106,7 @@ std::string Reader::keys_of(const Place& place, const std::string& path, const D
   if (keys.empty()) return "";
   const bool all = keys.size() <= most;
   keys.resize(std::min(keys.size(), most));
-  return fmt::format(" Its keys: {}{}.", join(keys), all ? "" : ", ...");
+  return fmt::format(" Its keys: {}{}.", base::join(keys), all ? "" : ", ...");
 }
 
 void Reader::read_mapping(const YAML::Node& node, const Place& place, const std::string& path,
@@ -138,17 +140,17 @@ void Reader::report_unknown_keys() {
       if (key == name) owners.push_back(owner);
     if (!owners.empty()) {
       report(place_of(item.first), path,
-             fmt::format("this key is not valid here; it requires {}.", join(owners, " or ")));
+             fmt::format("this key is not valid here; it requires {}.", base::join(owners, " or ")));
       continue;
     }
     std::vector<std::string> free;
     for (const std::string& known : frame.known)
       if (!find(frame.node, known).found) free.push_back(known);
-    const auto meant = closest(name, free);
+    const auto meant = base::closest(name, free);
     if (meant) forget_missing(join_path(frame.path, *meant));
     // A key that is there already cannot be meant, but shows what could stand here.
     report(place_of(item.first), path,
-           "unknown key. " + did_you_mean(name, meant ? free : frame.known, "keys"));
+           "unknown key. " + base::did_you_mean(name, meant ? free : frame.known, "keys"));
   }
   if (unknown > most)
     report(frame.place, frame.path, fmt::format("{} more unknown keys follow.", unknown - most));

@@ -27,7 +27,7 @@ std::string quote(std::string_view text) {
 /// A JSON object or array under construction; the members are JSON texts already.
 std::string enclose(char open, char close, const std::vector<std::string>& members) {
   if (members.empty()) return {open, close};
-  std::string inner = join(members, ",\n");
+  std::string inner = base::join(members, ",\n");
   for (std::size_t at = 0; (at = inner.find('\n', at)) != std::string::npos; at += 3)
     inner.insert(at + 1, "  ");
   return fmt::format("{}\n  {}\n{}", open, inner, close);
@@ -56,7 +56,7 @@ std::string number_schema(const Key::Facts& facts, bool integer) {
   const std::string text =
       object({member("type", "\"string\""),
               member("pattern", quote(value + (facts.unit.empty() ? " *%?$" : " *[^0-9 ].*$")))});
-  return needs_unit(facts.unit) ? text : object({member("anyOf", array({object(number), text}))});
+  return base::needs_unit(facts.unit) ? text : object({member("anyOf", array({object(number), text}))});
 }
 
 /// A number, an expression, or a table as a mapping.

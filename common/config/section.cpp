@@ -13,7 +13,7 @@ namespace {
 
 // A wrong declaration is a bug in the program: it shows at once, in every build, whatever the YAML says.
 std::string_view kebab(std::string_view name) {
-  if (!is_kebab_case(name))
+  if (!base::is_kebab_case(name))
     throw std::logic_error("config key '" + std::string(name) + "' is not kebab-case");
   return name;
 }
@@ -34,7 +34,7 @@ Key::~Key() noexcept(false) {
 }
 
 Key& Key::unit(std::string_view si_unit) {
-  parse_unit(si_unit);
+  base::parse_unit(si_unit);
   facts_.unit = si_unit;
   return *this;
 }

@@ -30,7 +30,7 @@ const Axis& axis_of(const std::string& name) {
     if (name == axis.name) return axis;
     names.emplace_back(axis.name);
   }
-  throw Error("'of' of a table must be one of: {}; found '{}'.", join(names), name);
+  throw Error("'of' of a table must be one of: {}; found '{}'.", base::join(names), name);
 }
 
 std::string word(const YAML::Node& node, const char* key) {
@@ -46,7 +46,7 @@ std::vector<double> numbers(const YAML::Node& node, const char* key, std::string
   for (std::size_t i = 0; i < list.size(); ++i) {
     try {
       if (!list[i].IsScalar()) throw Error("expected a number.");
-      result.push_back(parse_quantity(list[i].Scalar(), unit));
+      result.push_back(base::parse_quantity(list[i].Scalar(), unit));
     } catch (const Error& e) {
       throw Error("{}, entry {} of the list: {}", key, i + 1, e.what());
     }
@@ -68,7 +68,7 @@ std::string table_text(const YAML::Node& node, const Key::Facts& facts, const st
   for (const auto& item : node)
     if (std::find(keys.begin(), keys.end(), item.first.Scalar()) == keys.end())
       throw Error("a table has no key '{}'. {}", item.first.Scalar(),
-                  did_you_mean(item.first.Scalar(), keys, "keys"));
+                  base::did_you_mean(item.first.Scalar(), keys, "keys"));
   const Axis& axis = axis_of(word(node, "of"));
   std::string text = fmt::format("table({}, {}", axis.expression, outside_of(node));
   if (node["file"]) {

@@ -18,7 +18,7 @@ namespace {
 using Facts = Key::Facts;
 
 std::string example(const Facts& facts) {
-  if (needs_unit(facts.unit)) return fmt::format("a number with its unit, such as {}", facts.unit);
+  if (base::needs_unit(facts.unit)) return fmt::format("a number with its unit, such as {}", facts.unit);
   return facts.unit.empty() ? "a number" : fmt::format("a number in {} or with its unit", facts.unit);
 }
 
@@ -38,14 +38,14 @@ const std::string& scalar(const YAML::Node& node, const std::string& expected) {
 }
 
 double read_number(const YAML::Node& node, const Facts& facts) {
-  const double value = parse_quantity(scalar(node, example(facts)), facts.unit);
+  const double value = base::parse_quantity(scalar(node, example(facts)), facts.unit);
   check_range(value, facts);
   return value;
 }
 
 int read_integer(const YAML::Node& node, const Facts& facts) {
   const std::string& text = scalar(node, "a whole number");
-  const double value = parse_quantity(text, facts.unit);
+  const double value = base::parse_quantity(text, facts.unit);
   if (value != std::nearbyint(value)) throw Error("'{}' is not a whole number.", text);
   if (std::abs(value) > std::numeric_limits<int>::max())
     throw Error("'{}' is out of range for this integer key.", text);
@@ -65,7 +65,7 @@ bool read_bool(const YAML::Node& node) {
 bool is_unit(const std::string& text) {
   if (text.starts_with('/')) return false;
   try {
-    parse_unit(text);
+    base::parse_unit(text);
     return true;
   } catch (const Error&) {
     return false;
@@ -81,12 +81,12 @@ ExpressionText read_expression(const YAML::Node& node, const Facts& facts,
                                : fmt::format("a number in {0}, with its unit, or an expression in x, y, z, "
                                              "t that yields {0}",
                                              facts.unit));
-  const auto quantity = split_quantity(text);
+  const auto quantity = base::split_quantity(text);
   const bool is_expression =
       !quantity || (!quantity->unit.empty() && !is_unit(quantity->unit) &&
                     quantity->unit.find_first_of("+-*/^()<>=?:,&|!") != std::string::npos);
   if (is_expression) return {with_absolute_files(text, folder)};
-  const double value = parse_quantity(text, facts.unit);
+  const double value = base::parse_quantity(text, facts.unit);
   check_range(value, facts);
   return {fmt::format("{}", value)};
 }
@@ -144,11 +144,11 @@ std::map<std::string, double> read_named_numbers(const YAML::Node& node, const F
 }
 
 std::string read_word(const YAML::Node& node, const Word& word) {
-  const std::string& text = scalar(node, fmt::format("one of: {}", join(word.words)));
+  const std::string& text = scalar(node, fmt::format("one of: {}", base::join(word.words)));
   for (const std::string& w : word.words)
     if (w == text) return text;
-  const auto meant = closest(text, word.words);
-  throw Error("'{}' is not one of: {}.{}", text, join(word.words),
+  const auto meant = base::closest(text, word.words);
+  throw Error("'{}' is not one of: {}.{}", text, base::join(word.words),
               meant ? fmt::format(" Did you mean '{}'?", *meant) : "");
 }
 
@@ -191,8 +191,8 @@ void read_value(const YAML::Node& node, const Facts& facts, const Slot& slot,
 
 std::string describe_range(const Facts& facts) {
   const bool has_lowest = std::isfinite(facts.lowest), has_highest = std::isfinite(facts.highest);
-  const std::string highest = format_quantity(facts.highest, facts.unit);
-  const std::string lowest = format_quantity(facts.lowest, facts.unit);
+  const std::string highest = base::format_quantity(facts.highest, facts.unit);
+  const std::string lowest = base::format_quantity(facts.lowest, facts.unit);
   if (has_lowest && has_highest)
     return facts.open_lowest ? fmt::format("above {} and at most {}", lowest, highest)
                              : fmt::format("from {} to {}", lowest, highest);
@@ -222,15 +222,15 @@ std::string describe_type(const Slot& slot) {
 }
 
 std::string format_value(const Slot& slot, std::string_view unit) {
-  const std::string behind = needs_unit(unit) ? fmt::format(" {}", unit) : "";
+  const std::string behind = base::needs_unit(unit) ? fmt::format(" {}", unit) : "";
   const auto number = [&](double v) { return fmt::format("{}{}", v, behind); };
   const auto list = [](const auto& values, const auto& print) {
     std::vector<std::string> texts;
     for (const auto& v : values) texts.push_back(print(v));
-    return fmt::format("[{}]", join(texts));
+    return fmt::format("[{}]", base::join(texts));
   };
   const auto expression = [&](const ExpressionText& v) {
-    const auto quantity = split_quantity(v.text);
+    const auto quantity = base::split_quantity(v.text);
     return quoted(quantity && quantity->unit.empty() ? v.text + behind : v.text);
   };
   return std::visit(
@@ -251,7 +251,7 @@ std::string format_value(const Slot& slot, std::string_view unit) {
             std::vector<std::string> texts;
             for (const auto& [name, value] : *v)
               texts.push_back(fmt::format("{}: {}", quoted(name), number(value)));
-            return texts.empty() ? std::string() : fmt::format("{{{}}}", join(texts));
+            return texts.empty() ? std::string() : fmt::format("{{{}}}", base::join(texts));
           },
           [&](const Word& v) { return v.current; },
       },

@@ -6,7 +6,7 @@
 
 #include "common/base/types.hpp"
 
-namespace couplet {
+namespace couplet::coupling {
 
 /// A list cut into contiguous blocks, rank by rank: entries starts[r] to starts[r + 1] are rank r's.
 using Starts = std::vector<GlobalIndex>;
@@ -44,4 +44,4 @@ inline std::vector<Overlap> overlaps(const Starts& mine, int rank, const Starts&
   return result;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupling

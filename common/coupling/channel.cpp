@@ -10,7 +10,7 @@
 #include "common/coupling/wait.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::coupling {
 
 std::vector<Exchanged> exchanged(const Cut& mine, int rank, const Cut& theirs) {
   std::map<int, Slice> by_rank;
@@ -25,8 +25,8 @@ std::vector<Exchanged> exchanged(const Cut& mine, int rank, const Cut& theirs) {
 
 void MpiChannel::send(const Command& command) {
   pending_ = command.op;
-  const std::string what = fmt::format("'{}' to take {}", name_, couplet::name(pending_));
-  const int rank = comm_rank(comm_);
+  const std::string what = fmt::format("'{}' to take {}", name_, couplet::coupling::name(pending_));
+  const int rank = parallel::comm_rank(comm_);
   if (rank == 0) send_bytes(peers_, 0, command_tag, pack(command), what);
   if ((command.op != Op::solve && command.op != Op::start) || command.data.empty()) return;
   const auto data = present(command.data, takes_, name_);
@@ -88,15 +88,15 @@ Reply MpiChannel::unpacked(const std::vector<char>& head, Cut& cut) const {
     return reply;
   } catch (const Error& error) {
     throw Error("The reply of '{}' to {} is not valid: {} (format: docs/protocol.md)", name_,
-                couplet::name(pending_), error.what());
+                couplet::coupling::name(pending_), error.what());
   }
 }
 
 Reply MpiChannel::receive() {
-  const std::string what = fmt::format("'{}' to answer {}", name_, couplet::name(pending_));
+  const std::string what = fmt::format("'{}' to answer {}", name_, couplet::coupling::name(pending_));
   std::vector<char> head;
   const double begun = processor_seconds();
-  if (comm_rank(comm_) == 0) head = receive_bytes(peers_, 0, reply_tag, what, longest_head);
+  if (parallel::comm_rank(comm_) == 0) head = receive_bytes(peers_, 0, reply_tag, what, longest_head);
   broadcast_bytes(comm_, head, "");
   waiting_seconds_ += processor_seconds() - begun;
   Cut cut;
@@ -104,8 +104,8 @@ Reply MpiChannel::receive() {
   if (reply.status != Reply::Status::ok) return reply;
   if (pending_ == Op::initialise) {
     theirs_ = std::move(cut);
-    mine_ = {even_starts(theirs_.vertices.back(), comm_size(comm_)),
-             even_starts(theirs_.faces.back(), comm_size(comm_))};
+    mine_ = {even_starts(theirs_.vertices.back(), parallel::comm_size(comm_)),
+             even_starts(theirs_.faces.back(), parallel::comm_size(comm_))};
     dim_ = reply.interface.dim;
     takes_ = reply.interface.takes, gives_ = reply.interface.gives;
     receive_places(reply.interface, reply.surfaces);
@@ -115,10 +115,10 @@ Reply MpiChannel::receive() {
 }
 
 void MpiChannel::receive_places(Interface& interface, Surfaces& surfaces) {
-  for (const auto& [other, slice] : exchanged(mine_, comm_rank(comm_), theirs_))
+  for (const auto& [other, slice] : exchanged(mine_, parallel::comm_rank(comm_), theirs_))
     put_back(receive_bytes(peers_, other, places_tag, "the interface geometry of '" + name_ + "'"), interface,
              surfaces.of_vertex);
-  check_places(interface, mine_, comm_rank(comm_), name_);
+  check_places(interface, mine_, parallel::comm_rank(comm_), name_);
   if ((!surfaces.of_vertex.empty() || !surfaces.takes.empty() || !surfaces.gives.empty()) &&
       surfaces.of_vertex.size() != interface.vertices.size())
     throw Error("'{}' gave the surfaces of {} of the {} vertices of its interface.", name_,
@@ -127,7 +127,7 @@ void MpiChannel::receive_places(Interface& interface, Surfaces& surfaces) {
 }
 
 void MpiChannel::receive_values(Exchange& data) {
-  const int rank = comm_rank(comm_);
+  const int rank = parallel::comm_rank(comm_);
   const auto list = present(data, gives_, name_);
   for (const auto& datum : list) {
     const Starts& starts = datum.place == Interface::Place::vertices ? mine_.vertices : mine_.faces;
@@ -153,4 +153,4 @@ void LocalChannel::send(const Command& command) {
   waiting_seconds_ += processor_seconds() - begun;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupling

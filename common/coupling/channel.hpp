@@ -8,7 +8,7 @@
 
 #include "common/coupling/messages.hpp"
 
-namespace couplet {
+namespace couplet::coupling {
 
 /// How the coupler talks to one participant. A command is sent, then its reply received; several participants
 /// may be sent to before the first reply is received, so they work at the same time. Collective over the
@@ -81,4 +81,4 @@ struct Exchanged {
 };
 std::vector<Exchanged> exchanged(const Cut& mine, int rank, const Cut& theirs);
 
-}  // namespace couplet
+}  // namespace couplet::coupling

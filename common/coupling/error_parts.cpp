@@ -10,7 +10,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::coupling {
 namespace {
 
 // Of the largest part: less buys nothing.
@@ -150,7 +150,7 @@ std::optional<log::Finding> worthless(const std::vector<NamedErrors>& participan
     if (!p.is(&ErrorParts::model)) largest = std::max(largest, p.value);
   return log::Finding{
       .id = "error-estimate",
-      .severity = largest >= as_large_as_the_solution ? Severity::wrong : Severity::warning,
+      .severity = largest >= as_large_as_the_solution ? base::Severity::wrong : base::Severity::warning,
       .number = total,
       .limit = as_large_as_the_solution,
       .sentence = fmt::format("estimated error: {:.2g} of the solution (limit {:g}): result not reliable",
@@ -191,4 +191,4 @@ std::vector<std::string> error_sentences(const std::vector<NamedErrors>& partici
   return sentences;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupling

@@ -8,7 +8,7 @@
 
 #include "common/log/finding.hpp"
 
-namespace couplet {
+namespace couplet::coupling {
 
 /// What a run's error is made of, as the run itself can know it cheaply, each over the size of the solution [1].
 /// Good to a factor of a few; NaN: not known.
@@ -62,4 +62,4 @@ class EstimatesError {
   virtual ErrorParts error_parts() const = 0;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupling

@@ -8,17 +8,17 @@
 #include "common/base/text.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::coupling {
 namespace {
 
-std::vector<const Patch*> find_patches(const Mesh& mesh, const std::vector<std::string>& names) {
-  std::vector<const Patch*> patches;
+std::vector<const mesh::Patch*> find_patches(const mesh::Mesh& mesh, const std::vector<std::string>& names) {
+  std::vector<const mesh::Patch*> patches;
   for (const std::string& name : names) {
-    const Patch* patch = mesh.find_patch(name);
+    const mesh::Patch* patch = mesh.find_patch(name);
     if (patch == nullptr) {
       std::vector<std::string> known;
-      for (const Patch& p : mesh.patches) known.push_back("'" + p.name + "'");
-      throw Error("The mesh has no patch '{}'. Its patches are {}.", name, join(known));
+      for (const mesh::Patch& p : mesh.patches) known.push_back("'" + p.name + "'");
+      throw Error("The mesh has no patch '{}'. Its patches are {}.", name, base::join(known));
     }
     patches.push_back(patch);
   }
@@ -27,7 +27,7 @@ std::vector<const Patch*> find_patches(const Mesh& mesh, const std::vector<std::
 
 /// One rank's problem is everyone's: sizes are judged together, so that no rank is left in a collective call.
 void check_size(MPI_Comm comm, std::size_t got, std::size_t entries, int components) {
-  if (!any(comm, got != 0 && got != entries * std::size_t(components))) return;
+  if (!parallel::any(comm, got != 0 && got != entries * std::size_t(components))) return;
   throw Error(
       "The interface data received have {} values; expected {} entries of {} components. Check that both "
       "participants describe the interface they use.",
@@ -36,12 +36,12 @@ void check_size(MPI_Comm comm, std::size_t got, std::size_t entries, int compone
 
 }  // namespace
 
-InterfaceMap::InterfaceMap(const Mesh& mesh, const std::vector<std::string>& patches)
+InterfaceMap::InterfaceMap(const mesh::Mesh& mesh, const std::vector<std::string>& patches)
     : mesh_(&mesh), patches_(patches) {
   // Whether a ghost point lies on the patches only its owner can tell: the faces that touch it may not be
   // here.
   std::vector<double> on_patch(mesh.points.n_local(), 0);
-  for (const Patch* p : find_patches(mesh, patches)) {
+  for (const mesh::Patch* p : find_patches(mesh, patches)) {
     for (Index f = p->first; f < p->first + p->count; ++f) faces_.push_back(f);
     for (Index i = 0; i < p->count + p->ghost_count; ++i)
       for (const Index point : mesh.face_points[i < p->count ? p->first + i : p->ghost_first + i - p->count])
@@ -60,7 +60,8 @@ InterfaceMap::InterfaceMap(const Mesh& mesh, const std::vector<std::string>& pat
     points_.push_back(p);
   }
   mesh.points.update_ghosts(std::span<double>(place));
-  const std::vector<GlobalIndex> first = all_gather(mesh.comm, std::vector<GlobalIndex>{mesh.points.first()});
+  const std::vector<GlobalIndex> first =
+      parallel::all_gather(mesh.comm, std::vector<GlobalIndex>{mesh.points.first()});
   std::vector<int> ghost_owner;
   std::vector<Index> ghost_place;
   for (std::size_t i = std::size_t(n_owned); i < points_.size(); ++i) {
@@ -68,7 +69,7 @@ InterfaceMap::InterfaceMap(const Mesh& mesh, const std::vector<std::string>& pat
     ghost_owner.push_back(int(std::upper_bound(first.begin(), first.end(), number) - first.begin()) - 1);
     ghost_place.push_back(Index(place[points_[i]]));
   }
-  vertices_ = IndexMap(mesh.comm, n_owned, ghost_owner, ghost_place);
+  vertices_ = parallel::IndexMap(mesh.comm, n_owned, ghost_owner, ghost_place);
 }
 
 std::vector<double> InterfaceMap::scatter_vertices(const std::vector<double>& owned, int components) const {
@@ -99,7 +100,7 @@ std::vector<double> InterfaceMap::gather_faces(std::span<const double> local, in
   return {local.begin(), local.end()};
 }
 
-Interface InterfaceMap::describe(const Geometry& geometry) const {
+Interface InterfaceMap::describe(const mesh::Geometry& geometry) const {
   Interface interface;
   interface.dim = mesh_->dim;
   for (Index i = 0; i < vertices_.n_owned(); ++i) {
@@ -118,7 +119,7 @@ Interface InterfaceMap::describe(const Geometry& geometry) const {
     }
     interface.face_offset.push_back(Index(interface.face_vertices.size()));
     for (std::size_t p = 0; p < patches_.size(); ++p) {
-      const Patch* patch = mesh_->find_patch(patches_[p]);
+      const mesh::Patch* patch = mesh_->find_patch(patches_[p]);
       if (f >= patch->first && f < patch->first + patch->count) {
         interface.face_part.push_back(int(p));
         break;
@@ -128,4 +129,4 @@ Interface InterfaceMap::describe(const Geometry& geometry) const {
   return interface;
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupling

@@ -8,14 +8,14 @@
 #include "common/coupling/participant.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::coupling {
 
 /// Some patches as an interface: each rank has the vertices that it owns and the faces of its own cells, and
 /// nothing of the others'. All calls collective over mesh.comm.
 class InterfaceMap {
  public:
   /// Throws Error naming the patches that exist if one is unknown.
-  InterfaceMap(const Mesh& mesh, const std::vector<std::string>& patches);
+  InterfaceMap(const mesh::Mesh& mesh, const std::vector<std::string>& patches);
 
   /// Local points on these patches, owned ones first, then ghosts (a vertex may lie on several ranks);
   /// ascending.
@@ -24,7 +24,7 @@ class InterfaceMap {
   const std::vector<Index>& faces() const { return faces_; }
 
   /// Where what this rank owns is in this geometry; takes and gives stay empty.
-  Interface describe(const Geometry& geometry) const;
+  Interface describe(const mesh::Geometry& geometry) const;
   /// Values of the vertices that this rank owns to values at points(), in that order. An empty vector
   /// (nothing was given) stands for zeros; any other wrong size is an Error.
   std::vector<double> scatter_vertices(const std::vector<double>& owned, int components) const;
@@ -34,10 +34,10 @@ class InterfaceMap {
   std::vector<double> gather_faces(std::span<const double> local, int components) const;
 
  private:
-  const Mesh* mesh_;
+  const mesh::Mesh* mesh_;
   std::vector<std::string> patches_;
   std::vector<Index> points_, faces_;
-  IndexMap vertices_;  // of points()
+  parallel::IndexMap vertices_;  // of points()
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupling

@@ -9,7 +9,7 @@
 #include "common/coupling/wait.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::coupling {
 namespace {
 
 constexpr int motion_tag = 7101;
@@ -40,7 +40,7 @@ void meet(MPI_Comm peers, const char* whom) {
 }
 
 /// Owned point ids of every rank on the other side. Both sides throw if the numbers of points differ.
-std::vector<std::vector<GlobalIndex>> exchange_owned_ids(MPI_Comm peers, const Mesh& mesh) {
+std::vector<std::vector<GlobalIndex>> exchange_owned_ids(MPI_Comm peers, const mesh::Mesh& mesh) {
   const int n_remote = remote_size(peers);
   const GlobalIndex mine[3] = {mesh.points.n_global(), mesh.dim, mesh.points.n_owned()};
   std::vector<GlobalIndex> theirs(3 * std::size_t(n_remote));
@@ -92,7 +92,7 @@ bool any_of_source(MPI_Comm peers, MPI_Comm own, bool is_source, bool value) {
   const int mine = is_source && value ? 1 : 0;
   int theirs = 0;
   MPI_Allreduce(&mine, &theirs, 1, MPI_INT, MPI_MAX, peers);
-  return is_source ? any(own, value) : theirs != 0;
+  return is_source ? parallel::any(own, value) : theirs != 0;
 }
 
 [[noreturn]] void throw_other_points(const std::string& detail) {
@@ -103,7 +103,7 @@ bool any_of_source(MPI_Comm peers, MPI_Comm own, bool is_source, bool value) {
 
 class Source final : public MeshMotionSource {
  public:
-  Source(MPI_Comm peers, const Mesh& mesh, std::span<const Vec3> places)
+  Source(MPI_Comm peers, const mesh::Mesh& mesh, std::span<const Vec3> places)
       : peers_(peers), dim_(mesh.dim), n_points_(mesh.points.n_local()) {
     meet(peers, mover_name);
     const auto owned = exchange_owned_ids(peers, mesh);
@@ -138,7 +138,7 @@ class Source final : public MeshMotionSource {
     bool failed = false;
     for (const Peer& peer : from_) {
       const std::vector<char> bytes = receive_bytes(peers_, peer.rank, motion_tag, mover_name);
-      const auto message = detail::from_bytes<double>(bytes);
+      const auto message = parallel::detail::from_bytes<double>(bytes);
       if (message.at(0) != double(Status::moved)) {
         failed = true;
         continue;
@@ -162,7 +162,7 @@ class Source final : public MeshMotionSource {
       for (int c = 0; c < dim_; ++c) values[std::size_t(peer.points[i]) * dim_ + c] = from[i * dim_ + c];
   }
   /// Equal numbers with other places would pass unseen and move the wrong points.
-  void compare_points(const Mesh& mesh, std::span<const Vec3> places) {
+  void compare_points(const mesh::Mesh& mesh, std::span<const Vec3> places) {
     const std::vector<double> theirs = receive();
     Vec3 low = Vec3::Constant(INFINITY), high = -low;
     for (const Vec3& x : places) {
@@ -189,7 +189,7 @@ class Source final : public MeshMotionSource {
 
 class Sink final : public MeshMotionSink {
  public:
-  Sink(MPI_Comm peers, const Mesh& mesh, std::span<const Vec3> places) : peers_(peers), dim_(mesh.dim) {
+  Sink(MPI_Comm peers, const mesh::Mesh& mesh, std::span<const Vec3> places) : peers_(peers), dim_(mesh.dim) {
     meet(peers, fluid_name);
     exchange_owned_ids(peers, mesh);
     const auto wanted = exchange(peers, std::vector<std::vector<GlobalIndex>>(remote_size(peers)));
@@ -269,14 +269,14 @@ class Sink final : public MeshMotionSink {
 
 }  // namespace
 
-std::unique_ptr<MeshMotionSource> make_mesh_motion_source(MPI_Comm peers, const Mesh& mesh,
+std::unique_ptr<MeshMotionSource> make_mesh_motion_source(MPI_Comm peers, const mesh::Mesh& mesh,
                                                           std::span<const Vec3> points) {
   return std::make_unique<Source>(peers, mesh, points);
 }
 
-std::unique_ptr<MeshMotionSink> make_mesh_motion_sink(MPI_Comm peers, const Mesh& mesh,
+std::unique_ptr<MeshMotionSink> make_mesh_motion_sink(MPI_Comm peers, const mesh::Mesh& mesh,
                                                       std::span<const Vec3> points) {
   return std::make_unique<Sink>(peers, mesh, points);
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupling

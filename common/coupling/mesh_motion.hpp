@@ -11,7 +11,7 @@
 #include "common/base/types.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::coupling {
 
 /// Where a fluid gets its moved mesh from. One call a mesh motion, collective over the fluid's ranks.
 class MeshMotionSource {
@@ -41,9 +41,9 @@ class MeshMotionSink {
 /// Rank-to-rank link between a fluid and a mover that read the same mesh, on equal or different partitions.
 /// `peers` is the intercommunicator to the other program. Both constructors are collective over both programs
 /// and throw Error if the meshes differ (number of points or their ids).
-std::unique_ptr<MeshMotionSource> make_mesh_motion_source(MPI_Comm peers, const Mesh& mesh,
+std::unique_ptr<MeshMotionSource> make_mesh_motion_source(MPI_Comm peers, const mesh::Mesh& mesh,
                                                           std::span<const Vec3> points);
-std::unique_ptr<MeshMotionSink> make_mesh_motion_sink(MPI_Comm peers, const Mesh& mesh,
+std::unique_ptr<MeshMotionSink> make_mesh_motion_sink(MPI_Comm peers, const mesh::Mesh& mesh,
                                                       std::span<const Vec3> points);
 
-}  // namespace couplet
+}  // namespace couplet::coupling

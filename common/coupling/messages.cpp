@@ -8,7 +8,7 @@
 #include "common/coupling/unpacker.hpp"
 #include "common/coupling/within_step.hpp"
 
-namespace couplet {
+namespace couplet::coupling {
 namespace {
 
 constexpr std::int64_t command_mark = 0x434f'4d4d;  // "COMM"
@@ -283,4 +283,4 @@ void put_back(std::span<const char> bytes, Interface& i, std::vector<int>& surfa
   in.finish();
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupling

@@ -12,7 +12,7 @@
 #include "common/coupling/blocks.hpp"
 #include "common/coupling/participant.hpp"
 
-namespace couplet {
+namespace couplet::coupling {
 
 /// What a coupler can ask of a participant. The numbers are part of the protocol (docs/protocol.md).
 enum class Op : std::int64_t {
@@ -103,4 +103,4 @@ void put_back(std::span<const char> bytes, Interface& interface, std::vector<int
 inline constexpr std::int64_t protocol_version = 5;
 inline constexpr int command_tag = 101, reply_tag = 102, input_tag = 103, places_tag = 104, output_tag = 105;
 
-}  // namespace couplet
+}  // namespace couplet::coupling

@@ -9,10 +9,12 @@
 #include "common/base/types.hpp"
 #include "common/effects/verdict.hpp"
 
-namespace couplet {
-
+namespace couplet::io {
 class CheckpointWriter;
 class CheckpointReader;
+}  // namespace couplet::io
+
+namespace couplet::coupling {
 
 enum class Scheme : int { standalone, explicit_, semi_implicit, implicit };
 
@@ -99,18 +101,18 @@ class Participant {
   virtual bool answered_anew() const { return false; }
   /// Cannot fail: what can, fails in solve().
   virtual StepReport accept_step() = 0;
-  virtual void save(CheckpointWriter& file) const = 0;
-  virtual void load(CheckpointReader& file) = 0;
+  virtual void save(io::CheckpointWriter& file) const = 0;
+  virtual void load(io::CheckpointReader& file) = 0;
   /// Writes fields for this accepted time (called when output is due). `number` counts outputs from 0.
   virtual void write_output(double time, int number) = 0;
   /// Monitors and probes after each accepted step.
   virtual void write_monitors(double time) = 0;
   /// What the run so far says about effects that were left out (see common/effects). Asked now and then after an
   /// accepted step and at the end; a change for the worse is told at once. Collective; changes nothing.
-  virtual std::vector<EffectVerdict> audit() const { return {}; }
+  virtual std::vector<effects::EffectVerdict> audit() const { return {}; }
   /// Called once after the last step: writes what is due then, and gives closing sentences beside the verdicts,
   /// which rank 0 prints. Collective.
   virtual std::vector<std::string> finish() { return {}; }
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupling

@@ -6,7 +6,7 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 
-namespace couplet {
+namespace couplet::coupling {
 namespace {
 
 using Datum = Interface::Datum;
@@ -24,7 +24,7 @@ bool meets(const Demand& demand, const Datum& datum) {
 }
 
 std::string text(const Demand& demand) {
-  return fmt::format("{} [{}] at {}", demand.what, join(demand.units, " or "),
+  return fmt::format("{} [{}] at {}", demand.what, base::join(demand.units, " or "),
                      demand.any_place                  ? "faces or vertices"
                      : demand.place == Place::vertices ? "vertices"
                                                        : "faces");
@@ -33,7 +33,7 @@ std::string text(const Demand& demand) {
 std::string text(const std::vector<Demand>& demands) {
   std::vector<std::string> words;
   for (const Demand& demand : demands) words.push_back((demand.name.empty() ? "a " : "") + text(demand));
-  return join(words, " and ");
+  return base::join(words, " and ");
 }
 
 std::string text(const std::vector<Datum>& data) {
@@ -41,7 +41,7 @@ std::string text(const std::vector<Datum>& data) {
   for (const Datum& datum : data)
     words.push_back(fmt::format("'{}' [{}] at {}", datum.name, datum.unit,
                                 datum.place == Place::vertices ? "vertices" : "faces"));
-  return words.empty() ? "nothing" : join(words);
+  return words.empty() ? "nothing" : base::join(words);
 }
 
 /// The first demand that none of the data meets.
@@ -113,4 +113,4 @@ std::string problem_of_role(const RoleContract& contract, const Player& player, 
   return "";
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupling

@@ -6,7 +6,7 @@
 
 #include "common/coupling/participant.hpp"
 
-namespace couplet {
+namespace couplet::coupling {
 
 /// One datum that a role asks for.
 struct Demand {
@@ -49,4 +49,4 @@ std::string problem_of_role(const RoleContract& contract, const Player& player, 
 /// "takes 'displacement' [m] at vertices and gives a load [N] at faces"
 std::string text(const RoleContract& contract);
 
-}  // namespace couplet
+}  // namespace couplet::coupling

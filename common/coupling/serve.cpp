@@ -11,7 +11,7 @@
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::coupling {
 namespace {
 
 /// The coupler knows the data as rank 0 describes them. A rank whose list is another one would be passed over without a
@@ -28,7 +28,7 @@ void check_lists(MPI_Comm comm, const Interface& interface) {
   std::vector<char> first = here;
   broadcast_bytes(comm, first, "");
   const bool differs = here != first && here != described({}, {});
-  const int rank = static_cast<int>(max(comm, differs ? comm_rank(comm) : -1));
+  const int rank = static_cast<int>(parallel::max(comm, differs ? parallel::comm_rank(comm) : -1));
   if (rank >= 0)
     throw Error(
         "Rank {} describes different data to give or take than rank 0. All ranks must describe the same "
@@ -62,13 +62,13 @@ void dispatch(const Command& command, Participant& participant, const std::strin
       participant.write_output(command.time, command.output);
       return;
     case Op::save: {
-      CheckpointWriter writer(comm, file());
+      io::CheckpointWriter writer(comm, file());
       participant.save(writer);
       writer.close();
       return;
     }
     case Op::load: {
-      CheckpointReader reader(comm, file());
+      io::CheckpointReader reader(comm, file());
       participant.load(reader);
       reply.suggested_dt = participant.suggest_dt();
       return;
@@ -84,7 +84,7 @@ void dispatch(const Command& command, Participant& participant, const std::strin
 
 Cut cut_of(MPI_Comm comm, const Interface& interface) {
   const auto cut = [&](std::size_t n) {
-    return starts_of(all_gather(comm, std::vector<GlobalIndex>{GlobalIndex(n)}));
+    return starts_of(parallel::all_gather(comm, std::vector<GlobalIndex>{GlobalIndex(n)}));
   };
   return {cut(interface.vertices.size()), cut(interface.face_centres.size())};
 }
@@ -101,7 +101,7 @@ class Ranks {
     mine_ = cut;
     int ranks = 0;
     MPI_Comm_remote_size(coupler_, &ranks);
-    plan_ = exchanged(mine_, comm_rank(comm_),
+    plan_ = exchanged(mine_, parallel::comm_rank(comm_),
                       {even_starts(mine_.vertices.back(), ranks), even_starts(mine_.faces.back(), ranks)});
     for (const auto& [other, slice] : plan_)
       send_bytes(coupler_, other, places_tag, cut_out(interface, slice),
@@ -112,7 +112,7 @@ class Ranks {
   /// Values for the names that the head has announced. A rank without places gets none.
   void receive(Exchange& data) const {
     const auto list = present(data, interface_.takes, name_);
-    const auto rank = std::size_t(comm_rank(comm_));
+    const auto rank = std::size_t(parallel::comm_rank(comm_));
     for (const auto& datum : list) {
       const Starts& starts = datum.place == Interface::Place::vertices ? mine_.vertices : mine_.faces;
       const auto entries = std::size_t(starts[rank + 1] - starts[rank]);
@@ -131,7 +131,7 @@ class Ranks {
 
   void send(const Exchange& data) const {
     const auto list = present(data, interface_.gives, name_);
-    const auto rank = std::size_t(comm_rank(comm_));
+    const auto rank = std::size_t(parallel::comm_rank(comm_));
     for (const auto& datum : list) {
       const Starts& starts = datum.place == Interface::Place::vertices ? mine_.vertices : mine_.faces;
       const auto wanted =
@@ -174,7 +174,7 @@ Reply carry_out(const Command& command, Participant& participant, const std::str
 
 void serve(MPI_Comm coupler, MPI_Comm comm, const std::string& name, Participant& participant,
            const ServeObserver& observer) {
-  const bool root = comm_rank(comm) == 0;
+  const bool root = parallel::comm_rank(comm) == 0;
   SubStepping stepping(participant);
   Ranks ranks(coupler, comm, name);
   for (;;) {
@@ -206,4 +206,4 @@ void serve(MPI_Comm coupler, MPI_Comm comm, const std::string& name, Participant
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupling

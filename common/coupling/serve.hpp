@@ -8,7 +8,7 @@
 
 #include "common/coupling/messages.hpp"
 
-namespace couplet {
+namespace couplet::coupling {
 
 /// One command carried out on a participant: the one place where messages become calls. A SolveFailure
 /// becomes a failure reply; anything else passes through. Collective over `comm`; data and interface are
@@ -32,4 +32,4 @@ struct ServeObserver {
 void serve(MPI_Comm coupler, MPI_Comm comm, const std::string& name, Participant& participant,
            const ServeObserver& observer);
 
-}  // namespace couplet
+}  // namespace couplet::coupling

@@ -8,7 +8,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::coupling {
 namespace {
 
 constexpr int least_patience = 2, most_patience = 64;
@@ -118,4 +118,4 @@ void StepPlan::restore(const std::array<double, 6>& state, double time) {
         time, nominal_dt_);
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupling

@@ -5,7 +5,7 @@
 
 #include "common/base/types.hpp"
 
-namespace couplet {
+namespace couplet::coupling {
 
 /// Which step comes next. Nominal steps end at multiples of the nominal dt (the last one at the end time); a
 /// step that fails is halved; after a while the halves grow back, later each time that was too early; nominal
@@ -57,4 +57,4 @@ class StepPlan {
   GlobalIndex accepted_ = 0;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupling

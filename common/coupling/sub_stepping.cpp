@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace couplet {
+namespace couplet::coupling {
 
 Interface SubStepping::initialise() {
   Interface interface = inner_.initialise();
@@ -27,12 +27,12 @@ void SubStepping::begin_step(const Step& step) {
 void SubStepping::back_to_start() {
   if (!has_start_) {
     start_.clear();
-    CheckpointWriter writer(start_);
+    io::CheckpointWriter writer(start_);
     inner_.save(writer);
     writer.close();
     has_start_ = true;
   } else if (moved_on_) {
-    CheckpointReader reader(start_);
+    io::CheckpointReader reader(start_);
     inner_.load(reader);
   }
   moved_on_ = false;
@@ -90,9 +90,9 @@ StepReport SubStepping::accept_step() {
   return report;
 }
 
-void SubStepping::save(CheckpointWriter& file) const {
+void SubStepping::save(io::CheckpointWriter& file) const {
   if (moved_on_) {  // a step that was given up: what is saved is state n
-    CheckpointReader reader(start_);
+    io::CheckpointReader reader(start_);
     inner_.load(reader);
     moved_on_ = false;
   }
@@ -104,7 +104,7 @@ void SubStepping::save(CheckpointWriter& file) const {
   }
 }
 
-void SubStepping::load(CheckpointReader& file) {
+void SubStepping::load(io::CheckpointReader& file) {
   inner_.load(file);
   has_start_ = moved_on_ = false;
   if (steps_ == 1) return;
@@ -114,4 +114,4 @@ void SubStepping::load(CheckpointReader& file) {
       before_[datum.name] = std::move(values);
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupling

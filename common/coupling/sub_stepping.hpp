@@ -4,7 +4,7 @@
 #include "common/coupling/participant.hpp"
 #include "common/io/checkpoint.hpp"
 
-namespace couplet {
+namespace couplet::coupling {
 
 /// A participant that takes several steps of its own within a coupling step, whatever it is: it is put back
 /// to state n by save and load in memory before each further pass. Input is taken as a line in time through
@@ -23,11 +23,11 @@ class SubStepping final : public Participant {
   Exchange solve(const Exchange& in) override;
   bool answered_anew() const override { return inner_.answered_anew(); }
   StepReport accept_step() override;
-  void save(CheckpointWriter& file) const override;
-  void load(CheckpointReader& file) override;
+  void save(io::CheckpointWriter& file) const override;
+  void load(io::CheckpointReader& file) override;
   void write_output(double time, int number) override { inner_.write_output(time, number); }
   void write_monitors(double time) override { inner_.write_monitors(time); }
-  std::vector<EffectVerdict> audit() const override { return inner_.audit(); }
+  std::vector<effects::EffectVerdict> audit() const override { return inner_.audit(); }
   std::vector<std::string> finish() override { return inner_.finish(); }
 
  private:
@@ -39,11 +39,11 @@ class SubStepping final : public Participant {
   int steps_ = 1;
   Step step_;
   std::vector<Interface::Datum> takes_, gives_;
-  StateInMemory start_;            // state n
+  io::StateInMemory start_;        // state n
   bool has_start_ = false;         // it is in start_
   mutable bool moved_on_ = false;  // the participant has accepted steps beyond it
   Exchange before_, given_;        // input of the accepted step before, of the pass under way
   long iterations_ = 0;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupling

@@ -12,7 +12,7 @@
 #include "common/base/error.hpp"
 #include "common/coupling/messages.hpp"
 
-namespace couplet {
+namespace couplet::coupling {
 
 inline constexpr std::int64_t largest_integer = std::numeric_limits<std::int64_t>::max();
 inline constexpr std::int64_t most_sub_steps = 1000000, most_surfaces = 1000;
@@ -130,4 +130,4 @@ class Unpacker {
   std::size_t position_ = 0;
 };
 
-}  // namespace couplet
+}  // namespace couplet::coupling

@@ -10,7 +10,7 @@
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::coupling {
 namespace {
 
 WaitObserver& observer() {
@@ -156,7 +156,7 @@ void SendAll::wait(const std::string& what) {
 }
 
 void broadcast_bytes(MPI_Comm comm, std::vector<char>& bytes, const std::string& what) {
-  if (comm_size(comm) == 1) return;
+  if (parallel::comm_size(comm) == 1) return;
   MPI_Request request;
   auto length = static_cast<GlobalIndex>(bytes.size());
   MPI_Ibcast(&length, 1, MPI_INT64_T, 0, comm, &request);
@@ -166,4 +166,4 @@ void broadcast_bytes(MPI_Comm comm, std::vector<char>& bytes, const std::string&
   wait_politely(request, what);
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupling

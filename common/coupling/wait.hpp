@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace couplet {
+namespace couplet::coupling {
 
 /// Waiting that leaves the core to others: the programs of a coupled job take turns, and MPI's own blocking
 /// calls spin. Spins for the first 80 us (messages between programs are short), then sleeps for a
@@ -74,4 +74,4 @@ class SendAll {
 /// Rank 0's bytes to all ranks; the others wait politely. Collective.
 void broadcast_bytes(MPI_Comm comm, std::vector<char>& bytes, const std::string& what);
 
-}  // namespace couplet
+}  // namespace couplet::coupling

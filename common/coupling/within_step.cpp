@@ -5,7 +5,7 @@
 
 #include <charconv>
 
-namespace couplet {
+namespace couplet::coupling {
 
 std::string WithinStep::name(const std::string& datum, double share) {
   return fmt::format("{}{}{:.15g}", datum, mark, share);
@@ -21,4 +21,4 @@ std::optional<std::pair<std::string, double>> WithinStep::parse(std::string_view
   return std::pair(std::string(name.substr(0, at)), share);
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupling

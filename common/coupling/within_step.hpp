@@ -9,7 +9,7 @@
 
 #include "common/coupling/participant.hpp"
 
-namespace couplet {
+namespace couplet::coupling {
 
 /// Values of a datum within a step, of participants that subdivide it: in an Exchange they stand beside the values at
 /// its end by the name "datum@share", share of the step in (0, 1), for example "displacement@0.25". A participant that
@@ -30,4 +30,4 @@ void for_within(const Exchange& data, const std::string& datum, Visit visit) {
       visit(found->second, it->first, it->second);
 }
 
-}  // namespace couplet
+}  // namespace couplet::coupling

@@ -17,15 +17,15 @@ constexpr std::size_t shown = 60;  // of a cell in messages
 
 /// Without one pair of quotes around it.
 std::string_view unquoted(std::string_view cell) {
-  cell = trim(cell);
+  cell = base::trim(cell);
   if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"')
-    return trim(cell.substr(1, cell.size() - 2));
+    return base::trim(cell.substr(1, cell.size() - 2));
   return cell;
 }
 
 template <class Number>
 std::optional<Number> parsed(std::string_view text) {
-  text = trim(text);
+  text = base::trim(text);
   if (text.starts_with('+') && text.size() > 1 && text[1] != '-' && text[1] != '+') text.remove_prefix(1);
   Number value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -95,7 +95,7 @@ std::optional<double> number_of(std::string_view text) {
 std::optional<int> integer_of(std::string_view text) { return parsed<int>(text); }
 
 std::string why_no_number(std::string_view text) {
-  text = trim(text);
+  text = base::trim(text);
   if (text.empty()) return "a number is missing";
   std::string cell(text.substr(0, shown));
   if (has_decimal_comma(text)) {
@@ -116,10 +116,10 @@ std::string why_no_number(std::string_view text) {
 
 Heading heading_of(std::string_view cell) {
   const std::size_t open = cell.find('[');
-  Heading heading{std::string(trim(cell.substr(0, open))), {}};
+  Heading heading{std::string(base::trim(cell.substr(0, open))), {}};
   if (open != std::string_view::npos) {
     const std::string_view rest = cell.substr(open + 1);
-    heading.unit = trim(rest.substr(0, rest.find(']')));
+    heading.unit = base::trim(rest.substr(0, rest.find(']')));
   }
   return heading;
 }

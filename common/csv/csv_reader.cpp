@@ -57,7 +57,7 @@ std::string CsvReader::place_of_names() const { return fmt::format("{}:{}", line
 bool CsvReader::next_line() {
   for (std::string_view text; lines_.next(text);) {
     text = without_comment(text);
-    if (trim(text).empty()) continue;
+    if (base::trim(text).empty()) continue;
     if (width_ == 0) separator_ = separator_of(text);
     if (!split_cells(text, separator_, cells_)) throw Error("{}: a double quote is not closed.", place());
     if (width_ == 0) width_ = cells_.size();

@@ -81,7 +81,7 @@ std::vector<std::string> read_lines(const std::filesystem::path& file, const std
   LineReader reader(file, kind, limits);
   std::vector<std::string> lines;
   for (std::string_view line; reader.next(line);) lines.emplace_back(line);
-  while (!lines.empty() && trim(lines.back()).empty()) lines.pop_back();
+  while (!lines.empty() && base::trim(lines.back()).empty()) lines.pop_back();
   return lines;
 }
 

@@ -10,7 +10,7 @@
 
 #include "common/effects/verdict.hpp"
 
-namespace couplet {
+namespace couplet::effects {
 
 /// What an effect adds to a run where it is on; nothing of it exists where it is off.
 struct EffectCost {
@@ -100,4 +100,4 @@ std::string explanation(const std::vector<Effect>& effects);
 /// The cards as a Markdown table, for docs/effects.md.
 std::string markdown(const std::string& program, const std::vector<Effect>& effects);
 
-}  // namespace couplet
+}  // namespace couplet::effects

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace couplet {
+namespace couplet::effects {
 
 std::string text(const EffectChoice& c) {
   if (c.given)
@@ -11,4 +11,4 @@ std::string text(const EffectChoice& c) {
   return fmt::format("auto: {}{}{} ({})", c.key, c.key.empty() ? "" : ": ", c.what, c.reason);
 }
 
-}  // namespace couplet
+}  // namespace couplet::effects

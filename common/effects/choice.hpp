@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace couplet {
+namespace couplet::effects {
 
 /// What `simulation.effects: auto` knows of a scene beside the participant's own parameters.
 struct ChoiceScene {
@@ -27,4 +27,4 @@ struct EffectChoice {
 /// "auto: analysis: static (nothing changes in time)", or that the key was given.
 std::string text(const EffectChoice& choice);
 
-}  // namespace couplet
+}  // namespace couplet::effects

@@ -6,7 +6,7 @@
 
 #include "common/effects/card.hpp"
 
-namespace couplet {
+namespace couplet::effects {
 namespace {
 
 std::string cost_text(const EffectCost& cost) {
@@ -20,7 +20,7 @@ std::string cost_text(const EffectCost& cost) {
 
 const char* verdict_word(const EffectVerdict& v) {
   if (v.sound()) return v.left_out ? "justified" : "adequate";
-  if (v.severity() == Severity::wrong) return "wrong";
+  if (v.severity() == base::Severity::wrong) return "wrong";
   return v.left_out ? "not justified" : "questionable";
 }
 
@@ -79,7 +79,7 @@ std::vector<EffectVerdict> AuditTrail::news(const std::vector<EffectVerdict>& ve
   for (const EffectVerdict& v : verdicts) {
     keep(v);
     if (v.sound()) continue;
-    const bool is_wrong = v.severity() == Severity::wrong;
+    const bool is_wrong = v.severity() == base::Severity::wrong;
     const bool known = std::ranges::count(told_, v.effect) > 0;
     if (known && (!is_wrong || std::ranges::count(wrong_, v.effect) > 0)) continue;
     if (!known) told_.push_back(v.effect);
@@ -135,4 +135,4 @@ std::string markdown(const std::string& program, const std::vector<Effect>& effe
   return lines;
 }
 
-}  // namespace couplet
+}  // namespace couplet::effects

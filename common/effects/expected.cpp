@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace couplet {
+namespace couplet::effects {
 
 std::string text(const ExpectedCost& c) {
   const bool long_step = c.seconds_a_step >= 1;
@@ -13,4 +13,4 @@ std::string text(const ExpectedCost& c) {
       c.cells, 1e-6 * c.bytes, long_step ? c.seconds_a_step : 1e3 * c.seconds_a_step, long_step ? "s" : "ms");
 }
 
-}  // namespace couplet
+}  // namespace couplet::effects

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-namespace couplet {
+namespace couplet::effects {
 
 /// What a run of a participant on one rank is expected to take, from measured runs of small cases.
 struct ExpectedCost {
@@ -16,4 +16,4 @@ struct ExpectedCost {
 /// "4096 cells: about 54 MB, 20 ms a step on one rank (time to a factor of three)"
 std::string text(const ExpectedCost& cost);
 
-}  // namespace couplet
+}  // namespace couplet::effects

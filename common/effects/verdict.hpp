@@ -9,7 +9,7 @@
 
 #include "common/base/severity.hpp"
 
-namespace couplet {
+namespace couplet::effects {
 
 /// What a run found out about an effect that its scene left out, or about one that it has and that may not do
 /// what it should there (a turbulence model beside walls that are not resolved).
@@ -32,8 +32,8 @@ struct EffectVerdict {
   bool sound() const { return number <= threshold || saves > 0; }
   bool could_be_omitted() const { return saves > 0 && number <= threshold; }
   /// Of a verdict that is not sound.
-  Severity severity() const {
-    return number < wrong_from || std::isinf(wrong_from) ? Severity::warning : Severity::wrong;
+  base::Severity severity() const {
+    return number < wrong_from || std::isinf(wrong_from) ? base::Severity::warning : base::Severity::wrong;
   }
   /// The name of the effect in lower case with hyphens: "waves-of-pressure".
   std::string id() const;
@@ -78,4 +78,4 @@ class AuditTrail {
   std::vector<EffectVerdict> worst_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::effects

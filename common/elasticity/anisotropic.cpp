@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/elasticity/anisotropic.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 namespace {
 
 // Tensor indices of each entry.
@@ -81,4 +81,4 @@ Tensor3 stress_of(const ElasticMatrix& matrix, const Tensor3& gradient) {
   return stress;
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

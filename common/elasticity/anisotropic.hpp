@@ -7,7 +7,7 @@
 #include "common/base/types.hpp"
 #include "common/elasticity/lame.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// Any linear elastic law as a matrix: stress = C strain, both in the order xx, yy, zz, xy, yz, xz, the shear strains
 /// being the angles (twice the tensor's entries) [Pa].
@@ -36,4 +36,4 @@ LameConstants isotropic_mean(const ElasticMatrix& matrix);
 StrainVector strain_vector(const Tensor3& gradient);
 Tensor3 stress_of(const ElasticMatrix& matrix, const Tensor3& gradient);
 
-}  // namespace couplet
+}  // namespace couplet::elastic

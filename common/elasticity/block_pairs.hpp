@@ -11,7 +11,7 @@
 #include "common/linalg/matrix.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// Blocks between the nodes of a body, added up pair by pair. A face of a tetrahedron couples some sixty nodes, and each pair of nodes
 /// shares many faces: summed up here there is a fiftieth of the entries for PETSc to sort (a tenth of the time on 1000
@@ -50,7 +50,7 @@ class BlockPairs {
 
   /// With `dim` rows a node, number(node) among all; `n_rows`: of this rank. Collective.
   template <class Number>
-  SparseMatrix matrix(MPI_Comm comm, GlobalIndex n_rows, int dim, const Number& number) const {
+  linalg::SparseMatrix matrix(MPI_Comm comm, GlobalIndex n_rows, int dim, const Number& number) const {
     std::vector<GlobalIndex> row, column;
     std::vector<double> value;
     for (auto* list : {&row, &column}) list->reserve(size() * std::size_t(dim * dim));
@@ -62,7 +62,7 @@ class BlockPairs {
           column.push_back(number(pairs_[k].second) * dim + b);
           value.push_back(blocks_[k](a, b));
         }
-    SparseMatrix result(comm, n_rows, std::move(row), std::move(column), dim);
+    linalg::SparseMatrix result(comm, n_rows, std::move(row), std::move(column), dim);
     result.fill(value);
     return result;
   }
@@ -73,4 +73,4 @@ class BlockPairs {
   std::vector<Tensor3> blocks_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::elastic

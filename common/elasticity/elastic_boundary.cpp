@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/elasticity/elastic_boundary.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 BoundaryRow free_row() { return {}; }
 
@@ -34,7 +34,7 @@ void ElasticBoundary::add(const BoundaryRow& row) {
   row_of_face_.push_back(static_cast<Index>(rows_.size()) - 1);
 }
 
-ElasticBoundary ElasticBoundary::on(const Mesh& mesh, const Geometry& geometry) const {
+ElasticBoundary ElasticBoundary::on(const mesh::Mesh& mesh, const mesh::Geometry& geometry) const {
   ElasticBoundary result;
   const std::vector<Index> patch_of = mesh.patch_of_boundary();
   for (Index b = 0; b < size(); ++b) {
@@ -53,10 +53,10 @@ ElasticBoundary ElasticBoundary::on(const Mesh& mesh, const Geometry& geometry) 
   return result;
 }
 
-ElasticBoundary boundary_of_patches(const Mesh& mesh, std::span<const BoundaryRow> of_patches) {
+ElasticBoundary boundary_of_patches(const mesh::Mesh& mesh, std::span<const BoundaryRow> of_patches) {
   ElasticBoundary boundary;
   for (const Index p : mesh.patch_of_boundary()) boundary.add(of_patches[p]);
   return boundary;
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

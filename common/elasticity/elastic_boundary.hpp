@@ -7,7 +7,7 @@
 #include "common/base/types.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// What a condition gives to the rows of a boundary face, as numbers. With the projector P, the stiffness k of springs, the
 /// known vector g of the face (displacement along P, place of the far end of the springs across) and a known traction T:
@@ -47,7 +47,7 @@ class ElasticBoundary {
   const BoundaryRow& operator[](Index entry) const { return rows_[row_of_face_[entry]]; }
   Index size() const { return static_cast<Index>(row_of_face_.size()); }
   /// P = n n^T of the mirrors; faces between materials are shared whatever was given.
-  ElasticBoundary on(const Mesh& mesh, const Geometry& geometry) const;
+  ElasticBoundary on(const mesh::Mesh& mesh, const mesh::Geometry& geometry) const;
 
  private:
   std::vector<BoundaryRow> rows_;  // few: runs of equal ones are one
@@ -55,6 +55,6 @@ class ElasticBoundary {
 };
 
 /// One row a patch.
-ElasticBoundary boundary_of_patches(const Mesh& mesh, std::span<const BoundaryRow> of_patches);
+ElasticBoundary boundary_of_patches(const mesh::Mesh& mesh, std::span<const BoundaryRow> of_patches);
 
-}  // namespace couplet
+}  // namespace couplet::elastic

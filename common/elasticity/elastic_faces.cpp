@@ -5,7 +5,7 @@
 #include "common/elasticity/elasticity.hpp"
 #include "common/elasticity/vector_at.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 Vec3 ElasticOperator::add_forces(std::span<const double> forces, std::span<double> rhs) const {
   const int dim = mesh_->dim;
   Vec3 total = Vec3::Zero();
@@ -81,4 +81,4 @@ Vec3 ElasticOperator::holding_force(Index face, const Tensor3& stress, std::span
   return held - (spring - row.known * spring);
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

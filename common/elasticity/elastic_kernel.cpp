@@ -3,9 +3,9 @@
 
 #include "common/elasticity/elastic_nodes.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
-ElasticKernel::ElasticKernel(const Mesh& mesh, const ElasticOperator& rows, FaceGradientScheme scheme)
+ElasticKernel::ElasticKernel(const mesh::Mesh& mesh, const ElasticOperator& rows, FaceGradientScheme scheme)
     : rows_(&rows),
       scheme_(scheme),
       implementation_(scheme == FaceGradientScheme::thesis      ? make_thesis_kernel(mesh, rows)
@@ -70,4 +70,4 @@ void ElasticKernel::apply_mixed(std::span<const double> unknowns, std::span<cons
   implementation_->apply_mixed(unknowns, pressure, mass_factor, result, defect);
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -11,7 +11,7 @@
 #include "common/elasticity/wrench.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// How the displacement gradient at a face is formed.
 enum class FaceGradientScheme {
@@ -53,7 +53,7 @@ class ElasticKernel {
  public:
   /// `rows` describes unknowns, known columns, vertices and materials (kept by reference, as the mesh).
   /// Collective.
-  ElasticKernel(const Mesh& mesh, const ElasticOperator& rows, FaceGradientScheme scheme);
+  ElasticKernel(const mesh::Mesh& mesh, const ElasticOperator& rows, FaceGradientScheme scheme);
   ~ElasticKernel();
   ElasticKernel(ElasticKernel&&) noexcept;
   ElasticKernel& operator=(ElasticKernel&&) noexcept;
@@ -111,4 +111,4 @@ class ElasticKernel {
   std::unique_ptr<Implementation> implementation_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -9,7 +9,7 @@
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/elasticity/lanes.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 class ElasticKernel::Implementation {
  public:
@@ -44,16 +44,16 @@ class ElasticKernel::Implementation {
                            std::span<double> /*defect*/) {}
 };
 
-std::unique_ptr<ElasticKernel::Implementation> make_thesis_kernel(const Mesh& mesh,
+std::unique_ptr<ElasticKernel::Implementation> make_thesis_kernel(const mesh::Mesh& mesh,
                                                                   const ElasticOperator& rows);
-std::unique_ptr<ElasticKernel::Implementation> make_corrected_kernel(const Mesh& mesh,
+std::unique_ptr<ElasticKernel::Implementation> make_corrected_kernel(const mesh::Mesh& mesh,
                                                                      const ElasticOperator& rows);
-std::unique_ptr<ElasticKernel::Implementation> make_symmetric_kernel(const Mesh& mesh,
+std::unique_ptr<ElasticKernel::Implementation> make_symmetric_kernel(const mesh::Mesh& mesh,
                                                                      const ElasticOperator& rows);
 
 /// Lame's constants of a face: the owner's where cells have their own, the mean of both across an interior
 /// face.
-inline LameConstants face_lame(const Mesh& mesh, const ElasticOperator& rows, Index f) {
+inline LameConstants face_lame(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f) {
   const LameConstants here = rows.lame(mesh.owner[f]);
   if (f >= mesh.n_interior) return here;
   const LameConstants there = rows.lame(mesh.neighbour[f]);
@@ -61,7 +61,7 @@ inline LameConstants face_lame(const Mesh& mesh, const ElasticOperator& rows, In
 }
 
 /// The same of the elastic matrix, where the body has one.
-inline ElasticMatrix face_matrix(const Mesh& mesh, const ElasticOperator& rows, Index f) {
+inline ElasticMatrix face_matrix(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f) {
   const ElasticMatrix& here = rows.elastic_matrix(mesh.owner[f]);
   if (f >= mesh.n_interior) return here;
   return 0.5 * (here + rows.elastic_matrix(mesh.neighbour[f]));
@@ -69,14 +69,14 @@ inline ElasticMatrix face_matrix(const Mesh& mesh, const ElasticOperator& rows, 
 
 /// Faces whose force is asked for: the flux faces, and with bonded faces those of ghosts too, since the row
 /// of a bonded face holds the force on its other side.
-inline Index n_faces_with_force(const Mesh& mesh) {
+inline Index n_faces_with_force(const mesh::Mesh& mesh) {
   return mesh.twin.empty() ? mesh.n_flux_faces() : mesh.n_faces();
 }
 
 /// face_lame() of all faces with a force; one pair where all are alike.
 class FaceLames {
  public:
-  FaceLames(const Mesh& mesh, const ElasticOperator& rows) : varies_(rows.is_uniform() ? 0 : 1) {
+  FaceLames(const mesh::Mesh& mesh, const ElasticOperator& rows) : varies_(rows.is_uniform() ? 0 : 1) {
     const Index n = varies_ ? n_faces_with_force(mesh) : 1;
     for (Index f = 0; f < n; ++f) value_.push_back(varies_ ? face_lame(mesh, rows, f) : rows.lame(0));
   }
@@ -94,7 +94,7 @@ class ElasticNodes {
  public:
   static constexpr int stride = lanes::width<D>;
 
-  ElasticNodes(const Mesh& mesh, const ElasticOperator& rows)
+  ElasticNodes(const mesh::Mesh& mesh, const ElasticOperator& rows)
       : mesh_(&mesh),
         rows_(&rows),
         value_(std::size_t(mesh.cells.n_local() + mesh.boundary.n_local()) * stride, 0.0) {}
@@ -157,9 +157,9 @@ class ElasticNodes {
     for (int a = 0; a < D; ++a) to[a] = from[a];
   }
 
-  const Mesh* mesh_;
+  const mesh::Mesh* mesh_;
   const ElasticOperator* rows_;
   std::vector<double> value_, force_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::elastic

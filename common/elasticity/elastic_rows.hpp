@@ -8,14 +8,14 @@
 
 #include "common/elasticity/elastic_nodes.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// What the boundary faces of owned cells do with the force on them: the rows that ElasticOperator defines.
 class ElasticRows {
  public:
-  ElasticRows(const Mesh& mesh, const ElasticOperator& rows)
+  ElasticRows(const mesh::Mesh& mesh, const ElasticOperator& rows)
       : mesh_(&mesh), geometry_(&rows.geometry()), rows_(&rows) {
-    const Geometry& geometry = rows.geometry();
+    const mesh::Geometry& geometry = rows.geometry();
     for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
       const BoundaryRow& here = rows.at(f);
       if (here.mirrored) symmetry_.push_back({f, geometry.face_area[f].normalized()});
@@ -23,7 +23,7 @@ class ElasticRows {
     }
     for (const Index f : rows.unknown_faces()) {
       const LameConstants lame = rows.lame(mesh.owner[f]);
-      const FaceLine line = face_line(mesh, geometry, f);
+      const fv::FaceLine line = fv::face_line(mesh, geometry, f);
       stiffness_.push_back((2 * lame.mu + lame.lambda) * line.area * line.inverse_dn);
     }
   }
@@ -84,12 +84,12 @@ class ElasticRows {
     }
   }
 
-  const Mesh* mesh_;
-  const Geometry* geometry_;
+  const mesh::Mesh* mesh_;
+  const mesh::Geometry* geometry_;
   const ElasticOperator* rows_;
   std::vector<std::pair<Index, Vec3>> symmetry_;  // with the normals
   std::vector<Index> held_;                       // the whole force goes into the cell
   std::vector<double> stiffness_;                 // (2 mu + lambda) S / (d . n) of the unknown faces
 };
 
-}  // namespace couplet
+}  // namespace couplet::elastic

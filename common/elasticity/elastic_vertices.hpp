@@ -7,7 +7,7 @@
 #include "common/elasticity/elasticity.hpp"
 #include "common/elasticity/lanes.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// Which vertices a kernel interpolates and which it constrains: u_V = F_V sum_i w_i u_i + g_V.
 class ElasticVertices {
@@ -15,7 +15,7 @@ class ElasticVertices {
   std::vector<Index> free;         ///< points whose nodes matter
   std::vector<Index> constrained;  ///< points with F_V other than I; those that are not free have F_V = 0
 
-  ElasticVertices(const Mesh& mesh, const ElasticOperator& rows) : rows_(&rows) {
+  ElasticVertices(const mesh::Mesh& mesh, const ElasticOperator& rows) : rows_(&rows) {
     for (Index v = 0; v < mesh.points.n_local(); ++v) {
       if (rows.constraints().is_constrained(v)) constrained.push_back(v);
       if (!rows.constraints().is_fixed(v) && !rows.vertices().nodes(v).empty()) free.push_back(v);
@@ -47,4 +47,4 @@ class ElasticVertices {
   const ElasticOperator* rows_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::elastic

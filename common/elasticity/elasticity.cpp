@@ -6,15 +6,15 @@
 
 #include "common/fv/nodes.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 namespace {
 
-VertexInterpolation::ByFace stencils_of(const ElasticBoundary& boundary, const ElasticBody& body) {
-  VertexInterpolation::ByFace stencils{{}, body.material_of_cell};
+fv::VertexInterpolation::ByFace stencils_of(const ElasticBoundary& boundary, const ElasticBody& body) {
+  fv::VertexInterpolation::ByFace stencils{{}, body.material_of_cell};
   for (Index b = 0; b < boundary.size(); ++b)
-    stencils.stencil.push_back(boundary[b].fixed      ? PatchStencil::fixed
-                               : boundary[b].mirrored ? PatchStencil::symmetry
-                                                      : PatchStencil::open);
+    stencils.stencil.push_back(boundary[b].fixed      ? fv::PatchStencil::fixed
+                               : boundary[b].mirrored ? fv::PatchStencil::symmetry
+                                                      : fv::PatchStencil::open);
   return stencils;
 }
 
@@ -45,8 +45,8 @@ struct ElasticOperator::Row {
   Part nodes, known;
 };
 
-ElasticOperator::ElasticOperator(const Mesh& mesh, const Geometry& geometry, const ElasticBoundary& boundary,
-                                 ElasticBody body)
+ElasticOperator::ElasticOperator(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                                 const ElasticBoundary& boundary, ElasticBody body)
     : mesh_(&mesh),
       geometry_(&geometry),
       boundary_(boundary.on(mesh, geometry)),
@@ -54,16 +54,16 @@ ElasticOperator::ElasticOperator(const Mesh& mesh, const Geometry& geometry, con
       vertices_(mesh, geometry, stencils_of(boundary_, body_)),
       constraints_(mesh, boundary_, vertices_) {
   sort_boundary();
-  number_ = number_nodes(mesh, unknown_faces_);
+  number_ = fv::number_nodes(mesh, unknown_faces_);
 }
 
-ElasticOperator::ElasticOperator(const Mesh& mesh, const Geometry& geometry,
+ElasticOperator::ElasticOperator(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                                  std::span<const BoundaryRow> of_patches, const LameConstants& lame)
     : ElasticOperator(mesh, geometry, boundary_of_patches(mesh, of_patches), {{lame}, {}}) {}
 
 ElasticOperator::FaceWeights ElasticOperator::weights_of(Index face) const {
-  FaceWeights here{face_line(*mesh_, *geometry_, face), {}};
-  tangential_weights(*mesh_, geometry_->points, face, here.line, here.tangential.data());
+  FaceWeights here{fv::face_line(*mesh_, *geometry_, face), {}};
+  fv::tangential_weights(*mesh_, geometry_->points, face, here.line, here.tangential.data());
   return here;
 }
 
@@ -82,7 +82,7 @@ void ElasticOperator::sort_boundary() {
 
 void ElasticOperator::assemble() const {
   Row row{Row::Part(number_.size()), Row::Part(n_known())};
-  const Csr cell_faces = flux_faces_of_cells(*mesh_);
+  const mesh::Csr cell_faces = fv::flux_faces_of_cells(*mesh_);
   const Index n_owned = mesh_->cells.n_owned();
   for (Index c = 0; c < n_owned; ++c) {
     add_cell(c, cell_faces[c], row);
@@ -219,10 +219,10 @@ void ElasticOperator::store(Index unknown_node, Row& row) const {
   row.known.clear();
 }
 
-SparseMatrix ElasticOperator::matrix(std::span<const double> inertia) const {
+linalg::SparseMatrix ElasticOperator::matrix(std::span<const double> inertia) const {
   if (assembled_.row.empty()) assemble();
-  SparseMatrix matrix(mesh_->comm, static_cast<GlobalIndex>(n_unknowns()), assembled_.row, assembled_.column,
-                      mesh_->dim);
+  linalg::SparseMatrix matrix(mesh_->comm, static_cast<GlobalIndex>(n_unknowns()), assembled_.row,
+                              assembled_.column, mesh_->dim);
   std::vector<double> values = assembled_.value;
   for (std::size_t c = 0; c < inertia.size(); ++c)
     for (int a = 0; a < mesh_->dim; ++a) values[assembled_.diagonal[c * mesh_->dim + a]] += inertia[c];
@@ -271,4 +271,4 @@ Tensor3 ElasticOperator::stress(Index cell, const Tensor3& gradient) const {
   return mu * (gradient + gradient.transpose()) + lambda * gradient.trace() * Tensor3::Identity();
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -16,7 +16,7 @@
 #include "common/linalg/matrix.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// What the operator is made of. `lame`: one, or one a local cell (ghosts included). `material_of_cell`: per
 /// local cell, empty when there is one material; where it changes the faces must be bonded.
@@ -53,16 +53,16 @@ struct ElasticBody {
 class ElasticOperator {
  public:
   /// Mesh and geometry by reference.
-  ElasticOperator(const Mesh& mesh, const Geometry& geometry, const ElasticBoundary& boundary,
+  ElasticOperator(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const ElasticBoundary& boundary,
                   ElasticBody body);
   /// One row a patch, one material. Collective.
-  ElasticOperator(const Mesh& mesh, const Geometry& geometry, std::span<const BoundaryRow> of_patches,
-                  const LameConstants& lame);
+  ElasticOperator(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                  std::span<const BoundaryRow> of_patches, const LameConstants& lame);
 
-  const VertexInterpolation& vertices() const { return vertices_; }
+  const fv::VertexInterpolation& vertices() const { return vertices_; }
   const VertexConstraints& constraints() const { return constraints_; }
   /// Where the body stands that the rows describe.
-  const Geometry& geometry() const { return *geometry_; }
+  const mesh::Geometry& geometry() const { return *geometry_; }
   const ElasticBoundary& boundary() const { return boundary_; }
   /// Faces of owned cells with an unknown of their own (face indices): unknown node n_owned cells + i is
   /// entry i.
@@ -95,7 +95,7 @@ class ElasticOperator {
   void set_lame(std::vector<LameConstants> lame);
 
   /// The matrix with `inertia[c]` added on the diagonal of owned cell c (empty: none). Collective.
-  SparseMatrix matrix(std::span<const double> inertia) const;
+  linalg::SparseMatrix matrix(std::span<const double> inertia) const;
   /// rhs -= K known; `known`: dim values a known column.
   void subtract_known(std::span<const double> known, std::span<double> rhs) const;
   /// Adds (I - R) of the known forces [N] of the boundary faces of owned cells (`dim` values a face) to the right-hand
@@ -129,7 +129,7 @@ class ElasticOperator {
   void add_cell(Index cell, std::span<const Index> faces, Row& row) const;
   /// What the gradient at a face takes from the geometry; c_V as FaceGradient has them.
   struct FaceWeights {
-    FaceLine line;
+    fv::FaceLine line;
     std::array<Vec3, 4> tangential;
   };
   FaceWeights weights_of(Index face) const;
@@ -141,11 +141,11 @@ class ElasticOperator {
   LameConstants lame_at(Index face) const;
   double area(Index face) const { return geometry_->face_area[face].norm(); }
 
-  const Mesh* mesh_;
-  const Geometry* geometry_;
+  const mesh::Mesh* mesh_;
+  const mesh::Geometry* geometry_;
   ElasticBoundary boundary_;
   ElasticBody body_;
-  VertexInterpolation vertices_;
+  fv::VertexInterpolation vertices_;
   VertexConstraints constraints_;
   std::vector<Index> unknown_faces_, known_faces_;
   std::vector<Index> known_of_face_;  // column, -1: none (or not needed) here
@@ -164,4 +164,4 @@ class ElasticOperator {
   mutable Assembled assembled_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::elastic

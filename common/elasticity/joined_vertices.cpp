@@ -6,7 +6,7 @@
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 namespace {
 
 // Of the entries of F_V at the copies of a point, which are 0 to 1.
@@ -14,15 +14,15 @@ constexpr double alike = 1e-6;
 
 // VertexSums on their way to the other copies: m, s, sum of 1/d, number of nodes, number of copies of Mesh::wide_points.
 constexpr int sums_stride = 15;
-void put(const VertexSums& sums, bool is_wide, double* to) {
+void put(const fv::VertexSums& sums, bool is_wide, double* to) {
   to = std::copy_n(sums.m.data(), 9, to);
   to = std::copy_n(sums.s.data(), 3, to);
   to[0] = sums.inverse_distance;
   to[1] = sums.count;
   to[2] = is_wide ? 1 : 0;
 }
-VertexSums sums_at(const double* from) {
-  VertexSums sums;
+fv::VertexSums sums_at(const double* from) {
+  fv::VertexSums sums;
   std::copy_n(from, 9, sums.m.data());
   std::copy_n(from + 9, 3, sums.s.data());
   sums.inverse_distance = from[12];
@@ -32,7 +32,7 @@ VertexSums sums_at(const double* from) {
 
 // The same of VertexWeightSums.
 constexpr int weights_stride = 5;
-void put(const VertexWeightSums& sums, double* to) {
+void put(const fv::VertexWeightSums& sums, double* to) {
   to[0] = sums.sum;
   to[1] = sums.squares;
   std::copy_n(sums.miss.data(), 3, to + 2);
@@ -40,7 +40,7 @@ void put(const VertexWeightSums& sums, double* to) {
 
 }  // namespace
 
-JoinedVertices::JoinedVertices(const Mesh& mesh, const ElasticOperator& rows)
+JoinedVertices::JoinedVertices(const mesh::Mesh& mesh, const ElasticOperator& rows)
     : mesh_(mesh),
       geometry_(rows.geometry()),
       rows_(rows),
@@ -53,11 +53,11 @@ JoinedVertices::JoinedVertices(const Mesh& mesh, const ElasticOperator& rows)
     points_.push_back(v);
     offset_.push_back(offset_.back() + std::ssize(rows.vertices().nodes(v)));
   }
-  const Weights plain = weights(VertexWeights::inverse_distance),
-                least = weights(VertexWeights::least_squares);
+  const Weights plain = weights(fv::VertexWeights::inverse_distance),
+                least = weights(fv::VertexWeights::least_squares);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     // As VertexInterpolation chooses.
-    const bool is_plain = !plain.is_wide[i] && plain.magnification[i] <= longest_reach;
+    const bool is_plain = !plain.is_wide[i] && plain.magnification[i] <= mesh::longest_reach;
     const std::vector<double>& chosen = is_plain ? plain.weight : least.weight;
     weight_.insert(weight_.end(), chosen.begin() + offset_[i], chosen.begin() + offset_[i + 1]);
   }
@@ -82,7 +82,7 @@ void JoinedVertices::refuse_unlike() const {
       }
     if (off > alike) unlike.push_back(geometry_.points[v]);
   }
-  unlike = all_gather(mesh_.comm, unlike);
+  unlike = parallel::all_gather(mesh_.comm, unlike);
   if (unlike.empty()) return;
   const Vec3& x = unlike.front();
   throw Error(
@@ -103,11 +103,11 @@ const Tensor3* JoinedVertices::within(Index point) const {
   return rows_.vertices().on_symmetry(point) ? &rows_.vertices().projector(point) : nullptr;
 }
 
-JoinedVertices::Weights JoinedVertices::weights(VertexWeights kind) const {
+JoinedVertices::Weights JoinedVertices::weights(fv::VertexWeights kind) const {
   const std::size_t n = std::size_t(mesh_.points.n_local());
   std::vector<double> of_nodes(n * sums_stride, 0.0), of_weights(n * weights_stride, 0.0);
   for (const Index v : points_) {
-    VertexSums sums;
+    fv::VertexSums sums;
     for (const Index node : rows_.vertices().nodes(v)) sums.add(from_node(v, node), kind, within(v));
     put(sums, mesh_.is_wide(v), of_nodes.data() + std::size_t(v) * sums_stride);
   }
@@ -115,10 +115,10 @@ JoinedVertices::Weights JoinedVertices::weights(VertexWeights kind) const {
   Weights result;
   for (const Index v : points_) {
     const Vec3 lambda = sums_at(of_nodes.data() + std::size_t(v) * sums_stride).lambda(mesh_.dim, within(v));
-    VertexWeightSums here;
+    fv::VertexWeightSums here;
     for (const Index node : rows_.vertices().nodes(v)) {
       const Vec3 from = from_node(v, node);
-      result.weight.push_back(vertex_weight(from, lambda, kind));
+      result.weight.push_back(fv::vertex_weight(from, lambda, kind));
       here.add(result.weight.back(), from);
     }
     put(here, of_weights.data() + std::size_t(v) * weights_stride);
@@ -126,9 +126,9 @@ JoinedVertices::Weights JoinedVertices::weights(VertexWeights kind) const {
   periodic_.add_up(of_weights, weights_stride);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Index v = points_[i];
-    const VertexSums nodes = sums_at(of_nodes.data() + std::size_t(v) * sums_stride);
+    const fv::VertexSums nodes = sums_at(of_nodes.data() + std::size_t(v) * sums_stride);
     const double* whole = of_weights.data() + std::size_t(v) * weights_stride;
-    const bool cancels = VertexWeightSums{whole[0], whole[1], Vec3::Zero()}.cancels(nodes);
+    const bool cancels = fv::VertexWeightSums{whole[0], whole[1], Vec3::Zero()}.cancels(nodes);
     const auto around = rows_.vertices().nodes(v);
     for (std::size_t k = 0; k < around.size(); ++k) {
       double& w = result.weight[std::size_t(offset_[i]) + k];
@@ -157,7 +157,7 @@ void JoinedVertices::interpolate(const double* nodes, std::span<double> points) 
 template <int D>
 void JoinedVertices::to_nodes(std::span<double> point_forces, double* node_forces) const {
   constexpr int stride = lanes::width<D>;
-  periodic_.add_up(point_forces, stride, PeriodicPoints::Ghosts::count);
+  periodic_.add_up(point_forces, stride, mesh::PeriodicPoints::Ghosts::count);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const auto around = rows_.vertices().nodes(points_[i]);
     const double* force = point_forces.data() + std::size_t(points_[i]) * stride;
@@ -172,4 +172,4 @@ template void JoinedVertices::interpolate<3>(const double*, std::span<double>) c
 template void JoinedVertices::to_nodes<2>(std::span<double>, double*) const;
 template void JoinedVertices::to_nodes<3>(std::span<double>, double*) const;
 
-}  // namespace couplet
+}  // namespace couplet::elastic

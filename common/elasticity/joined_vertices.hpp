@@ -10,7 +10,7 @@
 #include "common/fv/vertex_weights.hpp"
 #include "common/mesh/periodic_points.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// Vertices on joined periodic patches: their copies are one point with the nodes around all of them,
 ///   u_V = sum over copies k, sum over nodes i of w_ki u_i,
@@ -20,7 +20,7 @@ namespace couplet {
 class JoinedVertices {
  public:
   /// Throws Error where the conditions at the copies of a point are not alike. Collective.
-  JoinedVertices(const Mesh& mesh, const ElasticOperator& rows);
+  JoinedVertices(const mesh::Mesh& mesh, const ElasticOperator& rows);
 
   /// All local copies, of points that are known, too.
   const std::vector<Index>& all() const { return periodic_.points(); }
@@ -40,18 +40,18 @@ class JoinedVertices {
     std::vector<double> weight, magnification;
     std::vector<std::uint8_t> is_wide;
   };
-  Weights weights(VertexWeights kind) const;
+  Weights weights(fv::VertexWeights kind) const;
   Vec3 from_node(Index point, Index node) const;
   const Tensor3* within(Index point) const;
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
   const ElasticOperator& rows_;
-  PeriodicPoints periodic_;
+  mesh::PeriodicPoints periodic_;
   std::vector<std::uint8_t> joined_;  // per local point
   std::vector<Index> points_;         // owned ones whose nodes matter
   std::vector<std::int64_t> offset_{0};
   std::vector<double> weight_;  // of the nodes of each
 };
 
-}  // namespace couplet
+}  // namespace couplet::elastic

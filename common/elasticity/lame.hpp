@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// sigma = mu (grad u + grad u^T) + lambda tr(grad u) I [Pa]. Plane stress: lambda is 2 lambda mu / (lambda +
 /// 2 mu).
@@ -31,4 +31,4 @@ inline LameConstants part_of_faces(const LameConstants& lame, VolumeStrain by) {
   return {lame.mu, lame.lambda - bulk_of_cells(lame, by)};
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -9,7 +9,7 @@
 /// Short vectors for loops over packed fields: the components of one node, padded to a power of two (2 in the
 /// plane, 4 in space). The vector extension of GCC and Clang: one register where the processor has it, several where it has
 /// not.
-namespace couplet::lanes {
+namespace couplet::elastic::lanes {
 
 template <int Width>
 struct OfWidth {
@@ -60,4 +60,4 @@ template <int D>
   return __builtin_shufflevector(turned, turned, 1, 2, 0, 3);
 }
 
-}  // namespace couplet::lanes
+}  // namespace couplet::elastic::lanes

@@ -5,7 +5,7 @@
 
 #include "common/base/types.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// Entry i of a field of `dim` values each; z is 0 in 2-D.
 inline Vec3 vector_at(std::span<const double> values, Index i, int dim) {
@@ -14,4 +14,4 @@ inline Vec3 vector_at(std::span<const double> values, Index i, int dim) {
   return u;
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

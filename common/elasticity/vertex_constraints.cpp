@@ -7,7 +7,7 @@
 
 #include "common/mesh/transpose.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 namespace {
 
 // Share of a patch's faces around a vertex that must know a direction for the vertex to know it.
@@ -51,10 +51,10 @@ class VertexConstraints::Known {
   std::vector<Source> sources;
 };
 
-VertexConstraints::VertexConstraints(const Mesh& mesh, const ElasticBoundary& boundary,
-                                     const VertexInterpolation& vertices) {
+VertexConstraints::VertexConstraints(const mesh::Mesh& mesh, const ElasticBoundary& boundary,
+                                     const fv::VertexInterpolation& vertices) {
   const Index n_points = mesh.points.n_local();
-  const Csr faces = transpose(mesh.face_points, mesh.n_interior, n_points);
+  const mesh::Csr faces = mesh::transpose(mesh.face_points, mesh.n_interior, n_points);
   const std::vector<Index> patch_of_face = mesh.patch_of_boundary();
   std::vector<std::uint8_t> complete(n_points, 0);
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
@@ -66,7 +66,7 @@ VertexConstraints::VertexConstraints(const Mesh& mesh, const ElasticBoundary& bo
       constrain(v, faces[v], mesh, boundary, patch_of_face, vertices.projector(v));
 }
 
-void VertexConstraints::constrain(Index point, std::span<const Index> faces, const Mesh& mesh,
+void VertexConstraints::constrain(Index point, std::span<const Index> faces, const mesh::Mesh& mesh,
                                   const ElasticBoundary& boundary, std::span<const Index> patch_of_face,
                                   const Tensor3& symmetry) {
   // The same order on every rank: by patch, then by the number in the mesh file.
@@ -115,4 +115,4 @@ void VertexConstraints::store(Index point, const Known& known) {
   offset_.push_back(static_cast<Index>(sources_.size()));
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -9,7 +9,7 @@
 #include "common/fv/vertex_interpolation.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// What is known of the displacement at the vertices, from the conditions of the faces around them:
 ///   u_V = F_V sum_i w_i u_i + g_V,   F_V = I - Q_V,   g_V = sum_j G_j g_j(x_V)
@@ -29,7 +29,8 @@ class VertexConstraints {
     Tensor3 share;  ///< G_j
   };
 
-  VertexConstraints(const Mesh& mesh, const ElasticBoundary& boundary, const VertexInterpolation& vertices);
+  VertexConstraints(const mesh::Mesh& mesh, const ElasticBoundary& boundary,
+                    const fv::VertexInterpolation& vertices);
 
   /// F_V: I where nothing is known, 0 where all is.
   const Tensor3& free_part(Index point) const { return free_parts_[free_of_[point]]; }
@@ -44,8 +45,9 @@ class VertexConstraints {
 
  private:
   class Known;
-  void constrain(Index point, std::span<const Index> faces, const Mesh& mesh, const ElasticBoundary& boundary,
-                 std::span<const Index> patch_of_face, const Tensor3& symmetry);
+  void constrain(Index point, std::span<const Index> faces, const mesh::Mesh& mesh,
+                 const ElasticBoundary& boundary, std::span<const Index> patch_of_face,
+                 const Tensor3& symmetry);
   void store(Index point, const Known& known);
 
   std::vector<Index> free_of_;  // per point, into free_parts_
@@ -55,4 +57,4 @@ class VertexConstraints {
   std::vector<Source> sources_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::elastic

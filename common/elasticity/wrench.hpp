@@ -5,7 +5,7 @@
 
 #include "common/base/types.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// A force [N] with its moment about the origin [N m].
 struct Wrench {
@@ -17,4 +17,4 @@ struct Wrench {
   Vec3 moment_about(const Vec3& centre) const { return moment - centre.cross(force); }
 };
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -6,13 +6,13 @@
 
 #include "common/fv/nodes.hpp"
 
-namespace couplet {
+namespace couplet::fv {
 namespace {
 
 // On orthogonal faces the correction along the face is round-off; without it the stencil is two cells.
 constexpr double orthogonal = 1e-12;
 
-VertexInterpolation::ByFace stencils_of(const Mesh& mesh, std::span<const HeatCondition> conditions) {
+VertexInterpolation::ByFace stencils_of(const mesh::Mesh& mesh, std::span<const HeatCondition> conditions) {
   VertexInterpolation::ByFace stencils{{}, mesh.cell_material};
   for (const Index p : mesh.patch_of_boundary())
     stencils.stencil.push_back(conditions[p] == HeatCondition::temperature ? PatchStencil::fixed
@@ -46,7 +46,7 @@ struct Sums {
 
 }  // namespace
 
-ConductionOperator::ConductionOperator(const Mesh& mesh, const Geometry& geometry,
+ConductionOperator::ConductionOperator(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                                        std::span<const HeatCondition> conditions)
     : mesh_(&mesh),
       geometry_(&geometry),
@@ -71,7 +71,7 @@ void ConductionOperator::sort_boundary(std::span<const HeatCondition> conditions
     }
   auto next = static_cast<Index>(known_points_.size());
   for (std::size_t p = 0; p < mesh_->patches.size(); ++p) {
-    const Patch& patch = mesh_->patches[p];
+    const mesh::Patch& patch = mesh_->patches[p];
     std::fill_n(condition_of_face_.begin() + (patch.first - n_interior), patch.count, conditions[p]);
     std::fill_n(condition_of_face_.begin() + (patch.ghost_first - n_interior), patch.ghost_count,
                 conditions[p]);
@@ -175,11 +175,11 @@ void ConductionOperator::build_rows() {
   for (Index c = 0; c < n_owned; ++c) add_term({Kind::capacity, true, 1, c}, number_[c]);
 }
 
-SparseMatrix ConductionOperator::make_matrix() const {
+linalg::SparseMatrix ConductionOperator::make_matrix() const {
   return {mesh_->comm, static_cast<GlobalIndex>(n_unknowns()), row_, column_};
 }
 
-void ConductionOperator::fill(const Weights& weights, SparseMatrix& matrix) const {
+void ConductionOperator::fill(const Weights& weights, linalg::SparseMatrix& matrix) const {
   std::vector<double> values;
   values.reserve(row_.size());
   for (const Term& term : terms_) {
@@ -258,7 +258,7 @@ double ConductionOperator::face_value(Index face, std::span<const double> cells,
                                       std::span<const double> boundary,
                                       std::span<const double> points) const {
   const Index owner = mesh_->owner[face];
-  const Geometry& g = *geometry_;
+  const mesh::Geometry& g = *geometry_;
   const Vec3 arm = g.face_centre[face] - g.cell_centre[owner];
   if (face >= mesh_->n_interior) {
     if (condition(face) != HeatCondition::symmetry) return boundary[face - mesh_->n_interior];
@@ -280,4 +280,4 @@ void ConductionOperator::face_heat(std::span<const double> conductivity, std::sp
     heat[f] = conductivity[f] * gradient(f, cells, boundary, points).dot(geometry_->face_area[f]);
 }
 
-}  // namespace couplet
+}  // namespace couplet::fv

@@ -11,7 +11,7 @@
 #include "common/linalg/matrix.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::fv {
 
 /// What is known of the temperature on a patch.
 enum class HeatCondition {
@@ -35,10 +35,11 @@ enum class HeatCondition {
 class ConductionOperator {
  public:
   /// `conditions`: one a patch. Collective.
-  ConductionOperator(const Mesh& mesh, const Geometry& geometry, std::span<const HeatCondition> conditions);
+  ConductionOperator(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                     std::span<const HeatCondition> conditions);
 
-  const Mesh& mesh() const { return *mesh_; }
-  const Geometry& geometry() const { return *geometry_; }
+  const mesh::Mesh& mesh() const { return *mesh_; }
+  const mesh::Geometry& geometry() const { return *geometry_; }
   const FaceGradient& faces() const { return faces_; }
   const VertexInterpolation& vertices() const { return vertices_; }
   /// Flux faces of owned cells, then first sides of bonded faces: unknown n_owned cells + i is entry i.
@@ -50,7 +51,7 @@ class ConductionOperator {
   std::size_t n_known() const { return known_points_.size() + known_faces_.size(); }
 
   /// A matrix with the places of all rows, not filled yet. Collective.
-  SparseMatrix make_matrix() const;
+  linalg::SparseMatrix make_matrix() const;
 
   /// Numbers that turn the stencils into rows.
   struct Weights {
@@ -59,7 +60,7 @@ class ConductionOperator {
     std::span<const double> capacity;      ///< on the diagonal of owned cells [W/K]; empty: none
     double share = 1;                      ///< of the conduction in the cell rows (trapezoidal rule: 1/2)
   };
-  void fill(const Weights& weights, SparseMatrix& matrix) const;
+  void fill(const Weights& weights, linalg::SparseMatrix& matrix) const;
   /// rhs -= (known columns) known, with the values of known points, then of known faces.
   void subtract_known(const Weights& weights, std::span<const double> known, std::span<double> rhs) const;
 
@@ -101,8 +102,8 @@ class ConductionOperator {
   void build_rows();
   void add_term(const Term& term, GlobalIndex row);
 
-  const Mesh* mesh_;
-  const Geometry* geometry_;
+  const mesh::Mesh* mesh_;
+  const mesh::Geometry* geometry_;
   std::vector<HeatCondition> condition_of_face_;  // per entry of mesh.boundary
   VertexInterpolation vertices_;
   FaceGradient faces_;
@@ -118,4 +119,4 @@ class ConductionOperator {
   std::vector<GlobalIndex> row_, column_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::fv

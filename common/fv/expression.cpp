@@ -11,7 +11,7 @@
 #include "common/base/error.hpp"
 #include "common/fv/table.hpp"
 
-namespace couplet {
+namespace couplet::fv {
 namespace {
 
 double value_in_table(void* table, double at) { return (*static_cast<const Table*>(table))(at); }
@@ -145,4 +145,4 @@ std::string problem_of(const std::vector<config::ExpressionText>& texts, int n) 
   return "";
 }
 
-}  // namespace couplet
+}  // namespace couplet::fv

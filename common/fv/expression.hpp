@@ -10,7 +10,7 @@
 #include "common/base/types.hpp"
 #include "common/config/section.hpp"
 
-namespace couplet {
+namespace couplet::fv {
 
 /// A compiled function of x, y, z [m] and t [s] in muParser syntax: "2*sin(pi*x)", "t < 7 ? -125*t/7 : 0".
 /// Tables are functions in it (see table.hpp): "1e5*table(t, 0, 0, 2, 1, 5, 0.5)", 'table(z, "p.csv")'.
@@ -52,4 +52,4 @@ std::vector<Expression> make_expressions(const std::vector<config::ExpressionTex
 std::string problem_of(const std::vector<config::ExpressionText>& texts, int n);
 std::string problem_of(const config::ExpressionText& text);
 
-}  // namespace couplet
+}  // namespace couplet::fv

@@ -3,9 +3,9 @@
 
 #include <Eigen/Geometry>
 
-namespace couplet {
+namespace couplet::fv {
 
-FaceGradient::FaceGradient(const Mesh& mesh, const Geometry& geometry)
+FaceGradient::FaceGradient(const mesh::Mesh& mesh, const mesh::Geometry& geometry)
     : normal(mesh.n_faces()),
       inverse_dn(mesh.n_faces()),
       skew(mesh.n_faces()),
@@ -13,7 +13,7 @@ FaceGradient::FaceGradient(const Mesh& mesh, const Geometry& geometry)
   update(mesh, geometry);
 }
 
-void FaceGradient::update(const Mesh& mesh, const Geometry& geometry) {
+void FaceGradient::update(const mesh::Mesh& mesh, const mesh::Geometry& geometry) {
   for (Index f = 0; f < mesh.n_faces(); ++f) {
     const FaceLine line = face_line(mesh, geometry, f);
     normal[f] = line.normal;
@@ -23,7 +23,7 @@ void FaceGradient::update(const Mesh& mesh, const Geometry& geometry) {
   }
 }
 
-FaceLine face_line(const Mesh& mesh, const Geometry& geometry, Index f) {
+FaceLine face_line(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f) {
   FaceLine line;
   line.area = geometry.face_area[f].norm();
   line.normal = geometry.face_area[f] / line.area;
@@ -35,7 +35,7 @@ FaceLine face_line(const Mesh& mesh, const Geometry& geometry, Index f) {
   return line;
 }
 
-void tangential_weights(const Mesh& mesh, std::span<const Vec3> points, Index f, const FaceLine& line,
+void tangential_weights(const mesh::Mesh& mesh, std::span<const Vec3> points, Index f, const FaceLine& line,
                         Vec3* c) {
   const auto index = mesh.face_points[f];
   if (mesh.dim == 2) {
@@ -54,4 +54,4 @@ void tangential_weights(const Mesh& mesh, std::span<const Vec3> points, Index f,
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::fv

@@ -7,7 +7,7 @@
 #include "common/base/types.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::fv {
 
 /// What the gradient at one face takes from the geometry.
 struct FaceLine {
@@ -16,10 +16,10 @@ struct FaceLine {
   double inverse_dn;  ///< 1 / (d . n) [1/m]
   Vec3 skew;          ///< k = n - d / (d . n)
 };
-FaceLine face_line(const Mesh& mesh, const Geometry& geometry, Index face);
+FaceLine face_line(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index face);
 /// c_V of the points around the face [1/m], see FaceGradient; at most four.
-void tangential_weights(const Mesh& mesh, std::span<const Vec3> points, Index face, const FaceLine& line,
-                        Vec3* c);
+void tangential_weights(const mesh::Mesh& mesh, std::span<const Vec3> points, Index face,
+                        const FaceLine& line, Vec3* c);
 
 /// Gradient at a face from the two nodes beside it and the vertices around it, thesis (2.53)-(2.58):
 ///   grad_t phi = sum_V c_V phi_V                    surface Gauss theorem, edge values = mean of their end points
@@ -27,9 +27,9 @@ void tangential_weights(const Mesh& mesh, std::span<const Vec3> points, Index fa
 /// N is the neighbour cell's centre, on the boundary the face centre. Exact for linear fields on any (also
 /// warped) face.
 struct FaceGradient {
-  FaceGradient(const Mesh& mesh, const Geometry& geometry);
+  FaceGradient(const mesh::Mesh& mesh, const mesh::Geometry& geometry);
   /// For another placement of the points. Allocates nothing.
-  void update(const Mesh& mesh, const Geometry& geometry);
+  void update(const mesh::Mesh& mesh, const mesh::Geometry& geometry);
 
   std::vector<Vec3> normal;        ///< per local face: unit vector out of the owner
   std::vector<double> inverse_dn;  ///< per local face: 1 / (d . n) [1/m]
@@ -39,7 +39,7 @@ struct FaceGradient {
   /// grad_t at face f; `vertex` holds `D` values a local point: entry (i, j) is the derivative of component j
   /// along i.
   template <int D>
-  Tensor<D> tangential_gradient(const Mesh& mesh, Index f, std::span<const double> vertex) const {
+  Tensor<D> tangential_gradient(const mesh::Mesh& mesh, Index f, std::span<const double> vertex) const {
     Tensor<D> gradient = Tensor<D>::Zero();
     for (Index e = mesh.face_points.offset[f]; e < mesh.face_points.offset[f + 1]; ++e) {
       const double* value = vertex.data() + std::size_t(mesh.face_points.index[e]) * D;
@@ -50,4 +50,4 @@ struct FaceGradient {
   }
 };
 
-}  // namespace couplet
+}  // namespace couplet::fv

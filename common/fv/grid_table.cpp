@@ -8,7 +8,7 @@
 #include "common/base/text.hpp"
 #include "common/csv/csv_reader.hpp"
 
-namespace couplet {
+namespace couplet::fv {
 namespace {
 
 constexpr std::array<const char*, 4> axis_names{"x", "y", "z", "t"};
@@ -32,7 +32,7 @@ Columns columns_of(const csv::CsvReader& reader, const std::vector<std::string>&
     const auto [name, unit] = csv::heading_of(head[i]);
     const auto found = std::ranges::find(known, name);
     if (found == known.end())
-      throw Error("{}: unknown column '{}'. {}", place, name, did_you_mean(name, known, "columns"));
+      throw Error("{}: unknown column '{}'. {}", place, name, base::did_you_mean(name, known, "columns"));
     const auto at = static_cast<std::size_t>(found - known.begin());
     // A header in other units would be taken for what it is not.
     const std::string wanted = at < axis_names.size() ? axis_units[at] : "m/s";
@@ -45,7 +45,7 @@ Columns columns_of(const csv::CsvReader& reader, const std::vector<std::string>&
   for (std::size_t i = 0; i < values.size(); ++i)
     if (columns.value[i] < 0)
       throw Error("{}: the column '{}' is missing; the first line must name the columns, such as 'y,t,{}'.",
-                  place, values[i], join(values, ","));
+                  place, values[i], base::join(values, ","));
   if (std::ranges::all_of(columns.axis, [](int c) { return c < 0; }))
     throw Error("{}: no column is an axis; name at least one of them x, y, z or t.", place);
   return columns;
@@ -83,7 +83,7 @@ GridTable GridTable::read(const std::filesystem::path& file, const std::vector<s
   csv::CsvReader reader(file, "table");
   if (reader.names().empty())
     throw Error("{}: the first line must name the columns, such as 'y,t,{}'.", file.string(),
-                join(values, ","));
+                base::join(values, ","));
   const Columns columns = columns_of(reader, values);
   const Rows rows = rows_of(reader);
   if (rows.size() == 0) throw Error("{}: the table has no values.", file.string());
@@ -163,4 +163,4 @@ void GridTable::evaluate(const Vec3& x, double t, std::span<double> values) cons
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::fv

@@ -9,7 +9,7 @@
 
 #include "common/base/types.hpp"
 
-namespace couplet {
+namespace couplet::fv {
 
 /// Values given on a full grid of some of x, y, z [m] and t [s]; linear along each axis in between
 /// (multilinear), so exact for fields that are.
@@ -38,4 +38,4 @@ class GridTable {
   std::size_t n_values_ = 0;
 };
 
-}  // namespace couplet
+}  // namespace couplet::fv

@@ -3,11 +3,11 @@
 
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::fv {
 
-Csr flux_faces_of_cells(const Mesh& mesh) {
+mesh::Csr flux_faces_of_cells(const mesh::Mesh& mesh) {
   const Index n = mesh.cells.n_owned();
-  Csr result;
+  mesh::Csr result;
   result.offset.assign(n + 1, 0);
   const auto visit = [&](auto&& take) {
     for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
@@ -23,9 +23,10 @@ Csr flux_faces_of_cells(const Mesh& mesh) {
   return result;
 }
 
-std::vector<GlobalIndex> number_nodes(const Mesh& mesh, std::span<const Index> faces_with_unknown) {
+std::vector<GlobalIndex> number_nodes(const mesh::Mesh& mesh, std::span<const Index> faces_with_unknown) {
   const Index n_owned = mesh.cells.n_owned();
-  const GlobalIndex first = exclusive_scan(mesh.comm, GlobalIndex(n_owned) + std::ssize(faces_with_unknown));
+  const GlobalIndex first =
+      parallel::exclusive_scan(mesh.comm, GlobalIndex(n_owned) + std::ssize(faces_with_unknown));
   std::vector<GlobalIndex> number(mesh.cells.n_local(), -1), boundary(mesh.boundary.n_local(), -1);
   for (Index c = 0; c < n_owned; ++c) number[c] = first + c;
   for (std::size_t i = 0; i < faces_with_unknown.size(); ++i)
@@ -38,4 +39,4 @@ std::vector<GlobalIndex> number_nodes(const Mesh& mesh, std::span<const Index> f
   return number;
 }
 
-}  // namespace couplet
+}  // namespace couplet::fv

@@ -6,13 +6,13 @@
 
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::fv {
 
 /// Flux faces of each owned cell.
-Csr flux_faces_of_cells(const Mesh& mesh);
+mesh::Csr flux_faces_of_cells(const mesh::Mesh& mesh);
 
 /// Global number of each local node (cells, then boundary faces) as an unknown, -1: none. A rank numbers its
 /// owned cells, then these boundary faces of its own; a bonded face has the number of its twin. Collective.
-std::vector<GlobalIndex> number_nodes(const Mesh& mesh, std::span<const Index> faces_with_unknown);
+std::vector<GlobalIndex> number_nodes(const mesh::Mesh& mesh, std::span<const Index> faces_with_unknown);
 
-}  // namespace couplet
+}  // namespace couplet::fv

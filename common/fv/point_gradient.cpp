@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-namespace couplet {
+namespace couplet::fv {
 namespace {
 
 /// A place with the field's value and gradient.
@@ -12,8 +12,8 @@ struct Knot {
   Tensor3 slope = Tensor3::Zero();
 };
 
-Knot knot_at(const Mesh& mesh, const Geometry& geometry, Index point, std::span<const double> values,
-             std::span<const Tensor3> slopes) {
+Knot knot_at(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index point,
+             std::span<const double> values, std::span<const Tensor3> slopes) {
   Knot knot{geometry.points[point], Vec3::Zero(), slopes[point]};
   for (int a = 0; a < mesh.dim; ++a) knot.u[a] = values[std::size_t(point) * mesh.dim + a];
   return knot;
@@ -59,7 +59,7 @@ void add_triangle(const Knot& a, const Knot& b, const Knot& c, const Vec3& origi
   flux.add(0.5 * to_b.cross(to_c), u, (a.x + b.x + c.x) / 3 - origin);
 }
 
-Flux flux_of(const Mesh& mesh, const Geometry& geometry, Index face, const Vec3& origin,
+Flux flux_of(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index face, const Vec3& origin,
              std::span<const double> values, std::span<const Tensor3> slopes) {
   const auto points = mesh.face_points[face];
   const std::size_t n = points.size();
@@ -80,7 +80,7 @@ Flux flux_of(const Mesh& mesh, const Geometry& geometry, Index face, const Vec3&
 
 }  // namespace
 
-std::vector<Tensor3> gradients_from_points(const Mesh& mesh, const Geometry& geometry,
+std::vector<Tensor3> gradients_from_points(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                                            std::span<const double> values, std::span<const Tensor3> slopes) {
   const Index n_owned = mesh.cells.n_owned();
   std::vector<Tensor3> gradient(n_owned, Tensor3::Zero());
@@ -104,4 +104,4 @@ std::vector<Tensor3> gradients_from_points(const Mesh& mesh, const Geometry& geo
   return gradient;
 }
 
-}  // namespace couplet
+}  // namespace couplet::fv

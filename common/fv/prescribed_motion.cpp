@@ -6,7 +6,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::fv {
 namespace {
 
 // Of the step, for the difference quotient: its error is 1e-6 of a second order scheme's.
@@ -161,4 +161,4 @@ double PrescribedMotion::largest_displacement(std::span<const Vec3> reference, d
   return largest;
 }
 
-}  // namespace couplet
+}  // namespace couplet::fv

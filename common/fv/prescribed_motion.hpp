@@ -8,7 +8,7 @@
 #include "common/config/section.hpp"
 #include "common/fv/expression.hpp"
 
-namespace couplet {
+namespace couplet::fv {
 
 /// Keys of a prescribed motion.
 struct MotionParameters {
@@ -56,4 +56,4 @@ class PrescribedMotion {
   Expression angle_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::fv

@@ -12,7 +12,7 @@
 #include "common/base/units.hpp"
 #include "common/csv/csv_reader.hpp"
 
-namespace couplet {
+namespace couplet::fv {
 namespace {
 
 constexpr std::size_t most_rows = 1000000;  // each costs 24 bytes in every key that names the file
@@ -43,7 +43,7 @@ std::size_t find_column(const std::filesystem::path& file, const std::vector<std
   }
   throw Error("{}: the table's column '{}' does not exist. {}", file.string(), column,
               names.empty() ? "Its first line contains no names; give the number of a column, from 2."
-                            : did_you_mean(column, names, "columns"));
+                            : base::did_you_mean(column, names, "columns"));
 }
 
 /// Throws Error where a name ends in a unit in round brackets: such a unit would not be read.
@@ -159,7 +159,7 @@ Property::Property(const config::ExpressionText& text, const std::string& where)
     throw Error("{}cannot parse '{}' at column {}: {}.", place, text.text, problem.at + 1, problem.what);
   }
   const bool is_table = tables.size() == 1 && rest.starts_with("tab00(") && rest.ends_with(")") &&
-                        trim(std::string_view(rest).substr(6, rest.size() - 7)) == "T";
+                        base::trim(std::string_view(rest).substr(6, rest.size() - 7)) == "T";
   if (!is_table)
     throw Error(
         "{}'{}' is neither a number nor a table of the temperature, such as {{of: T, at: [300 K, 600 K], "
@@ -185,4 +185,4 @@ std::string problem_of_property(const config::ExpressionText& text, double above
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::fv

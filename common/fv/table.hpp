@@ -9,7 +9,7 @@
 
 #include "common/config/section.hpp"
 
-namespace couplet {
+namespace couplet::fv {
 
 /// A piecewise linear function of one variable.
 class Table final {
@@ -93,4 +93,4 @@ class Property final {
 /// What is wrong with the text of a property that must stay above `above`; empty: nothing.
 std::string problem_of_property(const config::ExpressionText& text, double above);
 
-}  // namespace couplet
+}  // namespace couplet::fv

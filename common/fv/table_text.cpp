@@ -12,7 +12,7 @@
 #include "common/csv/cells.hpp"
 #include "common/fv/table.hpp"
 
-namespace couplet {
+namespace couplet::fv {
 namespace {
 
 constexpr std::string_view name = "table";
@@ -49,7 +49,7 @@ std::vector<Argument> arguments_of(const std::string& text, std::size_t open, st
     if (text[i] == '(') ++depth;
     if (depth == 0 && (text[i] == ',' || text[i] == ')')) {
       first = std::min(text.find_first_not_of(' ', first), i);
-      arguments.push_back({first, std::string(trim(std::string_view(text).substr(first, i - first)))});
+      arguments.push_back({first, std::string(base::trim(std::string_view(text).substr(first, i - first)))});
       first = i + 1;
       if (text[i] == ')') {
         close = i;
@@ -101,9 +101,9 @@ Table table_from(const std::vector<Argument>& arguments, std::size_t begin) {
 }
 
 /// Factor and zero of a header's unit; empty where it is none that we know ("[-]", "[cells]").
-std::optional<Unit> unit_of(const std::string& text) {
+std::optional<base::Unit> unit_of(const std::string& text) {
   try {
-    return parse_unit(text);
+    return base::parse_unit(text);
   } catch (const Error&) {
     return {};
   }
@@ -117,7 +117,7 @@ void check_units(const Table& table, const std::string& variable, bool is_whole_
   const auto known = unit_of_variable.find(variable);
   if (const auto unit = unit_of(table.units().axis);
       unit && !table.units().axis.empty() && known != unit_of_variable.end()) {
-    const Unit wanted = parse_unit(known->second);
+    const base::Unit wanted = base::parse_unit(known->second);
     if (unit->dimension != wanted.dimension || unit->factor != wanted.factor || unit->offset != 0)
       throw TextProblem{
           at,
@@ -155,4 +155,4 @@ std::string take_tables(const std::string& text, std::deque<Table>& tables) {
   return rest;
 }
 
-}  // namespace couplet
+}  // namespace couplet::fv

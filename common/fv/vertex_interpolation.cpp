@@ -9,7 +9,7 @@
 #include "common/fv/vertex_weights.hpp"
 #include "common/mesh/transpose.hpp"
 
-namespace couplet {
+namespace couplet::fv {
 namespace {
 
 // Ratio of the eigenvalues of the mean of n n^T over the symmetry faces of a patch around a vertex, tan^2 of
@@ -19,7 +19,7 @@ constexpr double one_plane = 1e-4, two_planes = 0.13;
 // Planes of different patches whose normals differ by less than this (0.06 degrees) are one.
 constexpr double new_direction = 1e-3;
 
-VertexInterpolation::ByFace by_face(const Mesh& mesh, std::span<const PatchStencil> stencils) {
+VertexInterpolation::ByFace by_face(const mesh::Mesh& mesh, std::span<const PatchStencil> stencils) {
   assert(stencils.size() == mesh.patches.size());
   VertexInterpolation::ByFace result;
   for (const Index p : mesh.patch_of_boundary()) result.stencil.push_back(stencils[p]);
@@ -54,24 +54,25 @@ void take_away(const Vec3& n, Tensor3& projector) {
 
 /// Cells and boundary faces (entries of mesh.boundary) around each point.
 struct VertexInterpolation::Around {
-  Csr cells, faces;
+  mesh::Csr cells, faces;
   std::vector<std::uint8_t> complete;  // the point belongs to an owned cell
 
-  explicit Around(const Mesh& mesh) {
+  explicit Around(const mesh::Mesh& mesh) {
     const Index n_points = mesh.points.n_local();
-    cells = transpose(mesh.cell_points, 0, n_points);
-    faces = transpose(mesh.face_points, mesh.n_interior, n_points);
+    cells = mesh::transpose(mesh.cell_points, 0, n_points);
+    faces = mesh::transpose(mesh.face_points, mesh.n_interior, n_points);
     complete.assign(n_points, 0);
     for (Index c = 0; c < mesh.cells.n_owned(); ++c)
       for (const Index p : mesh.cell_points[c]) complete[p] = 1;
   }
 };
 
-VertexInterpolation::VertexInterpolation(const Mesh& mesh, const Geometry& geometry,
+VertexInterpolation::VertexInterpolation(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                                          std::span<const PatchStencil> stencils)
     : VertexInterpolation(mesh, geometry, by_face(mesh, stencils)) {}
 
-VertexInterpolation::VertexInterpolation(const Mesh& mesh, const Geometry& geometry, const ByFace& boundary)
+VertexInterpolation::VertexInterpolation(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                                         const ByFace& boundary)
     : mesh_(&mesh), n_cells_(mesh.cells.n_local()) {
   assert(Index(boundary.stencil.size()) == mesh.boundary.n_local());
   const Around around(mesh);
@@ -143,7 +144,7 @@ void VertexInterpolation::group_by_material(Index point, std::span<const int> ma
   ends_.push_back(std::ssize(node_));
 }
 
-void VertexInterpolation::find_projectors(const Around& around, const Geometry& geometry,
+void VertexInterpolation::find_projectors(const Around& around, const mesh::Geometry& geometry,
                                           std::span<const PatchStencil> stencil) {
   const Index n_points = mesh_->points.n_local();
   projector_of_.assign(n_points, 0);
@@ -171,7 +172,7 @@ void VertexInterpolation::find_projectors(const Around& around, const Geometry& 
   }
 }
 
-void VertexInterpolation::update(const Geometry& geometry) {
+void VertexInterpolation::update(const mesh::Geometry& geometry) {
   const std::vector<Vec3>& points = geometry.points;
   inexact_.clear();
   for (Index v = 0; v < mesh_->points.n_local(); ++v) {
@@ -192,11 +193,12 @@ void VertexInterpolation::update(const Geometry& geometry) {
 
 /// Weights of the nodes [first, last) of a row, of sum 1; says whether they are exact for linear fields.
 bool VertexInterpolation::find_weights(Index point, std::int64_t first, std::int64_t last,
-                                       const Geometry& geometry, const Vec3& at) {
+                                       const mesh::Geometry& geometry, const Vec3& at) {
   // Weights of unit vectors may cancel; those of least squares are the least there are.
   if (!mesh_->is_wide(point)) {
     const bool is_exact = fill_weights(point, first, last, geometry, at, false);
-    if (magnification({weight_.data() + first, std::size_t(last - first)}) <= longest_reach) return is_exact;
+    if (magnification({weight_.data() + first, std::size_t(last - first)}) <= mesh::longest_reach)
+      return is_exact;
   }
   return fill_weights(point, first, last, geometry, at, true);
 }
@@ -204,7 +206,7 @@ bool VertexInterpolation::find_weights(Index point, std::int64_t first, std::int
 /// `least_squares`: lambda times the nodes' distances instead of their directions, the least weights there
 /// are.
 bool VertexInterpolation::fill_weights(Index point, std::int64_t first, std::int64_t last,
-                                       const Geometry& geometry, const Vec3& at, bool least_squares) {
+                                       const mesh::Geometry& geometry, const Vec3& at, bool least_squares) {
   const VertexWeights kind = least_squares ? VertexWeights::least_squares : VertexWeights::inverse_distance;
   const Tensor3* within = on_symmetry(point) ? &projector(point) : nullptr;
   const auto from = [&](std::int64_t i) -> Vec3 {
@@ -228,4 +230,4 @@ bool VertexInterpolation::fill_weights(Index point, std::int64_t first, std::int
   return !cancels && all.meets(nodes, within);
 }
 
-}  // namespace couplet
+}  // namespace couplet::fv

@@ -8,7 +8,7 @@
 #include "common/base/types.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::fv {
 
 /// How the values at the vertices of a patch are found.
 enum class PatchStencil {
@@ -49,7 +49,8 @@ class VertexInterpolation {
   }
 
   /// `stencils`: one a patch. Keeps the mesh by reference, and nothing of the geometry but the weights.
-  VertexInterpolation(const Mesh& mesh, const Geometry& geometry, std::span<const PatchStencil> stencils);
+  VertexInterpolation(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                      std::span<const PatchStencil> stencils);
   /// One stencil a local boundary face; `material_of_cell`: per local cell, empty: one material.
   struct ByFace {
     std::vector<PatchStencil> stencil;
@@ -57,10 +58,10 @@ class VertexInterpolation {
     /// Rows of the points of boundary faces (bonded ones, too) alone; those of others depend on no stencil.
     bool surface_only = false;
   };
-  VertexInterpolation(const Mesh& mesh, const Geometry& geometry, const ByFace& boundary);
+  VertexInterpolation(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const ByFace& boundary);
 
   /// The weights for another placement of the points. Allocates nothing.
-  void update(const Geometry& geometry);
+  void update(const mesh::Geometry& geometry);
 
   std::span<const Index> nodes(Index point) const {
     return {node_.data() + offset_[point], std::size_t(offset_[point + 1] - offset_[point])};
@@ -105,13 +106,14 @@ class VertexInterpolation {
   void gather_rows(const Around& around, const ByFace& boundary);
   void gather_wide_row(Index point, const Around& around, const ByFace& boundary);
   void group_by_material(Index point, std::span<const int> material_of_cell);
-  void find_projectors(const Around& around, const Geometry& geometry, std::span<const PatchStencil> stencil);
-  bool fill_weights(Index point, std::int64_t first, std::int64_t last, const Geometry& geometry,
+  void find_projectors(const Around& around, const mesh::Geometry& geometry,
+                       std::span<const PatchStencil> stencil);
+  bool fill_weights(Index point, std::int64_t first, std::int64_t last, const mesh::Geometry& geometry,
                     const Vec3& at, bool least_squares);
-  bool find_weights(Index point, std::int64_t first, std::int64_t last, const Geometry& geometry,
+  bool find_weights(Index point, std::int64_t first, std::int64_t last, const mesh::Geometry& geometry,
                     const Vec3& at);
 
-  const Mesh* mesh_;
+  const mesh::Mesh* mesh_;
   Index n_cells_;
   std::vector<std::int64_t> offset_;
   std::vector<Index> node_;
@@ -126,4 +128,4 @@ class VertexInterpolation {
   std::vector<Tensor3> projectors_;  // [0] is the identity
 };
 
-}  // namespace couplet
+}  // namespace couplet::fv

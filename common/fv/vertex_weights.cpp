@@ -3,7 +3,7 @@
 
 #include <Eigen/Dense>
 
-namespace couplet {
+namespace couplet::fv {
 namespace {
 
 // Directions the nodes do not span: eigenvalues of sum r r^T below this part of the largest (r are unit
@@ -53,4 +53,4 @@ bool VertexWeightSums::meets(const VertexSums& nodes, const Tensor3* within) con
   return off * nodes.inverse_distance <= exact * nodes.count * std::abs(sum);
 }
 
-}  // namespace couplet
+}  // namespace couplet::fv

@@ -5,7 +5,7 @@
 
 #include "common/base/types.hpp"
 
-namespace couplet {
+namespace couplet::fv {
 
 /// How the weights of a point's nodes are found, thesis (2.48)-(2.51), see VertexInterpolation:
 ///   w_i = (1 + lambda . r_i) / d_i,   r_i = (x_V - x_i) / d_i,   sum_i r_i r_i^T lambda = - sum_i r_i
@@ -54,4 +54,4 @@ inline double vertex_weight(const Vec3& from, const Vec3& lambda, VertexWeights 
   return (1 + lambda.dot(from) / (kind == VertexWeights::least_squares ? 1 : d)) / d;
 }
 
-}  // namespace couplet
+}  // namespace couplet::fv

@@ -14,7 +14,7 @@
 #include "common/io/rehearse.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::io {
 namespace {
 
 constexpr const char* checkpoint_format = "couplet checkpoint";
@@ -57,7 +57,7 @@ CheckpointWriter::CheckpointWriter(MPI_Comm comm, const std::filesystem::path& f
   state_->file = file;
   state_->part = file.string() + ".part";
   std::string trouble;
-  if (comm_rank(comm) == 0) {
+  if (parallel::comm_rank(comm) == 0) {
     std::error_code code;
     const std::filesystem::path folder = folder_of(file);
     std::filesystem::create_directories(folder, code);
@@ -69,13 +69,13 @@ CheckpointWriter::CheckpointWriter(MPI_Comm comm, const std::filesystem::path& f
                             file.string());
   }
   hdf5::throw_together(comm, trouble);
-  std::string stamp = comm_rank(comm) == 0 ? stamp_being_written(folder_of(file)) : "";
+  std::string stamp = parallel::comm_rank(comm) == 0 ? stamp_being_written(folder_of(file)) : "";
   if (stamp.empty()) stamp = "alone";
-  broadcast(comm, stamp);
+  parallel::broadcast(comm, stamp);
   state_->id = hdf5::create_file(comm, state_->part);
   hdf5::write_attribute(state_->id, "format", std::string(checkpoint_format));
   hdf5::write_attribute(state_->id, "version", double(format_version));
-  hdf5::write_attribute(state_->id, "ranks", double(comm_size(comm)));
+  hdf5::write_attribute(state_->id, "ranks", double(parallel::comm_size(comm)));
   hdf5::write_attribute(state_->id, "set", stamp);
 }
 
@@ -90,7 +90,7 @@ CheckpointWriter::~CheckpointWriter() {
   }
   state_->id.reset();
   std::error_code ignored;
-  if (comm_rank(state_->comm) == 0) std::filesystem::remove(state_->part, ignored);
+  if (parallel::comm_rank(state_->comm) == 0) std::filesystem::remove(state_->part, ignored);
 }
 
 void CheckpointWriter::write(const std::string& name, std::span<const double> values) {
@@ -112,7 +112,7 @@ void CheckpointWriter::write_scalar(const std::string& name, double value) {
     return;
   }
   MPI_Bcast(&value, 1, MPI_DOUBLE, 0, state_->comm);
-  const bool root = comm_rank(state_->comm) == 0;
+  const bool root = parallel::comm_rank(state_->comm) == 0;
   hdf5::write_table(state_->id, scalar_path(name), hdf5::distribute_rows(state_->comm, root ? 1 : 0, 1),
                     &value);
 }
@@ -128,15 +128,16 @@ void CheckpointWriter::close() {
                     state_->file.string(), error.what());
   }
   hdf5::throw_together(state_->comm, trouble);
-  if (comm_rank(state_->comm) == 0) {
-    flush_to_disk(state_->part);
+  if (parallel::comm_rank(state_->comm) == 0) {
+    base::flush_to_disk(state_->part);
     std::error_code code;
     std::filesystem::rename(state_->part, state_->file, code);
     if (code)
       trouble = fmt::format("Cannot rename the finished checkpoint to '{}' ({}).", state_->file.string(),
                             code.message());
     else
-      flush_to_disk(state_->file.has_parent_path() ? state_->file.parent_path() : std::filesystem::path("."));
+      base::flush_to_disk(state_->file.has_parent_path() ? state_->file.parent_path()
+                                                         : std::filesystem::path("."));
   }
   hdf5::throw_together(state_->comm, trouble);
 }
@@ -248,7 +249,7 @@ struct CheckpointReader::State {
         throw Error(
             "The checkpoint '{}' has no array '{}'. It was written by another program or another case.",
             in.file().string(), name);
-      const int size = comm_size(comm), rank = comm_rank(comm);
+      const int size = parallel::comm_size(comm), rank = parallel::comm_rank(comm);
       const std::vector<std::int64_t> layout = layout_of(in, name, size);
       hdf5::Rows rows;
       for (int r = 0; r < size; ++r) {
@@ -268,7 +269,7 @@ struct CheckpointReader::State {
         throw Error(
             "The checkpoint '{}' is corrupted: wrong checksum of the array '{}' on rank {}. Use an earlier "
             "checkpoint.",
-            in.file().string(), name, comm_rank(comm));
+            in.file().string(), name, parallel::comm_rank(comm));
       return 0;
     });
   }
@@ -285,7 +286,7 @@ CheckpointReader::CheckpointReader(MPI_Comm comm, const std::filesystem::path& f
     hdf5::throw_together(comm, trouble);
   };
   attempt([&] {
-    if (comm_rank(comm) == 0) examine(file, comm_size(comm));
+    if (parallel::comm_rank(comm) == 0) examine(file, parallel::comm_size(comm));
   });
   attempt([&] { state_ = std::make_unique<State>(State{comm, open(file)}); });
 }
@@ -316,7 +317,7 @@ void CheckpointReader::read(const std::string& name, std::span<double> values) {
     trouble = fmt::format(
         "The checkpoint '{}' has {} values of '{}' on rank {}, but {} are expected. Is it from the same "
         "mesh?",
-        state_->in.file().string(), rows.count, name, comm_rank(state_->comm), values.size());
+        state_->in.file().string(), rows.count, name, parallel::comm_rank(state_->comm), values.size());
   hdf5::throw_together(state_->comm, trouble);
   state_->fill(name, rows, wanted, values);
 }
@@ -362,4 +363,4 @@ double CheckpointReader::read_scalar(const std::string& name) {
   });
 }
 
-}  // namespace couplet
+}  // namespace couplet::io

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace couplet {
+namespace couplet::io {
 
 /// A state kept in memory, each rank its own part: what a checkpoint writer puts in, a reader gets out.
 class StateInMemory {
@@ -73,4 +73,4 @@ class CheckpointReader {
   const StateInMemory* memory_ = nullptr;
 };
 
-}  // namespace couplet
+}  // namespace couplet::io

@@ -14,7 +14,7 @@
 #include "common/base/own_file.hpp"
 #include "common/base/text.hpp"
 
-namespace couplet {
+namespace couplet::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -58,7 +58,7 @@ void clear(const fs::path& folder) {
 }
 
 std::string with_digest(const std::string& text) {
-  return text + fmt::format("digest {:016x}\n", stable_hash(text));
+  return text + fmt::format("digest {:016x}\n", base::stable_hash(text));
 }
 
 template <class T>
@@ -77,7 +77,7 @@ std::optional<CheckpointSet> parse_list(const std::string& text) {
   std::string line;
   std::getline(lines, line);
   while (std::getline(lines, line)) {
-    std::vector<std::string> words = split(line, ' ');
+    std::vector<std::string> words = base::split(line, ' ');
     const auto is = [&](const char* key, std::size_t n) { return words[0] == key && words.size() == n; };
     bool good = true;
     if (is("run", 2)) {
@@ -91,7 +91,7 @@ std::optional<CheckpointSet> parse_list(const std::string& text) {
     } else if (words.size() >= 4 && words[0] == "file") {  // the name comes last: it may hold blanks
       CheckpointSet::File file;
       good = parse(words[1], file.size, 10) && parse(words[2], file.digest, 16);
-      file.name = join({words.begin() + 3, words.end()}, " ");
+      file.name = base::join({words.begin() + 3, words.end()}, " ");
       set.files.push_back(file);
     } else {
       good = false;
@@ -103,13 +103,13 @@ std::optional<CheckpointSet> parse_list(const std::string& text) {
 
 void write_in_place(const fs::path& file, const std::string& text) {
   const fs::path part = file.string() + "~";
-  own_file(file);
-  std::ofstream stream(own_file(part), std::ios::binary);
+  base::own_file(file);
+  std::ofstream stream(base::own_file(part), std::ios::binary);
   stream << text;
   stream.close();
   std::error_code failed;
   if (stream) {
-    flush_to_disk(part);
+    base::flush_to_disk(part);
     fs::rename(part, file, failed);
   }
   if (!stream || failed)
@@ -250,4 +250,4 @@ std::vector<fs::path> clear_incomplete_sets(const fs::path& parent) {
   return cleared;
 }
 
-}  // namespace couplet
+}  // namespace couplet::io

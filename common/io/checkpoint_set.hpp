@@ -9,7 +9,7 @@
 
 #include "common/base/types.hpp"
 
-namespace couplet {
+namespace couplet::io {
 
 /// Which accepted state a checkpoint holds: the same words stand in every file of the set.
 struct CheckpointStamp {
@@ -63,4 +63,4 @@ void remove_checkpoint_set(const std::filesystem::path& folder);
 /// Takes away what runs that ended while they wrote have left in `parent`; gives the folders.
 std::vector<std::filesystem::path> clear_incomplete_sets(const std::filesystem::path& parent);
 
-}  // namespace couplet
+}  // namespace couplet::io

@@ -9,7 +9,7 @@
 #include "common/io/xdmf.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::io {
 namespace {
 
 constexpr const char *fields_format = "couplet fields", *surface_format = "couplet surface";
@@ -25,11 +25,11 @@ struct Topology {
   std::vector<std::int64_t> values;
 };
 
-std::int64_t code_of(const Mesh& mesh, Index cell) {
+std::int64_t code_of(const mesh::Mesh& mesh, Index cell) {
   return mesh.cell_points[cell].size() == 2 ? xdmf::edge_code : xdmf::cell_code(mesh.cell_type[cell]);
 }
 
-Topology make_topology(const Mesh& mesh) {
+Topology make_topology(const mesh::Mesh& mesh) {
   const Index n = mesh.cells.n_owned();
   std::int64_t lowest = std::numeric_limits<std::int64_t>::max(), highest = 0;
   for (Index c = 0; c < n; ++c) {
@@ -50,7 +50,7 @@ Topology make_topology(const Mesh& mesh) {
     constexpr int prism[6] = {0, 2, 1, 3, 5, 4};
     for (std::size_t i = 0; i < points.size(); ++i)
       topology.values.push_back(
-          mesh.points.global(points[mesh.cell_type[c] == CellType::prism ? std::size_t(prism[i]) : i]));
+          mesh.points.global(points[mesh.cell_type[c] == mesh::CellType::prism ? std::size_t(prism[i]) : i]));
   }
   return topology;
 }
@@ -58,7 +58,7 @@ Topology make_topology(const Mesh& mesh) {
 }  // namespace
 
 struct FieldWriter::State {
-  const Mesh& mesh;
+  const mesh::Mesh& mesh;
   std::filesystem::path folder;
   std::string name;
   bool moving;
@@ -80,7 +80,7 @@ struct FieldWriter::State {
 
   void write_field(const hdf5::Handle& id, const std::string& path, const OutputField& field) const {
     const bool on_cells = field.place == OutputField::Place::cells;
-    const IndexMap& map = on_cells ? mesh.cells : mesh.points;
+    const parallel::IndexMap& map = on_cells ? mesh.cells : mesh.points;
     const std::size_t n = map.n_owned(), components = field.components;
     if (field.values.size() < n * components)
       throw Error("The output field '{}' has {} values for {} {} with {} components.", field.name,
@@ -107,7 +107,7 @@ struct FieldWriter::State {
 void FieldWriter::State::start(std::span<const Vec3> places) {
   const hdf5::Handle id = hdf5::create_file(mesh.comm, file());
   hdf5::write_attribute(id, "format", format);
-  hdf5::write_attribute(id, "ranks", double(comm_size(mesh.comm)));
+  hdf5::write_attribute(id, "ranks", double(parallel::comm_size(mesh.comm)));
   const Topology topology = make_topology(mesh);
   const hdf5::Rows rows =
       hdf5::distribute_rows(mesh.comm, topology.values.size() / topology.width, topology.width);
@@ -155,8 +155,8 @@ std::vector<std::string> FieldWriter::State::read_index(double restart_time) {
     in.refuse(fmt::format("its cells are of the unknown kind {}", kind));
   index = {file().filename().string(), std::int64_t(kind), 0, cell_rows.total, point_rows.total, moving, {}};
   const std::uint64_t width = index.kind == 0 ? 1 : std::uint64_t(xdmf::points_of(index.kind));
-  if (in.number("/", "ranks") != comm_size(mesh.comm) || in.rows("mesh/cell-id", 1) != cell_rows.total ||
-      in.rows("mesh/point-id", 1) != point_rows.total)
+  if (in.number("/", "ranks") != parallel::comm_size(mesh.comm) ||
+      in.rows("mesh/cell-id", 1) != cell_rows.total || in.rows("mesh/point-id", 1) != point_rows.total)
     in.refuse("it was written on another mesh or another number of ranks");
   index.topology_size = in.rows("mesh/cells", width) * width;
   const std::vector<std::string> all = in.members("steps");
@@ -165,13 +165,13 @@ std::vector<std::string> FieldWriter::State::read_index(double restart_time) {
 }
 
 bool FieldWriter::State::continue_from(double restart_time) {
-  int there = comm_rank(mesh.comm) == 0 && std::filesystem::exists(file()) ? 1 : 0;
+  int there = parallel::comm_rank(mesh.comm) == 0 && std::filesystem::exists(file()) ? 1 : 0;
   MPI_Bcast(&there, 1, MPI_INT, 0, mesh.comm);
   if (there == 0) return false;
   std::string trouble;
   std::vector<std::string> dropped;
   try {
-    if (comm_rank(mesh.comm) == 0) rehearse(file(), "output", [&] { read_index(restart_time); });
+    if (parallel::comm_rank(mesh.comm) == 0) rehearse(file(), "output", [&] { read_index(restart_time); });
   } catch (const Error& error) {
     trouble = error.what();
   }
@@ -194,7 +194,7 @@ void FieldWriter::State::begin(std::span<const Vec3> places, double restart_time
   point_rows = hdf5::distribute_rows(mesh.comm, mesh.points.n_owned(), 1);
   cell_rows = hdf5::distribute_rows(mesh.comm, mesh.cells.n_owned(), 1);
   std::string trouble;
-  if (comm_rank(mesh.comm) == 0) {
+  if (parallel::comm_rank(mesh.comm) == 0) {
     std::error_code code;
     std::filesystem::create_directories(folder, code);
     if (!std::filesystem::is_directory(folder))
@@ -202,10 +202,10 @@ void FieldWriter::State::begin(std::span<const Vec3> places, double restart_time
   }
   hdf5::throw_together(mesh.comm, trouble);
   if (std::isnan(restart_time) || !continue_from(restart_time)) start(places);
-  if (comm_rank(mesh.comm) == 0) xdmf::write(folder / (name + ".xdmf"), index);
+  if (parallel::comm_rank(mesh.comm) == 0) xdmf::write(folder / (name + ".xdmf"), index);
 }
 
-FieldWriter::FieldWriter(const Mesh& mesh, std::span<const Vec3> places, std::filesystem::path folder,
+FieldWriter::FieldWriter(const mesh::Mesh& mesh, std::span<const Vec3> places, std::filesystem::path folder,
                          std::string name, bool moving, double restart_time)
     : state_(std::make_unique<State>(
           State{mesh, std::move(folder), std::move(name), moving, fields_format, {}, 0, {}, {}})) {
@@ -243,7 +243,7 @@ void FieldWriter::write(double time, std::span<const Vec3> points, const std::ve
   }
   ++s.number;
   s.index.entries.push_back(std::move(entry));
-  if (comm_rank(s.mesh.comm) == 0) xdmf::write(s.folder / (s.name + ".xdmf"), s.index);
+  if (parallel::comm_rank(s.mesh.comm) == 0) xdmf::write(s.folder / (s.name + ".xdmf"), s.index);
 }
 
-}  // namespace couplet
+}  // namespace couplet::io

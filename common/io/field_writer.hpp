@@ -10,7 +10,7 @@
 #include "common/io/surface_mesh.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::io {
 
 struct OutputField {
   enum class Place { cells, points };
@@ -29,8 +29,8 @@ class FieldWriter {
  public:
   /// restart_time: entries later than this in an existing series are dropped; NaN starts a new series.
   /// `places`: of the local points [m], written once; looked at while the writer is made.
-  FieldWriter(const Mesh& mesh, std::span<const Vec3> places, std::filesystem::path folder, std::string name,
-              bool moving, double restart_time);
+  FieldWriter(const mesh::Mesh& mesh, std::span<const Vec3> places, std::filesystem::path folder,
+              std::string name, bool moving, double restart_time);
   /// Of a surface, which `cells` are the faces of.
   FieldWriter(const SurfaceMesh& surface, std::filesystem::path folder, std::string name, bool moving,
               double restart_time);
@@ -44,4 +44,4 @@ class FieldWriter {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::io

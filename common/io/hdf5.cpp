@@ -6,7 +6,7 @@
 #include "common/base/own_file.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet::hdf5 {
+namespace couplet::io::hdf5 {
 namespace {
 
 herr_t keep_first_reason(unsigned, const H5E_error2_t* entry, void* text) {
@@ -29,7 +29,7 @@ Handle file_access(MPI_Comm comm) {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   // A viewer that has the file open must not stop the run.
   H5Pset_file_locking(access, false, true);
-  if (comm_size(comm) > 1) {
+  if (parallel::comm_size(comm) > 1) {
     H5Pset_fapl_mpio(access, comm, MPI_INFO_NULL);
     H5Pset_all_coll_metadata_ops(access, true);
     H5Pset_coll_metadata_write(access, true);
@@ -95,7 +95,7 @@ std::string reason() {
 }
 
 Handle create_file(MPI_Comm comm, const std::filesystem::path& file) {
-  own_file(file);
+  base::own_file(file);
   const Quiet quiet;
   return checked(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, file_access(comm)), H5Fclose, "create",
                  file.string());
@@ -139,8 +139,8 @@ Handle make_group(hid_t place, const std::string& path) {
 
 Rows distribute_rows(MPI_Comm comm, std::size_t count, std::size_t width) {
   const auto mine = static_cast<GlobalIndex>(count);
-  return {static_cast<std::uint64_t>(exclusive_scan(comm, mine)), count,
-          static_cast<std::uint64_t>(sum(comm, mine)), width};
+  return {static_cast<std::uint64_t>(parallel::exclusive_scan(comm, mine)), count,
+          static_cast<std::uint64_t>(parallel::sum(comm, mine)), width};
 }
 
 void write_table(hid_t place, const std::string& path, const Rows& rows, const double* values) {
@@ -171,13 +171,13 @@ void write_attribute(hid_t object, const std::string& name, const std::string& t
 }
 
 void throw_together(MPI_Comm comm, const std::string& text) {
-  const int none = comm_size(comm);
-  int first = text.empty() ? none : comm_rank(comm);
+  const int none = parallel::comm_size(comm);
+  int first = text.empty() ? none : parallel::comm_rank(comm);
   MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm);
   if (first == none) return;
   std::string agreed = text;
-  broadcast(comm, agreed, first);
+  parallel::broadcast(comm, agreed, first);
   throw Error(agreed);
 }
 
-}  // namespace couplet::hdf5
+}  // namespace couplet::io::hdf5

@@ -15,7 +15,7 @@
 
 /// A thin cover over the HDF5 C interface: handles that close themselves, failures that become Error; what is written.
 /// Reading is hdf5_reader.hpp's. Only files of this name call HDF5.
-namespace couplet::hdf5 {
+namespace couplet::io::hdf5 {
 
 /// Keeps HDF5 from printing its error stack while alive: the first reason goes into our own message instead.
 class Quiet final {
@@ -90,4 +90,4 @@ void write_attribute(hid_t object, const std::string& name, const std::string& t
 /// Collective.
 void throw_together(MPI_Comm comm, const std::string& text);
 
-}  // namespace couplet::hdf5
+}  // namespace couplet::io::hdf5

@@ -6,7 +6,7 @@
 #include "common/base/text.hpp"
 #include "common/io/hdf5_types.hpp"
 
-namespace couplet::hdf5 {
+namespace couplet::io::hdf5 {
 namespace {
 
 constexpr std::size_t deepest = 16;  // groups within groups
@@ -49,7 +49,7 @@ Handle Reader::find(const std::string& path) const {
   const Quiet quiet;
   Handle at(H5Oopen(id_, "/", H5P_DEFAULT), H5Oclose);
   if (at < 0) refuse(fmt::format("cannot open its root group ({})", reason()));
-  const std::vector<std::string> parts = split(path, '/');
+  const std::vector<std::string> parts = base::split(path, '/');
   if (parts.size() > deepest) refuse(fmt::format("'{}' is nested deeper than {} groups", path, deepest));
   for (const std::string& part : parts) {
     if (part.empty()) continue;
@@ -289,4 +289,4 @@ std::vector<std::string> Reader::leaves(const std::string& group, std::size_t mo
   return all;
 }
 
-}  // namespace couplet::hdf5
+}  // namespace couplet::io::hdf5

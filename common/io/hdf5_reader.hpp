@@ -8,7 +8,7 @@
 
 #include "common/io/hdf5.hpp"
 
-namespace couplet::hdf5 {
+namespace couplet::io::hdf5 {
 
 /// The one reader of HDF5: a file is foreign until each of its values has been asked for by rank, type and largest
 /// size. What is something else is refused with an Error that names the file, the object, what was found and what was
@@ -73,4 +73,4 @@ class Reader final {
   Handle id_;
 };
 
-}  // namespace couplet::hdf5
+}  // namespace couplet::io::hdf5

@@ -8,7 +8,7 @@
 
 #include "common/base/text.hpp"
 
-namespace couplet::hdf5 {
+namespace couplet::io::hdf5 {
 namespace {
 
 struct Named {
@@ -87,7 +87,7 @@ std::string Shape::text() const {
   if (size.empty()) return "one value";
   std::vector<std::string> words;
   for (const std::uint64_t n : size) words.push_back(std::to_string(n));
-  return join(words, " x ") + (size.size() == 1 ? " values" : " table");
+  return base::join(words, " x ") + (size.size() == 1 ? " values" : " table");
 }
 
 bool Shape::is_one_value() const {
@@ -107,4 +107,4 @@ Shape shape_of(hid_t space) {
   return shape;
 }
 
-}  // namespace couplet::hdf5
+}  // namespace couplet::io::hdf5

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace couplet::hdf5 {
+namespace couplet::io::hdf5 {
 
 /// One of the standard types of numbers, of either order of bytes; all others are refused.
 bool is_integer(hid_t type);
@@ -24,4 +24,4 @@ struct Shape {
 };
 Shape shape_of(hid_t space);
 
-}  // namespace couplet::hdf5
+}  // namespace couplet::io::hdf5

@@ -18,7 +18,7 @@
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
 
-namespace couplet {
+namespace couplet::io {
 namespace {
 
 // First byte that comes through the pipe; nothing comes of a crash.
@@ -120,4 +120,4 @@ void rehearse(const std::filesystem::path& file, const std::string& what, const 
                                                  : "a trial read crashed");
 }
 
-}  // namespace couplet
+}  // namespace couplet::io

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-namespace couplet {
+namespace couplet::io {
 
 /// What a library does to a file that somebody else may have made or damaged is tried in a forked process first, with
 /// limits of memory (512 MB beyond what is in use, and four times the file) and processor time (2 s, and 1 s for each
@@ -14,4 +14,4 @@ namespace couplet {
 /// Where no process can be forked this is logged and nothing is tried. On this rank alone; `read` must not use MPI.
 void rehearse(const std::filesystem::path& file, const std::string& what, const std::function<void()>& read);
 
-}  // namespace couplet
+}  // namespace couplet::io

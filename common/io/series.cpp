@@ -13,7 +13,7 @@
 #include "common/csv/cells.hpp"
 #include "common/csv/line_reader.hpp"
 
-namespace couplet {
+namespace couplet::io {
 namespace {
 
 // A series grows with the run: its length is no sign of a foreign file. A crash may leave zeros in its last row.
@@ -62,10 +62,10 @@ Series::Series(const std::filesystem::path& file, const std::vector<std::string>
   std::error_code code;
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), code);
   const std::filesystem::path part = file.string() + ".part";
-  own_file(file);
+  base::own_file(file);
   {
     const auto old = std::isnan(restart_time) ? nullptr : rows_of(file, head);
-    std::ofstream out(own_file(part));
+    std::ofstream out(base::own_file(part));
     out << head << '\n';
     if (old) copy_rows(*old, n_columns_, restart_time, out);
   }
@@ -84,4 +84,4 @@ void Series::row(std::span<const double> values) {
   if (!file_) throw Error("Cannot write a series row. Is the disk full?");
 }
 
-}  // namespace couplet
+}  // namespace couplet::io

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace couplet {
+namespace couplet::io {
 
 /// A CSV time series: first line "time [s],name [unit],...", one line a row, flushed after each. To be made
 /// on one rank. `columns` holds all columns, the time first: {"time [s]", "tip x [m]"}; a row has as many
@@ -24,4 +24,4 @@ class Series {
   std::size_t n_columns_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::io

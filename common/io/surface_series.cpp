@@ -12,14 +12,14 @@
 #include "common/io/surface_mesh.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::io {
 namespace {
 
 /// Patches of the boundary that have faces, in the order of the mesh. Collective.
-std::vector<const Patch*> patches_with_faces(const Mesh& body) {
-  std::vector<const Patch*> found;
-  for (const Patch& patch : body.patches)
-    if (!patch.bonded && sum(body.comm, GlobalIndex(patch.count)) > 0) found.push_back(&patch);
+std::vector<const mesh::Patch*> patches_with_faces(const mesh::Mesh& body) {
+  std::vector<const mesh::Patch*> found;
+  for (const mesh::Patch& patch : body.patches)
+    if (!patch.bonded && parallel::sum(body.comm, GlobalIndex(patch.count)) > 0) found.push_back(&patch);
   return found;
 }
 
@@ -37,7 +37,7 @@ std::string wrong_surfaces(const std::vector<std::string>& names, const std::vec
   for (auto name = names.begin(); name != names.end(); ++name) {
     if (std::ranges::find(patches, *name) == patches.end())
       return fmt::format("'{}' is not a patch of the boundary. {} The one word 'all' stands for all of them",
-                         *name, did_you_mean(*name, patches, "patches"));
+                         *name, base::did_you_mean(*name, patches, "patches"));
     if (std::find(names.begin(), name, *name) != name) return fmt::format("'{}' is given twice", *name);
   }
   return "";
@@ -57,12 +57,12 @@ struct SurfaceSeries::Surface {
   }
 };
 
-SurfaceSeries::SurfaceSeries(const Mesh& body, std::span<const Vec3> places,
+SurfaceSeries::SurfaceSeries(const mesh::Mesh& body, std::span<const Vec3> places,
                              const std::vector<std::string>& names, const std::string& key)
     : body_(body) {
   std::vector<std::string> known;
-  const std::vector<const Patch*> there = patches_with_faces(body);
-  for (const Patch* patch : there) known.push_back(patch->name);
+  const std::vector<const mesh::Patch*> there = patches_with_faces(body);
+  for (const mesh::Patch* patch : there) known.push_back(patch->name);
   if (const std::string trouble = wrong_surfaces(names, known); !trouble.empty())
     throw Error("{}: {}.", key, trouble);
   if (is_all(names))
@@ -70,7 +70,7 @@ SurfaceSeries::SurfaceSeries(const Mesh& body, std::span<const Vec3> places,
   else
     for (const std::string& name : names)
       patches_.push_back(there[std::size_t(std::ranges::find(known, name) - known.begin())]);
-  for (const Patch* patch : patches_)
+  for (const mesh::Patch* patch : patches_)
     surfaces_.push_back(std::make_unique<Surface>(make_surface(body, places, *patch)));
 }
 
@@ -92,7 +92,7 @@ std::vector<std::uint8_t> SurfaceSeries::points() const {
 
 void SurfaceSeries::write(std::size_t i, double time, std::span<const Vec3> places,
                           const std::vector<OutputField>& fields) {
-  const Patch& patch = *patches_[i];
+  const mesh::Patch& patch = *patches_[i];
   Surface& one = *surfaces_[i];
   std::vector<Vec3> points;
   for (const Index v : one.surface.points) points.push_back(places[v]);
@@ -108,4 +108,4 @@ void SurfaceSeries::write(std::size_t i, double time, std::span<const Vec3> plac
   one.writer->write(time, points, here);
 }
 
-}  // namespace couplet
+}  // namespace couplet::io

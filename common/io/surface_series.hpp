@@ -12,7 +12,7 @@
 #include "common/io/field_writer.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::io {
 
 /// What is wrong with the list `output.surfaces`: patches, or the one word "all"; empty: nothing.
 std::string wrong_surfaces(const std::vector<std::string>& names, const std::vector<std::string>& patches);
@@ -31,13 +31,13 @@ class SurfaceSeries {
  public:
   /// `places`: per local point of the body [m]. `names`: patches, or the one word "all". `body` by reference. Throws Error, which names `key`, for
   /// wrong_surfaces(). Collective.
-  SurfaceSeries(const Mesh& body, std::span<const Vec3> places, const std::vector<std::string>& names,
+  SurfaceSeries(const mesh::Mesh& body, std::span<const Vec3> places, const std::vector<std::string>& names,
                 const std::string& key);
   ~SurfaceSeries();
   /// Where to write from now on; see FieldWriter.
   void open(std::filesystem::path folder, bool moving, double restart_time);
 
-  const std::vector<const Patch*>& patches() const { return patches_; }
+  const std::vector<const mesh::Patch*>& patches() const { return patches_; }
   /// Flags of the local points of the body on these patches, on all ranks that share them. Collective.
   std::vector<std::uint8_t> points() const;
 
@@ -48,9 +48,9 @@ class SurfaceSeries {
 
  private:
   struct Surface;
-  const Mesh& body_;
-  std::vector<const Patch*> patches_;
+  const mesh::Mesh& body_;
+  std::vector<const mesh::Patch*> patches_;
   std::vector<std::unique_ptr<Surface>> surfaces_;  // one a patch
 };
 
-}  // namespace couplet
+}  // namespace couplet::io

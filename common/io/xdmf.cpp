@@ -8,7 +8,7 @@
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
 
-namespace couplet::xdmf {
+namespace couplet::io::xdmf {
 namespace {
 
 std::string escaped(const std::string& text) {
@@ -90,19 +90,19 @@ std::string grid(const Series& s, const Entry& entry) {
 
 }  // namespace
 
-std::int64_t cell_code(CellType type) {
+std::int64_t cell_code(mesh::CellType type) {
   switch (type) {
-    case CellType::triangle:
+    case mesh::CellType::triangle:
       return 4;
-    case CellType::quadrilateral:
+    case mesh::CellType::quadrilateral:
       return 5;
-    case CellType::tetrahedron:
+    case mesh::CellType::tetrahedron:
       return 6;
-    case CellType::pyramid:
+    case mesh::CellType::pyramid:
       return 7;
-    case CellType::prism:
+    case mesh::CellType::prism:
       return 8;
-    case CellType::hexahedron:
+    case mesh::CellType::hexahedron:
       return 9;
   }
   return 0;
@@ -117,8 +117,8 @@ std::uint64_t points_of(std::int64_t code) {
 void write(const std::filesystem::path& index, const Series& series) {
   const std::filesystem::path part = index.string() + ".part";
   {
-    own_file(index);
-    std::ofstream file(own_file(part));
+    base::own_file(index);
+    std::ofstream file(base::own_file(part));
     file << "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n"
             "    <Grid Name=\"series\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
     for (const Entry& entry : series.entries) file << grid(series, entry);
@@ -128,4 +128,4 @@ void write(const std::filesystem::path& index, const Series& series) {
   std::filesystem::rename(part, index);
 }
 
-}  // namespace couplet::xdmf
+}  // namespace couplet::io::xdmf

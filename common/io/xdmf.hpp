@@ -9,10 +9,10 @@
 #include "common/mesh/mesh.hpp"
 
 /// The XDMF 2 index of an HDF5 series: plain text, written whole each time.
-namespace couplet::xdmf {
+namespace couplet::io::xdmf {
 
 /// XDMF's own number of a cell type in a mixed topology; its points go in VTK order.
-std::int64_t cell_code(CellType type);
+std::int64_t cell_code(mesh::CellType type);
 /// Of the edges of a 2-D mesh's surface.
 inline constexpr std::int64_t edge_code = 2;
 /// Points of a cell with this code.
@@ -41,4 +41,4 @@ struct Series {
 /// Replaces the index in one go (rename), so that a viewer never sees half of it.
 void write(const std::filesystem::path& index, const Series& series);
 
-}  // namespace couplet::xdmf
+}  // namespace couplet::io::xdmf

@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
-namespace couplet {
+namespace couplet::linalg {
 
 Accelerator::Accelerator(MPI_Comm comm, std::size_t n, const Acceleration& options)
     : comm_(comm), options_(options), last_step_(n) {
@@ -87,4 +87,4 @@ void Accelerator::anderson(std::span<double> u, std::span<const double> step) {
     for (std::size_t i = 0; i < n; ++i) u[i] -= g[a] * (du_[a][i] + df_[a][i]);
 }
 
-}  // namespace couplet
+}  // namespace couplet::linalg

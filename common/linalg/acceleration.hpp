@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace couplet {
+namespace couplet::linalg {
 
 /// How a fixed-point iteration u <- u + f(u) is helped on.
 struct Acceleration {
@@ -40,4 +40,4 @@ class Accelerator {
   std::vector<std::vector<double>> du_, df_;  // differences of the last iterates and steps, newest last
 };
 
-}  // namespace couplet
+}  // namespace couplet::linalg

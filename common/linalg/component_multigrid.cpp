@@ -7,7 +7,7 @@
 
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::linalg {
 namespace {
 
 using Lanes = ComponentMultigrid::Lanes;
@@ -81,7 +81,7 @@ void sort_rows(Rows& a) {
 
 ComponentMultigrid::ComponentMultigrid(Rows rows, const Options& options)
     : coarse_factor_(options.coarse_factor),
-      comm_(options.map && comm_size(options.comm) > 1 ? options.comm : MPI_COMM_SELF) {
+      comm_(options.map && parallel::comm_size(options.comm) > 1 ? options.comm : MPI_COMM_SELF) {
   add_level(std::move(rows), comm_ == MPI_COMM_SELF ? nullptr : options.map, nullptr);
   while (n_levels() < most_levels && coarsen()) {
   }
@@ -94,22 +94,22 @@ ComponentMultigrid::ComponentMultigrid(Rows rows, const Options& options)
 struct ComponentMultigrid::GhostRows {
   std::vector<Index> offset{0}, index;
   std::vector<Lanes> value;
-  std::unique_ptr<IndexMap> map;  // of the coarser level
+  std::unique_ptr<parallel::IndexMap> map;  // of the coarser level
 };
 
 /// Adds a level; false where the last is coarse enough, or cannot be made coarser.
 bool ComponentMultigrid::coarsen() {
   Level& fine = levels_.back();
-  const GlobalIndex rows = sum(comm_, GlobalIndex(fine.a.size()));
+  const GlobalIndex rows = parallel::sum(comm_, GlobalIndex(fine.a.size()));
   if (rows <= largest_coarsest) return false;
   const std::vector<std::uint8_t> is_strong = strong_entries(fine.a);
   Index n_coarse = 0;
   const std::vector<Index> of = aggregate(fine.a, is_strong, n_coarse);
-  if (sum(comm_, GlobalIndex(n_coarse)) * 4 > rows * 3) return false;
+  if (parallel::sum(comm_, GlobalIndex(n_coarse)) * 4 > rows * 3) return false;
   prolong(fine, of, is_strong);
   GhostRows ghosts = rows_of_ghosts(fine, n_coarse);
   Rows coarse = galerkin(fine, n_coarse, ghosts);
-  const IndexMap* map = ghosts.map.get();
+  const parallel::IndexMap* map = ghosts.map.get();
   add_level(std::move(coarse), map, std::move(ghosts.map));
   return true;
 }
@@ -152,10 +152,10 @@ ComponentMultigrid::GhostRows ComponentMultigrid::rows_of_ghosts(const Level& fi
     float value[lanes];
   };
   const Index n = fine.a.size(), n_local = fine.map->n_local();
-  const GlobalIndex first = exclusive_scan(comm_, n_coarse);
+  const GlobalIndex first = parallel::exclusive_scan(comm_, n_coarse);
   Index most = 0;
   for (Index i = 0; i < n; ++i) most = std::max(most, fine.p_offset[i + 1] - fine.p_offset[i]);
-  most = static_cast<Index>(max(comm_, double(most)));
+  most = static_cast<Index>(parallel::max(comm_, double(most)));
   std::vector<std::vector<Entry>> of_ghost(std::size_t(n_local - n));
   // One entry of all rows at a time, which takes the least room.
   std::vector<Entry> entries(n_local);
@@ -184,7 +184,7 @@ ComponentMultigrid::GhostRows ComponentMultigrid::rows_of_ghosts(const Level& fi
     }
     ghosts.offset.push_back(static_cast<Index>(ghosts.index.size()));
   }
-  const std::vector<GlobalIndex> firsts = all_gather(comm_, std::vector<GlobalIndex>{first});
+  const std::vector<GlobalIndex> firsts = parallel::all_gather(comm_, std::vector<GlobalIndex>{first});
   std::vector<int> owner;
   std::vector<Index> there;
   for (const GlobalIndex c : columns) {
@@ -192,7 +192,7 @@ ComponentMultigrid::GhostRows ComponentMultigrid::rows_of_ghosts(const Level& fi
     owner.push_back(static_cast<int>(std::ranges::upper_bound(firsts, c) - firsts.begin()) - 1);
     there.push_back(static_cast<Index>(c - firsts[owner.back()]));
   }
-  ghosts.map = std::make_unique<IndexMap>(comm_, n_coarse, owner, there);
+  ghosts.map = std::make_unique<parallel::IndexMap>(comm_, n_coarse, owner, there);
   return ghosts;
 }
 
@@ -257,7 +257,8 @@ ComponentMultigrid::Rows ComponentMultigrid::galerkin(const Level& fine, Index n
   return coarse;
 }
 
-void ComponentMultigrid::add_level(Rows rows, const IndexMap* map, std::unique_ptr<IndexMap> own) {
+void ComponentMultigrid::add_level(Rows rows, const parallel::IndexMap* map,
+                                   std::unique_ptr<parallel::IndexMap> own) {
   Level level;
   level.a = std::move(rows);
   level.map = map;
@@ -284,9 +285,9 @@ void ComponentMultigrid::Level::update_ghosts() {
 void ComponentMultigrid::factor_coarsest() {
   const Level& level = levels_.back();
   const Rows& a = level.a;
-  const GlobalIndex n = sum(comm_, GlobalIndex(a.size()));
+  const GlobalIndex n = parallel::sum(comm_, GlobalIndex(a.size()));
   if (n > largest_dense) return;  // could not be made smaller: smoothing must do
-  first_coarsest_ = static_cast<Index>(exclusive_scan(comm_, a.size()));
+  first_coarsest_ = static_cast<Index>(parallel::exclusive_scan(comm_, a.size()));
   struct Entry {
     Index row, column;
     float value[lanes];
@@ -300,7 +301,7 @@ void ComponentMultigrid::factor_coarsest() {
     for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e)
       add(i, level.map ? level.map->global(a.index[e]) : a.index[e], a.value[e]);
   }
-  entries = all_gather(comm_, entries);
+  entries = parallel::all_gather(comm_, entries);
   for (int l = 0; l < lanes; ++l) {
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(n, n);
     for (const Entry& e : entries) dense(e.row, e.column) = e.value[l];
@@ -315,7 +316,7 @@ void ComponentMultigrid::solve_coarsest(Level& level) const {
     smooth_backward(level);
     return;
   }
-  const std::vector<Lanes> right = comm_ == MPI_COMM_SELF ? level.b : all_gather(comm_, level.b);
+  const std::vector<Lanes> right = comm_ == MPI_COMM_SELF ? level.b : parallel::all_gather(comm_, level.b);
   Eigen::VectorXd b(std::ssize(right));
   for (int l = 0; l < lanes; ++l) {
     for (std::size_t i = 0; i < right.size(); ++i) b[Index(i)] = right[i][l];
@@ -385,7 +386,7 @@ void ComponentMultigrid::apply(std::span<const double> b, std::span<double> x, i
   // Single precision holds the shape of b, its size goes around it.
   double largest = 0;
   for (Index i = 0; i < finest.a.size() * components; ++i) largest = std::max(largest, std::abs(b[i]));
-  if (comm_ != MPI_COMM_SELF) largest = max(comm_, largest);
+  if (comm_ != MPI_COMM_SELF) largest = parallel::max(comm_, largest);
   const double scale = largest > 0 ? 1 / largest : 0;
   for (Index i = 0; i < finest.a.size(); ++i) {
     Lanes value{};
@@ -398,4 +399,4 @@ void ComponentMultigrid::apply(std::span<const double> b, std::span<double> x, i
     for (int c = 0; c < components; ++c) x[std::size_t(i) * components + c] = largest * finest.x[i][c];
 }
 
-}  // namespace couplet
+}  // namespace couplet::linalg

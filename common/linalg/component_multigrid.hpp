@@ -13,7 +13,7 @@
 #include "common/base/types.hpp"
 #include "common/parallel/index_map.hpp"
 
-namespace couplet {
+namespace couplet::linalg {
 
 /// One smoothed-aggregation V-cycle for up to four scalar M-matrices that share one graph (the components of
 /// a vector field), all of them at once: a preconditioner. Single precision, four components in one register:
@@ -39,8 +39,8 @@ class ComponentMultigrid {
   struct Options {
     /// Of the correction by each coarser level; 1 where the rows are those of the operator itself.
     float coarse_factor = 1;
-    const IndexMap* map = nullptr;  ///< of the rows, by reference; none: no rank knows of another
-    MPI_Comm comm = MPI_COMM_SELF;  ///< of the map
+    const parallel::IndexMap* map = nullptr;  ///< of the rows, by reference; none: no rank knows of another
+    MPI_Comm comm = MPI_COMM_SELF;            ///< of the map
   };
   /// Collective over the ranks of the map.
   explicit ComponentMultigrid(Rows rows) : ComponentMultigrid(std::move(rows), Options{}) {}
@@ -53,8 +53,8 @@ class ComponentMultigrid {
  private:
   struct Level {
     Rows a;
-    const IndexMap* map = nullptr;      // of x; none: no ghosts
-    std::unique_ptr<IndexMap> own_map;  // of the coarser levels
+    const parallel::IndexMap* map = nullptr;      // of x; none: no ghosts
+    std::unique_ptr<parallel::IndexMap> own_map;  // of the coarser levels
     std::vector<Index> middle;  // of each row: its first neighbour with a larger number, ghosts among them
     std::vector<Lanes> inverse_diagonal;
     std::vector<Index> p_offset, p_index;  // prolongation to this level from the next
@@ -67,7 +67,7 @@ class ComponentMultigrid {
   GhostRows rows_of_ghosts(const Level& fine, Index n_coarse) const;
   static Rows galerkin(const Level& fine, Index n_coarse, const GhostRows& ghosts);
   bool coarsen();
-  void add_level(Rows rows, const IndexMap* map, std::unique_ptr<IndexMap> own);
+  void add_level(Rows rows, const parallel::IndexMap* map, std::unique_ptr<parallel::IndexMap> own);
   void factor_coarsest();
   void solve_coarsest(Level& level) const;
   static void smooth_forward(Level& level);
@@ -82,4 +82,4 @@ class ComponentMultigrid {
   Index first_coarsest_ = 0;                           // of this rank among them
 };
 
-}  // namespace couplet
+}  // namespace couplet::linalg

@@ -14,7 +14,7 @@ void dgeev_(const char* left, const char* right, const int* n, double* a, const 
             const int* rows_right, double* work, const int* n_work, int* info);
 }
 
-namespace couplet {
+namespace couplet::linalg {
 namespace {
 
 using Call = std::function<void(double* work, int n_work, int& info)>;
@@ -55,4 +55,4 @@ std::vector<std::complex<double>> general_eigenvalues(std::vector<double> a, int
   return values;
 }
 
-}  // namespace couplet
+}  // namespace couplet::linalg

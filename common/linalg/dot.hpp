@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-namespace couplet {
+namespace couplet::linalg {
 
 /// Sum of the products over this rank's entries, in several partial sums, so that additions do not wait for
 /// each other.
@@ -22,4 +22,4 @@ double sum_of_products(std::span<const Number> a, std::span<const double> b) {
 inline double dot_here(std::span<const double> a, std::span<const double> b) { return sum_of_products(a, b); }
 inline double dot_here(std::span<const float> a, std::span<const double> b) { return sum_of_products(a, b); }
 
-}  // namespace couplet
+}  // namespace couplet::linalg

@@ -11,7 +11,7 @@
 #include "common/log/life.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::linalg {
 namespace {
 
 // The step that lessens the residual most makes the recurrence inexact where it turns it by nearly 90 degrees
@@ -25,7 +25,7 @@ void add(double factor, std::span<const double> v, std::span<double> to) {
 }  // namespace
 
 Idr::Idr(MPI_Comm comm, std::size_t n) : comm_(comm), v_(n), z_(n) {
-  std::mt19937 random(static_cast<unsigned>(comm_rank(comm)));
+  std::mt19937 random(static_cast<unsigned>(parallel::comm_rank(comm)));
   for (auto& p : shadow_) {
     p.resize(n);
     for (float& value : p)
@@ -38,7 +38,9 @@ void Idr::run(const LinearMap& apply, const LinearMap& precondition, std::span<d
   const auto over_ranks = [&](double* values, int count) {
     MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, MPI_SUM, comm_);
   };
-  const auto norm = [&](std::span<const double> v) { return std::sqrt(sum(comm_, dot_here(v, v))); };
+  const auto norm = [&](std::span<const double> v) {
+    return std::sqrt(parallel::sum(comm_, dot_here(v, v)));
+  };
   for (int k = 0; k < s; ++k) {
     images_[k].assign(r.size(), 0);
     directions_[k].assign(r.size(), 0);
@@ -63,7 +65,7 @@ void Idr::run(const LinearMap& apply, const LinearMap& precondition, std::span<d
       apply(directions_[k], images_[k]);
       ++applications;
       for (int i = 0; i < k; ++i) {
-        const double along = sum(comm_, dot_here(shadow_[i], images_[k]));
+        const double along = parallel::sum(comm_, dot_here(shadow_[i], images_[k]));
         add(-along / m(i, i), images_[i], images_[k]);
         add(-along / m(i, i), directions_[i], directions_[k]);
       }
@@ -92,4 +94,4 @@ void Idr::run(const LinearMap& apply, const LinearMap& precondition, std::span<d
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::linalg

@@ -8,7 +8,7 @@
 
 #include "common/linalg/linear_map.hpp"
 
-namespace couplet {
+namespace couplet::linalg {
 
 /// IDR(4) [vangijzen2011], preconditioned from the right: residuals in spaces that shrink, four directions at
 /// a time. A few eigenvalues far from the others, on which BiCGStab spends hundreds of iterations, cost it a
@@ -32,4 +32,4 @@ class Idr {
   std::vector<double> v_, z_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::linalg

@@ -15,7 +15,7 @@
 #include "common/log/life.hpp"
 #include "common/log/log.hpp"
 
-namespace couplet {
+namespace couplet::linalg {
 namespace {
 
 // A residual below so many times the difference that rounding makes in A x is as small as it gets.
@@ -199,4 +199,4 @@ void KrylovSolver::run_bicgstab(std::span<double> x, double wanted, int max_iter
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::linalg

@@ -11,7 +11,7 @@
 #include "common/linalg/linear_map.hpp"
 #include "common/linalg/linear_solver.hpp"
 
-namespace couplet {
+namespace couplet::linalg {
 
 class Idr;
 class ResidualProjection;
@@ -58,4 +58,4 @@ class KrylovSolver {
   bool is_announced_ = false;
 };
 
-}  // namespace couplet
+}  // namespace couplet::linalg

@@ -4,9 +4,9 @@
 #include <functional>
 #include <span>
 
-namespace couplet {
+namespace couplet::linalg {
 
 /// y = F(x) on the rows of this rank. Collective.
 using LinearMap = std::function<void(std::span<const double> x, std::span<double> y)>;
 
-}  // namespace couplet
+}  // namespace couplet::linalg

@@ -14,7 +14,7 @@
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::linalg {
 namespace {
 
 bool is_direct(LinearMethod method) {
@@ -52,11 +52,11 @@ void choose_factors(PC pc, const SparseMatrix& matrix, bool symmetric) {
     petsc_check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
     return;
   }
-  if (comm_size(matrix.comm()) == 1) return choose_petsc_factors(pc, symmetric);
+  if (parallel::comm_size(matrix.comm()) == 1) return choose_petsc_factors(pc, symmetric);
   petsc_check(PCSetType(pc, PCREDUNDANT));
   KSP whole = nullptr;
   PC factors = nullptr;
-  petsc_check(PCRedundantSetNumber(pc, comm_size(matrix.comm())));
+  petsc_check(PCRedundantSetNumber(pc, parallel::comm_size(matrix.comm())));
   petsc_check(PCRedundantGetKSP(pc, &whole));
   petsc_check(KSPGetPC(whole, &factors));
   choose_petsc_factors(factors, symmetric);
@@ -92,12 +92,12 @@ void choose_method(KSP ksp, PC pc, const SparseMatrix& matrix, LinearMethod meth
       return choose_factors(pc, matrix, method == LinearMethod::direct_symmetric);
     case LinearMethod::direct_planar:
       petsc_check(KSPSetType(ksp, KSPPREONLY));
-      return comm_size(matrix.comm()) == 1 ? choose_cholmod(pc) : choose_factors(pc, matrix, true);
+      return parallel::comm_size(matrix.comm()) == 1 ? choose_cholmod(pc) : choose_factors(pc, matrix, true);
     case LinearMethod::cg_direct:
     case LinearMethod::cg_single:
       petsc_check(KSPSetType(ksp, KSPCG));
       petsc_check(KSPSetNormType(ksp, KSP_NORM_UNPRECONDITIONED));
-      return comm_size(matrix.comm()) == 1 ? choose_cholmod(pc) : choose_factors(pc, matrix, true);
+      return parallel::comm_size(matrix.comm()) == 1 ? choose_cholmod(pc) : choose_factors(pc, matrix, true);
     case LinearMethod::cg_multigrid:
       petsc_check(KSPSetType(ksp, KSPCG));
       petsc_check(KSPSetNormType(ksp, KSP_NORM_UNPRECONDITIONED));
@@ -153,7 +153,8 @@ LinearSolver::LinearSolver(std::string what, const SparseMatrix& matrix, const L
   PC pc = nullptr;
   petsc_check(KSPGetPC(ksp_, &pc));
   choose_method(ksp_, pc, matrix, options.method);
-  if (options.method == LinearMethod::cg_single && comm_size(matrix.comm()) == 1) use_single_precision();
+  if (options.method == LinearMethod::cg_single && parallel::comm_size(matrix.comm()) == 1)
+    use_single_precision();
   if (!is_direct(options.method)) petsc_check(KSPSetInitialGuessNonzero(ksp_, PETSC_TRUE));
   petsc_check(MatCreateVecs(matrix.petsc(), &x_, &b_));
 }
@@ -276,7 +277,7 @@ SolveStatistics LinearSolver::solve(std::span<const double> b, std::span<double>
 double LinearSolver::norm(std::span<const double> values) const {
   double square = 0;
   for (const double v : values) square += v * v;
-  return std::sqrt(sum(matrix_->comm(), square));
+  return std::sqrt(parallel::sum(matrix_->comm(), square));
 }
 
 double LinearSolver::true_residual(std::span<const double> b, std::span<const double> x) const {
@@ -359,4 +360,4 @@ KSPConvergedReason LinearSolver::attempt(std::span<const double> b, std::span<do
   return std::isfinite(norm) ? reason : std::min(reason, KSP_DIVERGED_NANORINF);
 }
 
-}  // namespace couplet
+}  // namespace couplet::linalg

@@ -9,7 +9,7 @@
 
 #include "common/linalg/matrix.hpp"
 
-namespace couplet {
+namespace couplet::linalg {
 
 enum class LinearMethod {
   direct,            ///< LU: PETSc's own for small matrices (whole on every rank), else MUMPS
@@ -99,4 +99,4 @@ class LinearSolver {
   int built_ = 0, total_iterations_ = 0;
 };
 
-}  // namespace couplet
+}  // namespace couplet::linalg

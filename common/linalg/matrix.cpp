@@ -7,7 +7,7 @@
 
 #include "common/linalg/petsc_check.hpp"
 
-namespace couplet {
+namespace couplet::linalg {
 
 SparseMatrix::SparseMatrix(MPI_Comm comm, GlobalIndex n_owned_rows, std::vector<GlobalIndex> row,
                            std::vector<GlobalIndex> column, int block_size)
@@ -75,4 +75,4 @@ void SparseMatrix::multiply(std::span<const double> x, std::span<double> y) cons
   petsc_check(VecResetArray(y_));
 }
 
-}  // namespace couplet
+}  // namespace couplet::linalg

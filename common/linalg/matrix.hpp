@@ -8,7 +8,7 @@
 
 #include "common/parallel/index_map.hpp"
 
-namespace couplet {
+namespace couplet::linalg {
 
 /// Rows of a PETSc matrix from triplets whose places are fixed once; values are refilled without any search
 /// (MatSetPreallocationCOO). Row and column numbers are global unknowns: entry * components + component.
@@ -42,4 +42,4 @@ class SparseMatrix {
   ::Vec x_ = nullptr, y_ = nullptr;
 };
 
-}  // namespace couplet
+}  // namespace couplet::linalg

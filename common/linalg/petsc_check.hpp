@@ -7,7 +7,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::linalg {
 
 /// Turns a PETSc error code into an Error that names PETSc's own message and our source line.
 inline void petsc_check(PetscErrorCode code, std::source_location where = std::source_location::current()) {
@@ -19,4 +19,4 @@ inline void petsc_check(PetscErrorCode code, std::source_location where = std::s
                      specific ? specific : "no detail", where.file_name(), where.line());
 }
 
-}  // namespace couplet
+}  // namespace couplet::linalg

@@ -7,7 +7,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::linalg {
 
 PetscEnvironment::PetscEnvironment(MPI_Comm program) {
   PETSC_COMM_WORLD = program;
@@ -26,4 +26,4 @@ std::shared_ptr<void> petsc_environment(MPI_Comm program) {
   return std::make_shared<PetscEnvironment>(program);
 }
 
-}  // namespace couplet
+}  // namespace couplet::linalg

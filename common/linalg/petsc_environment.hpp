@@ -5,7 +5,7 @@
 
 #include <memory>
 
-namespace couplet {
+namespace couplet::linalg {
 
 /// PETSc on the communicator of one program. MPI must be up before and stay up until after.
 /// PETSC_COMM_WORLD is set before PetscInitialize; PETSc's own signal handlers stay off.
@@ -20,4 +20,4 @@ class PetscEnvironment {
 /// One that lives as long as what is returned: for Program::environment.
 std::shared_ptr<void> petsc_environment(MPI_Comm program);
 
-}  // namespace couplet
+}  // namespace couplet::linalg

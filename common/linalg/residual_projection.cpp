@@ -9,7 +9,7 @@
 
 #include "common/linalg/dot.hpp"
 
-namespace couplet {
+namespace couplet::linalg {
 namespace {
 
 // Combinations whose image is below this share of the largest are noise of earlier tolerances (squared).
@@ -90,7 +90,7 @@ std::vector<double> ResidualProjection::values() const {
 }
 
 void ResidualProjection::set_values(std::span<const double> values, const LinearMap& apply) {
-  SavedNumbers saved(values, "corrections of solves");
+  base::SavedNumbers saved(values, "corrections of solves");
   kept_.assign(saved.count(most), {});
   oldest_ = saved.count(most);
   saved.fill({gram_.data(), std::size_t(gram_.size())});
@@ -114,4 +114,4 @@ void ResidualProjection::set_values(std::span<const double> values, const Linear
   if (!fits) kept_.clear(), oldest_ = 0;
 }
 
-}  // namespace couplet
+}  // namespace couplet::linalg

@@ -9,7 +9,7 @@
 
 #include "common/linalg/linear_map.hpp"
 
-namespace couplet {
+namespace couplet::linalg {
 
 /// First guess for one matrix and one right-hand side after another: of the corrections that earlier solves
 /// made to their guesses, the combination that leaves the least residual [fischer1998]. The corrections kept
@@ -50,4 +50,4 @@ class ResidualProjection {
   Eigen::Matrix<double, most, most> gram_ = Eigen::Matrix<double, most, most>::Zero();
 };
 
-}  // namespace couplet
+}  // namespace couplet::linalg

@@ -8,7 +8,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::linalg {
 
 namespace {
 
@@ -224,4 +224,4 @@ void SingleFactors::apply(std::span<const double> b, std::span<double> x) {
   for (std::size_t i = 0; i < order_.size(); ++i) x[order_[i]] = largest * work_[i];
 }
 
-}  // namespace couplet
+}  // namespace couplet::linalg

@@ -8,7 +8,7 @@
 
 #include "common/base/types.hpp"
 
-namespace couplet {
+namespace couplet::linalg {
 
 /// Cholesky factors P A P^T = L L^T of one rank's symmetric positive definite matrix, as a preconditioner.
 /// Eigen orders (AMD) and factorises in double precision; L is kept in single precision, by supernodes
@@ -62,4 +62,4 @@ class SingleFactors {
   std::vector<float> work_;  // one more than rows: where the filled-up rows go
 };
 
-}  // namespace couplet
+}  // namespace couplet::linalg

@@ -8,7 +8,7 @@
 #include "common/linalg/petsc_check.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::linalg {
 namespace {
 
 constexpr PetscInt largest_whole = 60000;
@@ -21,7 +21,7 @@ SymmetricFactors::SymmetricFactors(const SparseMatrix& matrix) {
   petsc_check(MatCreateVecs(a, &x_, &b_));
   PetscInt rows = 0;
   petsc_check(MatGetSize(a, &rows, nullptr));
-  if (comm_size(matrix.comm()) == 1 || rows > largest_whole) {
+  if (parallel::comm_size(matrix.comm()) == 1 || rows > largest_whole) {
     factorise(a);
     return;
   }
@@ -29,8 +29,8 @@ SymmetricFactors::SymmetricFactors(const SparseMatrix& matrix) {
   petsc_check(VecScatterCreateToAll(b_, &to_all_, &whole_b_));
   petsc_check(VecDuplicate(whole_b_, &whole_x_));
   Mat whole = nullptr;
-  petsc_check(
-      MatCreateRedundantMatrix(a, comm_size(matrix.comm()), MPI_COMM_NULL, MAT_INITIAL_MATRIX, &whole));
+  petsc_check(MatCreateRedundantMatrix(a, parallel::comm_size(matrix.comm()), MPI_COMM_NULL,
+                                       MAT_INITIAL_MATRIX, &whole));
   petsc_check(MatSetOption(whole, MAT_SYMMETRIC, PETSC_TRUE));
   factorise(whole);
   petsc_check(MatDestroy(&whole));
@@ -81,8 +81,8 @@ void SymmetricFactors::solve(std::span<const double> b, std::span<double> x) con
   petsc_check(VecResetArray(x_));
   double square = 0;
   for (const double v : x) square += v * v;
-  if (!std::isfinite(sum(PetscObjectComm(reinterpret_cast<PetscObject>(b_)), square)))
+  if (!std::isfinite(parallel::sum(PetscObjectComm(reinterpret_cast<PetscObject>(b_)), square)))
     throw SolveFailure("The factorised solve of a symmetric system gave no finite solution.");
 }
 
-}  // namespace couplet
+}  // namespace couplet::linalg

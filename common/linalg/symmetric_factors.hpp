@@ -7,7 +7,7 @@
 
 #include "common/linalg/matrix.hpp"
 
-namespace couplet {
+namespace couplet::linalg {
 
 /// L D L^T of a symmetric matrix that need not be positive (MUMPS, pivots of one or two rows). Those of up to 60 000 rows
 /// are factorised whole on every rank: less latency, and the same bits in every run.
@@ -35,4 +35,4 @@ class SymmetricFactors {
   GlobalIndex negative_ = 0;
 };
 
-}  // namespace couplet
+}  // namespace couplet::linalg

@@ -32,7 +32,7 @@ std::string quoted(const std::string& text) {
 std::string number_text(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "null"; }
 
 std::string line(const Finding& f) {
-  return fmt::format("{}{}{} [{}{}]", f.severity == Severity::wrong ? "WRONG: " : "", f.sentence,
+  return fmt::format("{}{}{} [{}{}]", f.severity == base::Severity::wrong ? "WRONG: " : "", f.sentence,
                      f.advice.empty() ? "" : "; " + f.advice, f.id, is_accepted(f.id) ? ", accepted" : "");
 }
 
@@ -41,7 +41,7 @@ std::string line(const Finding& f) {
 void finding(int rank, Finding f) {
   finding_id(f.id);
   if (rank == 0) {
-    if (f.severity == Severity::note)
+    if (f.severity == base::Severity::note)
       info("{}", line(f));
     else
       warn("{}", line(f));
@@ -57,14 +57,14 @@ void accept(std::span<const std::string> ids) {
 
 bool is_accepted(const std::string& id) { return std::ranges::count(accepted_ids(), id) > 0; }
 
-int count(Severity least, bool with_neglected) {
+int count(base::Severity least, bool with_neglected) {
   return int(std::ranges::count_if(kept(), [&](const Finding& f) {
     const bool counts = with_neglected || finding_id(f.id).about == FindingId::About::answer;
     return f.severity >= least && counts && !is_accepted(f.id);
   }));
 }
 
-int doubts() { return count(Severity::warning, true); }
+int doubts() { return count(base::Severity::warning, true); }
 
 std::string findings_as_json() {
   std::string out;
@@ -72,9 +72,9 @@ std::string findings_as_json() {
     out += fmt::format(
         "{}\n    {{\"id\": {}, \"severity\": \"{}\", \"number\": {}, \"limit\": {}, \"sentence\": {}, \"advice\": {}, "
         "\"neglected-effect\": {}, \"accepted\": {}}}",
-        out.empty() ? "" : ",", quoted(f.id), name(f.severity), number_text(f.number), number_text(f.limit),
-        quoted(f.sentence), quoted(f.advice), finding_id(f.id).about == FindingId::About::neglected,
-        is_accepted(f.id));
+        out.empty() ? "" : ",", quoted(f.id), base::name(f.severity), number_text(f.number),
+        number_text(f.limit), quoted(f.sentence), quoted(f.advice),
+        finding_id(f.id).about == FindingId::About::neglected, is_accepted(f.id));
   return "[" + out + (out.empty() ? "]" : "\n  ]");
 }
 
@@ -90,11 +90,11 @@ std::string unknown_ids(std::span<const std::string> ids) {
   std::string text;
   for (const std::string& id : ids) {
     if (std::ranges::count(known, id) > 0) continue;
-    const auto meant = closest(id, known);
+    const auto meant = base::closest(id, known);
     text += fmt::format("{}unknown finding '{}'{}", text.empty() ? "" : "; ", id,
                         meant ? fmt::format(", did you mean '{}'?", *meant) : "");
   }
-  return text.empty() ? text : fmt::format("{}. Findings: {}", text, join(known));
+  return text.empty() ? text : fmt::format("{}. Findings: {}", text, base::join(known));
 }
 
 }  // namespace couplet::log

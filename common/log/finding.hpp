@@ -14,7 +14,7 @@ namespace couplet::log {
 /// "effect: number (limit): verdict".
 struct Finding {
   std::string id;  ///< one of finding_ids()
-  Severity severity = Severity::warning;
+  base::Severity severity = base::Severity::warning;
   double number = std::numeric_limits<double>::quiet_NaN(), limit = number;  ///< NaN: none
   std::string sentence;
   std::string advice{};  ///< what to do; empty: the sentence says it
@@ -31,7 +31,7 @@ bool is_accepted(const std::string& id);
 
 /// How many not accepted findings about the answer are at least so severe; `with_neglected`: opinions on neglected effects
 /// among them.
-int count(Severity least, bool with_neglected);
+int count(base::Severity least, bool with_neglected);
 /// Warnings and worse, opinions on neglected effects included.
 int doubts();
 

@@ -53,7 +53,7 @@ void setup(const std::string& participant, int rank, Verbosity verbosity, const 
   sinks.back()->set_level(spdlog::level::err);
   if (!file.empty() && rank == 0) {
     try {
-      sinks.push_back(std::make_shared<spdlog::sinks::basic_file_sink_mt>(own_file(file).string()));
+      sinks.push_back(std::make_shared<spdlog::sinks::basic_file_sink_mt>(base::own_file(file).string()));
     } catch (const spdlog::spdlog_ex&) {
       throw Error(
           "The log file '{}' cannot be opened for writing. Check the output folder and its permissions.",

@@ -5,7 +5,7 @@
 #include "common/base/text.hpp"
 #include "common/mesh/topology.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 std::vector<int> materials_of_cells(const RawMesh& raw) {
   if (raw.materials.empty()) return {};
@@ -15,8 +15,8 @@ std::vector<int> materials_of_cells(const RawMesh& raw) {
       const auto zone = std::ranges::find(raw.zones, name);
       if (zone == raw.zones.end())
         throw Error("It has no zone '{}' for a material. {} The zones (physical {} of gmsh) are {}.", name,
-                    did_you_mean(name, raw.zones, "zones"), raw.dim == 2 ? "surfaces" : "volumes",
-                    join(raw.zones));
+                    base::did_you_mean(name, raw.zones, "zones"), raw.dim == 2 ? "surfaces" : "volumes",
+                    base::join(raw.zones));
       int& material = of_zone[zone - raw.zones.begin()];
       if (material >= 0)
         throw Error("Its zone '{}' is assigned to two materials; each zone has exactly one.", name);
@@ -25,7 +25,7 @@ std::vector<int> materials_of_cells(const RawMesh& raw) {
   for (std::size_t z = 0; z < of_zone.size(); ++z)
     if (of_zone[z] < 0)
       throw Error("Its zone '{}' has no material; add it to the zones of a material. The zones are {}.",
-                  raw.zones[z], join(raw.zones));
+                  raw.zones[z], base::join(raw.zones));
   if (raw.materials.size() == 1) return {};
   std::vector<int> result;
   for (const int zone : raw.cell_zone) result.push_back(of_zone[zone]);
@@ -79,4 +79,4 @@ CellPairs connected_cells(const Faces& faces) {
   return pairs;
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -8,7 +8,7 @@
 #include "common/mesh/load.hpp"
 #include "common/mesh/topology.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 /// Points on a grid, and for each grid cell its corners in hexahedron (or quadrilateral) order.
@@ -186,4 +186,4 @@ void perturb_interior(RawMesh& raw, double amount, unsigned seed) {
     }
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/cell_shapes.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 constexpr CellShape triangle{2, 3, 3, {{{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 0, -1, -1}}}, {0, 2, 1}};
@@ -34,4 +34,4 @@ const char* name_of(CellType type) {
   return names[static_cast<std::size_t>(type)];
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -6,7 +6,7 @@
 
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 /// Faces of a cell type as positions in the cell's point list, turning right-handed about the outward normal.
 /// Point order: VTK and gmsh agree on it (prism: the normal of points 0 1 2 looks towards points 3 4 5).
@@ -25,4 +25,4 @@ struct CellShape {
 const CellShape& shape_of(CellType type);
 const char* name_of(CellType type);
 
-}  // namespace couplet
+}  // namespace couplet::mesh

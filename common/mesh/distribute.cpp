@@ -7,7 +7,7 @@
 #include "common/mesh/partition.hpp"
 #include "common/mesh/topology.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 /// The whole mesh with its faces and its partition; the same on all ranks while the local parts are cut out.
@@ -30,16 +30,16 @@ WholeMesh prepare(MPI_Comm comm, const RawMesh& raw) {
     split_materials(whole.raw, whole.faces, whole.cell_material);
     join_periodic(whole.raw, whole.faces);
     const Index n = whole.raw.cell_points.size();
-    if (n < comm_size(comm))
+    if (n < parallel::comm_size(comm))
       throw Error("The mesh has {} cells, fewer than the {} ranks that share it. Start fewer processes.", n,
-                  comm_size(comm));
+                  parallel::comm_size(comm));
     const CellPairs pairs = connected_cells(whole.faces);
-    whole.part = partition(make_graph(n, pairs.first, pairs.second), comm_size(comm));
+    whole.part = partition(make_graph(n, pairs.first, pairs.second), parallel::comm_size(comm));
     whole.raw.boundary_points = {};  // now in `faces`
     if (whole.raw.find_wide_points)
       whole.wide_points = wide_points(whole.raw, whole.faces, whole.cell_material);
   });
-  if (comm_size(comm) == 1) return whole;
+  if (parallel::comm_size(comm) == 1) return whole;
   MPI_Bcast(&whole.raw.dim, 1, MPI_INT, 0, comm);
   broadcast(comm, whole.raw.points);
   broadcast(comm, whole.raw.cell_type);
@@ -62,23 +62,23 @@ WholeMesh prepare(MPI_Comm comm, const RawMesh& raw) {
 
 /// Index map of entries known by `ids` (owned ones first); the owners tell where they keep what is a ghost
 /// here.
-IndexMap make_index_map(MPI_Comm comm, std::span<const GlobalIndex> ids, Index n_owned,
-                        const std::vector<int>& ghost_owner) {
+parallel::IndexMap make_index_map(MPI_Comm comm, std::span<const GlobalIndex> ids, Index n_owned,
+                                  const std::vector<int>& ghost_owner) {
   std::vector<std::pair<GlobalIndex, Index>> owned(n_owned);
   for (Index i = 0; i < n_owned; ++i) owned[i] = {ids[i], i};
   std::sort(owned.begin(), owned.end());
 
-  std::vector<std::vector<GlobalIndex>> wanted(comm_size(comm));
+  std::vector<std::vector<GlobalIndex>> wanted(parallel::comm_size(comm));
   for (std::size_t g = 0; g < ghost_owner.size(); ++g) wanted[ghost_owner[g]].push_back(ids[n_owned + g]);
-  std::vector<std::vector<Index>> answers(comm_size(comm));
-  const auto asked = all_to_all(comm, wanted);
+  std::vector<std::vector<Index>> answers(parallel::comm_size(comm));
+  const auto asked = parallel::all_to_all(comm, wanted);
   for (std::size_t r = 0; r < asked.size(); ++r)
     for (const GlobalIndex id : asked[r])
       answers[r].push_back(std::lower_bound(owned.begin(), owned.end(), std::pair(id, Index(0)))->second);
-  const auto told = all_to_all(comm, answers);
+  const auto told = parallel::all_to_all(comm, answers);
   std::vector<Index> remote, next(told.size(), 0);
   for (const int r : ghost_owner) remote.push_back(told[r][next[r]++]);
-  return IndexMap(comm, n_owned, ghost_owner, remote);
+  return parallel::IndexMap(comm, n_owned, ghost_owner, remote);
 }
 
 /// Cuts this rank's part out of the whole mesh.
@@ -86,7 +86,7 @@ class LocalPart {
  public:
   LocalPart(MPI_Comm comm, const WholeMesh& whole)
       : comm_(comm),
-        rank_(comm_rank(comm)),
+        rank_(parallel::comm_rank(comm)),
         raw_(whole.raw),
         faces_(whole.faces),
         part_(whole.part),
@@ -175,7 +175,7 @@ class LocalPart {
 
   /// The owner of a point is the smallest rank that owns a cell touching it.
   void choose_points() {
-    std::vector<int> point_owner(raw_.points.size(), comm_size(comm_));
+    std::vector<int> point_owner(raw_.points.size(), parallel::comm_size(comm_));
     for (Index c = 0; c < raw_.cell_points.size(); ++c)
       for (const Index p : raw_.cell_points[c]) point_owner[p] = std::min(point_owner[p], part_[c]);
 
@@ -309,4 +309,4 @@ LoadedMesh distribute(MPI_Comm comm, const RawMesh& raw) {
   return {std::move(mesh), std::move(geometry)};
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -4,7 +4,7 @@
 #include "common/mesh/mesh.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 /// The box around a mesh [m], over all ranks.
 struct Extent {
@@ -17,8 +17,9 @@ inline Extent extent_of(const Mesh& mesh, const Geometry& geometry) {
   Extent box{Vec3::Constant(1e300), Vec3::Constant(-1e300)};
   for (const Vec3& x : geometry.points) box.lower = box.lower.cwiseMin(x), box.upper = box.upper.cwiseMax(x);
   for (int a = 0; a < 3; ++a)
-    box.lower[a] = min(mesh.comm, box.lower[a]), box.upper[a] = max(mesh.comm, box.upper[a]);
+    box.lower[a] = parallel::min(mesh.comm, box.lower[a]),
+    box.upper[a] = parallel::max(mesh.comm, box.upper[a]);
   return box;
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

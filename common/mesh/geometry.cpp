@@ -4,7 +4,7 @@
 
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 double* flat(std::vector<Vec3>& values) { return values.empty() ? nullptr : values.front().data(); }
@@ -139,4 +139,4 @@ std::vector<double> swept_volumes(const Mesh& mesh, std::span<const Vec3> from, 
   return swept;
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -11,7 +11,7 @@
 
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 /// A whole mesh on one rank, as a file or a generator gives it.
 struct RawMesh {
@@ -74,4 +74,4 @@ RawMesh make_box(BoxCells cells, const std::array<int, 3>& n, const Vec3& lower,
 /// same seed.
 void perturb_interior(RawMesh& raw, double amount, unsigned seed);
 
-}  // namespace couplet
+}  // namespace couplet::mesh

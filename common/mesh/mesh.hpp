@@ -12,7 +12,7 @@
 #include "common/base/types.hpp"
 #include "common/parallel/index_map.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 enum class CellType : std::uint8_t { triangle, quadrilateral, tetrahedron, hexahedron, prism, pyramid };
 
@@ -71,7 +71,7 @@ struct Mesh {
   MPI_Comm comm = MPI_COMM_SELF;
   int dim = 3;
 
-  IndexMap cells, points, boundary;  ///< owned first, then ghosts
+  parallel::IndexMap cells, points, boundary;  ///< owned first, then ghosts
   /// Numbers in the order of the mesh file: the same whatever the number of ranks. Per local cell, point,
   /// boundary face.
   std::vector<GlobalIndex> cell_id, point_id, boundary_id;
@@ -141,4 +141,4 @@ Geometry compute_geometry(const Mesh& mesh, std::vector<Vec3> points);
 /// local face. The signed sum over a cell's faces is its change of volume to round-off.
 std::vector<double> swept_volumes(const Mesh& mesh, std::span<const Vec3> from, std::span<const Vec3> to);
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -12,7 +12,7 @@
 #include "common/mesh/mesh.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 /// Runs `work` on rank 0; what it throws there is thrown on every rank (as Error, with the same text).
 /// Collective.
@@ -20,7 +20,7 @@ template <class Work>
 void on_root(MPI_Comm comm, Work&& work) {
   int failed = 0;
   std::string text;
-  if (comm_rank(comm) == 0) {
+  if (parallel::comm_rank(comm) == 0) {
     try {
       work();
     } catch (const std::exception& e) {
@@ -30,7 +30,7 @@ void on_root(MPI_Comm comm, Work&& work) {
   }
   MPI_Bcast(&failed, 1, MPI_INT, 0, comm);
   if (failed == 0) return;
-  broadcast(comm, text);
+  parallel::broadcast(comm, text);
   throw Error(text);
 }
 
@@ -55,7 +55,7 @@ inline void broadcast(MPI_Comm comm, std::vector<std::string>& texts) {
   int size = static_cast<int>(texts.size());
   MPI_Bcast(&size, 1, MPI_INT, 0, comm);
   texts.resize(size);
-  for (std::string& text : texts) broadcast(comm, text);
+  for (std::string& text : texts) parallel::broadcast(comm, text);
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -7,7 +7,7 @@
 #include "common/mesh/cell_shapes.hpp"
 #include "common/mesh/topology.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 /// Volume of a cell as its points stand, quadrilateral faces cut at their first point: good enough for a
@@ -92,4 +92,4 @@ void drop_unused_points(RawMesh& raw) {
   for (Index& p : raw.boundary_points.index) p = number[p];
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -14,7 +14,7 @@ extern "C" {
 
 #include "common/linalg/petsc_check.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 Csr make_graph(Index n, std::span<const Index> first, std::span<const Index> second) {
   Csr graph;
@@ -44,26 +44,26 @@ std::vector<int> partition(const Csr& graph, int parts) {
   SCOTCH_randomReset();
   // PETSc frees both arrays with the matrix.
   PetscInt *rows = nullptr, *columns = nullptr;
-  petsc_check(PetscMalloc1(n + 1, &rows));
-  petsc_check(PetscMalloc1(std::max<std::size_t>(1, graph.index.size()), &columns));
+  linalg::petsc_check(PetscMalloc1(n + 1, &rows));
+  linalg::petsc_check(PetscMalloc1(std::max<std::size_t>(1, graph.index.size()), &columns));
   std::copy(graph.offset.begin(), graph.offset.end(), rows);
   std::copy(graph.index.begin(), graph.index.end(), columns);
   Mat adjacency = nullptr;
   MatPartitioning tool = nullptr;
   IS result = nullptr;
-  petsc_check(MatCreateMPIAdj(PETSC_COMM_SELF, n, n, rows, columns, nullptr, &adjacency));
-  petsc_check(MatPartitioningCreate(PETSC_COMM_SELF, &tool));
-  petsc_check(MatPartitioningSetType(tool, MATPARTITIONINGPTSCOTCH));
-  petsc_check(MatPartitioningSetAdjacency(tool, adjacency));
-  petsc_check(MatPartitioningSetNParts(tool, parts));
-  petsc_check(MatPartitioningApply(tool, &result));
+  linalg::petsc_check(MatCreateMPIAdj(PETSC_COMM_SELF, n, n, rows, columns, nullptr, &adjacency));
+  linalg::petsc_check(MatPartitioningCreate(PETSC_COMM_SELF, &tool));
+  linalg::petsc_check(MatPartitioningSetType(tool, MATPARTITIONINGPTSCOTCH));
+  linalg::petsc_check(MatPartitioningSetAdjacency(tool, adjacency));
+  linalg::petsc_check(MatPartitioningSetNParts(tool, parts));
+  linalg::petsc_check(MatPartitioningApply(tool, &result));
   const PetscInt* part = nullptr;
-  petsc_check(ISGetIndices(result, &part));
+  linalg::petsc_check(ISGetIndices(result, &part));
   std::vector<int> parts_of(part, part + n);
-  petsc_check(ISRestoreIndices(result, &part));
-  petsc_check(ISDestroy(&result));
-  petsc_check(MatPartitioningDestroy(&tool));
-  petsc_check(MatDestroy(&adjacency));
+  linalg::petsc_check(ISRestoreIndices(result, &part));
+  linalg::petsc_check(ISDestroy(&result));
+  linalg::petsc_check(MatPartitioningDestroy(&tool));
+  linalg::petsc_check(MatDestroy(&adjacency));
   return parts_of;
 }
 
@@ -107,4 +107,4 @@ std::vector<Index> reverse_cuthill_mckee(const Csr& graph) {
   return result;
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -6,7 +6,7 @@
 
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 /// Undirected graph of `n` nodes from its edges (first[i], second[i]): per node its neighbours, ascending.
 Csr make_graph(Index n, std::span<const Index> first, std::span<const Index> second);
@@ -18,4 +18,4 @@ std::vector<int> partition(const Csr& graph, int parts);
 /// Reverse Cuthill-McKee: order[i] is the node that comes i-th. Components one after the other.
 std::vector<Index> reverse_cuthill_mckee(const Csr& graph);
 
-}  // namespace couplet
+}  // namespace couplet::mesh

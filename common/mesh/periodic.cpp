@@ -7,7 +7,7 @@
 #include "common/base/error.hpp"
 #include "common/mesh/topology.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 constexpr double tolerance = 1e-4;  // of the face's size
@@ -126,4 +126,4 @@ void join_periodic(const RawMesh& raw, Faces& faces) {
   faces = std::move(result);
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -9,7 +9,7 @@
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 /// The two sides of each point of the periodic faces that this rank sees.
@@ -43,7 +43,7 @@ std::map<GlobalIndex, GlobalIndex> roots_of(const std::vector<std::array<GlobalI
   const auto place = [&](GlobalIndex p) {
     return Index(std::ranges::lower_bound(points, p) - points.begin());
   };
-  DisjointSets sets(Index(points.size()));
+  base::DisjointSets sets(Index(points.size()));
   for (const auto& [a, b] : pairs) sets.join(place(a), place(b));
   std::map<GlobalIndex, GlobalIndex> roots;
   for (Index i = 0; i < Index(points.size()); ++i)
@@ -67,8 +67,8 @@ std::vector<std::array<std::string, 2>> periodic_pairs(const std::map<std::strin
 }
 
 PeriodicPoints::PeriodicPoints(const Mesh& mesh, const Geometry& geometry) : mesh_(mesh) {
-  if (!any(mesh.comm, !mesh.neighbour_shift.empty())) return;  // a rank without cells has none
-  const auto roots = roots_of(all_gather(mesh.comm, pairs_here(mesh, geometry)));
+  if (!parallel::any(mesh.comm, !mesh.neighbour_shift.empty())) return;  // a rank without cells has none
+  const auto roots = roots_of(parallel::all_gather(mesh.comm, pairs_here(mesh, geometry)));
   std::map<GlobalIndex, Index> group_of;  // of the roots
   for (const auto& [point, root] : roots)
     if (group_of.try_emplace(root, static_cast<Index>(group_of.size())).second) copies_.push_back(0);
@@ -105,7 +105,7 @@ double PeriodicPoints::largest_gap(std::span<const double> values, int stride) c
     }
     largest = std::max(largest, 2 * std::sqrt(square));
   }
-  return max(mesh_.comm, largest);
+  return parallel::max(mesh_.comm, largest);
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

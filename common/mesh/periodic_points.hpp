@@ -9,7 +9,7 @@
 
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 /// Pairs of periodic patches from the partner that each of them names. Throws Error, with `boundaries.<patch>`, if two
 /// do not name each other.
@@ -43,4 +43,4 @@ class PeriodicPoints {
   std::vector<int> copies_;            // per group
 };
 
-}  // namespace couplet
+}  // namespace couplet::mesh

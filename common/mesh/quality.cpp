@@ -12,7 +12,7 @@
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 /// Stays within the cell's bounding box however it is turned over; the centroid of a cell without volume does
@@ -41,7 +41,7 @@ struct Extreme {
     struct {
       double value;
       int rank;
-    } best{value, comm_rank(comm)};
+    } best{value, parallel::comm_rank(comm)};
     MPI_Allreduce(MPI_IN_PLACE, &best, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm);
     MPI_Bcast(at.data(), 3, MPI_DOUBLE, best.rank, comm);
     value = best.value;
@@ -96,7 +96,7 @@ MeshQuality measure_quality(const Mesh& mesh, const Geometry& geometry) {
   }
   Extreme aspect = largest_aspect_ratio(mesh, geometry);
   for (Extreme* e : {&smallest, &angle, &skewness, &aspect}) e->reduce(mesh.comm);
-  return {-smallest.value, max(mesh.comm, largest),
+  return {-smallest.value, parallel::max(mesh.comm, largest),
           angle.value,     skewness.value,
           aspect.value,    smallest.at,
           angle.at,        skewness.at,
@@ -121,8 +121,8 @@ std::optional<CellTrouble> find_inverted(const Mesh& mesh, const Geometry& geome
     cell = c;
   }
   if (cell >= 0) worst.centre = mean_face_centre(mesh, geometry, cell);
-  if (!any(mesh.comm, !(worst.volume > 0))) return std::nullopt;
-  const std::vector<CellTrouble> all = all_gather(mesh.comm, std::vector<CellTrouble>{worst});
+  if (!parallel::any(mesh.comm, !(worst.volume > 0))) return std::nullopt;
+  const std::vector<CellTrouble> all = parallel::all_gather(mesh.comm, std::vector<CellTrouble>{worst});
   return *std::min_element(all.begin(), all.end(), worse);
 }
 
@@ -154,7 +154,7 @@ std::optional<CellTrouble> find_crossed(const Mesh& mesh, const Geometry& geomet
     for (Index c = 0; c < mesh.cells.n_owned(); ++c) judge(mesh.cell_points[c], c);
   else
     for (Index f = 0; f < mesh.n_flux_faces(); ++f) judge(mesh.face_points[f], mesh.owner[f]);
-  const std::vector<CellTrouble> all = all_gather(mesh.comm, found);
+  const std::vector<CellTrouble> all = parallel::all_gather(mesh.comm, found);
   if (all.empty()) return std::nullopt;
   return *std::ranges::min_element(all, {}, &CellTrouble::cell_id);
 }
@@ -169,7 +169,7 @@ std::optional<CellTrouble> find_fold(const Mesh& mesh, const Geometry& g) {
     if ((there - g.cell_centre[owner]).dot(g.face_area[f]) > 0) continue;
     found.push_back({mesh.cell_id[owner], g.face_centre[f], g.volume[owner]});
   }
-  const std::vector<CellTrouble> all = all_gather(mesh.comm, found);
+  const std::vector<CellTrouble> all = parallel::all_gather(mesh.comm, found);
   if (all.empty()) return std::nullopt;
   return *std::ranges::min_element(all, {}, &CellTrouble::cell_id);
 }
@@ -190,7 +190,7 @@ void check_and_report(const Mesh& mesh, const Geometry& geometry) {
         "there.",
         trouble->cell_id, text(trouble->centre));
   const MeshQuality q = measure_quality(mesh, geometry);
-  if (comm_rank(mesh.comm) != 0) return;
+  if (parallel::comm_rank(mesh.comm) != 0) return;
   log::info(
       "mesh: {} cells; smallest volume {:.3g} m^3 at {}, largest angle {:.3g} degrees at {}, skewness {:.3g} "
       "at {}, "
@@ -199,4 +199,4 @@ void check_and_report(const Mesh& mesh, const Geometry& geometry) {
       q.max_skewness, text(q.skewness_at), q.max_aspect_ratio, text(q.aspect_at));
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -6,7 +6,7 @@
 
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 struct MeshQuality {
   double min_volume = 0, max_volume = 0;  ///< [m^3]
@@ -49,4 +49,4 @@ std::optional<CellTrouble> find_fold(const Mesh& mesh, const Geometry& geometry)
 /// skewness and aspect ratio with their places. Collective.
 void check_and_report(const Mesh& mesh, const Geometry& geometry);
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -9,7 +9,7 @@
 #include "common/base/error.hpp"
 #include "common/mesh/cell_shapes.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 constexpr Index none = std::numeric_limits<Index>::max();
@@ -211,4 +211,4 @@ Csr outer_faces(const RawMesh& raw) {
   return result;
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -6,7 +6,7 @@
 
 #include "common/mesh/load.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 /// All faces of a whole mesh. Interior faces first, by (owner, neighbour), the owner being the cell with the
 /// smaller number; then the boundary faces, in the order of their boundary elements. Points turn right-handed
@@ -62,4 +62,4 @@ void drop_unused_points(RawMesh& raw);
 /// "(1, 2.5)" in 2-D, "(1, 2.5, 3)" in 3-D.
 std::string place(const Vec3& x, int dim);
 
-}  // namespace couplet
+}  // namespace couplet::mesh

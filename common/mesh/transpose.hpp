@@ -3,7 +3,7 @@
 
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 /// Which of the rows [first, size) hold each of `n_entries` entries: numbered from 0 at `first`, ascending.
 inline Csr transpose(const Csr& rows, Index first, Index n_entries) {
@@ -19,4 +19,4 @@ inline Csr transpose(const Csr& rows, Index first, Index n_entries) {
   return result;
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -5,7 +5,7 @@
 #include "common/mesh/topology.hpp"
 #include "common/mesh/transpose.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 Vec3 mean(const RawMesh& raw, std::span<const Index> points) {
@@ -61,4 +61,4 @@ std::vector<Index> wide_points(const RawMesh& raw, const Faces& faces,
   return result;
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

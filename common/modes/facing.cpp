@@ -14,7 +14,7 @@
 
 #include "common/modes/surface_parts.hpp"
 
-namespace couplet {
+namespace couplet::modes {
 namespace {
 
 /// A surface whose area vectors add up to more than this share of its area is a sheet: those of a closed one cancel,
@@ -240,4 +240,4 @@ std::string facing_problem_of(const ModalModel& model, Facing wanted) {
   return "";
 }
 
-}  // namespace couplet
+}  // namespace couplet::modes

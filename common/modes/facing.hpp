@@ -6,7 +6,7 @@
 
 #include "common/modes/modal_model.hpp"
 
-namespace couplet {
+namespace couplet::modes {
 
 /// Volume behind the faces of a surface that has two sides, above 0 where the normals point out of it [m^3]: of a closed
 /// one by the divergence theorem, of an open one (a plate's clamped rim is not part of its surface) closed by the cone
@@ -22,4 +22,4 @@ enum class Facing { outward, inward };
 /// tell, volume_behind() of the part. Empty: all are right, or nothing tells (a sheet alone).
 std::string facing_problem_of(const ModalModel& model, Facing wanted = Facing::outward);
 
-}  // namespace couplet
+}  // namespace couplet::modes

@@ -7,12 +7,12 @@
 
 #include "common/linalg/linear_map.hpp"
 
-namespace couplet {
+namespace couplet::modes {
 
 /// A and B by what they do to the owned rows of a vector, each collective. Both symmetric, B positive.
 struct RatioOperators {
-  LinearMap a, b;
-  LinearMap solve_b;  ///< y = B^{-1} x; what it throws comes out of largest_ratios
+  linalg::LinearMap a, b;
+  linalg::LinearMap solve_b;  ///< y = B^{-1} x; what it throws comes out of largest_ratios
 };
 
 /// Largest solutions of A x = mu B x.
@@ -25,4 +25,4 @@ struct Ratios {
 /// positive for any x and its largest ratios crowd below zero. Needs a SlepcEnvironment. Collective over `comm`.
 Ratios largest_ratios(MPI_Comm comm, std::size_t n_owned, const RatioOperators& of, int n);
 
-}  // namespace couplet
+}  // namespace couplet::modes

@@ -9,7 +9,7 @@
 
 #include "common/linalg/matrix.hpp"
 
-namespace couplet {
+namespace couplet::modes {
 
 /// SLEPc beside a PETSc that is up already. Made on all ranks of the program (collective); at most one at a
 /// time.
@@ -36,7 +36,8 @@ struct EigenModes {
 /// which repeated eigenvalues make necessary. Throws Error if there are fewer modes than asked for,
 /// SolveFailure if the iteration fails or modes stay hidden. Needs a SlepcEnvironment. Collective over the
 /// matrices' ranks.
-EigenModes lowest_modes(const SparseMatrix& stiffness, const SparseMatrix& mass, int n, double shift);
+EigenModes lowest_modes(const linalg::SparseMatrix& stiffness, const linalg::SparseMatrix& mass, int n,
+                        double shift);
 
 /// K and M by what they do to the owned rows of a vector, each collective. K symmetric and not negative, M too.
 struct ModalOperators {
@@ -54,4 +55,4 @@ EigenModes lowest_modes(MPI_Comm comm, std::size_t n_owned, const ModalOperators
 /// and the first one that is not: a group cut in two answers differently in different directions.
 bool cuts_a_group(const EigenModes& modes, double tolerance);
 
-}  // namespace couplet
+}  // namespace couplet::modes

@@ -12,7 +12,7 @@
 #include "common/modes/lowest_modes.hpp"
 #include "common/modes/shell_operator.hpp"
 
-namespace couplet {
+namespace couplet::modes {
 namespace {
 
 constexpr double solver_tolerance =
@@ -32,24 +32,24 @@ class Search {
     k_ = symmetric_shell(comm, n_owned, stiffness_);
     m_ = symmetric_shell(comm, n_owned, mass_);
     inverse_ = {&of.solve, &failure_};
-    petsc_check(EPSCreate(comm, &eps_));
-    petsc_check(EPSSetOperators(eps_, k_, m_));
-    petsc_check(EPSSetProblemType(eps_, EPS_GHEP));
-    petsc_check(EPSSetType(eps_, EPSKRYLOVSCHUR));
-    petsc_check(EPSSetWhichEigenpairs(eps_, EPS_TARGET_MAGNITUDE));
-    petsc_check(EPSSetTarget(eps_, shift));
+    linalg::petsc_check(EPSCreate(comm, &eps_));
+    linalg::petsc_check(EPSSetOperators(eps_, k_, m_));
+    linalg::petsc_check(EPSSetProblemType(eps_, EPS_GHEP));
+    linalg::petsc_check(EPSSetType(eps_, EPSKRYLOVSCHUR));
+    linalg::petsc_check(EPSSetWhichEigenpairs(eps_, EPS_TARGET_MAGNITUDE));
+    linalg::petsc_check(EPSSetTarget(eps_, shift));
     ST st = nullptr;
     KSP ksp = nullptr;
     PC pc = nullptr;
-    petsc_check(EPSGetST(eps_, &st));
-    petsc_check(STSetType(st, STSINVERT));
-    petsc_check(STSetMatMode(st, ST_MATMODE_SHELL));
-    petsc_check(STGetKSP(st, &ksp));
-    petsc_check(KSPSetType(ksp, KSPPREONLY));
-    petsc_check(KSPGetPC(ksp, &pc));
-    petsc_check(PCSetType(pc, PCSHELL));
-    petsc_check(PCShellSetContext(pc, &inverse_));
-    petsc_check(PCShellSetApply(pc, precondition_shell));
+    linalg::petsc_check(EPSGetST(eps_, &st));
+    linalg::petsc_check(STSetType(st, STSINVERT));
+    linalg::petsc_check(STSetMatMode(st, ST_MATMODE_SHELL));
+    linalg::petsc_check(STGetKSP(st, &ksp));
+    linalg::petsc_check(KSPSetType(ksp, KSPPREONLY));
+    linalg::petsc_check(KSPGetPC(ksp, &pc));
+    linalg::petsc_check(PCSetType(pc, PCSHELL));
+    linalg::petsc_check(PCShellSetContext(pc, &inverse_));
+    linalg::petsc_check(PCShellSetApply(pc, precondition_shell));
   }
   Search(const Search&) = delete;
   ~Search() {
@@ -62,18 +62,18 @@ class Search {
   /// The lowest n, beside those given. `failure` of the inner solver is thrown on every rank alike: the solver is
   /// collective.
   EigenModes run(int n, std::span<const std::vector<double>> beside) {
-    petsc_check(EPSSetDimensions(eps_, n, PETSC_DEFAULT, PETSC_DEFAULT));
-    petsc_check(EPSSetTolerances(eps_, solver_tolerance, 300));
+    linalg::petsc_check(EPSSetDimensions(eps_, n, PETSC_DEFAULT, PETSC_DEFAULT));
+    linalg::petsc_check(EPSSetTolerances(eps_, solver_tolerance, 300));
     std::vector<::Vec> space(beside.size());
     for (std::size_t i = 0; i < beside.size(); ++i) {
-      petsc_check(MatCreateVecs(k_, &space[i], nullptr));
+      linalg::petsc_check(MatCreateVecs(k_, &space[i], nullptr));
       double* values = nullptr;
-      petsc_check(VecGetArray(space[i], &values));
+      linalg::petsc_check(VecGetArray(space[i], &values));
       std::ranges::copy(beside[i], values);
-      petsc_check(VecRestoreArray(space[i], &values));
+      linalg::petsc_check(VecRestoreArray(space[i], &values));
     }
-    if (!space.empty()) petsc_check(EPSSetDeflationSpace(eps_, PetscInt(space.size()), space.data()));
-    petsc_check(EPSSolve(eps_));
+    if (!space.empty()) linalg::petsc_check(EPSSetDeflationSpace(eps_, PetscInt(space.size()), space.data()));
+    linalg::petsc_check(EPSSolve(eps_));
     for (::Vec& v : space) VecDestroy(&v);
     if (failure_) std::rethrow_exception(failure_);
     return found();
@@ -82,31 +82,31 @@ class Search {
  private:
   EigenModes found() const {
     PetscInt n = 0;
-    petsc_check(EPSGetConverged(eps_, &n));
+    linalg::petsc_check(EPSGetConverged(eps_, &n));
     EigenModes modes;
     std::vector<double> values;
     std::vector<std::vector<double>> shapes;
     ::Vec x = nullptr, force = nullptr, inertia = nullptr;
-    petsc_check(MatCreateVecs(k_, &x, &force));
-    petsc_check(VecDuplicate(force, &inertia));
+    linalg::petsc_check(MatCreateVecs(k_, &x, &force));
+    linalg::petsc_check(VecDuplicate(force, &inertia));
     for (PetscInt i = 0; i < n; ++i) {
       double value = 0, residual = 0, size = 0;
-      petsc_check(EPSGetEigenpair(eps_, i, &value, nullptr, x, nullptr));
-      petsc_check(MatMult(k_, x, force));
-      petsc_check(MatMult(m_, x, inertia));
-      petsc_check(VecNorm(inertia, NORM_2, &size));
-      petsc_check(VecAXPY(force, -value, inertia));
-      petsc_check(VecNorm(force, NORM_2, &residual));
+      linalg::petsc_check(EPSGetEigenpair(eps_, i, &value, nullptr, x, nullptr));
+      linalg::petsc_check(MatMult(k_, x, force));
+      linalg::petsc_check(MatMult(m_, x, inertia));
+      linalg::petsc_check(VecNorm(inertia, NORM_2, &size));
+      linalg::petsc_check(VecAXPY(force, -value, inertia));
+      linalg::petsc_check(VecNorm(force, NORM_2, &residual));
       modes.worst_residual = std::max(modes.worst_residual, residual / ((value - shift_) * size));
       const double* entries = nullptr;
       PetscInt rows = 0;
-      petsc_check(VecGetLocalSize(x, &rows));
-      petsc_check(VecGetArrayRead(x, &entries));
+      linalg::petsc_check(VecGetLocalSize(x, &rows));
+      linalg::petsc_check(VecGetArrayRead(x, &entries));
       shapes.emplace_back(entries, entries + rows);
-      petsc_check(VecRestoreArrayRead(x, &entries));
+      linalg::petsc_check(VecRestoreArrayRead(x, &entries));
       values.push_back(value);
     }
-    for (::Vec* v : {&x, &force, &inertia}) petsc_check(VecDestroy(v));
+    for (::Vec* v : {&x, &force, &inertia}) linalg::petsc_check(VecDestroy(v));
     std::vector<std::size_t> order(values.size());
     std::iota(order.begin(), order.end(), 0);
     std::ranges::stable_sort(order, {}, [&](std::size_t i) { return values[i]; });
@@ -155,4 +155,4 @@ EigenModes lowest_modes(MPI_Comm comm, std::size_t n_owned, const ModalOperators
       n);
 }
 
-}  // namespace couplet
+}  // namespace couplet::modes

@@ -7,7 +7,7 @@
 
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::modes {
 namespace {
 
 // Of a direction that is left of another one by rounding.
@@ -25,7 +25,7 @@ class QuotientSearch {
   double dot(const std::vector<double>& x, const std::vector<double>& y) const {
     double local = 0;
     for (std::size_t i = 0; i < x.size(); ++i) local += x[i] * y[i];
-    return sum(comm_, local);
+    return parallel::sum(comm_, local);
   }
   void multiply(Direction& d) const {
     d.a.resize(d.x.size());
@@ -105,4 +105,4 @@ LowestQuotient lowest_quotient(MPI_Comm comm, const QuotientOperators& of, std::
   return result;
 }
 
-}  // namespace couplet
+}  // namespace couplet::modes

@@ -8,11 +8,11 @@
 
 #include "common/linalg/linear_map.hpp"
 
-namespace couplet {
+namespace couplet::modes {
 
 /// A and B symmetric, B positive; `precondition` near B^{-1} or A^{-1}.
 struct QuotientOperators {
-  LinearMap a, b, precondition;
+  linalg::LinearMap a, b, precondition;
 };
 
 struct LowestQuotient {
@@ -28,4 +28,4 @@ LowestQuotient lowest_quotient(MPI_Comm comm, const QuotientOperators& of, std::
                                int most_iterations,
                                const std::function<bool(const std::vector<double>&)>& enough);
 
-}  // namespace couplet
+}  // namespace couplet::modes

@@ -10,7 +10,7 @@
 
 #include "common/modes/rigid_motion.hpp"
 
-namespace couplet {
+namespace couplet::modes {
 namespace {
 
 /// Modal mass and participation along each axis, as the surface alone shows them: sum of face_density A |phi|^2 and
@@ -259,4 +259,4 @@ std::string surface_problem_of(const ModalModel& model) {
   return "";
 }
 
-}  // namespace couplet
+}  // namespace couplet::modes

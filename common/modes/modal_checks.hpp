@@ -5,7 +5,7 @@
 
 #include "common/modes/modal_model.hpp"
 
-namespace couplet {
+namespace couplet::modes {
 
 /// What is wrong with the sizes and values of a model; empty: nothing.
 std::string problem_of(const ModalModel& model);
@@ -24,4 +24,4 @@ std::string order_problem_of(const ModalModel& model);
 /// Empty: they do. The vertices that the faces name must exist.
 std::string surface_problem_of(const ModalModel& model);
 
-}  // namespace couplet
+}  // namespace couplet::modes

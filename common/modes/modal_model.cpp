@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-namespace couplet {
+namespace couplet::modes {
 
 std::vector<Vec3> face_centres(const ModalModel& model) {
   std::vector<Vec3> centres;
@@ -58,4 +58,4 @@ double largest_displacement(const ModalModel& model, std::size_t mode) {
   return largest;
 }
 
-}  // namespace couplet
+}  // namespace couplet::modes

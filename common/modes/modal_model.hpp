@@ -6,14 +6,14 @@
 #include "common/base/types.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::modes {
 
 /// A linear structure reduced to some of its modes, as its surface shows them: all that a coupled run needs
 /// of it. Shapes are mass-normalised (modal mass 1 kg), so u(x, t) = sum q_m(t) phi_m(x) with q in sqrt(kg)
 /// m.
 struct ModalModel {
   std::vector<Vec3> vertices;  ///< of the surface, undeformed [m]
-  Csr faces;  ///< vertices of each face (3 or 4), turning right-handed about the outward normal
+  mesh::Csr faces;  ///< vertices of each face (3 or 4), turning right-handed about the outward normal
   std::vector<double> frequency;  ///< of each mode [Hz], ascending; 0: a rigid motion
   /// phi at each vertex and its mean over each face: component c of entry i in mode m stands at
   /// [(3 i + c) modes + m] [1/sqrt(kg)].
@@ -38,4 +38,4 @@ void average_faces(ModalModel& model);
 /// The largest displacement of a mode's vertices [1/sqrt(kg)].
 double largest_displacement(const ModalModel& model, std::size_t mode);
 
-}  // namespace couplet
+}  // namespace couplet::modes

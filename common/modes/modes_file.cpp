@@ -9,30 +9,31 @@
 #include "common/io/rehearse.hpp"
 #include "common/modes/modal_checks.hpp"
 
-namespace couplet {
+namespace couplet::modes {
 namespace {
 
 constexpr const char* format_name = "couplet modes";
 constexpr int format_version = 1;
 
-hdf5::Rows rows(std::size_t n, std::size_t width) { return {0, n, n, width}; }
+io::hdf5::Rows rows(std::size_t n, std::size_t width) { return {0, n, n, width}; }
 
-void write(const hdf5::Handle& id, const char* path, const std::vector<double>& values, std::size_t width) {
-  hdf5::write_table(id, path, rows(values.size() / width, width), values.data());
+void write(const io::hdf5::Handle& id, const char* path, const std::vector<double>& values,
+           std::size_t width) {
+  io::hdf5::write_table(id, path, rows(values.size() / width, width), values.data());
 }
 
 constexpr const char* what = "modes file";
 constexpr const char* advice = "docs/formats.md describes the required content.";
 constexpr std::uint64_t most_modes = 2000;  // they are compared with each other
 
-std::vector<std::int64_t> read_integers(const hdf5::Reader& file, const char* path) {
+std::vector<std::int64_t> read_integers(const io::hdf5::Reader& file, const char* path) {
   const std::size_t n = file.rows(path, 1);
   std::vector<std::int64_t> values(n);
   file.read(path, rows(n, 1), values.data());
   return values;
 }
 
-void read_faces(const hdf5::Reader& file, Csr& faces) {
+void read_faces(const io::hdf5::Reader& file, mesh::Csr& faces) {
   const std::vector<std::int64_t> offset = read_integers(file, "surface/face-offset"),
                                   vertex = read_integers(file, "surface/face-vertex");
   constexpr std::int64_t most = std::numeric_limits<Index>::max();
@@ -47,7 +48,7 @@ void read_faces(const hdf5::Reader& file, Csr& faces) {
 }
 
 /// All that is in the file, by itself sound or not.
-ModalModel read_tables(const hdf5::Reader& file) {
+ModalModel read_tables(const io::hdf5::Reader& file) {
   if (file.text("/", "format") != format_name) file.refuse("it is not a modes file");
   if (const double version = file.number("/", "version"); version != format_version)
     file.refuse(fmt::format("its version is {}; expected {}", version, format_version));
@@ -72,7 +73,7 @@ ModalModel read_tables(const hdf5::Reader& file) {
   return model;
 }
 
-ModalModel read_model(const hdf5::Reader& file) {
+ModalModel read_model(const io::hdf5::Reader& file) {
   ModalModel model = read_tables(file);
   if (model.face_shape.empty()) {
     model.face_shape.assign(model.faces.size() * 3 * model.n_modes(), 0);
@@ -91,19 +92,19 @@ void write_modes(const std::filesystem::path& file, const ModalModel& model, con
   const std::filesystem::path part = file.string() + ".part";
   const std::size_t n = model.n_modes();
   {
-    const hdf5::Handle id = hdf5::create_file(MPI_COMM_SELF, part);
-    hdf5::write_attribute(id, "format", std::string(format_name));
-    hdf5::write_attribute(id, "version", double(format_version));
-    hdf5::write_attribute(id, "key", key);
-    hdf5::write_attribute(id, "mass", model.mass);
+    const io::hdf5::Handle id = io::hdf5::create_file(MPI_COMM_SELF, part);
+    io::hdf5::write_attribute(id, "format", std::string(format_name));
+    io::hdf5::write_attribute(id, "version", double(format_version));
+    io::hdf5::write_attribute(id, "key", key);
+    io::hdf5::write_attribute(id, "mass", model.mass);
     std::vector<double> places;
     for (const Vec3& x : model.vertices) places.insert(places.end(), x.begin(), x.end());
     const std::vector<std::int64_t> offset(model.faces.offset.begin(), model.faces.offset.end());
     const std::vector<std::int64_t> vertex(model.faces.index.begin(), model.faces.index.end());
     write(id, "frequency", model.frequency, 1);
     write(id, "surface/vertices", places, 3);
-    hdf5::write_table(id, "surface/face-offset", rows(offset.size(), 1), offset.data());
-    hdf5::write_table(id, "surface/face-vertex", rows(vertex.size(), 1), vertex.data());
+    io::hdf5::write_table(id, "surface/face-offset", rows(offset.size(), 1), offset.data());
+    io::hdf5::write_table(id, "surface/face-vertex", rows(vertex.size(), 1), vertex.data());
     if (!model.face_density.empty()) write(id, "surface/face-density", model.face_density, 1);
     write(id, "shape/vertices", model.vertex_shape, n);
     write(id, "shape/faces", model.face_shape, n);
@@ -118,19 +119,19 @@ ModalModel read_modes(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file))
     throw Error("The modes file '{}' does not exist. The path is relative to the folder of the YAML file.",
                 file.string());
-  rehearse(file, what, [&] { read_tables(hdf5::Reader(file, what, advice)); });
-  return read_model(hdf5::Reader(file, what, advice));
+  io::rehearse(file, what, [&] { read_tables(io::hdf5::Reader(file, what, advice)); });
+  return read_model(io::hdf5::Reader(file, what, advice));
 }
 
 std::string key_of_modes(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) return "";
   try {
-    const auto key = [&] { return hdf5::Reader(file, what).text("/", "key"); };
-    rehearse(file, what, key);
+    const auto key = [&] { return io::hdf5::Reader(file, what).text("/", "key"); };
+    io::rehearse(file, what, key);
     return key();
   } catch (const Error&) {
     return "";  // damaged or of another kind: it is made anew
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::modes

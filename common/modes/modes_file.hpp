@@ -6,7 +6,7 @@
 
 #include "common/modes/modal_model.hpp"
 
-namespace couplet {
+namespace couplet::modes {
 
 /// Writes a modal model to one HDF5 file (docs/formats.md, "Modes"), under a temporary name that is renamed
 /// when it is complete. `key` tells what the modes were made of. On this rank alone. Throws Error.
@@ -18,4 +18,4 @@ ModalModel read_modes(const std::filesystem::path& file);
 /// The key of a file of modes; empty if there is no such file or it is none of modes.
 std::string key_of_modes(const std::filesystem::path& file);
 
-}  // namespace couplet
+}  // namespace couplet::modes

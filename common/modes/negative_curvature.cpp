@@ -6,15 +6,16 @@
 
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::modes {
 
-Curvature look_for_negative_curvature(MPI_Comm comm, const LinearMap& a, const LinearMap& precondition,
-                                      std::span<const double> b, double tolerance, int most_iterations) {
+Curvature look_for_negative_curvature(MPI_Comm comm, const linalg::LinearMap& a,
+                                      const linalg::LinearMap& precondition, std::span<const double> b,
+                                      double tolerance, int most_iterations) {
   const std::size_t n = b.size();
   const auto dot = [&](const std::vector<double>& x, const std::vector<double>& y) {
     double local = 0;
     for (std::size_t i = 0; i < n; ++i) local += x[i] * y[i];
-    return sum(comm, local);
+    return parallel::sum(comm, local);
   };
   Curvature result;
   result.x.assign(n, 0);
@@ -43,4 +44,4 @@ Curvature look_for_negative_curvature(MPI_Comm comm, const LinearMap& a, const L
   return result;
 }
 
-}  // namespace couplet
+}  // namespace couplet::modes

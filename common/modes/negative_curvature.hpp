@@ -8,7 +8,7 @@
 
 #include "common/linalg/linear_map.hpp"
 
-namespace couplet {
+namespace couplet::modes {
 
 struct Curvature {
   bool is_negative = false;  ///< x . A x <= 0: A is not positive, which is proved by x
@@ -18,7 +18,8 @@ struct Curvature {
 
 /// Conjugate gradients [hestenes1952] on A x = b, A symmetric, until |r| <= `tolerance` |b| or a direction of negative curvature is met. An A
 /// that is not positive is met so for nearly any b: the iteration resolves what it solves for. Collective.
-Curvature look_for_negative_curvature(MPI_Comm comm, const LinearMap& a, const LinearMap& precondition,
-                                      std::span<const double> b, double tolerance, int most_iterations);
+Curvature look_for_negative_curvature(MPI_Comm comm, const linalg::LinearMap& a,
+                                      const linalg::LinearMap& precondition, std::span<const double> b,
+                                      double tolerance, int most_iterations);
 
-}  // namespace couplet
+}  // namespace couplet::modes

@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-namespace couplet {
+namespace couplet::modes {
 
 RigidMotion rigid_motion(const ModalModel& model, std::size_t mode) {
   RigidMotion motion;
@@ -38,4 +38,4 @@ RigidMotion rigid_motion(const ModalModel& model, std::size_t mode) {
   return motion;
 }
 
-}  // namespace couplet
+}  // namespace couplet::modes

@@ -3,7 +3,7 @@
 
 #include "common/modes/modal_model.hpp"
 
-namespace couplet {
+namespace couplet::modes {
 
 /// The rigid motion u = translation + rotation x (x - centre of the vertices) that is nearest to a mode.
 struct RigidMotion {
@@ -15,4 +15,4 @@ struct RigidMotion {
 /// By least squares over the vertices. A surface whose vertices lie on one line does not turn about it.
 RigidMotion rigid_motion(const ModalModel& model, std::size_t mode);
 
-}  // namespace couplet
+}  // namespace couplet::modes

@@ -10,7 +10,7 @@
 
 #include "common/linalg/petsc_check.hpp"
 
-namespace couplet {
+namespace couplet::modes {
 
 /// An operator for PETSc, and the first exception that came out of it: none may pass through PETSc's frames.
 struct ShellOperator {
@@ -53,10 +53,10 @@ inline PetscErrorCode precondition_shell(PC pc, ::Vec x, ::Vec y) {
 inline Mat symmetric_shell(MPI_Comm comm, std::size_t n_owned, ShellOperator& op) {
   Mat mat = nullptr;
   const auto n = static_cast<PetscInt>(n_owned);
-  petsc_check(MatCreateShell(comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, &op, &mat));
-  petsc_check(MatShellSetOperation(mat, MATOP_MULT, reinterpret_cast<void (*)()>(multiply_shell)));
-  petsc_check(MatSetOption(mat, MAT_SYMMETRIC, PETSC_TRUE));
+  linalg::petsc_check(MatCreateShell(comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, &op, &mat));
+  linalg::petsc_check(MatShellSetOperation(mat, MATOP_MULT, reinterpret_cast<void (*)()>(multiply_shell)));
+  linalg::petsc_check(MatSetOption(mat, MAT_SYMMETRIC, PETSC_TRUE));
   return mat;
 }
 
-}  // namespace couplet
+}  // namespace couplet::modes

@@ -11,7 +11,7 @@
 #include "common/base/disjoint_sets.hpp"
 #include "common/base/point_tree.hpp"
 
-namespace couplet {
+namespace couplet::modes {
 namespace {
 
 /// A face that goes along an edge, and whether from its smaller to its larger number.
@@ -21,7 +21,7 @@ struct Use {
 };
 using Edges = std::map<std::pair<Index, Index>, std::vector<Use>>;
 
-Edges edges_of(const Csr& faces) {
+Edges edges_of(const mesh::Csr& faces) {
   Edges edges;
   for (Index f = 0; f < faces.size(); ++f) {
     const auto corners = faces[f];
@@ -48,7 +48,7 @@ double same_place(const ModalModel& model) {
 /// Of each vertex the smallest number that stands at its place.
 std::vector<Index> places_of(const ModalModel& model) {
   const double distance = same_place(model);
-  const PointTree tree(model.vertices);
+  const base::PointTree tree(model.vertices);
   std::vector<Index> place(model.vertices.size());
   for (std::size_t v = 0; v < place.size(); ++v) {
     place[v] = Index(v);
@@ -72,7 +72,7 @@ WeldedSurface weld(const ModalModel& model) {
     welded.faces.push_row(corners);
   }
   // Bodies that touch have edges of four faces: there only faces with the same vertices belong together.
-  DisjointSets groups(Index(model.faces.size()));
+  base::DisjointSets groups(Index(model.faces.size()));
   for (const auto& [edge, uses] : edges_of(model.faces))
     for (const Use& use : uses) groups.join(uses.front().face, use.face);
   for (const auto& [edge, uses] : edges_of(welded.faces))
@@ -98,4 +98,4 @@ std::string neighbour_problem_of(const ModalModel& model, const WeldedSurface& w
   return "";
 }
 
-}  // namespace couplet
+}  // namespace couplet::modes

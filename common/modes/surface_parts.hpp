@@ -6,12 +6,12 @@
 
 #include "common/modes/modal_model.hpp"
 
-namespace couplet {
+namespace couplet::modes {
 
 /// The faces of a surface with one number for all vertices that stand at the same place (to 1e-6 of the surface's size and
 /// a hundredth of its shortest edge): another program may write them once for every face or every part.
 struct WeldedSurface {
-  Csr faces;  ///< numbers of places in place of vertices; those left with fewer than 3 are empty
+  mesh::Csr faces;  ///< numbers of places in place of vertices; those left with fewer than 3 are empty
   std::vector<std::vector<Index>> part;  ///< faces of each part that hangs together by its edges
 };
 
@@ -21,4 +21,4 @@ WeldedSurface weld(const ModalModel& model);
 /// two faces meet nothing is said: they may be bodies that touch.
 std::string neighbour_problem_of(const ModalModel& model, const WeldedSurface& welded);
 
-}  // namespace couplet
+}  // namespace couplet::modes

@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-namespace couplet {
+namespace couplet::parallel {
 namespace {
 
 template <class T>
@@ -90,4 +90,4 @@ std::vector<std::vector<char>> all_to_all_bytes(MPI_Comm comm, const std::vector
 }
 
 }  // namespace detail
-}  // namespace couplet
+}  // namespace couplet::parallel

@@ -8,7 +8,7 @@
 
 #include "common/base/types.hpp"
 
-namespace couplet {
+namespace couplet::parallel {
 
 int comm_rank(MPI_Comm comm);
 int comm_size(MPI_Comm comm);
@@ -69,4 +69,4 @@ std::vector<std::vector<T>> all_to_all(MPI_Comm comm, const std::vector<std::vec
   return received;
 }
 
-}  // namespace couplet
+}  // namespace couplet::parallel

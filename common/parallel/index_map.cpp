@@ -6,7 +6,7 @@
 
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::parallel {
 
 /// Who sends what to whom. Messages are packed rank by rank; both sides keep the same order.
 struct IndexMap::Exchange {
@@ -100,4 +100,4 @@ void IndexMap::add_to_owners(std::span<double> values, int components) const {
                          [&](std::size_t i, double v) { values[i] += v; });
 }
 
-}  // namespace couplet
+}  // namespace couplet::parallel

@@ -10,7 +10,7 @@
 
 #include "common/base/types.hpp"
 
-namespace couplet {
+namespace couplet::parallel {
 
 /// Which entries of a distributed array live here: the owned ones first, then the ghosts (copies of entries
 /// that another rank owns), and how to refresh the ghosts. Owned entries carry contiguous global numbers,
@@ -50,4 +50,4 @@ class IndexMap {
   std::shared_ptr<const Exchange> exchange_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::parallel

@@ -10,7 +10,7 @@
 #include <string_view>
 
 // What a user's files and variables choose is read in client/transports.cpp, too: change both.
-namespace couplet {
+namespace couplet::parallel {
 namespace {
 
 bool has_variable_like(std::string_view prefix) {
@@ -66,4 +66,4 @@ void prepare_mpi_start() {
   ::setenv("OMPI_MCA_btl", alone ? "self" : "self,vader", 0);
 }
 
-}  // namespace couplet
+}  // namespace couplet::parallel

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-namespace couplet {
+namespace couplet::parallel {
 
 /// To be called before MPI_Init. Where nothing tells Open MPI which transports to use, neither its environment nor its
 /// files, a program without a launcher is told to start no daemon, and one whose job is all on this machine to use
@@ -13,4 +13,4 @@ void prepare_mpi_start();
 /// ends the job.
 bool has_open_mpi_launcher();
 
-}  // namespace couplet
+}  // namespace couplet::parallel

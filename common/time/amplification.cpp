@@ -4,7 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-namespace couplet {
+namespace couplet::time {
 namespace {
 
 using Complex = std::complex<double>;
@@ -51,4 +51,4 @@ double growth_rate(const TimeSchemeParameters& scheme, double dt, Complex eigenv
   return std::log(amplification(scheme, dt, eigenvalue, damping)) / dt;
 }
 
-}  // namespace couplet
+}  // namespace couplet::time

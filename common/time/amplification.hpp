@@ -5,7 +5,7 @@
 
 #include "common/time/time_scheme.hpp"
 
-namespace couplet {
+namespace couplet::time {
 
 /// Rayleigh damping C = mass M + stiffness K.
 struct RayleighCoefficients {
@@ -25,4 +25,4 @@ double growth_rate(std::complex<double> eigenvalue);
 double growth_rate(const TimeSchemeParameters& scheme, double dt, std::complex<double> eigenvalue,
                    const RayleighCoefficients& damping = {});
 
-}  // namespace couplet
+}  // namespace couplet::time

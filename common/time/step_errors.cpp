@@ -8,7 +8,7 @@
 #include "common/base/error.hpp"
 #include "common/base/saved_numbers.hpp"
 
-namespace couplet {
+namespace couplet::time {
 namespace {
 
 // "Of late" is about this part of the time that has gone by.
@@ -63,7 +63,7 @@ std::vector<double> StepErrors::state() const {
 void StepErrors::restore(std::span<const double> state) {
   *this = {};
   if (state.empty()) return;  // of a run that did not collect them
-  SavedNumbers saved(state, "step errors");
+  base::SavedNumbers saved(state, "step errors");
   const std::span<const double> head = saved.next(scalars - 1);
   rate_ = head[0], size_ = head[1], below_ = head[2], highest_ = head[3], time_ = head[4];
   const auto key = [&] {  // may be negative
@@ -85,4 +85,4 @@ void StepErrors::restore(std::span<const double> state) {
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::time

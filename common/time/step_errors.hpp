@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace couplet {
+namespace couplet::time {
 
 /// What the local errors of all steps so far leave in the solution now.
 ///
@@ -49,4 +49,4 @@ class StepErrors {
   double rate_ = 0, size_ = 0, below_ = 0, highest_ = 0, time_ = 0;
 };
 
-}  // namespace couplet
+}  // namespace couplet::time

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace couplet {
+namespace couplet::time {
 namespace {
 
 constexpr Levels x{1, 0, 0, 0, 0, 0}, u{0, 1, 0, 0, 0, 0}, v{0, 0, 1, 0, 0, 0}, a{0, 0, 0, 1, 0, 0},
@@ -146,4 +146,4 @@ std::string name(TimeScheme scheme) {
   return "generalised-alpha";
 }
 
-}  // namespace couplet
+}  // namespace couplet::time

@@ -6,7 +6,7 @@
 
 #include "common/config/section.hpp"
 
-namespace couplet {
+namespace couplet::time {
 
 enum class TimeScheme { euler, three_point, trapezoidal, bathe, generalised_alpha };
 
@@ -82,4 +82,4 @@ LocalError local_error(const TimeSchemeParameters& scheme);
 
 std::string name(TimeScheme scheme);
 
-}  // namespace couplet
+}  // namespace couplet::time

@@ -6,7 +6,7 @@
 #include "common/base/error.hpp"
 #include "common/base/saved_numbers.hpp"
 
-namespace couplet {
+namespace couplet::time {
 
 StepErrors::Seen VelocityErrors::add(std::span<const double> before, std::span<const double> now, double dt,
                                      double dt_old, double size, const Norm& norm, double forgotten) {
@@ -44,7 +44,7 @@ void VelocityErrors::restore(std::span<const double> state) {
   errors_ = {};
   judged_ = has_before_ = false;
   if (state.empty()) return;
-  SavedNumbers saved(state, "step errors");
+  base::SavedNumbers saved(state, "step errors");
   const double kind = saved.real();
   judged_ = kind == 1 || kind == 3;
   has_before_ = kind >= 2;
@@ -53,4 +53,4 @@ void VelocityErrors::restore(std::span<const double> state) {
   errors_.restore(saved.rest());
 }
 
-}  // namespace couplet
+}  // namespace couplet::time

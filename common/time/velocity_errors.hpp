@@ -8,7 +8,7 @@
 #include "common/time/step_errors.hpp"
 #include "common/time/time_scheme.hpp"
 
-namespace couplet {
+namespace couplet::time {
 
 /// StepErrors of a second-order equation, whose local errors C dt^{p+1} d^{p+1}u/dt^{p+1} are told from the velocities at
 /// the ends of the last two or three steps.
@@ -37,4 +37,4 @@ class VelocityErrors {
   StepErrors errors_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::time

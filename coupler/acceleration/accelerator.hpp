@@ -10,10 +10,10 @@
 
 #include "coupler/parameters/parameters.hpp"
 
-namespace couplet {
+namespace couplet::io {
 class CheckpointReader;
 class CheckpointWriter;
-}  // namespace couplet
+}  // namespace couplet::io
 
 namespace couplet::coupler {
 
@@ -49,8 +49,8 @@ class Accelerator {
   virtual int columns() const { return 0; }
   virtual long resets() const { return 0; }
   /// Between steps only. After load the run continues bit for bit on equal ranks.
-  virtual void save(CheckpointWriter& file) const = 0;
-  virtual void load(CheckpointReader& file) = 0;
+  virtual void save(io::CheckpointWriter& file) const = 0;
+  virtual void load(io::CheckpointReader& file) = 0;
 };
 
 std::unique_ptr<Accelerator> make_accelerator(const AccelerationParameters& parameters, MPI_Comm comm);

@@ -145,7 +145,7 @@ Eigen::VectorXd GrowingQr::back_substitute(const Eigen::VectorXd& t) const {
 
 Eigen::VectorXd GrowingQr::minimise(std::span<const double> r) const { return -back_substitute(along(r)); }
 
-void GrowingQr::save(CheckpointWriter& file, const std::string& name) const {
+void GrowingQr::save(io::CheckpointWriter& file, const std::string& name) const {
   std::vector<double> q;
   for (const auto& column : q_) q.insert(q.end(), column.begin(), column.end());
   file.write_scalar(name + ".columns", columns());
@@ -153,7 +153,7 @@ void GrowingQr::save(CheckpointWriter& file, const std::string& name) const {
   file.write(name + ".r", {r_.data(), std::size_t(r_.size())});
 }
 
-void GrowingQr::load(CheckpointReader& file, const std::string& name, std::size_t rows) {
+void GrowingQr::load(io::CheckpointReader& file, const std::string& name, std::size_t rows) {
   const int m = static_cast<int>(file.read_count(name + ".columns", most_columns));
   std::vector<double> q(std::size_t(m) * rows), r(std::size_t(m) * std::size_t(m));
   file.read(name + ".q", q);

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-namespace couplet {
+namespace couplet::io {
 class CheckpointReader;
 class CheckpointWriter;
-}  // namespace couplet
+}  // namespace couplet::io
 
 namespace couplet::coupler {
 
@@ -40,8 +40,8 @@ class GrowingQr {
   void subtract(const Eigen::VectorXd& t, std::span<double> r) const;
   Eigen::VectorXd back_substitute(const Eigen::VectorXd& t) const;
 
-  void save(CheckpointWriter& file, const std::string& name) const;
-  void load(CheckpointReader& file, const std::string& name, std::size_t rows);
+  void save(io::CheckpointWriter& file, const std::string& name) const;
+  void load(io::CheckpointReader& file, const std::string& name, std::size_t rows);
 
  private:
   MPI_Comm comm_;

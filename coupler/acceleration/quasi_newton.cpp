@@ -74,13 +74,13 @@ void LeastSquaresNewton::accept(const Iterate& x, const Iterate& image) {
   open_ = false;
 }
 
-void LeastSquaresNewton::save(CheckpointWriter& file) const {
+void LeastSquaresNewton::save(io::CheckpointWriter& file) const {
   pairs_.save(file, "iqn");
   file.write("iqn.step-of", std::vector<double>(step_of_.begin(), step_of_.end()));
   file.write_scalar("iqn.step", step_);
 }
 
-void LeastSquaresNewton::load(CheckpointReader& file) {
+void LeastSquaresNewton::load(io::CheckpointReader& file) {
   pairs_.load(file, "iqn");
   const std::vector<double> steps = file.read_or_none("iqn.step-of", std::size_t(pairs_.columns()));
   if (steps.size() != std::size_t(pairs_.columns()))
@@ -150,12 +150,12 @@ void MultiVectorNewton::accept(const Iterate& x, const Iterate& image) {
   open_ = false;
 }
 
-void MultiVectorNewton::save(CheckpointWriter& file) const {
+void MultiVectorNewton::save(io::CheckpointWriter& file) const {
   file.write_scalar("iqn.steps", double(steps_.size()));
   for (std::size_t s = 0; s < steps_.size(); ++s) steps_[s].save(file, "iqn." + std::to_string(s));
 }
 
-void MultiVectorNewton::load(CheckpointReader& file) {
+void MultiVectorNewton::load(io::CheckpointReader& file) {
   steps_.clear();
   const std::size_t n = file.read_count("iqn.steps", most_columns);
   for (std::size_t s = 0; s < n; ++s) steps_.emplace_back(comm_).load(file, "iqn." + std::to_string(s));

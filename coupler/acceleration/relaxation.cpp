@@ -86,8 +86,8 @@ void AitkenRelaxation::accept(const Iterate& x, const Iterate& image) {
   forget_pass();
 }
 
-void AitkenRelaxation::save(CheckpointWriter& file) const { file.write_scalar("omega", first_); }
+void AitkenRelaxation::save(io::CheckpointWriter& file) const { file.write_scalar("omega", first_); }
 
-void AitkenRelaxation::load(CheckpointReader& file) { first_ = file.read_scalar("omega"); }
+void AitkenRelaxation::load(io::CheckpointReader& file) { first_ = file.read_scalar("omega"); }
 
 }  // namespace couplet::coupler

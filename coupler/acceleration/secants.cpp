@@ -50,7 +50,7 @@ void SecantPairs::add(const Eigen::VectorXd& c, Iterate& to) const {
   add_to(to.rider, c, [&](int j) -> const std::vector<double>& { return images_[std::size_t(j)].rider; });
 }
 
-void SecantPairs::save(CheckpointWriter& file, const std::string& name) const {
+void SecantPairs::save(io::CheckpointWriter& file, const std::string& name) const {
   qr_.save(file, name);
   std::vector<double> unknown, rider;
   for (const Iterate& image : images_) {
@@ -61,7 +61,7 @@ void SecantPairs::save(CheckpointWriter& file, const std::string& name) const {
   file.write(name + ".riders", rider);
 }
 
-void SecantPairs::load(CheckpointReader& file, const std::string& name) {
+void SecantPairs::load(io::CheckpointReader& file, const std::string& name) {
   const std::vector<double> unknown = file.read(name + ".images"), rider = file.read(name + ".riders");
   const std::size_t m = file.read_count(name + ".columns", most_columns);
   const std::size_t n = m > 0 ? unknown.size() / m : 0, n_rider = m > 0 ? rider.size() / m : 0;

@@ -56,13 +56,13 @@ Unknown::Unknown(MPI_Comm comm, const std::vector<Side>& sides, const Links& lin
       std::ranges::all_of(parts_, [&](const Part& p) { return p.rides || p.datum.unit == lead->datum.unit; });
 }
 
-bool Unknown::complete(const std::vector<Exchange>& given) const {
+bool Unknown::complete(const std::vector<coupling::Exchange>& given) const {
   bool missing = false;
   for (const Part& p : parts()) missing = missing || !given[p.giver].contains(p.datum.name);
   return !missing;
 }
 
-Iterate Unknown::gather(const std::vector<Exchange>& given) const {
+Iterate Unknown::gather(const std::vector<coupling::Exchange>& given) const {
   Iterate x;
   x.unknown.reserve(n_unknown_);
   x.rider.reserve(n_rider_);
@@ -84,7 +84,7 @@ Iterate Unknown::gather(const std::vector<Exchange>& given) const {
   return x;
 }
 
-void Unknown::scatter(const Iterate& x, std::vector<Exchange>& given) const {
+void Unknown::scatter(const Iterate& x, std::vector<coupling::Exchange>& given) const {
   for (const Part& p : parts_) {
     const std::vector<double>& from = p.rides ? x.rider : x.unknown;
     std::vector<double>& values = given[p.giver][p.datum.name];
@@ -94,7 +94,7 @@ void Unknown::scatter(const Iterate& x, std::vector<Exchange>& given) const {
   }
 }
 
-bool Unknown::start_at_rest(std::vector<Exchange>& given) const {
+bool Unknown::start_at_rest(std::vector<coupling::Exchange>& given) const {
   bool all = true;
   for (const Part& p : parts()) {
     const bool motion = p.rides || p.velocity;
@@ -104,12 +104,12 @@ bool Unknown::start_at_rest(std::vector<Exchange>& given) const {
   return all;
 }
 
-void Unknown::scale(const std::vector<Exchange>& given) {
+void Unknown::scale(const std::vector<coupling::Exchange>& given) {
   scaled_ = true;
   for (Part& p : parts_) {
     if (p.rides || p.within) continue;
     const std::vector<double>& values = given[p.giver].at(p.datum.name);
-    const double square = sum(comm_, dot(values, values));
+    const double square = parallel::sum(comm_, dot(values, values));
     if (square > 0) p.weight = 1 / std::sqrt(square);
   }
   for (Part& p : parts_)  // the velocity goes with its displacement

@@ -29,7 +29,7 @@ class Unknown {
  public:
   struct Part {
     std::size_t giver;
-    Interface::Datum datum;
+    coupling::Interface::Datum datum;
     int components = 1;
     std::size_t first = 0, count = 0;  ///< values of this rank, within `unknown` or `rider`
     bool rides = false;
@@ -54,22 +54,22 @@ class Unknown {
   /// Whether there are such.
   bool has_within() const { return parts_.size() > n_parts_; }
   /// Takes the times within the step from what all have given; whether they are others than before.
-  bool adopt_times(const std::vector<Exchange>& given);
+  bool adopt_times(const std::vector<coupling::Exchange>& given);
   /// The guess of a step, of ends alone: constant within it.
   Iterate begin_step(Iterate guess);
   Iterate held(Iterate ends) const;
   /// Without the values within the step.
   Iterate ends(Iterate x) const;
   /// Whether all of it has been given.
-  bool complete(const std::vector<Exchange>& given) const;
+  bool complete(const std::vector<coupling::Exchange>& given) const;
   /// From what all have given, scaled; to it. Data of the unknown alone.
-  Iterate gather(const std::vector<Exchange>& given) const;
-  void scatter(const Iterate& x, std::vector<Exchange>& given) const;
+  Iterate gather(const std::vector<coupling::Exchange>& given) const;
+  void scatter(const Iterate& x, std::vector<coupling::Exchange>& given) const;
   /// Zero displacements and their velocities; nothing of other data, which have no natural start. Whether
   /// that is all of the unknown.
-  bool start_at_rest(std::vector<Exchange>& given) const;
+  bool start_at_rest(std::vector<coupling::Exchange>& given) const;
   /// The scales from the first values that all have given; collective.
-  void scale(const std::vector<Exchange>& given);
+  void scale(const std::vector<coupling::Exchange>& given);
   bool scaled() const { return scaled_; }
   /// The scales, and the times within the step.
   std::vector<double> weights() const;
@@ -82,7 +82,7 @@ class Unknown {
 
  private:
   void set_times(const std::vector<std::pair<std::size_t, double>>& times);
-  std::vector<double> between_times(const Part& part, const Exchange& given) const;
+  std::vector<double> between_times(const Part& part, const coupling::Exchange& given) const;
 
   MPI_Comm comm_;
   std::vector<Part> parts_;

@@ -11,13 +11,14 @@ namespace couplet::coupler {
 
 bool Unknown::asked_within() const { return std::ranges::any_of(parts(), &Part::asked_within); }
 
-bool Unknown::adopt_times(const std::vector<Exchange>& given) {
+bool Unknown::adopt_times(const std::vector<coupling::Exchange>& given) {
   std::vector<std::pair<std::size_t, double>> times, before;
   for (std::size_t i = 0; i < n_parts_; ++i) {
     if (!parts_[i].asked_within) continue;
     const auto first = std::ptrdiff_t(times.size());
-    for_within(given[parts_[i].giver], parts_[i].datum.name,
-               [&](double share, const std::string&, const auto&) { times.emplace_back(i, share); });
+    coupling::for_within(
+        given[parts_[i].giver], parts_[i].datum.name,
+        [&](double share, const std::string&, const auto&) { times.emplace_back(i, share); });
     std::sort(times.begin() + first, times.end());
   }
   for (std::size_t i = n_parts_; i < parts_.size(); ++i)
@@ -32,7 +33,7 @@ void Unknown::set_times(const std::vector<std::pair<std::size_t, double>>& times
   std::size_t unknown = n_unknown_, rider = n_rider_;
   for (const auto& [end, share] : times) {
     Part part = parts_[end];
-    part.datum.name = WithinStep::name(part.datum.name, share);
+    part.datum.name = coupling::WithinStep::name(part.datum.name, share);
     part.within = end;
     part.share = share;
     part.velocity.reset();
@@ -66,7 +67,7 @@ Iterate Unknown::ends(Iterate x) const {
 
 /// On the cubic through the four times next to it that a participant gave instead, in a later pass of the step (Lagrange; fewer
 /// times: of a lower degree).
-std::vector<double> Unknown::between_times(const Part& part, const Exchange& given) const {
+std::vector<double> Unknown::between_times(const Part& part, const coupling::Exchange& given) const {
   const Part& end = parts_[*part.within];
   std::vector<std::pair<double, std::span<const double>>> known;
   const std::vector<double>& start = end.rides ? start_.rider : start_.unknown;
@@ -77,7 +78,7 @@ std::vector<double> Unknown::between_times(const Part& part, const Exchange& giv
     for (double& v : at_start) v /= end.weight;
     known.emplace_back(0, at_start);
   }
-  for_within(given, end.datum.name, [&](double share, const std::string&, const auto& values) {
+  coupling::for_within(given, end.datum.name, [&](double share, const std::string&, const auto& values) {
     known.emplace_back(share, values);
   });
   if (const auto found = given.find(end.datum.name); found != given.end())

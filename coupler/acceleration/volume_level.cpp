@@ -27,11 +27,11 @@ constexpr double damping = 0.15, calm = 1e-5;
 // Of the largest flow that is left as a measure after each step: flows pass through zero.
 constexpr double fading = 0.98;
 
-bool has(const std::vector<Interface::Datum>& list, const std::string& name) {
-  return std::ranges::find(list, name, &Interface::Datum::name) != list.end();
+bool has(const std::vector<coupling::Interface::Datum>& list, const std::string& name) {
+  return std::ranges::find(list, name, &coupling::Interface::Datum::name) != list.end();
 }
 
-const std::vector<double>& values_of(const Exchange& data, const std::string& name) {
+const std::vector<double>& values_of(const coupling::Exchange& data, const std::string& name) {
   static const std::vector<double> none;
   const auto found = data.find(name);
   return found == data.end() ? none : found->second;
@@ -86,7 +86,7 @@ void VolumeLevel::start_step(double dt) {
 }
 
 /// On the areas between those at the begin and at the end of the step: then the level's work is that on the volume.
-void VolumeLevel::loaded(std::size_t i, const Exchange& taken, Exchange& given) {
+void VolumeLevel::loaded(std::size_t i, const coupling::Exchange& taken, coupling::Exchange& given) {
   const auto found = std::ranges::find(cavities_, i, &Cavity::side);
   if (found == cavities_.end()) return;
   found->load = values_of(given, load_name);
@@ -99,7 +99,7 @@ void VolumeLevel::loaded(std::size_t i, const Exchange& taken, Exchange& given) 
   put(*found, given);
 }
 
-void VolumeLevel::put(const Cavity& cavity, Exchange& given) const {
+void VolumeLevel::put(const Cavity& cavity, coupling::Exchange& given) const {
   std::vector<double>& load = given[load_name];
   load = cavity.load;
   load.resize(cavity.areas.size() * std::size_t(dim_), 0.);
@@ -109,7 +109,8 @@ void VolumeLevel::put(const Cavity& cavity, Exchange& given) const {
 }
 
 /// At the end and at the begin of the step [m^3/s].
-std::array<double, 2> VolumeLevel::inflow(const Cavity& cavity, const std::vector<Exchange>& known) const {
+std::array<double, 2> VolumeLevel::inflow(const Cavity& cavity,
+                                          const std::vector<coupling::Exchange>& known) const {
   std::vector<double> sums(2, 0.);
   const std::vector<double>& shares = values_of(known[cavity.side], inflow_name);
   for (std::size_t k = 0; k < shares.size(); ++k) sums[k % 2] += shares[k];
@@ -117,8 +118,8 @@ std::array<double, 2> VolumeLevel::inflow(const Cavity& cavity, const std::vecto
   return {sums[0], sums[1]};
 }
 
-VolumeLevel::Flow VolumeLevel::flow(const Cavity& c, const std::vector<Exchange>& known) const {
-  const Exchange wall = links_->input(c.side, known);
+VolumeLevel::Flow VolumeLevel::flow(const Cavity& c, const std::vector<coupling::Exchange>& known) const {
+  const coupling::Exchange wall = links_->input(c.side, known);
   const std::vector<double>& place = values_of(wall, "displacement");
   const CavityWall::Flux flux = c.wall.flux(values_of(wall, "velocity"), c.wall.areas(place));
   std::array<double, 3> sums{flux.net, flux.size, c.wall.swept(c.place, place)};
@@ -127,7 +128,7 @@ VolumeLevel::Flow VolumeLevel::flow(const Cavity& c, const std::vector<Exchange>
   return {sums[0] - end, sums[1] + std::abs(begin) + std::abs(end), end, begin, sums[2]};
 }
 
-VolumeLevel::Defect VolumeLevel::defect(const std::vector<Exchange>& known) const {
+VolumeLevel::Defect VolumeLevel::defect(const std::vector<coupling::Exchange>& known) const {
   const auto n = Eigen::Index(cavities_.size());
   Defect d{Eigen::VectorXd(n), Eigen::VectorXd(n)};
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -140,7 +141,7 @@ VolumeLevel::Defect VolumeLevel::defect(const std::vector<Exchange>& known) cons
   return d;
 }
 
-VolumeLevel::Defect VolumeLevel::answer_to(std::vector<Exchange>& known,
+VolumeLevel::Defect VolumeLevel::answer_to(std::vector<coupling::Exchange>& known,
                                            const std::function<void()>& answer) {
   for (const Cavity& c : cavities_) put(c, known[c.side]);
   answer();
@@ -157,7 +158,7 @@ double VolumeLevel::pressure(const Cavity& c, const std::vector<double>& load) c
 }
 
 /// The structure's answer to a further pressure in each cavity, of the size of the load.
-void VolumeLevel::probe(std::vector<Exchange>& known, const std::function<void()>& answer,
+void VolumeLevel::probe(std::vector<coupling::Exchange>& known, const std::function<void()>& answer,
                         const Eigen::VectorXd& now) {
   slope_.resize(now.size(), now.size());
   for (Eigen::Index k = 0; k < now.size(); ++k) {
@@ -182,7 +183,7 @@ Eigen::VectorXd VolumeLevel::step_to(const Eigen::VectorXd& g) const {
   return lu.solve(-g);
 }
 
-void VolumeLevel::find(std::vector<Exchange>& known, const std::function<void()>& answer) {
+void VolumeLevel::find(std::vector<coupling::Exchange>& known, const std::function<void()>& answer) {
   Defect now = defect(known);
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(now.value.size());  // by the loads at rest [m^3/s]
   const auto measure = [&] {
@@ -222,7 +223,7 @@ void VolumeLevel::find(std::vector<Exchange>& known, const std::function<void()>
       cavities_.front().name, most_tries, best);
 }
 
-void VolumeLevel::accept(const std::vector<Exchange>& given) {
+void VolumeLevel::accept(const std::vector<coupling::Exchange>& given) {
   for (Cavity& c : cavities_) {
     const Flow now = flow(c, given);
     c.change += now.swept;
@@ -236,18 +237,18 @@ void VolumeLevel::accept(const std::vector<Exchange>& given) {
   }
 }
 
-void VolumeLevel::save(CheckpointWriter& file) const {
+void VolumeLevel::save(io::CheckpointWriter& file) const {
   std::vector<double> numbers{slope_dt_};
   for (const Cavity& c : cavities_)
     numbers.insert(numbers.end(), {c.accepted_level, c.change, c.inflow, c.swing[0], c.swing[1], c.flow});
   numbers.insert(numbers.end(), slope_.data(), slope_.data() + slope_.size());
-  file.write("volume-level", comm_rank(comm_) == 0 ? numbers : std::vector<double>{});
+  file.write("volume-level", parallel::comm_rank(comm_) == 0 ? numbers : std::vector<double>{});
   for (const Cavity& c : cavities_) file.write("volume-place-" + c.name, c.place);
 }
 
-void VolumeLevel::load(CheckpointReader& file) {
+void VolumeLevel::load(io::CheckpointReader& file) {
   // Every rank needs all of it.
-  const std::vector<double> numbers = all_gather(comm_, file.read("volume-level"));
+  const std::vector<double> numbers = parallel::all_gather(comm_, file.read("volume-level"));
   const std::size_t n = cavities_.size();
   if (numbers.size() != 1 + 6 * n && numbers.size() != 1 + 6 * n + n * n)
     throw Error("The checkpoint is from a coupling with other closed fluids.");

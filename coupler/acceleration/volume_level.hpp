@@ -39,14 +39,14 @@ class VolumeLevel {
 
   void start_step(double dt);
   /// After participant `i` has answered: its load, if it is a cavity, gets the level. `taken`: what it answered to.
-  void loaded(std::size_t i, const Exchange& taken, Exchange& given);
+  void loaded(std::size_t i, const coupling::Exchange& taken, coupling::Exchange& given);
   /// After the last structure's answer: finds the levels. `answer` asks all structures again with what is in
   /// `known`. Throws SolveFailure if no pressure holds a volume.
-  void find(std::vector<Exchange>& known, const std::function<void()>& answer);
-  void accept(const std::vector<Exchange>& given);
+  void find(std::vector<coupling::Exchange>& known, const std::function<void()>& answer);
+  void accept(const std::vector<coupling::Exchange>& given);
 
-  void save(CheckpointWriter& file) const;
-  void load(CheckpointReader& file);
+  void save(io::CheckpointWriter& file) const;
+  void load(io::CheckpointReader& file);
   /// For volume.csv.
   std::vector<std::string> columns() const;
   std::vector<double> row() const;
@@ -75,14 +75,15 @@ class VolumeLevel {
     double end, begin;      ///< Q [m^3/s]
     double swept;           ///< since t^n [m^3]
   };
-  Flow flow(const Cavity& cavity, const std::vector<Exchange>& known) const;
-  Defect defect(const std::vector<Exchange>& known) const;
-  Defect answer_to(std::vector<Exchange>& known, const std::function<void()>& answer);
-  void put(const Cavity& cavity, Exchange& given) const;
-  void probe(std::vector<Exchange>& known, const std::function<void()>& answer, const Eigen::VectorXd& now);
+  Flow flow(const Cavity& cavity, const std::vector<coupling::Exchange>& known) const;
+  Defect defect(const std::vector<coupling::Exchange>& known) const;
+  Defect answer_to(std::vector<coupling::Exchange>& known, const std::function<void()>& answer);
+  void put(const Cavity& cavity, coupling::Exchange& given) const;
+  void probe(std::vector<coupling::Exchange>& known, const std::function<void()>& answer,
+             const Eigen::VectorXd& now);
   double pressure(const Cavity& cavity, const std::vector<double>& load) const;
   Eigen::VectorXd step_to(const Eigen::VectorXd& g) const;
-  std::array<double, 2> inflow(const Cavity& cavity, const std::vector<Exchange>& known) const;
+  std::array<double, 2> inflow(const Cavity& cavity, const std::vector<coupling::Exchange>& known) const;
 
   MPI_Comm comm_;
   const Links* links_;

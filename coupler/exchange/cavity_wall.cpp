@@ -15,15 +15,16 @@ CavityWall::CavityWall(MPI_Comm comm, const Side& side, bool moves)
       n_vertices_(side.interface.vertices.size()),
       offset_(side.interface.face_offset),
       reference_(side.interface.face_areas) {
-  const Interface& i = side.interface;
-  const Starts corners =
-      starts_of(all_gather(comm, std::vector<GlobalIndex>{GlobalIndex(i.face_vertices.size())}));
+  const coupling::Interface& i = side.interface;
+  const coupling::Starts corners = coupling::starts_of(
+      parallel::all_gather(comm, std::vector<GlobalIndex>{GlobalIndex(i.face_vertices.size())}));
   if (corners.back() == 0)
     throw Error("'{}' does not provide the corners of its faces, so its volume is unknown.", side.name);
   if (offset_.size() != reference_.size() + 1) offset_.assign(reference_.size() + 1, 0);
   std::vector<Transfer::Entry> entries;
   for (std::size_t k = 0; k < i.face_vertices.size(); ++k)
-    entries.push_back({corners[std::size_t(comm_rank(comm))] + GlobalIndex(k), i.face_vertices[k], 1.});
+    entries.push_back(
+        {corners[std::size_t(parallel::comm_rank(comm))] + GlobalIndex(k), i.face_vertices[k], 1.});
   to_corners_ = Transfer(comm, corners, side.vertices, std::move(entries));
   std::vector<double> xyz;
   for (const Vec3& v : i.vertices) xyz.insert(xyz.end(), v.data(), v.data() + 3);

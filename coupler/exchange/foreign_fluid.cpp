@@ -7,7 +7,7 @@
 
 namespace couplet::coupler {
 
-void ForeignFluid::adapt(Interface& own, Surfaces& surfaces) {
+void ForeignFluid::adapt(coupling::Interface& own, coupling::Surfaces& surfaces) {
   const ForeignNames takes{own.takes, surfaces.takes, "fluid", name(), "takes"},
       gives{own.gives, surfaces.gives, "fluid", name(), "gives"};
   const auto motion = takes.find(names_.displacement);
@@ -20,23 +20,23 @@ void ForeignFluid::adapt(Interface& own, Surfaces& surfaces) {
   if (force == own.gives.end() || force->unit != "N" || force->size(own.dim) != own.dim)
     gives.refuse("load", fmt::format("force '{}' [N]", names_.load));
   gives.rename(*force, "pressure-force");
-  Interface::Datum viscous = *force;
+  coupling::Interface::Datum viscous = *force;
   viscous.name = "viscous-force";
   own.gives.push_back(viscous);
   gives.put_beside("pressure-force", "viscous-force");
 }
 
-void ForeignFluid::send(const Command& command) {
+void ForeignFluid::send(const coupling::Command& command) {
   if (!command.data.contains("displacement")) return channel_->send(command);
-  Command own = command;
+  coupling::Command own = command;
   auto node = own.data.extract("displacement");
   node.key() = names_.displacement;
   own.data.insert(std::move(node));
   channel_->send(own);
 }
 
-Reply ForeignFluid::receive() {
-  Reply reply = channel_->receive();
+coupling::Reply ForeignFluid::receive() {
+  coupling::Reply reply = channel_->receive();
   if (auto node = reply.data.extract(names_.load); !node.empty()) {
     reply.data["viscous-force"] = std::vector<double>(node.mapped().size());
     node.key() = "pressure-force";

@@ -8,7 +8,7 @@
 
 namespace couplet::coupler {
 
-using Datum = Interface::Datum;
+using Datum = coupling::Interface::Datum;
 
 std::vector<Datum>::iterator ForeignNames::find(const std::string& name) const {
   return std::ranges::find(data, name, &Datum::name);
@@ -31,9 +31,9 @@ void ForeignNames::refuse(const char* key, const std::string& wanted) const {
   std::vector<std::string> all;
   for (const Datum& d : data)
     all.push_back(fmt::format("'{}' [{}] at {}", d.name, d.unit,
-                              d.place == Interface::Place::vertices ? "vertices" : "faces"));
+                              d.place == coupling::Interface::Place::vertices ? "vertices" : "faces"));
   throw Error("coupling.{}.{}: '{}' {} no {}. It {}: {}.", role, key, who, does, wanted, does,
-              all.empty() ? "nothing" : join(all));
+              all.empty() ? "nothing" : base::join(all));
 }
 
 }  // namespace couplet::coupler

@@ -10,18 +10,19 @@
 
 namespace couplet::coupler {
 
-using Datum = Interface::Datum;
+using Datum = coupling::Interface::Datum;
 
-void ForeignStructure::adapt(Interface& own, Surfaces& surfaces, const std::vector<Interface>& all) {
+void ForeignStructure::adapt(coupling::Interface& own, coupling::Surfaces& surfaces,
+                             const std::vector<coupling::Interface>& all) {
   adapt_displacement(own, surfaces);
   n_values_ = own.vertices.size() * std::size_t(own.dim);
   if (!names_.load.empty()) adapt_load(own, surfaces, all);
 }
 
-void ForeignStructure::adapt_displacement(Interface& own, Surfaces& surfaces) {
+void ForeignStructure::adapt_displacement(coupling::Interface& own, coupling::Surfaces& surfaces) {
   const ForeignNames gives{own.gives, surfaces.gives, "structure", name(), "gives"};
   const auto datum = gives.find(names_.displacement);
-  if (datum == own.gives.end() || datum->place != Interface::Place::vertices ||
+  if (datum == own.gives.end() || datum->place != coupling::Interface::Place::vertices ||
       datum->size(own.dim) != own.dim || (datum->unit != "m" && datum->unit != "1"))
     gives.refuse("displacement",
                  fmt::format("vector '{}' [m, or without a unit] at vertices", names_.displacement));
@@ -29,16 +30,17 @@ void ForeignStructure::adapt_displacement(Interface& own, Surfaces& surfaces) {
   datum->unit = "m";
   derives_velocity_ = gives.find("velocity") == own.gives.end();
   if (!derives_velocity_) return;
-  own.gives.push_back({"velocity", "m/s", Interface::Place::vertices});
+  own.gives.push_back({"velocity", "m/s", coupling::Interface::Place::vertices});
   gives.put_beside("displacement", "velocity");
 }
 
-void ForeignStructure::adapt_load(Interface& own, Surfaces& surfaces, const std::vector<Interface>& all) {
+void ForeignStructure::adapt_load(coupling::Interface& own, coupling::Surfaces& surfaces,
+                                  const std::vector<coupling::Interface>& all) {
   const ForeignNames takes{own.takes, surfaces.takes, "structure", name(), "takes"};
   const auto datum = takes.find(names_.load);
   if (datum == own.takes.end() || datum->unit != "N" || datum->size(own.dim) != own.dim)
     takes.refuse("load", fmt::format("force '{}' [N]", names_.load));
-  for (const Interface& other : all)
+  for (const coupling::Interface& other : all)
     for (const Datum& given : other.gives)
       if (given.unit == "N" && given.size(other.dim) == own.dim &&
           std::ranges::find(forces_, given.name) == forces_.end())
@@ -51,15 +53,15 @@ void ForeignStructure::adapt_load(Interface& own, Surfaces& surfaces, const std:
   }
 }
 
-void ForeignStructure::send(const Command& command) {
-  if (command.op == Op::begin_step) dt_ = command.step.dt;
-  if (command.op == Op::accept_step) {
+void ForeignStructure::send(const coupling::Command& command) {
+  if (command.op == coupling::Op::begin_step) dt_ = command.step.dt;
+  if (command.op == coupling::Op::accept_step) {
     older_ = now_.empty() ? std::vector<double>(next_.size()) : std::move(now_);
     now_ = next_;
     old_dt_ = dt_;
   }
   if (forces_.empty() || command.data.empty()) return channel_->send(command);
-  Command own = command;
+  coupling::Command own = command;
   std::vector<double> load;
   for (const std::string& force : forces_) {
     const auto node = own.data.extract(force);
@@ -82,7 +84,7 @@ std::vector<double> ForeignStructure::velocity() const {
   return v;
 }
 
-void ForeignStructure::save(CheckpointWriter& file) const {
+void ForeignStructure::save(io::CheckpointWriter& file) const {
   if (!derives_velocity_) return;
   file.write(name() + "-displacement", now_);
   file.write(name() + "-displacement-before", older_);
@@ -90,7 +92,7 @@ void ForeignStructure::save(CheckpointWriter& file) const {
   file.write_scalar(name() + "-dt-before", old_dt_);
 }
 
-void ForeignStructure::load(CheckpointReader& file) {
+void ForeignStructure::load(io::CheckpointReader& file) {
   if (!derives_velocity_) return;
   now_ = file.read_or_none(name() + "-displacement", n_values_);
   older_ = file.read_or_none(name() + "-displacement-before", n_values_);
@@ -98,8 +100,8 @@ void ForeignStructure::load(CheckpointReader& file) {
   old_dt_ = file.read_scalar(name() + "-dt-before");
 }
 
-Reply ForeignStructure::receive() {
-  Reply reply = channel_->receive();
+coupling::Reply ForeignStructure::receive() {
+  coupling::Reply reply = channel_->receive();
   if (auto node = reply.data.extract(names_.displacement); !node.empty()) {
     next_ = node.mapped();
     node.key() = "displacement";

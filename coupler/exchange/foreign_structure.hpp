@@ -8,10 +8,10 @@
 #include "common/coupling/channel.hpp"
 #include "coupler/parameters/parameters.hpp"
 
-namespace couplet {
+namespace couplet::io {
 class CheckpointReader;
 class CheckpointWriter;
-}  // namespace couplet
+}  // namespace couplet::io
 
 namespace couplet::coupler {
 
@@ -19,30 +19,32 @@ namespace couplet::coupler {
 /// interface. Its displacement [m] goes on by the coupler's name, its load is the sum of all forces [N] of the
 /// others, and its velocity [m/s] is the difference of second order through the displacements at t^{n+1}, t^n and
 /// t^{n-1} (of first order in the first step; before it the structure is at rest).
-class ForeignStructure final : public Channel {
+class ForeignStructure final : public coupling::Channel {
  public:
-  ForeignStructure(std::unique_ptr<Channel> channel, CouplingParameters::Structure names)
+  ForeignStructure(std::unique_ptr<coupling::Channel> channel, CouplingParameters::Structure names)
       : channel_(std::move(channel)), names_(std::move(names)) {}
 
   /// Brings the announced surface into the coupler's words. `all`: of every participant, for the forces that
   /// they give. Throws Error where a name is not announced, or not in metres at vertices or in newtons.
-  void adapt(Interface& own, Surfaces& surfaces, const std::vector<Interface>& all);
+  void adapt(coupling::Interface& own, coupling::Surfaces& surfaces,
+             const std::vector<coupling::Interface>& all);
 
   const std::string& name() const override { return channel_->name(); }
-  void send(const Command& command) override;
-  Reply receive() override;
+  void send(const coupling::Command& command) override;
+  coupling::Reply receive() override;
   double waiting_seconds() const override { return channel_->waiting_seconds(); }
 
   /// The displacements that its velocity follows from, between steps; nothing where it gives its velocity.
-  void save(CheckpointWriter& file) const;
-  void load(CheckpointReader& file);
+  void save(io::CheckpointWriter& file) const;
+  void load(io::CheckpointReader& file);
 
  private:
-  void adapt_displacement(Interface& own, Surfaces& surfaces);
-  void adapt_load(Interface& own, Surfaces& surfaces, const std::vector<Interface>& all);
+  void adapt_displacement(coupling::Interface& own, coupling::Surfaces& surfaces);
+  void adapt_load(coupling::Interface& own, coupling::Surfaces& surfaces,
+                  const std::vector<coupling::Interface>& all);
   std::vector<double> velocity() const;
 
-  std::unique_ptr<Channel> channel_;
+  std::unique_ptr<coupling::Channel> channel_;
   CouplingParameters::Structure names_;
   bool derives_velocity_ = false;           // none is given
   std::vector<std::string> forces_;         // whose sum is the load

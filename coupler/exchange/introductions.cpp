@@ -35,7 +35,7 @@ void check_scheme(const CouplingParameters& p, const std::string& who,
         "FILE --force`.",
         key, here, there, who);
   };
-  const std::string scheme = p.scheme == Scheme::explicit_ ? "explicit" : "implicit",
+  const std::string scheme = p.scheme == coupling::Scheme::explicit_ ? "explicit" : "implicit",
                     order = p.exchange->order == ExchangeParameters::Order::serial ? "serial" : "parallel";
   if (wanted(0, std::array{"implicit", "explicit"}) && record[0] != scheme)
     refuse("scheme", scheme, record[0]);

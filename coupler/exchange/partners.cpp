@@ -10,23 +10,26 @@
 
 namespace couplet::coupler {
 
-Reply Partner::receive() {
-  Reply reply = channel->receive();
+coupling::Reply Partner::receive() {
+  coupling::Reply reply = channel->receive();
   seconds += reply.seconds;
   seconds_since_accepted += reply.seconds;
-  if (reply.status == Reply::Status::hopeless) throw SchemeFailure("'{}' reports: {}", name(), reply.text);
-  if (reply.status == Reply::Status::failure) throw SolveFailure("'{}' reports: {}", name(), reply.text);
+  if (reply.status == coupling::Reply::Status::hopeless)
+    throw SchemeFailure("'{}' reports: {}", name(), reply.text);
+  if (reply.status == coupling::Reply::Status::failure)
+    throw SolveFailure("'{}' reports: {}", name(), reply.text);
   return reply;
 }
 
-void ask_all(const std::vector<Partner*>& partners, const Command& command) {
-  for (Partner* p : partners) p->send(Command(command));
+void ask_all(const std::vector<Partner*>& partners, const coupling::Command& command) {
+  for (Partner* p : partners) p->send(coupling::Command(command));
   std::string failures;
   for (Partner* p : partners) {
     try {
-      const Reply reply = p->receive();
-      if (command.op == Op::accept_step || command.op == Op::load) p->advised_dt = reply.suggested_dt;
-      if (command.op != Op::accept_step) continue;
+      const coupling::Reply reply = p->receive();
+      if (command.op == coupling::Op::accept_step || command.op == coupling::Op::load)
+        p->advised_dt = reply.suggested_dt;
+      if (command.op != coupling::Op::accept_step) continue;
       p->report = reply.report;
       p->report.seconds = std::exchange(p->seconds_since_accepted, 0.0);
     } catch (const SolveFailure& failure) {
@@ -36,11 +39,11 @@ void ask_all(const std::vector<Partner*>& partners, const Command& command) {
   if (!failures.empty()) throw SolveFailure(failures);
 }
 
-std::vector<Interface> initialise_all(const std::vector<Partner*>& partners) {
-  std::vector<Interface> interfaces;
-  for (Partner* p : partners) p->send({Op::initialise, {}, {}, 0, -1, ""});
+std::vector<coupling::Interface> initialise_all(const std::vector<Partner*>& partners) {
+  std::vector<coupling::Interface> interfaces;
+  for (Partner* p : partners) p->send({coupling::Op::initialise, {}, {}, 0, -1, ""});
   for (Partner* p : partners) {
-    Reply reply = p->receive();
+    coupling::Reply reply = p->receive();
     p->advised_dt = reply.suggested_dt;
     p->introduction = std::move(reply.text);
     p->initial = std::move(reply.data);
@@ -50,13 +53,14 @@ std::vector<Interface> initialise_all(const std::vector<Partner*>& partners) {
   return interfaces;
 }
 
-std::vector<NamedErrors> finalise_all(const std::vector<Partner*>& partners, const std::string& problem) {
-  std::vector<NamedErrors> errors;
+std::vector<coupling::NamedErrors> finalise_all(const std::vector<Partner*>& partners,
+                                                const std::string& problem) {
+  std::vector<coupling::NamedErrors> errors;
   for (Partner* p : partners) {
-    p->send({Op::finalise, {}, {}, 0, -1, problem});
+    p->send({coupling::Op::finalise, {}, {}, 0, -1, problem});
     const std::string text = p->receive().text;
     try {
-      errors.push_back({p->name(), ErrorParts::of(text)});
+      errors.push_back({p->name(), coupling::ErrorParts::of(text)});
     } catch (const Error& error) {  // of a guest: no reason to lose a run that has ended
       log::warn("Ignoring the malformed closing message of '{}': {}", p->name(), error.what());
     }

@@ -12,35 +12,37 @@ namespace couplet::coupler {
 
 /// A participant as the coupler talks to it.
 struct Partner {
-  std::unique_ptr<Channel> channel;
+  std::unique_ptr<coupling::Channel> channel;
   int sub_steps = 1;   ///< within a coupling step
   double seconds = 0;  ///< it has spent in the step under way
   double seconds_since_accepted = 0;
-  StepReport report;  ///< of the last accepted step
+  coupling::StepReport report;  ///< of the last accepted step
   double advised_dt = 0;
-  Surfaces surfaces;         ///< of its vertices
-  std::string introduction;  ///< what its program was configured by; empty: it says nothing
-  Exchange initial;  ///< values before the first step that it gave at its start; none: it gave no values
+  coupling::Surfaces surfaces;  ///< of its vertices
+  std::string introduction;     ///< what its program was configured by; empty: it says nothing
+  coupling::Exchange
+      initial;  ///< values before the first step that it gave at its start; none: it gave no values
 
   const std::string& name() const { return channel->name(); }
-  void send(Command&& command) { send(command); }
-  void send(Command& command) {
+  void send(coupling::Command&& command) { send(command); }
+  void send(coupling::Command& command) {
     command.step.sub_steps = sub_steps;
     channel->send(command);
   }
   /// Throws SolveFailure (SchemeFailure if a smaller step would not help) naming the participant if the reply
   /// is a failure.
-  Reply receive();
+  coupling::Reply receive();
 };
 
 /// The command to everyone at once, then all replies; failures are collected and thrown together as one
 /// SolveFailure.
-void ask_all(const std::vector<Partner*>& partners, const Command& command);
+void ask_all(const std::vector<Partner*>& partners, const coupling::Command& command);
 /// The interface of each, in their order; their initial values go to the partners.
-std::vector<Interface> initialise_all(const std::vector<Partner*>& partners);
+std::vector<coupling::Interface> initialise_all(const std::vector<Partner*>& partners);
 /// Last words, one after the other, so that they do not mix; what each knows of its error. `problem`: why the run stopped before its
 /// end; empty: it did not.
-std::vector<NamedErrors> finalise_all(const std::vector<Partner*>& partners, const std::string& problem);
+std::vector<coupling::NamedErrors> finalise_all(const std::vector<Partner*>& partners,
+                                                const std::string& problem);
 /// The smallest step that somebody advises [s].
 double advised_dt(const std::vector<Partner*>& partners);
 

@@ -27,7 +27,7 @@ void check_roles(const CouplingParameters& p, const std::vector<Side>& sides) {
     const auto side = std::ranges::find(sides, who->participant, &Side::name);
     if (side == sides.end()) return;
     const std::string problem =
-        problem_of_role(contract_of(role), side->interface.takes, side->interface.gives);
+        coupling::problem_of_role(coupling::contract_of(role), side->interface.takes, side->interface.gives);
     if (!problem.empty())
       throw Error("'{}' cannot be the {} (`coupling.{}`): {}.", side->name, role, role, problem);
   };

@@ -24,7 +24,7 @@ bool better(const Neighbour& a, const Neighbour& b) {
 std::vector<Neighbour> nearest_here(const std::vector<Vec3>& points, const PointSet& among) {
   std::vector<Neighbour> found(points.size(), none);
   if (among.points.empty()) return found;
-  const PointTree tree(among.points);
+  const base::PointTree tree(among.points);
   constexpr std::size_t candidates = 4;
   for (std::size_t i = 0; i < points.size(); ++i)
     for (const Index candidate : tree.nearest(points[i], candidates)) {
@@ -52,9 +52,9 @@ PointSet whole_set(PointSet set) {
 }
 
 std::vector<Neighbour> nearest(MPI_Comm comm, const std::vector<Vec3>& points, const PointSet& among) {
-  if (comm_size(comm) == 1) return nearest_here(points, among);
+  if (parallel::comm_size(comm) == 1) return nearest_here(points, among);
   // A point is asked about where a box is nearer than the furthest corner of every box.
-  const std::vector<PointBox> all = all_gather(comm, std::vector<PointBox>{PointBox(among.points)});
+  const std::vector<PointBox> all = parallel::all_gather(comm, std::vector<PointBox>{PointBox(among.points)});
   std::vector<std::vector<Vec3>> ask(all.size());
   std::vector<std::vector<std::size_t>> asked(all.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -68,8 +68,9 @@ std::vector<Neighbour> nearest(MPI_Comm comm, const std::vector<Vec3>& points, c
       }
   }
   std::vector<std::vector<Neighbour>> answers;
-  for (const auto& questions : all_to_all(comm, ask)) answers.push_back(nearest_here(questions, among));
-  const auto replies = all_to_all(comm, answers);
+  for (const auto& questions : parallel::all_to_all(comm, ask))
+    answers.push_back(nearest_here(questions, among));
+  const auto replies = parallel::all_to_all(comm, answers);
   std::vector<Neighbour> found(points.size(), none);
   for (std::size_t r = 0; r < replies.size(); ++r)
     for (std::size_t k = 0; k < replies[r].size(); ++k)

@@ -27,12 +27,12 @@ struct PointSet {
   std::string what;  ///< for messages: "vertices of 'fluid'"
   std::vector<Vec3> points;
   std::vector<double> sizes{};  ///< of faces [m^2] (2-D: [m]), for shares; empty: all alike
-  const Interface* surface =
+  const coupling::Interface* surface =
       nullptr;  ///< that these are vertices or faces of, this rank's part; for projection
   std::vector<GlobalIndex> positions{};  ///< of these points in the whole list
   std::vector<GlobalIndex> ids{};        ///< the same on any number of ranks: decide between equals
-  Starts starts{};                       ///< of the whole list
-  Interface::Place place = Interface::Place::vertices;
+  coupling::Starts starts{};             ///< of the whole list
+  coupling::Interface::Place place = coupling::Interface::Place::vertices;
   bool own_surface =
       false;  ///< a surface of their own among those of `surface`: what goes by faces does not see it
 };

@@ -5,22 +5,23 @@
 
 namespace couplet::coupler {
 
-Side::Side(MPI_Comm comm, std::string its_name, Interface its_interface)
+Side::Side(MPI_Comm comm, std::string its_name, coupling::Interface its_interface)
     : name(std::move(its_name)), interface(std::move(its_interface)) {
   const auto cut = [&](std::size_t n, std::vector<GlobalIndex>& ids) {
-    const Starts starts = starts_of(all_gather(comm, std::vector<GlobalIndex>{GlobalIndex(n)}));
+    const coupling::Starts starts =
+        coupling::starts_of(parallel::all_gather(comm, std::vector<GlobalIndex>{GlobalIndex(n)}));
     if (ids.empty())
       for (std::size_t i = 0; i < n; ++i)
-        ids.push_back(starts[std::size_t(comm_rank(comm))] + GlobalIndex(i));
+        ids.push_back(starts[std::size_t(parallel::comm_rank(comm))] + GlobalIndex(i));
     return starts;
   };
   vertices = cut(interface.vertices.size(), interface.vertex_ids);
   faces = cut(interface.face_centres.size(), interface.face_ids);
-  rank_ = std::size_t(comm_rank(comm));
+  rank_ = std::size_t(parallel::comm_rank(comm));
 }
 
-PointSet Side::places(Interface::Place place) const {
-  const bool at_vertices = place == Interface::Place::vertices;
+PointSet Side::places(coupling::Interface::Place place) const {
+  const bool at_vertices = place == coupling::Interface::Place::vertices;
   PointSet set;
   set.what = (at_vertices ? "vertices of '" : "faces of '") + name + "'";
   set.points = at_vertices ? interface.vertices : interface.face_centres;
@@ -35,7 +36,8 @@ PointSet Side::places(Interface::Place place) const {
   return set;
 }
 
-PointSet Side::places_of(const Interface::Datum& datum, const std::map<std::string, int>& surface_of) const {
+PointSet Side::places_of(const coupling::Interface::Datum& datum,
+                         const std::map<std::string, int>& surface_of) const {
   PointSet all = places(datum.place);
   const auto surface = surface_of.find(datum.name);
   if (surface == surface_of.end()) return all;

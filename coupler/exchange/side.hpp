@@ -14,23 +14,29 @@ namespace couplet::coupler {
 /// are cut over the coupler's ranks.
 struct Side {
   std::string name;
-  Interface interface;
-  Starts vertices, faces;
-  Surfaces surfaces;
+  coupling::Interface interface;
+  coupling::Starts vertices, faces;
+  coupling::Surfaces surfaces;
 
   /// Collective; fills in ids where there are none.
-  Side(MPI_Comm comm, std::string name, Interface interface);
-  std::size_t entries(Interface::Place place) const {
-    return place == Interface::Place::vertices ? interface.vertices.size() : interface.face_centres.size();
+  Side(MPI_Comm comm, std::string name, coupling::Interface interface);
+  std::size_t entries(coupling::Interface::Place place) const {
+    return place == coupling::Interface::Place::vertices ? interface.vertices.size()
+                                                         : interface.face_centres.size();
   }
   /// All places of a kind.
-  PointSet places(Interface::Place place) const;
+  PointSet places(coupling::Interface::Place place) const;
   /// Those where a datum is given, or taken.
-  PointSet places_given(const Interface::Datum& datum) const { return places_of(datum, surfaces.gives); }
-  PointSet places_taken(const Interface::Datum& datum) const { return places_of(datum, surfaces.takes); }
+  PointSet places_given(const coupling::Interface::Datum& datum) const {
+    return places_of(datum, surfaces.gives);
+  }
+  PointSet places_taken(const coupling::Interface::Datum& datum) const {
+    return places_of(datum, surfaces.takes);
+  }
 
  private:
-  PointSet places_of(const Interface::Datum& datum, const std::map<std::string, int>& surface_of) const;
+  PointSet places_of(const coupling::Interface::Datum& datum,
+                     const std::map<std::string, int>& surface_of) const;
   std::size_t rank_ = 0;
 };
 

@@ -20,13 +20,14 @@ void add_up(std::vector<Transfer::Entry>& entries) {
 }
 
 /// Every entry on the rank that has its target, by target and source, each pair once.
-std::vector<Transfer::Entry> by_owner(MPI_Comm comm, const Starts& targets,
+std::vector<Transfer::Entry> by_owner(MPI_Comm comm, const coupling::Starts& targets,
                                       std::vector<Transfer::Entry> entries) {
-  if (comm_size(comm) > 1) {
-    std::vector<std::vector<Transfer::Entry>> to(std::size_t(comm_size(comm)));
-    for (const auto& e : entries) to[std::size_t(owner_of(targets, e.target))].push_back(e);
+  if (parallel::comm_size(comm) > 1) {
+    std::vector<std::vector<Transfer::Entry>> to(std::size_t(parallel::comm_size(comm)));
+    for (const auto& e : entries) to[std::size_t(coupling::owner_of(targets, e.target))].push_back(e);
     entries.clear();
-    for (const auto& part : all_to_all(comm, to)) entries.insert(entries.end(), part.begin(), part.end());
+    for (const auto& part : parallel::all_to_all(comm, to))
+      entries.insert(entries.end(), part.begin(), part.end());
   }
   std::ranges::stable_sort(entries, [](const auto& a, const auto& b) {
     return a.target != b.target ? a.target < b.target : a.source < b.source;
@@ -37,14 +38,15 @@ std::vector<Transfer::Entry> by_owner(MPI_Comm comm, const Starts& targets,
 
 }  // namespace
 
-Transfer::Transfer(MPI_Comm comm, const Starts& targets, const Starts& sources, std::vector<Entry> entries)
-    : comm_(comm), alone_(comm_size(comm) == 1) {
-  const auto rank = std::size_t(comm_rank(comm));
+Transfer::Transfer(MPI_Comm comm, const coupling::Starts& targets, const coupling::Starts& sources,
+                   std::vector<Entry> entries)
+    : comm_(comm), alone_(parallel::comm_size(comm) == 1) {
+  const auto rank = std::size_t(parallel::comm_rank(comm));
   entries = by_owner(comm, targets, std::move(entries));
   n_sources_ = std::size_t(sources[rank + 1] - sources[rank]);
   std::vector<GlobalIndex> foreign;
   for (const Entry& e : entries)
-    if (owner_of(sources, e.source) != int(rank)) foreign.push_back(e.source);
+    if (coupling::owner_of(sources, e.source) != int(rank)) foreign.push_back(e.source);
   std::ranges::sort(foreign);
   foreign.erase(std::unique(foreign.begin(), foreign.end()), foreign.end());
   const std::size_t n_targets = std::size_t(targets[rank + 1] - targets[rank]);
@@ -63,10 +65,10 @@ Transfer::Transfer(MPI_Comm comm, const Starts& targets, const Starts& sources, 
     same_ = first_[t + 1] == t + 1 && column_[t] == t && weight_[t] == 1;
   if (alone_) return;
   // Foreign positions are ascending, so they come rank by rank.
-  std::vector<std::vector<GlobalIndex>> wanted(std::size_t(comm_size(comm)));
-  for (const GlobalIndex s : foreign) wanted[std::size_t(owner_of(sources, s))].push_back(s);
+  std::vector<std::vector<GlobalIndex>> wanted(std::size_t(parallel::comm_size(comm)));
+  for (const GlobalIndex s : foreign) wanted[std::size_t(coupling::owner_of(sources, s))].push_back(s);
   for (const auto& list : wanted) take_.push_back(int(list.size()));
-  for (const auto& list : all_to_all(comm, wanted)) {
+  for (const auto& list : parallel::all_to_all(comm, wanted)) {
     auto& mine = give_.emplace_back();
     for (const GlobalIndex s : list) mine.push_back(std::size_t(s - sources[rank]));
   }
@@ -125,7 +127,7 @@ std::vector<Transfer::Entry> transposed(std::vector<Transfer::Entry> entries) {
   return entries;
 }
 
-std::vector<Transfer::Entry> product(MPI_Comm comm, const Starts& between,
+std::vector<Transfer::Entry> product(MPI_Comm comm, const coupling::Starts& between,
                                      std::vector<Transfer::Entry> second,
                                      std::vector<Transfer::Entry> first) {
   // On the rank that has the place between, both by that place.

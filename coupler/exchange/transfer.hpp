@@ -20,7 +20,8 @@ class Transfer {
   };
   Transfer() = default;
   /// Entries may be given on any rank; equal ones add up. Collective.
-  Transfer(MPI_Comm comm, const Starts& targets, const Starts& sources, std::vector<Entry> entries);
+  Transfer(MPI_Comm comm, const coupling::Starts& targets, const coupling::Starts& sources,
+           std::vector<Entry> entries);
 
   /// Values at this rank's sources to this rank's targets, `components` each. Collective.
   std::vector<double> apply(std::span<const double> values, int components) const;
@@ -40,7 +41,7 @@ class Transfer {
 
 /// Entries of the map that does `first` and then `second`, where the targets of the one are the sources of the
 /// other, cut over the ranks as `between` says. Entries may be on any rank. Collective.
-std::vector<Transfer::Entry> product(MPI_Comm comm, const Starts& between,
+std::vector<Transfer::Entry> product(MPI_Comm comm, const coupling::Starts& between,
                                      std::vector<Transfer::Entry> second, std::vector<Transfer::Entry> first);
 /// The same weights from targets to sources.
 std::vector<Transfer::Entry> transposed(std::vector<Transfer::Entry> entries);

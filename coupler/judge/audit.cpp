@@ -17,8 +17,8 @@ CouplingAudit::CouplingAudit(MPI_Comm comm, const std::vector<Side>& sides, cons
     : comm_(comm) {
   for (std::size_t i = 0; i < sides.size(); ++i) {
     std::vector<Force> forces;
-    for (const Interface::Datum& datum : sides[i].interface.gives) {
-      if (datum.unit != "N" || datum.place != Interface::Place::faces) continue;
+    for (const coupling::Interface::Datum& datum : sides[i].interface.gives) {
+      if (datum.unit != "N" || datum.place != coupling::Interface::Place::faces) continue;
       const bool taken = std::ranges::any_of(links.all(), [&](const Links::Link& link) {
         return link.giver == i && link.datum.name == datum.name;
       });
@@ -63,29 +63,32 @@ std::optional<std::string> CouplingAudit::suspects(const CouplingParameters& par
       returned, limit);
 }
 
-void CouplingAudit::loads(const std::vector<Exchange>& given) {
+void CouplingAudit::loads(const std::vector<coupling::Exchange>& given) {
   if (forces_.empty()) return;
   double size[2] = {0, 0};  // of the forces that nobody takes, and of those that somebody does
   for (const Force& force : forces_)
     if (const auto found = given[force.giver].find(force.name); found != given[force.giver].end())
       for (const double value : found->second) size[force.taken] += value * value;
-  const double lost = std::sqrt(sum(comm_, size[0])), taken = std::sqrt(sum(comm_, size[1]));
+  const double lost = std::sqrt(parallel::sum(comm_, size[0])),
+               taken = std::sqrt(parallel::sum(comm_, size[1]));
   if (taken > 0) evidence_.lost_load = std::fmax(evidence_.lost_load, lost / taken);
 }
 
 void CouplingAudit::tell(const CouplingParameters& parameters, double time) {
-  for (const EffectVerdict& v : trail_.news(audit(coupling_effect_cards(), parameters, evidence_)))
-    report(comm_rank(comm_), time, v);
+  for (const effects::EffectVerdict& v :
+       trail_.news(effects::audit(coupling_effect_cards(), parameters, evidence_)))
+    app::report(parallel::comm_rank(comm_), time, v);
 }
 
 void CouplingAudit::tell_at_end(const CouplingParameters& parameters, bool with_sound) const {
-  for (const EffectVerdict& v : audit(coupling_effect_cards(), parameters, evidence_))
-    if (!(v.saves > 0) && (with_sound || !v.sound())) log::info("{}", text(v));
+  for (const effects::EffectVerdict& v : effects::audit(coupling_effect_cards(), parameters, evidence_))
+    if (!(v.saves > 0) && (with_sound || !v.sound())) log::info("{}", effects::text(v));
 }
 
-ErrorParts CouplingAudit::parts(const CouplingParameters& parameters) const {
-  ModelError model = model_error(audit(coupling_effect_cards(), parameters, evidence_));
-  ErrorParts parts;
+coupling::ErrorParts CouplingAudit::parts(const CouplingParameters& parameters) const {
+  effects::ModelError model =
+      effects::model_error(effects::audit(coupling_effect_cards(), parameters, evidence_));
+  coupling::ErrorParts parts;
   parts.model = model.sum;
   parts.model_by = std::move(model.largest);
   parts.omittable = std::move(model.omittable);

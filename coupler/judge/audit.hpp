@@ -39,7 +39,7 @@ class CouplingAudit {
   void returned(const Residual& first, const Residual& second);
 
   /// What all have given in an accepted step. Collective.
-  void loads(const std::vector<Exchange>& given);
+  void loads(const std::vector<coupling::Exchange>& given);
 
   const CouplingEvidence& evidence() const { return evidence_; }
   /// The verdicts that the coupling's cards give; those that turn bad are told once.
@@ -47,7 +47,7 @@ class CouplingAudit {
   /// `with_sound`: else only those that were not: what a failed run saw until then proves nothing sound.
   void tell_at_end(const CouplingParameters& parameters, bool with_sound) const;
   /// The coupling's own part of the model's error.
-  ErrorParts parts(const CouplingParameters& parameters) const;
+  coupling::ErrorParts parts(const CouplingParameters& parameters) const;
 
  private:
   struct Force {
@@ -59,7 +59,7 @@ class CouplingAudit {
   std::vector<Force> forces_;  // of sides of which one is not taken
   CouplingEvidence evidence_;
   double at_start_ = CouplingEvidence::unknown;
-  AuditTrail trail_;
+  effects::AuditTrail trail_;
 };
 
 }  // namespace couplet::coupler

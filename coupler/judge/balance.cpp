@@ -14,8 +14,8 @@ Balancing::Balancing(MPI_Comm comm, const Side& side)
       dim_(side.interface.dim),
       centres_(side.interface.face_centres),
       vertices_(side.interface.vertices) {
-  const Interface& i = side.interface;
-  knows_work_ = sum(comm, GlobalIndex(i.face_vertices.size())) > 0;
+  const coupling::Interface& i = side.interface;
+  knows_work_ = parallel::sum(comm, GlobalIndex(i.face_vertices.size())) > 0;
   if (!knows_work_) return;
   for (const GlobalIndex vertex : i.face_vertices)
     if (vertex < 0 || vertex >= side.vertices.back())
@@ -24,7 +24,8 @@ Balancing::Balancing(MPI_Comm comm, const Side& side)
   to_faces_ = Transfer(comm, side.faces, side.vertices, vertices_to_faces(comm, i));
 }
 
-Balance Balancing::operator()(const Exchange& data, const std::vector<Interface::Datum>& of,
+Balance Balancing::operator()(const coupling::Exchange& data,
+                              const std::vector<coupling::Interface::Datum>& of,
                               const std::vector<double>& increment) const {
   Balance b;
   std::vector<double> moved;
@@ -32,7 +33,7 @@ Balance Balancing::operator()(const Exchange& data, const std::vector<Interface:
   for (const auto& datum : of) {
     const auto found = data.find(datum.name);
     if (found == data.end() || datum.unit != "N" || datum.size(dim_) != dim_) continue;
-    const bool at_faces = datum.place == Interface::Place::faces;
+    const bool at_faces = datum.place == coupling::Interface::Place::faces;
     const std::vector<Vec3>& places = at_faces ? centres_ : vertices_;
     const std::vector<double>& way = at_faces ? moved : increment;
     for (std::size_t f = 0; f < places.size(); ++f) {

@@ -23,7 +23,7 @@ class Balancing {
   bool knows_work() const { return knows_work_; }
   /// `data`: this rank's values of `of`; `increment`: dim values at each of its vertices, the way of the step
   /// [m]. The same on all ranks. Collective.
-  Balance operator()(const Exchange& data, const std::vector<Interface::Datum>& of,
+  Balance operator()(const coupling::Exchange& data, const std::vector<coupling::Interface::Datum>& of,
                      const std::vector<double>& increment) const;
 
  private:

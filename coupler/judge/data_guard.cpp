@@ -12,14 +12,17 @@
 namespace couplet::coupler {
 namespace {
 
-bool gives(const Interface& interface, const char* name) {
-  return std::ranges::any_of(interface.gives, [&](const Interface::Datum& d) { return d.name == name; });
+bool gives(const coupling::Interface& interface, const char* name) {
+  return std::ranges::any_of(interface.gives,
+                             [&](const coupling::Interface::Datum& d) { return d.name == name; });
 }
 
 /// Whether any rank's values differ in any bit.
-bool differ(MPI_Comm comm, const Exchange& a, const Exchange& b) { return max(comm, a == b ? 0. : 1.) > 0; }
+bool differ(MPI_Comm comm, const coupling::Exchange& a, const coupling::Exchange& b) {
+  return parallel::max(comm, a == b ? 0. : 1.) > 0;
+}
 
-const std::vector<double>& values(const Exchange& data, const char* name) {
+const std::vector<double>& values(const coupling::Exchange& data, const char* name) {
   static const std::vector<double> none;
   const auto found = data.find(name);
   return found == data.end() ? none : found->second;
@@ -29,7 +32,7 @@ double extent_of(MPI_Comm comm, const std::vector<Vec3>& points) {
   double most = 0;
   if (!points.empty())
     for (const Vec3& x : points) most = std::max(most, (x - points.front()).norm());
-  return max(comm, most);
+  return parallel::max(comm, most);
 }
 
 }  // namespace
@@ -37,7 +40,7 @@ double extent_of(MPI_Comm comm, const std::vector<Vec3>& points) {
 DataGuard::DataGuard(MPI_Comm comm, const std::vector<Side>& sides) : comm_(comm) {
   for (std::size_t s = 0; s < sides.size(); ++s) {
     answers_.push_back({.name = sides[s].name, .taken = {}, .given = {}});
-    const Interface& i = sides[s].interface;
+    const coupling::Interface& i = sides[s].interface;
     if (gives(i, "displacement") && gives(i, "velocity"))
       motions_.push_back(
           {.side = s, .name = sides[s].name, .x = {}, .v = {}, .extent = extent_of(comm, i.vertices)});
@@ -48,7 +51,7 @@ void DataGuard::start_step() {
   for (Answers& one : answers_) one.passes = one.looked = one.same = 0;
 }
 
-void DataGuard::answered(std::size_t side, const Exchange& taken, const Exchange& given) {
+void DataGuard::answered(std::size_t side, const coupling::Exchange& taken, const coupling::Exchange& given) {
   Answers& one = answers_[side];
   if (++one.passes < late) return;
   if (one.passes > late && differ(comm_, taken, one.taken)) {
@@ -81,12 +84,12 @@ void DataGuard::add(Motion& one, const std::vector<double>& x, const std::vector
   }
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), 3, MPI_DOUBLE, MPI_SUM, comm_);
   one.rate_rate += sums[0], one.rate_end += sums[1], one.rate_mean += sums[2];
-  one.largest = std::max(one.largest, max(comm_, most));
+  one.largest = std::max(one.largest, parallel::max(comm_, most));
   one.x = x, one.v = v;
   ++one.steps;
 }
 
-std::vector<log::Finding> DataGuard::accepted(const std::vector<Exchange>& given, double dt) {
+std::vector<log::Finding> DataGuard::accepted(const std::vector<coupling::Exchange>& given, double dt) {
   std::vector<log::Finding> findings;
   for (Motion& one : motions_) {
     if (one.reported) continue;
@@ -99,7 +102,7 @@ std::vector<log::Finding> DataGuard::accepted(const std::vector<Exchange>& given
     one.reported = true;
     findings.push_back(
         {.id = "velocity-and-displacement",
-         .severity = factor < 0.5 || factor > 2 ? Severity::wrong : Severity::warning,
+         .severity = factor < 0.5 || factor > 2 ? base::Severity::wrong : base::Severity::warning,
          .number = factor,
          .limit = 1 + doubtful,
          .sentence = fmt::format("velocity of '{}': {:.3g} times the rate of the displacement that it "

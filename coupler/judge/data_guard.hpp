@@ -19,14 +19,14 @@ class DataGuard {
 
   void start_step();
   /// After each answer of `side` in the passes of a step. Looks from pass `late` on only. Collective.
-  void answered(std::size_t side, const Exchange& taken, const Exchange& given);
+  void answered(std::size_t side, const coupling::Exchange& taken, const coupling::Exchange& given);
   /// Of a step that was not solved: a sentence on who gave the same answer, to the last bit, in at least half of the late
   /// passes while the input changed; else empty.
   std::string silent() const;
 
   /// After an accepted step of length dt: once per participant, where the velocity is not the rate of the displacement.
   /// Compared are v^{n+1} and (v^n + v^{n+1})/2 with (x^{n+1} - x^n)/dt, by least squares over the run. Collective.
-  std::vector<log::Finding> accepted(const std::vector<Exchange>& given, double dt);
+  std::vector<log::Finding> accepted(const std::vector<coupling::Exchange>& given, double dt);
 
   static constexpr int late = 10;                ///< passes
   static constexpr int judged_steps = 10;        ///< before which the velocity is not judged
@@ -36,7 +36,7 @@ class DataGuard {
  private:
   struct Answers {
     std::string name;
-    Exchange taken, given;
+    coupling::Exchange taken, given;
     int passes = 0, looked = 0, same = 0;
   };
   struct Motion {

@@ -25,7 +25,7 @@ class CouplingErrorEstimate {
 
  private:
   double residual_ = 0, before_ = 0;  // of the last two passes of the step under way; 0: none
-  StepErrors errors_;
+  time::StepErrors errors_;
 };
 
 }  // namespace couplet::coupler

@@ -13,20 +13,20 @@ namespace {
 double dot_over(MPI_Comm comm, const std::vector<double>& a, const std::vector<double>& b) {
   double total = 0;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) total += a[i] * b[i];
-  return sum(comm, total);
+  return parallel::sum(comm, total);
 }
 
 double norm(MPI_Comm comm, const std::vector<double>& values) {
   return std::sqrt(dot_over(comm, values, values));
 }
 
-const char* cure_of_oscillation(Scheme scheme) {
+const char* cure_of_oscillation(coupling::Scheme scheme) {
   switch (scheme) {
-    case Scheme::explicit_:
+    case coupling::Scheme::explicit_:
       return "This is the added-mass instability of explicit coupling: the structure is too light for the "
              "fluid moving with it, and smaller steps do not help. `scheme: semi-implicit` iterates the "
              "added mass, `scheme: implicit` the whole fluid.";
-    case Scheme::semi_implicit:
+    case coupling::Scheme::semi_implicit:
       return "The semi-implicit scheme evaluates the wall shear at the predicted velocity: with strong "
              "viscosity and a light structure this grows although every step converges, and smaller steps "
              "hardly help. Use `scheme: implicit`, which iterates it.";
@@ -88,7 +88,7 @@ std::optional<std::string> IterationGuard::suspects(double relaxation) const {
 
 namespace {
 
-std::string swing(int turns, double factor, double growth, Scheme scheme) {
+std::string swing(int turns, double factor, double growth, coupling::Scheme scheme) {
   return fmt::format(
       "interface oscillation: over {} steps the amplitude grew {:.3g}-fold, {:.3g} per step, although every "
       "step was solved: unstable. {}",
@@ -98,7 +98,7 @@ std::string swing(int turns, double factor, double growth, Scheme scheme) {
 }  // namespace
 
 std::optional<std::string> OscillationGuard::accepted(const std::vector<double>& x, double dt,
-                                                      Scheme scheme) {
+                                                      coupling::Scheme scheme) {
   std::vector<double> velocity(x.size()), jump;
   if (levels_ >= 1)
     for (std::size_t i = 0; i < x.size(); ++i) velocity[i] = (x[i] - x_[i]) / dt;
@@ -133,15 +133,16 @@ std::optional<std::string> OscillationGuard::accepted(const std::vector<double>&
   return swing(turns_, now / then, std::pow(now / then, 1. / double(n - 2)), scheme);
 }
 
-std::optional<std::string> OscillationGuard::suspects(Scheme scheme) const {
+std::optional<std::string> OscillationGuard::suspects(coupling::Scheme scheme) const {
   if (turns_ < 2 || speed_.empty()) return {};
   const double factor = sizes_.back() / sizes_.front();
   if (factor < 3 || 2 * sizes_.back() < *std::ranges::max_element(speed_)) return {};
   return swing(turns_, factor, std::pow(factor, 1. / double(sizes_.size() - 1)), scheme);
 }
 
-std::optional<std::string> WorkGuard::suspects(Scheme scheme) const {
-  if (scheme != Scheme::explicit_ || steps_ < 4 || !(std::abs(fluid_ - structure_) > 0.5 * exchanged_))
+std::optional<std::string> WorkGuard::suspects(coupling::Scheme scheme) const {
+  if (scheme != coupling::Scheme::explicit_ || steps_ < 4 ||
+      !(std::abs(fluid_ - structure_) > 0.5 * exchanged_))
     return {};
   return fmt::format(
       "interface work: the fluid gave {:.3g} J and the structure took {:.3g} J, more than half of all work "
@@ -152,7 +153,7 @@ std::optional<std::string> WorkGuard::suspects(Scheme scheme) const {
 
 double WorkGuard::Window::apart() const { return std::abs(given - taken); }
 
-std::optional<std::string> WorkGuard::accepted(double fluid, double structure, Scheme scheme) {
+std::optional<std::string> WorkGuard::accepted(double fluid, double structure, coupling::Scheme scheme) {
   const double larger = std::max(std::abs(fluid), std::abs(structure));
   fluid_ += fluid;
   structure_ += structure;

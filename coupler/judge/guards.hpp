@@ -53,9 +53,9 @@ class OscillationGuard {
   explicit OscillationGuard(MPI_Comm comm = MPI_COMM_SELF) : comm_(comm) {}
   /// The motion x of an accepted step of length dt, this rank's part. A reason if it oscillates, else
   /// nothing.
-  std::optional<std::string> accepted(const std::vector<double>& x, double dt, Scheme scheme);
+  std::optional<std::string> accepted(const std::vector<double>& x, double dt, coupling::Scheme scheme);
   /// After a step that failed: a reason if the accepted steps before it had begun to swing, else nothing.
-  std::optional<std::string> suspects(Scheme scheme) const;
+  std::optional<std::string> suspects(coupling::Scheme scheme) const;
   /// Steps in a row in which it has turned round.
   int turns() const { return turns_; }
 
@@ -73,8 +73,8 @@ class WorkGuard {
  public:
   /// Work of a step on both sides [J]. A reason if the two have parted, else nothing.
   /// When a step cannot be solved: whether the work so far says that the explicit scheme itself made the motion.
-  std::optional<std::string> suspects(Scheme scheme) const;
-  std::optional<std::string> accepted(double fluid, double structure, Scheme scheme);
+  std::optional<std::string> suspects(coupling::Scheme scheme) const;
+  std::optional<std::string> accepted(double fluid, double structure, coupling::Scheme scheme);
   /// For the end of the run: a sentence with numbers, and whether the balance is sound.
   struct Verdict {
     bool sound = true;

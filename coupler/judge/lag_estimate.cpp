@@ -81,7 +81,7 @@ void LagEstimate::accepted(const Iterate& x, const Iterate& image, double dt) {
 }
 
 double LagEstimate::covariance(double xy, const std::vector<double>& x, const std::vector<double>& y) const {
-  return xy - sum(comm_, dot(x, y)) / sums_.time;
+  return xy - parallel::sum(comm_, dot(x, y)) / sums_.time;
 }
 
 LagEstimate::Range LagEstimate::over_size() const {
@@ -98,12 +98,12 @@ LagEstimate::Range LagEstimate::over_size() const {
   return {least, std::max(least, most)};
 }
 
-std::string LagEstimate::sentence(const std::vector<NamedErrors>& participants) const {
+std::string LagEstimate::sentence(const std::vector<coupling::NamedErrors>& participants) const {
   const Range range = over_size();
   if (std::isnan(range.least))
     return "the error of explicit coupling is unknown (no step was examined; the first is the fourth).";
   double others = 0;
-  for (const NamedErrors& of : participants)
+  for (const coupling::NamedErrors& of : participants)
     for (const double part : {of.parts.mesh, of.parts.step})
       if (part > others) others = part;  // not where it is NaN
   std::string text = fmt::format(

@@ -53,7 +53,7 @@ class LagEstimate {
   /// NaN before the first look.
   Range over_size() const;
   /// The range in words, and whether iterating would buy anything beside what the participants know of their own errors.
-  std::string sentence(const std::vector<NamedErrors>& participants) const;
+  std::string sentence(const std::vector<coupling::NamedErrors>& participants) const;
   static std::string not_possible();
   /// For checkpoints.
   std::vector<double> state() const;

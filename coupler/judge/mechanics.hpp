@@ -31,7 +31,8 @@ class Mechanics {
   int dim() const { return dim_; }
   std::vector<std::string> labels() const;
   /// Balances of the accepted step from what each has given and taken; moves the walls. Collective.
-  std::vector<SideBalance> accepted(const std::vector<Exchange>& given, const std::vector<Exchange>& taken);
+  std::vector<SideBalance> accepted(const std::vector<coupling::Exchange>& given,
+                                    const std::vector<coupling::Exchange>& taken);
 
   /// Displacement of each member's wall at t^n, for checkpoints.
   std::vector<std::vector<double>>& walls() { return walls_; }
@@ -41,7 +42,7 @@ class Mechanics {
     std::size_t side;
     bool gives;  // the load
     Balancing balancing;
-    std::vector<Interface::Datum> loads;
+    std::vector<coupling::Interface::Datum> loads;
   };
   std::vector<Member> members_;
   std::vector<std::string> labels_;

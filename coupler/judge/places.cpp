@@ -14,7 +14,7 @@
 namespace couplet::coupler {
 namespace {
 
-using Place = Interface::Place;
+using Place = coupling::Interface::Place;
 
 struct Box {
   Vec3 low, high;
@@ -35,12 +35,13 @@ struct Box {
 /// Extent of each face of this rank [m]: between corners where these are known (a face may be long and thin),
 /// else the edge of a square of its area; in 2-D areas are lengths. Collective.
 std::vector<double> extents(MPI_Comm comm, const Side& side) {
-  const Interface& i = side.interface;
-  const Starts corners =
-      starts_of(all_gather(comm, std::vector<GlobalIndex>{GlobalIndex(i.face_vertices.size())}));
+  const coupling::Interface& i = side.interface;
+  const coupling::Starts corners = coupling::starts_of(
+      parallel::all_gather(comm, std::vector<GlobalIndex>{GlobalIndex(i.face_vertices.size())}));
   std::vector<Transfer::Entry> entries;
   for (std::size_t k = 0; k < i.face_vertices.size(); ++k)
-    entries.push_back({corners[std::size_t(comm_rank(comm))] + GlobalIndex(k), i.face_vertices[k], 1.});
+    entries.push_back(
+        {corners[std::size_t(parallel::comm_rank(comm))] + GlobalIndex(k), i.face_vertices[k], 1.});
   std::vector<double> xyz, at_corners;
   for (const Vec3& v : i.vertices) xyz.insert(xyz.end(), v.data(), v.data() + 3);
   if (corners.back() > 0) at_corners = Transfer(comm, corners, side.vertices, entries).apply(xyz, 3);
@@ -69,13 +70,13 @@ std::vector<double> local_size(MPI_Comm comm, const std::vector<Vec3>& points, c
 double mean(MPI_Comm comm, const std::vector<double>& values) {
   double total = 0;
   for (const double v : values) total += v;
-  return sum(comm, total) / std::max(1., sum(comm, double(values.size())));
+  return parallel::sum(comm, total) / std::max(1., parallel::sum(comm, double(values.size())));
 }
 
 /// The first text of any rank, on all.
 std::string first_text(MPI_Comm comm, const std::string& text) {
-  if (comm_size(comm) == 1 || !any(comm, !text.empty())) return text;
-  const std::vector<char> all = all_gather(comm, std::vector<char>(text.begin(), text.end()));
+  if (parallel::comm_size(comm) == 1 || !parallel::any(comm, !text.empty())) return text;
+  const std::vector<char> all = parallel::all_gather(comm, std::vector<char>(text.begin(), text.end()));
   return {all.begin(), all.end()};
 }
 
@@ -97,11 +98,12 @@ std::string other_extent(const Box& a, const std::string& from, const Box& b, co
 }
 
 /// Most targets that follow one source.
-int most_followers(MPI_Comm comm, const std::vector<Neighbour>& found, const Starts& starts) {
-  std::vector<std::vector<GlobalIndex>> used(std::size_t(comm_size(comm)));
-  for (const Neighbour& n : found) used[std::size_t(owner_of(starts, n.position))].push_back(n.position);
+int most_followers(MPI_Comm comm, const std::vector<Neighbour>& found, const coupling::Starts& starts) {
+  std::vector<std::vector<GlobalIndex>> used(std::size_t(parallel::comm_size(comm)));
+  for (const Neighbour& n : found)
+    used[std::size_t(coupling::owner_of(starts, n.position))].push_back(n.position);
   std::vector<GlobalIndex> mine;
-  for (const auto& part : all_to_all(comm, used)) mine.insert(mine.end(), part.begin(), part.end());
+  for (const auto& part : parallel::all_to_all(comm, used)) mine.insert(mine.end(), part.begin(), part.end());
   std::ranges::sort(mine);
   int most = 0;
   for (std::size_t i = 0; i < mine.size();) {
@@ -109,14 +111,14 @@ int most_followers(MPI_Comm comm, const std::vector<Neighbour>& found, const Sta
     while (i < mine.size() && mine[i] == mine[first]) ++i;
     most = std::max(most, int(i - first));
   }
-  return int(max(comm, double(most)));
+  return int(parallel::max(comm, double(most)));
 }
 
 /// Whether each of these points has another within a tenth of the faces there.
 bool all_near(MPI_Comm comm, const std::vector<Neighbour>& found, const std::vector<double>& size) {
   bool far = false;
   for (std::size_t i = 0; i < found.size(); ++i) far = far || found[i].distance > 0.1 * size[i];
-  return !any(comm, far);
+  return !parallel::any(comm, far);
 }
 
 /// Why the nearest vertex is no map between these two: motion in stairs, loads that do another work.
@@ -167,8 +169,8 @@ PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to) {
   return report;
 }
 
-void require_finite(MPI_Comm comm, const Exchange& data, const Interface& interface,
-                    const std::vector<Interface::Datum>& of, const std::string& who) {
+void require_finite(MPI_Comm comm, const coupling::Exchange& data, const coupling::Interface& interface,
+                    const std::vector<coupling::Interface::Datum>& of, const std::string& who) {
   std::string problem;
   for (const auto& datum : of) {
     const auto found = data.find(datum.name);
@@ -219,7 +221,7 @@ void check_places(MPI_Comm comm, const std::vector<Side>& sides, const Links& li
     if (link.datum.name != "displacement") continue;
     ++givers[link.taker];
     const auto& gives = sides[link.taker].interface.gives;
-    if (std::ranges::any_of(gives, is_amount)) ++fluids[link.giver];
+    if (std::ranges::any_of(gives, coupling::is_amount)) ++fluids[link.giver];
   }
   for (const auto& link : links.all()) {
     if (link.datum.name != "displacement") continue;
@@ -232,7 +234,7 @@ void check_places(MPI_Comm comm, const std::vector<Side>& sides, const Links& li
     const PlaceReport report = judge_places(comm, from, to);
     if (!report.problem.empty()) throw Error("{}", report.problem);
     const bool by_nearest = mapping.type == MappingParameters::Type::nearest;
-    if (by_nearest && !report.nests && std::ranges::any_of(from.interface.takes, is_amount))
+    if (by_nearest && !report.nests && std::ranges::any_of(from.interface.takes, coupling::is_amount))
       throw Error("{}", not_nested(from.name, to.name));
     if (by_nearest)
       for (const std::string& note : report.notes) log::warn("{}", note);

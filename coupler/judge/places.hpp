@@ -13,8 +13,8 @@ namespace couplet::coupler {
 
 /// Throws SolveFailure on all ranks, naming datum, entry and place, if one of the values is not finite.
 /// Collective.
-void require_finite(MPI_Comm comm, const Exchange& data, const Interface& interface,
-                    const std::vector<Interface::Datum>& of, const std::string& who);
+void require_finite(MPI_Comm comm, const coupling::Exchange& data, const coupling::Interface& interface,
+                    const std::vector<coupling::Interface::Datum>& of, const std::string& who);
 
 /// What is wrong with two coupled surfaces that need not match, as far as their places tell.
 struct PlaceReport {

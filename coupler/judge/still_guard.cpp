@@ -10,7 +10,7 @@
 namespace couplet::coupler {
 namespace {
 
-double largest(const Exchange& data, const std::string& name) {
+double largest(const coupling::Exchange& data, const std::string& name) {
   const auto found = data.find(name);
   double most = 0;
   if (found != data.end())
@@ -22,8 +22,9 @@ double largest(const Exchange& data, const std::string& name) {
 
 StillGuard::StillGuard(MPI_Comm comm, const std::vector<Side>& sides) : comm_(comm) {
   for (std::size_t s = 0; s < sides.size(); ++s) {
-    const Interface& i = sides[s].interface;
-    if (std::ranges::find(i.gives, std::string("displacement"), &Interface::Datum::name) == i.gives.end())
+    const coupling::Interface& i = sides[s].interface;
+    if (std::ranges::find(i.gives, std::string("displacement"), &coupling::Interface::Datum::name) ==
+        i.gives.end())
       continue;
     Structure one{s, sides[s].name, {}, {}};
     for (const auto& datum : i.takes)
@@ -32,15 +33,15 @@ StillGuard::StillGuard(MPI_Comm comm, const std::vector<Side>& sides) : comm_(co
   }
 }
 
-std::vector<std::string> StillGuard::accepted(const std::vector<Exchange>& given,
-                                              const std::vector<Exchange>& taken) {
+std::vector<std::string> StillGuard::accepted(const std::vector<coupling::Exchange>& given,
+                                              const std::vector<coupling::Exchange>& taken) {
   std::vector<std::string> findings;
   for (Structure& one : structures_) {
     if (one.told) continue;
     double load = 0;
     for (const std::string& name : one.loads) load = std::max(load, largest(taken[one.side], name));
-    load = max(comm_, load);
-    const double motion = max(comm_, largest(given[one.side], "displacement"));
+    load = parallel::max(comm_, load);
+    const double motion = parallel::max(comm_, largest(given[one.side], "displacement"));
     one.steps = load > 0 && motion == 0 ? one.steps + 1 : 0;
     if (one.steps < patience) continue;
     one.told = true;

@@ -17,7 +17,8 @@ class StillGuard {
   StillGuard(MPI_Comm comm, const std::vector<Side>& sides);
   /// After an accepted step: a sentence for each structure that a load has left in its place, to the last bit, for
   /// `patience` steps in a row; once each. Collective.
-  std::vector<std::string> accepted(const std::vector<Exchange>& given, const std::vector<Exchange>& taken);
+  std::vector<std::string> accepted(const std::vector<coupling::Exchange>& given,
+                                    const std::vector<coupling::Exchange>& taken);
 
   static constexpr int patience = 10;  ///< steps
 

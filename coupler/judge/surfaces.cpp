@@ -31,8 +31,9 @@ std::string text(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) m
 
 /// Whoever takes a motion and gives no load (a heater on one side of a flap) covers as much of the surface as it likes.
 bool gives_load(const Side& side) {
-  return std::ranges::any_of(side.interface.gives,
-                             [](const Interface::Datum& d) { return d.unit == "N" || d.unit == "Pa"; });
+  return std::ranges::any_of(side.interface.gives, [](const coupling::Interface::Datum& d) {
+    return d.unit == "N" || d.unit == "Pa";
+  });
 }
 
 /// Participants that exchange load and motion, directly or through others, as positions in `sides`: those that give the
@@ -83,7 +84,7 @@ void check_mover(MPI_Comm comm, const std::vector<Side>& sides, const Schedule& 
         "that has it in the fluid.",
         mover->name, moves.faces, moved.faces, fluid->name, moves.area, moved.area);
   if (apart > limit)
-    log::finding(comm_rank(comm),
+    log::finding(parallel::comm_rank(comm),
                  {.id = "surfaces-apart",
                   .number = apart,
                   .limit = limit,
@@ -102,7 +103,7 @@ SurfaceFacts surface_facts(MPI_Comm comm, const std::vector<const Side*>& sides)
   for (const Side* side : sides) {
     facts.names += (facts.names.empty() ? "'" : ", '") + side->name + "'";
     facts.faces += side->faces.back();
-    const Interface& i = side->interface;
+    const coupling::Interface& i = side->interface;
     for (std::size_t f = 0; f < i.face_centres.size(); ++f) {
       const double area = i.face_areas[f].norm();
       sums[0] += area;
@@ -171,7 +172,7 @@ void compare_surfaces(MPI_Comm comm, const std::vector<Side>& sides, const Links
     const SurfaceFacts a = surface_facts(comm, givers), b = surface_facts(comm, takers);
     if (const std::string difference = difference_of(a, b, faceting(a, b)); !difference.empty())
       log::finding(
-          comm_rank(comm),
+          parallel::comm_rank(comm),
           {.id = "surfaces-apart",
            .sentence = fmt::format("surfaces that move together differ: {}: loads and motion are transferred "
                                    "between different sizes",

@@ -20,7 +20,7 @@ namespace couplet::coupler {
 /// transpose of A. Collective; both sides must outlive it.
 class ConjugateMap {
  public:
-  using Place = Interface::Place;
+  using Place = coupling::Interface::Place;
   using Entries = std::vector<Transfer::Entry>;
   ConjugateMap(MPI_Comm comm, const Side& structure, const Side& surface, MappingParameters::Type type);
   /// From the structure to the surface.

@@ -52,19 +52,19 @@ void meet(const Vec3& centre, const std::vector<Vec3>& at, std::vector<double>& 
 
 }  // namespace
 
-std::span<const Index> corners(const Interface& surface, Index face) {
+std::span<const Index> corners(const coupling::Interface& surface, Index face) {
   return {surface.face_vertices.data() + surface.face_offset[face],
           std::size_t(surface.face_offset[face + 1] - surface.face_offset[face])};
 }
 
-double reach(const Interface& surface, Index face) {
+double reach(const coupling::Interface& surface, Index face) {
   double most = 0;
   for (const Index v : corners(surface, face))
     most = std::max(most, (surface.vertices[v] - surface.face_centres[face]).norm());
   return most;
 }
 
-std::vector<double> corner_weights(const Interface& surface, Index face) {
+std::vector<double> corner_weights(const coupling::Interface& surface, Index face) {
   std::vector<Vec3> at;
   for (const Index v : corners(surface, face)) at.push_back(surface.vertices[v]);
   std::vector<double> weights =
@@ -73,7 +73,7 @@ std::vector<double> corner_weights(const Interface& surface, Index face) {
   return weights;
 }
 
-std::vector<Transfer::Entry> vertices_to_faces(MPI_Comm comm, const Interface& part) {
+std::vector<Transfer::Entry> vertices_to_faces(MPI_Comm comm, const coupling::Interface& part) {
   const Surroundings all(comm, part);
   const PointSet faces = all.faces();
   std::vector<Transfer::Entry> entries;

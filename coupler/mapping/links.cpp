@@ -16,8 +16,8 @@
 namespace couplet::coupler {
 namespace {
 
-using Datum = Interface::Datum;
-using Place = Interface::Place;
+using Datum = coupling::Interface::Datum;
+using Place = coupling::Interface::Place;
 
 struct Source {
   std::size_t giver;
@@ -44,7 +44,7 @@ std::vector<Source> sources_of(const Datum& wanted, std::size_t taker, const std
   }
   if (found.empty())
     throw Error("'{}' takes '{}', which no participant gives. Given are: {}.", sides[taker].name, wanted.name,
-                all.empty() ? "no data at all" : join(all));
+                all.empty() ? "no data at all" : base::join(all));
   return found;
 }
 
@@ -90,7 +90,7 @@ std::vector<std::size_t> nearest_of(MPI_Comm comm, const PointSet& set, const st
   bool unclear = false;
   for (std::size_t i = 0; i < set.points.size(); ++i) unclear = unclear || !(second[i] > 1.5 * least[i]);
   // One corner that two bodies share is no reason; all places being so is.
-  const GlobalIndex doubtful = sum(comm, GlobalIndex(unclear));
+  const GlobalIndex doubtful = parallel::sum(comm, GlobalIndex(unclear));
   if (doubtful > 0) throw Error("{}", problem);
   return choice;
 }
@@ -123,19 +123,19 @@ double sum_of(MPI_Comm comm, const std::vector<double>& values, int components, 
   double total = 0;
   for (std::size_t i = std::size_t(component); i < values.size(); i += std::size_t(components))
     total += values[i];
-  return sum(comm, total);
+  return parallel::sum(comm, total);
 }
 
 /// Whether two data may go by one map: both loads, both motion, both other amounts or both neither.
 bool of_one_kind(const Datum& a, const Datum& b) {
   const auto kind = [](const Datum& d) {
-    return d.unit == "m" || d.unit == "m/s" ? 'm' : d.unit == "N" ? 'N' : is_amount(d) ? 'a' : ' ';
+    return d.unit == "m" || d.unit == "m/s" ? 'm' : d.unit == "N" ? 'N' : coupling::is_amount(d) ? 'a' : ' ';
   };
   return kind(a) == kind(b) && a.components == b.components;
 }
 
 /// Whether a side moves by what it takes: a force goes in, a displacement comes out.
-bool is_structure(const Interface& i) {
+bool is_structure(const coupling::Interface& i) {
   return std::ranges::any_of(i.takes,
                              [&](const Datum& d) { return d.unit == "N" && d.size(i.dim) == i.dim; }) &&
          std::ranges::any_of(i.gives,
@@ -153,7 +153,7 @@ class WallMaps {
                                     const PointSet& from, const PointSet& to) {
     const bool load = given.unit == "N", motion = given.unit == "m" || given.unit == "m/s";
     const std::size_t structure = load ? taker : giver, surface = load ? giver : taker;
-    const Interface& body = sides_[structure].interface;
+    const coupling::Interface& body = sides_[structure].interface;
     if (type_ == MappingParameters::Type::matched || type_ == MappingParameters::Type::nearest ||
         giver == taker || !(load || motion) || given.size(body.dim) != body.dim || !is_structure(body) ||
         sides_[structure].faces.back() == 0 || sides_[surface].faces.back() == 0)
@@ -202,9 +202,10 @@ Links::Links(MPI_Comm comm, const std::vector<Side>& sides, const MappingParamet
         const auto& [g, given] = sources[s];
         PointSet mine = from[s];
         const auto takers = is_own(wanted) ? std::vector<std::size_t>{t} : takers_of(*given, sides);
-        if (is_amount(*given) && takers.size() > 1) mine = share_of(comm, mine, *given, g, t, takers, sides);
+        if (coupling::is_amount(*given) && takers.size() > 1)
+          mine = share_of(comm, mine, *given, g, t, takers, sides);
         const bool own = to.own_surface || mine.own_surface;
-        const bool whole = sources.size() == 1 && !own && !(is_amount(*given) && takers.size() > 1);
+        const bool whole = sources.size() == 1 && !own && !(coupling::is_amount(*given) && takers.size() > 1);
         const auto same = std::ranges::find_if(links_, [&, g = g, given = given](const Link& l) {
           return whole && l.whole && l.giver == g && l.taker == t && l.datum.place == given->place &&
                  l.to == wanted.place && of_one_kind(l.datum, *given);
@@ -215,7 +216,8 @@ Links::Links(MPI_Comm comm, const std::vector<Side>& sides, const MappingParamet
           links_.push_back({g, t, *given, components, wanted.place, known, whole});
           continue;
         }
-        const auto kind = is_amount(*given) ? Mapping::Kind::conservative : Mapping::Kind::consistent;
+        const auto kind =
+            coupling::is_amount(*given) ? Mapping::Kind::conservative : Mapping::Kind::consistent;
         const PointSet theirs = part_of(to, giver_of, s);
         auto map = own ? nullptr : walls.of(g, t, *given, mine, theirs);
         if (!map)
@@ -245,8 +247,8 @@ std::vector<double> Links::carried(const Link& link, const std::string& name,
   return link.mapping->apply(values, link.components);
 }
 
-Exchange Links::input(std::size_t taker, const std::vector<Exchange>& given) const {
-  Exchange data;
+coupling::Exchange Links::input(std::size_t taker, const std::vector<coupling::Exchange>& given) const {
+  coupling::Exchange data;
   for (const Link& link : links_) {
     if (link.taker != taker) continue;
     const auto found = given[link.giver].find(link.datum.name);
@@ -259,19 +261,19 @@ Exchange Links::input(std::size_t taker, const std::vector<Exchange>& given) con
     else
       for (std::size_t i = 0; i < values.size(); ++i) all[i] += values[i];
     if (link.within)
-      for_within(given[link.giver], link.datum.name,
-                 [&](double, const std::string& name, const std::vector<double>& then) {
-                   data[name] = carried(link, name, then);
-                 });
+      coupling::for_within(given[link.giver], link.datum.name,
+                           [&](double, const std::string& name, const std::vector<double>& then) {
+                             data[name] = carried(link, name, then);
+                           });
   }
   return data;
 }
 
-std::vector<Links::Amount> Links::amounts(const std::vector<Exchange>& given) const {
+std::vector<Links::Amount> Links::amounts(const std::vector<coupling::Exchange>& given) const {
   std::vector<Amount> result;
   for (const Link& link : links_) {
     const auto found = given[link.giver].find(link.datum.name);
-    if (!is_amount(link.datum) || found == given[link.giver].end()) continue;
+    if (!coupling::is_amount(link.datum) || found == given[link.giver].end()) continue;
     const std::vector<double> taken = carried(link, found->first, found->second);
     for (int c = 0; c < link.components; ++c) {
       const std::string what = link.datum.name +

@@ -24,9 +24,9 @@ class Links {
 
   struct Link {
     std::size_t giver, taker;
-    Interface::Datum datum;  ///< as given
+    coupling::Interface::Datum datum;  ///< as given
     int components;
-    Interface::Place to;                     ///< where it is taken
+    coupling::Interface::Place to;           ///< where it is taken
     std::shared_ptr<const Mapping> mapping;  ///< shared by all data that go the same way
     bool whole = true;                       ///< between all places of both; false: some have other partners
     bool within = false;  ///< its values within the step go over, too: wanted, and of one giver
@@ -35,14 +35,14 @@ class Links {
 
   /// What participant `taker` takes of what all have `given` so far; data that have not been given yet are
   /// left out. Values within the step go to those that asked for them. Collective.
-  Exchange input(std::size_t taker, const std::vector<Exchange>& given) const;
+  coupling::Exchange input(std::size_t taker, const std::vector<coupling::Exchange>& given) const;
 
   /// An amount on its way: sums over the places of giver and taker.
   struct Amount {
     std::string column;  ///< "tank gives force x [N]"
     double value = 0;
   };
-  std::vector<Amount> amounts(const std::vector<Exchange>& given) const;
+  std::vector<Amount> amounts(const std::vector<coupling::Exchange>& given) const;
 
   /// One sentence a link, and data that nobody takes.
   const std::vector<std::string>& notes() const { return notes_; }

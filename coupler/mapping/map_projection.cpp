@@ -19,20 +19,20 @@ struct OnFace {
   double distance = std::numeric_limits<double>::max();
 };
 
-OnFace on_face(const Interface& surface, Index face, const Vec3& p) {
+OnFace on_face(const coupling::Interface& surface, Index face, const Vec3& p) {
   const auto vertex = corners(surface, face);
   const auto at = [&](std::size_t i) { return surface.vertices[vertex[i]]; };
   const auto whole = [](const auto& nearest) {
     return OnFace{{nearest.weights.begin(), nearest.weights.end()}, nearest.distance};
   };
-  if (vertex.size() == 2) return whole(nearest_on_segment(at(0), at(1), p));
-  if (vertex.size() == 3) return whole(nearest_on_triangle(at(0), at(1), at(2), p));
+  if (vertex.size() == 2) return whole(base::nearest_on_segment(at(0), at(1), p));
+  if (vertex.size() == 3) return whole(base::nearest_on_triangle(at(0), at(1), at(2), p));
   const std::size_t n = vertex.size();
   Vec3 centre = Vec3::Zero();
   for (std::size_t i = 0; i < n; ++i) centre += at(i) / double(n);
   OnFace best;
   for (std::size_t i = 0; i < n; ++i) {
-    const Nearest<3> part = nearest_on_triangle(at(i), at((i + 1) % n), centre, p);
+    const base::Nearest<3> part = base::nearest_on_triangle(at(i), at((i + 1) % n), centre, p);
     if (part.distance >= best.distance) continue;
     best = {std::vector<double>(n, part.weights[2] / double(n)), part.distance};
     best.weights[i] += part.weights[0];
@@ -44,7 +44,7 @@ OnFace on_face(const Interface& surface, Index face, const Vec3& p) {
 /// Faces at each vertex.
 struct FacesAround {
   std::vector<Index> offset, face;
-  explicit FacesAround(const Interface& surface) : offset(surface.vertices.size() + 1, 0) {
+  explicit FacesAround(const coupling::Interface& surface) : offset(surface.vertices.size() + 1, 0) {
     for (const Index v : surface.face_vertices) ++offset[v + 1];
     for (std::size_t v = 0; v + 1 < offset.size(); ++v) offset[v + 1] += offset[v];
     face.resize(surface.face_vertices.size());
@@ -63,10 +63,10 @@ void require_corners(bool known) {
         "use `coupling.mapping.type: rbf`.");
 }
 
-SparseMap nearest_projection(const Interface& surface, const std::vector<Vec3>& targets) {
+SparseMap nearest_projection(const coupling::Interface& surface, const std::vector<Vec3>& targets) {
   require_corners(surface.face_offset.size() == surface.face_centres.size() + 1);
   const FacesAround around(surface);
-  const PointTree vertices(surface.vertices), centres(surface.face_centres);
+  const base::PointTree vertices(surface.vertices), centres(surface.face_centres);
   SparseMap map;
   map.n_from = surface.vertices.size();
   for (const Vec3& p : targets) {
@@ -85,7 +85,7 @@ SparseMap nearest_projection(const Interface& surface, const std::vector<Vec3>& 
   return map;
 }
 
-double distance_to_face(const Interface& surface, Index face, const Vec3& place) {
+double distance_to_face(const coupling::Interface& surface, Index face, const Vec3& place) {
   return on_face(surface, face, place).distance;
 }
 
@@ -98,7 +98,7 @@ void add_entries(const SparseMap& map, const std::vector<GlobalIndex>& targets,
 
 SparseMap local_interpolation(const std::vector<Vec3>& sources, const std::vector<Vec3>& targets,
                               std::size_t k) {
-  const PointTree tree(sources);
+  const base::PointTree tree(sources);
   SparseMap map;
   map.n_from = sources.size();
   for (const Vec3& p : targets) {
@@ -108,7 +108,7 @@ SparseMap local_interpolation(const std::vector<Vec3>& sources, const std::vecto
   return map;
 }
 
-void check_corners(const Interface& surface, const std::string& name, GlobalIndex vertices) {
+void check_corners(const coupling::Interface& surface, const std::string& name, GlobalIndex vertices) {
   if (surface.face_offset.empty() && surface.face_vertices.empty()) return;
   const auto refuse = [&](const std::string& what) {
     throw Error("The face corners of '{}' are invalid: {}.", name, what);

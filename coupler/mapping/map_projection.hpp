@@ -13,7 +13,7 @@ namespace couplet::coupler {
 /// Each target takes the value at its nearest point of the surface: linear along edges (2-D) and over the
 /// triangles of faces (3-D; a face of more corners is cut into triangles about its centre). Beside the
 /// surface's end the value of the end counts.
-SparseMap nearest_projection(const Interface& surface, const std::vector<Vec3>& targets);
+SparseMap nearest_projection(const coupling::Interface& surface, const std::vector<Vec3>& targets);
 
 /// Throws Error saying what to do where the corners of the faces are not `known`.
 void require_corners(bool known);
@@ -25,7 +25,7 @@ inline constexpr std::size_t projection_vertices = 3, projection_faces = 4;
 inline constexpr std::size_t nearest_faces = 9;
 
 /// Distance [m] of a place from a face, corners known.
-double distance_to_face(const Interface& surface, Index face, const Vec3& place);
+double distance_to_face(const coupling::Interface& surface, Index face, const Vec3& place);
 
 /// Rows of a map by the targets' positions, columns by the sources'.
 void add_entries(const SparseMap& map, const std::vector<GlobalIndex>& targets,
@@ -37,6 +37,6 @@ SparseMap local_interpolation(const std::vector<Vec3>& sources, const std::vecto
 
 /// Throws Error naming the participant if it lists the corners of its faces, but not as they must be. `vertices`:
 /// how many there are on all ranks.
-void check_corners(const Interface& surface, const std::string& name, GlobalIndex vertices);
+void check_corners(const coupling::Interface& surface, const std::string& name, GlobalIndex vertices);
 
 }  // namespace couplet::coupler

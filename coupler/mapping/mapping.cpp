@@ -19,13 +19,15 @@ double extent(MPI_Comm comm, const std::vector<Vec3>& points) {
   for (int c = 0; c < 3; ++c) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Vec3& p : points) low = std::min(low, p[c]), high = std::max(high, p[c]);
-    low = min(comm, low), high = max(comm, high);
+    low = parallel::min(comm, low), high = parallel::max(comm, high);
     if (high > low) square += (high - low) * (high - low);
   }
   return std::sqrt(square);
 }
 
-GlobalIndex count(MPI_Comm comm, const PointSet& set) { return sum(comm, GlobalIndex(set.points.size())); }
+GlobalIndex count(MPI_Comm comm, const PointSet& set) {
+  return parallel::sum(comm, GlobalIndex(set.points.size()));
+}
 
 /// Points of `set` that are further than `tolerance` from every point of `other`, up to five of them by
 /// place.
@@ -41,9 +43,9 @@ std::string without_twin(MPI_Comm comm, const PointSet& set, const std::vector<N
     if (to_other[i].distance <= tolerance) continue;
     if (++all <= 5) lone.push_back({set.points[i], to_other[i].distance});
   }
-  all = sum(comm, all);
+  all = parallel::sum(comm, all);
   if (all == 0) return "";
-  lone = all_gather(comm, lone);
+  lone = parallel::all_gather(comm, lone);
   std::string list;
   for (std::size_t i = 0; i < std::min<std::size_t>(5, lone.size()); ++i)
     list += fmt::format("\n  ({:.9g}, {:.9g}, {:.9g}): the nearest is {:.3g} m away", lone[i].point.x(),
@@ -55,13 +57,14 @@ std::string without_twin(MPI_Comm comm, const PointSet& set, const std::vector<N
 }
 
 /// Whether two points of `found` follow the same one.
-bool some_twice(MPI_Comm comm, const std::vector<Neighbour>& found, const Starts& starts) {
-  std::vector<std::vector<GlobalIndex>> used(std::size_t(comm_size(comm)));
-  for (const Neighbour& n : found) used[std::size_t(owner_of(starts, n.position))].push_back(n.position);
+bool some_twice(MPI_Comm comm, const std::vector<Neighbour>& found, const coupling::Starts& starts) {
+  std::vector<std::vector<GlobalIndex>> used(std::size_t(parallel::comm_size(comm)));
+  for (const Neighbour& n : found)
+    used[std::size_t(coupling::owner_of(starts, n.position))].push_back(n.position);
   std::vector<GlobalIndex> mine;
-  for (const auto& part : all_to_all(comm, used)) mine.insert(mine.end(), part.begin(), part.end());
+  for (const auto& part : parallel::all_to_all(comm, used)) mine.insert(mine.end(), part.begin(), part.end());
   std::ranges::sort(mine);
-  return any(comm, std::ranges::adjacent_find(mine) != mine.end());
+  return parallel::any(comm, std::ranges::adjacent_find(mine) != mine.end());
 }
 
 void require_twins(MPI_Comm comm, const PointSet& from, const PointSet& to,
@@ -87,15 +90,15 @@ void require_twins(MPI_Comm comm, const PointSet& from, const PointSet& to,
 /// them.
 std::vector<Transfer::Entry> shares(MPI_Comm comm, const PointSet& from, const PointSet& to,
                                     const std::vector<Neighbour>& forth, const std::vector<Neighbour>& back) {
-  std::vector<std::vector<Transfer::Entry>> by_source(std::size_t(comm_size(comm)));
+  std::vector<std::vector<Transfer::Entry>> by_source(std::size_t(parallel::comm_size(comm)));
   for (std::size_t i = 0; i < to.points.size(); ++i)
-    by_source[std::size_t(owner_of(from.starts, forth[i].position))].push_back(
+    by_source[std::size_t(coupling::owner_of(from.starts, forth[i].position))].push_back(
         {to.positions[i], forth[i].position, to.sizes.empty() ? 1. : to.sizes[i]});
   std::vector<Transfer::Entry> entries;
-  for (const auto& part : all_to_all(comm, by_source))
+  for (const auto& part : parallel::all_to_all(comm, by_source))
     entries.insert(entries.end(), part.begin(), part.end());
-  const GlobalIndex first = from.starts[std::size_t(comm_rank(comm))],
-                    end = from.starts[std::size_t(comm_rank(comm)) + 1];
+  const GlobalIndex first = from.starts[std::size_t(parallel::comm_rank(comm))],
+                    end = from.starts[std::size_t(parallel::comm_rank(comm)) + 1];
   std::vector<double> total(std::size_t(end - first), 0.);
   for (const auto& e : entries) total[std::size_t(e.source - first)] += e.weight;
   for (auto& e : entries) e.weight /= total[std::size_t(e.source - first)];
@@ -110,7 +113,7 @@ std::vector<Transfer::Entry> projected(MPI_Comm comm, const PointSet& from, cons
   std::vector<Transfer::Entry> entries;
   const Surroundings source(comm, *from.surface);
   require_corners(source.has_corners());
-  if (comm_size(comm) == 1) {
+  if (parallel::comm_size(comm) == 1) {
     add_entries(nearest_projection(*from.surface, to.points), to.positions, source.vertices().positions,
                 entries);
     return entries;
@@ -138,7 +141,8 @@ std::vector<Transfer::Entry> second_order(MPI_Comm comm, Mapping::Kind kind, con
   if (!consistent && by_faces && from.surface && to.surface &&
       Surroundings(comm, *from.surface).has_corners() && Surroundings(comm, *to.surface).has_corners())
     return transposed(faces_to_faces(comm, *to.surface, *from.surface, type));
-  if (consistent && projection && by_faces && from.surface && from.place == Interface::Place::vertices)
+  if (consistent && projection && by_faces && from.surface &&
+      from.place == coupling::Interface::Place::vertices)
     return projected(comm, from, to);
   const PointSet &ask = consistent ? to : from, &among = consistent ? from : to;
   const Nearby near = nearby(comm, ask.points, {}, k, among);
@@ -209,8 +213,8 @@ void Mapping::set(MPI_Comm comm, const PointSet& from, const PointSet& to,
   for (const Neighbour& n : forth) max_distance_ = std::max(max_distance_, n.distance), total += n.distance;
   if (n_from_ > n_to_)
     for (const Neighbour& n : back) max_distance_ = std::max(max_distance_, n.distance);
-  max_distance_ = max(comm, max_distance_);
-  mean_distance_ = sum(comm, total) / double(n_to_);
+  max_distance_ = parallel::max(comm, max_distance_);
+  mean_distance_ = parallel::sum(comm, total) / double(n_to_);
   transfer_ = Transfer(comm, to.starts, from.starts, std::move(entries));
   summary_ = fmt::format("{} {} to {} {}: max distance {:.3g} m, mean {:.3g} m", n_from_, from.what, n_to_,
                          to.what, max_distance_, mean_distance_);

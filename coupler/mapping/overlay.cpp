@@ -29,12 +29,12 @@ struct Flat {
   std::vector<Simplex> simplices;
   double size = 0;  // area, or length
 
-  Flat(const Interface& s, Index face);
+  Flat(const coupling::Interface& s, Index face);
   Vec2 flat(const Vec3& p) const { return {x.dot(p - origin), y.dot(p - origin)}; }
   Eigen::MatrixXd zero() const { return Eigen::MatrixXd::Zero(n, n); }
 };
 
-Flat::Flat(const Interface& s, Index face)
+Flat::Flat(const coupling::Interface& s, Index face)
     : origin(s.face_centres[face]), normal(s.face_areas[face].normalized()) {
   const auto vertex = corners(s, face);
   n = Index(vertex.size());
@@ -109,7 +109,7 @@ void add_common(const Flat::Simplex& t, const Polygon& polygon, Polygon& common,
 }
 
 /// Integrals of products over the part of `f` that a face covers.
-Eigen::MatrixXd common_part(const Flat& f, const Interface& other, Index face,
+Eigen::MatrixXd common_part(const Flat& f, const coupling::Interface& other, Index face,
                             std::array<Polygon, 3>& spare) {
   Eigen::MatrixXd products = f.zero();
   Polygon& polygon = spare[0];
@@ -136,14 +136,14 @@ Eigen::MatrixXd common_part(const Flat& f, const Interface& other, Index face,
 }
 
 /// Distance [m] of two faces that see each other: of one's centre from the other's plane.
-double between(const Interface& a, Index f, const Interface& b, Index s) {
+double between(const coupling::Interface& a, Index f, const coupling::Interface& b, Index s) {
   const Vec3 way = b.face_centres[s] - a.face_centres[f];
   return std::min(std::abs(way.dot(a.face_areas[f].normalized())),
                   std::abs(way.dot(b.face_areas[s].normalized())));
 }
 
 /// Gives the places of `f` that no polygon covers to the faces nearest to them.
-void fill(const Flat& f, const Interface& other, const std::vector<Index>& near, double missing,
+void fill(const Flat& f, const coupling::Interface& other, const std::vector<Index>& near, double missing,
           std::vector<Cover>& found) {
   struct Sample {
     Vec2 at;
@@ -191,7 +191,7 @@ void fill(const Flat& f, const Interface& other, const std::vector<Index>& near,
 
 }  // namespace
 
-std::vector<Cover> covers(const Interface& surface, Index face, const Interface& other,
+std::vector<Cover> covers(const coupling::Interface& surface, Index face, const coupling::Interface& other,
                           const std::vector<Index>& candidates) {
   const Flat f(surface, face);
   struct Layer {

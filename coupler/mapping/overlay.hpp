@@ -19,7 +19,7 @@ struct Cover {
 /// How the faces of `other` among `candidates`, seen along the normal of `face`, cover it: those alone that look
 /// against it and, where there are several layers, the nearest ones. What none covers goes to the nearest face. So
 /// the products sum to those over all of the face, but for what a fold between faces hides or shows twice.
-std::vector<Cover> covers(const Interface& surface, Index face, const Interface& other,
+std::vector<Cover> covers(const coupling::Interface& surface, Index face, const coupling::Interface& other,
                           const std::vector<Index>& candidates);
 
 }  // namespace couplet::coupler

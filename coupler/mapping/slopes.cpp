@@ -14,19 +14,19 @@ namespace {
 
 constexpr double same_way = 0.5, not_against = -0.5;
 
-bool alike(const Interface& s, Index a, Index b, double least_cosine) {
+bool alike(const coupling::Interface& s, Index a, Index b, double least_cosine) {
   return s.face_areas[a].dot(s.face_areas[b]) >
          least_cosine * s.face_areas[a].norm() * s.face_areas[b].norm();
 }
 
 }  // namespace
 
-Slopes::Slopes(const Interface& surface, MappingParameters::Type type)
+Slopes::Slopes(const coupling::Interface& surface, MappingParameters::Type type)
     : surface_(surface),
       radial_(type == MappingParameters::Type::rbf || surface.face_offset.empty()),
       known_(surface.face_centres.size()) {
   if (radial_) {
-    centres_ = std::make_unique<PointTree>(surface.face_centres);
+    centres_ = std::make_unique<base::PointTree>(surface.face_centres);
     return;
   }
   faces_of_.resize(surface.vertices.size());

@@ -8,7 +8,7 @@
 #include "common/coupling/participant.hpp"
 #include "coupler/parameters/parameters.hpp"
 
-namespace couplet {
+namespace couplet::base {
 class PointTree;
 }
 
@@ -27,7 +27,7 @@ struct Slope {
 /// interpolant through the nearest 5 (2-D) or 10 faces, its rise over the face itself.
 class Slopes {
  public:
-  Slopes(const Interface& surface, MappingParameters::Type type);
+  Slopes(const coupling::Interface& surface, MappingParameters::Type type);
   ~Slopes();
   const Slope& at(Index face);
   /// So many of the faces nearest to a face count for its radial slope.
@@ -38,11 +38,11 @@ class Slopes {
   Slope radial(Index face) const;
   std::vector<Index> touching(Index face, std::size_t shared, double least_cosine) const;
 
-  const Interface& surface_;
+  const coupling::Interface& surface_;
   bool radial_;
   std::vector<std::vector<Index>> faces_of_;  // by vertex
   std::vector<Slope> known_;
-  std::unique_ptr<PointTree> centres_;
+  std::unique_ptr<base::PointTree> centres_;
 };
 
 }  // namespace couplet::coupler

@@ -39,9 +39,9 @@ std::vector<GlobalIndex> sorted(std::vector<GlobalIndex> list) {
 }
 
 /// The faces of the structure that may cover those of `mine`, and around them those that their slopes look at.
-SurfacePart around(MPI_Comm comm, const Surroundings& structure, const Interface& mine, double widest,
-                   MappingParameters::Type type) {
-  if (comm_size(comm) == 1) return structure.with(structure.faces().positions);
+SurfacePart around(MPI_Comm comm, const Surroundings& structure, const coupling::Interface& mine,
+                   double widest, MappingParameters::Type type) {
+  if (parallel::comm_size(comm) == 1) return structure.with(structure.faces().positions);
   std::vector<double> far;
   for (Index f = 0; f < Index(mine.face_centres.size()); ++f)
     far.push_back(reach(mine, f) / 2 + std::max(widest, reach(mine, f)) / 2);
@@ -59,7 +59,7 @@ SurfacePart around(MPI_Comm comm, const Surroundings& structure, const Interface
 /// Integrals over one face of `surface` of its corner functions and their duals times the structure's field.
 class FaceIntegrals {
  public:
-  FaceIntegrals(const Interface& structure, MappingParameters::Type type)
+  FaceIntegrals(const coupling::Interface& structure, MappingParameters::Type type)
       : structure_(structure), tree_(structure.face_centres), slopes_(structure, type) {
     for (Index s = 0; s < Index(structure.face_centres.size()); ++s) {
       widest_ = std::max(widest_, reach(structure, s));
@@ -75,7 +75,7 @@ class FaceIntegrals {
 
   /// Calls add(corner, face of the structure, weights); without `dual` the corner functions themselves.
   template <class Add>
-  void operator()(const Interface& surface, Index face, bool dual, const Add& add) {
+  void operator()(const coupling::Interface& surface, Index face, bool dual, const Add& add) {
     const Vec3& centre = surface.face_centres[face];
     std::vector<Index> candidates = tree_.within(centre, reach(surface, face) + widest_);
     if (candidates.size() < nearest_faces) {
@@ -119,8 +119,8 @@ class FaceIntegrals {
   }
 
  private:
-  const Interface& structure_;
-  PointTree tree_;
+  const coupling::Interface& structure_;
+  base::PointTree tree_;
   Slopes slopes_;
   std::vector<Vec3> means_;
   double widest_ = 0;
@@ -190,12 +190,12 @@ void finish(int dim, const std::vector<Share>& shares, GlobalIndex first, const 
 }
 
 /// Each share on the rank that has its row.
-std::vector<Share> by_owner(MPI_Comm comm, const Starts& rows, std::vector<Share> shares) {
-  if (comm_size(comm) == 1) return shares;
-  std::vector<std::vector<Share>> send(std::size_t(comm_size(comm)));
-  for (const Share& s : shares) send[std::size_t(owner_of(rows, s.row))].push_back(s);
+std::vector<Share> by_owner(MPI_Comm comm, const coupling::Starts& rows, std::vector<Share> shares) {
+  if (parallel::comm_size(comm) == 1) return shares;
+  std::vector<std::vector<Share>> send(std::size_t(parallel::comm_size(comm)));
+  for (const Share& s : shares) send[std::size_t(coupling::owner_of(rows, s.row))].push_back(s);
   std::vector<Share> mine;
-  for (const auto& part : all_to_all(comm, send)) mine.insert(mine.end(), part.begin(), part.end());
+  for (const auto& part : parallel::all_to_all(comm, send)) mine.insert(mine.end(), part.begin(), part.end());
   std::ranges::stable_sort(mine, [](const Share& a, const Share& b) {
     return a.row != b.row ? a.row < b.row : a.source < b.source;
   });
@@ -227,20 +227,21 @@ std::vector<Share> shares_of(const SurfacePart& structure, const SurfacePart& mi
   return shares;
 }
 
-std::vector<Transfer::Entry> rows(MPI_Comm comm, const Interface& structure, const Interface& surface,
-                                  MappingParameters::Type type, bool at_vertices) {
+std::vector<Transfer::Entry> rows(MPI_Comm comm, const coupling::Interface& structure,
+                                  const coupling::Interface& surface, MappingParameters::Type type,
+                                  bool at_vertices) {
   const Surroundings theirs(comm, structure), ours(comm, surface);
   const PointSet vertices = ours.vertices(), faces = ours.faces();
   const SurfacePart mine = ours.with(faces.positions);
   const SurfacePart own = theirs.with(theirs.faces().positions);
   double widest = 0;
   for (Index s = 0; s < Index(own.faces.size()); ++s) widest = std::max(widest, reach(own.surface, s));
-  const SurfacePart near = around(comm, theirs, mine.surface, max(comm, widest), type);
+  const SurfacePart near = around(comm, theirs, mine.surface, parallel::max(comm, widest), type);
   std::vector<Share> shares =
       mine.faces.empty() ? std::vector<Share>{} : shares_of(near, mine, type, at_vertices);
   std::vector<Transfer::Entry> entries;
   const PointSet& targets = at_vertices ? vertices : faces;
-  const GlobalIndex first = targets.starts[std::size_t(comm_rank(comm))];
+  const GlobalIndex first = targets.starts[std::size_t(parallel::comm_rank(comm))];
   const std::vector<Share> known = by_owner(comm, targets.starts, std::move(shares));
   finish(structure.dim, known, first, targets.points, entries);
   // A vertex of no face.
@@ -259,13 +260,15 @@ std::vector<Transfer::Entry> rows(MPI_Comm comm, const Interface& structure, con
 
 }  // namespace
 
-std::vector<Transfer::Entry> faces_to_vertices(MPI_Comm comm, const Interface& structure,
-                                               const Interface& surface, MappingParameters::Type type) {
+std::vector<Transfer::Entry> faces_to_vertices(MPI_Comm comm, const coupling::Interface& structure,
+                                               const coupling::Interface& surface,
+                                               MappingParameters::Type type) {
   return rows(comm, structure, surface, type, true);
 }
 
-std::vector<Transfer::Entry> faces_to_faces(MPI_Comm comm, const Interface& structure,
-                                            const Interface& surface, MappingParameters::Type type) {
+std::vector<Transfer::Entry> faces_to_faces(MPI_Comm comm, const coupling::Interface& structure,
+                                            const coupling::Interface& surface,
+                                            MappingParameters::Type type) {
   return rows(comm, structure, surface, type, false);
 }
 

@@ -15,11 +15,12 @@ namespace couplet::coupler {
 /// structure's field, linear over each of its faces, weighted by the function that is biorthogonal to the corner
 /// functions of `surface` on each of its faces (dual Lagrange multipliers, Wohlmuth 2000). Linear fields are exact,
 /// and the transpose makes a uniform traction of a uniform one. Both: this rank's parts, with corners. Collective.
-std::vector<Transfer::Entry> faces_to_vertices(MPI_Comm comm, const Interface& structure,
-                                               const Interface& surface, MappingParameters::Type type);
+std::vector<Transfer::Entry> faces_to_vertices(MPI_Comm comm, const coupling::Interface& structure,
+                                               const coupling::Interface& surface,
+                                               MappingParameters::Type type);
 
 /// The same to the means over the faces of `surface`: for amounts that no motion goes with.
-std::vector<Transfer::Entry> faces_to_faces(MPI_Comm comm, const Interface& structure,
-                                            const Interface& surface, MappingParameters::Type type);
+std::vector<Transfer::Entry> faces_to_faces(MPI_Comm comm, const coupling::Interface& structure,
+                                            const coupling::Interface& surface, MappingParameters::Type type);
 
 }  // namespace couplet::coupler

@@ -35,7 +35,8 @@ double bound_by_boxes(const std::vector<Count>& all, const Vec3& p, std::size_t 
 /// For each centre a distance within which there are k points: from the rank whose box is nearest, or, where it
 /// has fewer, from the boxes.
 std::vector<double> bounds(MPI_Comm comm, const std::vector<Vec3>& centres, std::size_t k,
-                           const std::vector<Count>& all, const PointSet& among, const PointTree* tree) {
+                           const std::vector<Count>& all, const PointSet& among,
+                           const base::PointTree* tree) {
   std::vector<std::vector<Vec3>> ask(all.size());
   std::vector<std::vector<std::size_t>> asked(all.size());
   for (std::size_t i = 0; i < centres.size(); ++i) {
@@ -47,7 +48,7 @@ std::vector<double> bounds(MPI_Comm comm, const std::vector<Vec3>& centres, std:
     ask[home].push_back(centres[i]), asked[home].push_back(i);
   }
   std::vector<std::vector<double>> answers;
-  for (const auto& questions : all_to_all(comm, ask)) {
+  for (const auto& questions : parallel::all_to_all(comm, ask)) {
     auto& distances = answers.emplace_back();
     for (const Vec3& p : questions) {
       const bool enough = tree != nullptr && among.points.size() >= k;
@@ -55,7 +56,7 @@ std::vector<double> bounds(MPI_Comm comm, const std::vector<Vec3>& centres, std:
                                  : infinite);
     }
   }
-  const auto replies = all_to_all(comm, answers);
+  const auto replies = parallel::all_to_all(comm, answers);
   std::vector<double> bound(centres.size(), infinite);
   for (std::size_t r = 0; r < replies.size(); ++r)
     for (std::size_t q = 0; q < replies[r].size(); ++q) bound[asked[r][q]] = replies[r][q];
@@ -66,18 +67,19 @@ std::vector<double> bounds(MPI_Comm comm, const std::vector<Vec3>& centres, std:
 
 /// Values at these positions (ascending) from the ranks that have them.
 template <class Value, class Get>
-std::vector<Value> fetch(MPI_Comm comm, const Starts& starts, const std::vector<GlobalIndex>& positions,
-                         Get get) {
-  std::vector<std::vector<GlobalIndex>> wanted(std::size_t(comm_size(comm)));
-  for (const GlobalIndex p : positions) wanted[std::size_t(owner_of(starts, p))].push_back(p);
-  const GlobalIndex first = starts[std::size_t(comm_rank(comm))];
+std::vector<Value> fetch(MPI_Comm comm, const coupling::Starts& starts,
+                         const std::vector<GlobalIndex>& positions, Get get) {
+  std::vector<std::vector<GlobalIndex>> wanted(std::size_t(parallel::comm_size(comm)));
+  for (const GlobalIndex p : positions) wanted[std::size_t(coupling::owner_of(starts, p))].push_back(p);
+  const GlobalIndex first = starts[std::size_t(parallel::comm_rank(comm))];
   std::vector<std::vector<Value>> answers;
-  for (const auto& list : all_to_all(comm, wanted)) {
+  for (const auto& list : parallel::all_to_all(comm, wanted)) {
     auto& values = answers.emplace_back();
     for (const GlobalIndex p : list) get(std::size_t(p - first), values);
   }
   std::vector<Value> all;
-  for (const auto& part : all_to_all(comm, answers)) all.insert(all.end(), part.begin(), part.end());
+  for (const auto& part : parallel::all_to_all(comm, answers))
+    all.insert(all.end(), part.begin(), part.end());
   return all;
 }
 
@@ -99,8 +101,8 @@ Nearby nearby(MPI_Comm comm, const std::vector<Vec3>& centres, const std::vector
     Vec3 point;
   };
   const std::vector<Count> all =
-      all_gather(comm, std::vector<Count>{{PointBox(among.points), among.points.size()}});
-  std::optional<PointTree> tree;
+      parallel::all_gather(comm, std::vector<Count>{{PointBox(among.points), among.points.size()}});
+  std::optional<base::PointTree> tree;
   if (!among.points.empty()) tree.emplace(among.points);
   const std::vector<double> bound = bounds(comm, centres, k, all, among, tree ? &*tree : nullptr);
   std::vector<std::vector<Ball>> ask(all.size());
@@ -111,7 +113,7 @@ Nearby nearby(MPI_Comm comm, const std::vector<Vec3>& centres, const std::vector
         ask[r].push_back({centres[i], radius});
   }
   std::vector<std::vector<Found>> answers;
-  for (const auto& balls : all_to_all(comm, ask)) {
+  for (const auto& balls : parallel::all_to_all(comm, ask)) {
     std::vector<char> inside(among.points.size(), 0);
     for (const Ball& ball : balls)
       for (const Index i : tree->within(ball.centre, ball.radius)) inside[std::size_t(i)] = 1;
@@ -120,30 +122,31 @@ Nearby nearby(MPI_Comm comm, const std::vector<Vec3>& centres, const std::vector
       if (inside[i]) found.push_back({among.positions[i], among.points[i]});
   }
   std::vector<Found> found;
-  for (const auto& part : all_to_all(comm, answers)) found.insert(found.end(), part.begin(), part.end());
+  for (const auto& part : parallel::all_to_all(comm, answers))
+    found.insert(found.end(), part.begin(), part.end());
   std::ranges::sort(found, {}, &Found::position);
   Nearby result;
   for (const Found& f : found) result.points.push_back(f.point), result.positions.push_back(f.position);
   return result;
 }
 
-Surroundings::Surroundings(MPI_Comm comm, const Interface& part) : comm_(comm), part_(part) {
+Surroundings::Surroundings(MPI_Comm comm, const coupling::Interface& part) : comm_(comm), part_(part) {
   const auto cut = [&](std::size_t n) {
-    return starts_of(all_gather(comm, std::vector<GlobalIndex>{GlobalIndex(n)}));
+    return coupling::starts_of(parallel::all_gather(comm, std::vector<GlobalIndex>{GlobalIndex(n)}));
   };
   vertex_starts_ = cut(part.vertices.size()), face_starts_ = cut(part.face_centres.size());
-  has_corners_ =
-      face_starts_.back() > 0 &&
-      !any(comm, part.face_offset.size() != part.face_centres.size() + 1 && !part.face_centres.empty());
+  has_corners_ = face_starts_.back() > 0 &&
+                 !parallel::any(comm, part.face_offset.size() != part.face_centres.size() + 1 &&
+                                          !part.face_centres.empty());
 }
 
 namespace {
 
-PointSet owned(MPI_Comm comm, const std::vector<Vec3>& points, const Starts& starts) {
+PointSet owned(MPI_Comm comm, const std::vector<Vec3>& points, const coupling::Starts& starts) {
   PointSet set;
   set.points = points, set.starts = starts;
   set.positions.resize(points.size());
-  std::iota(set.positions.begin(), set.positions.end(), starts[std::size_t(comm_rank(comm))]);
+  std::iota(set.positions.begin(), set.positions.end(), starts[std::size_t(parallel::comm_rank(comm))]);
   set.ids = set.positions;
   return set;
 }
@@ -155,7 +158,7 @@ PointSet Surroundings::faces() const { return owned(comm_, part_.face_centres, f
 
 SurfacePart Surroundings::with(const std::vector<GlobalIndex>& faces) const {
   SurfacePart result;
-  Interface& s = result.surface;
+  coupling::Interface& s = result.surface;
   s.dim = part_.dim;
   result.faces = faces;
   s.face_centres = fetch<Vec3>(comm_, face_starts_, faces,
@@ -186,15 +189,17 @@ std::vector<GlobalIndex> Surroundings::faces_around(const std::vector<GlobalInde
     GlobalIndex vertex, face;
   };
   // A face may be another rank's than its vertices: each vertex' owner learns of its faces.
-  const auto rank = std::size_t(comm_rank(comm_));
-  std::vector<std::vector<Touch>> tell(std::size_t(comm_size(comm_)));
+  const auto rank = std::size_t(parallel::comm_rank(comm_));
+  std::vector<std::vector<Touch>> tell(std::size_t(parallel::comm_size(comm_)));
   for (std::size_t f = 0; f < part_.face_centres.size(); ++f)
     for (Index k = part_.face_offset[f]; k < part_.face_offset[f + 1]; ++k) {
       const GlobalIndex v = part_.face_vertices[std::size_t(k)];
-      tell[std::size_t(owner_of(vertex_starts_, v))].push_back({v, face_starts_[rank] + GlobalIndex(f)});
+      tell[std::size_t(coupling::owner_of(vertex_starts_, v))].push_back(
+          {v, face_starts_[rank] + GlobalIndex(f)});
     }
   std::vector<Touch> known;
-  for (const auto& part : all_to_all(comm_, tell)) known.insert(known.end(), part.begin(), part.end());
+  for (const auto& part : parallel::all_to_all(comm_, tell))
+    known.insert(known.end(), part.begin(), part.end());
   std::ranges::sort(known, [](const Touch& a, const Touch& b) {
     return a.vertex != b.vertex ? a.vertex < b.vertex : a.face < b.face;
   });

@@ -25,7 +25,7 @@ Nearby nearby(MPI_Comm comm, const std::vector<Vec3>& centres, const std::vector
 /// Some faces of a surface and the vertices that these need, with their positions in the whole lists; corners
 /// count vertices within the part.
 struct SurfacePart {
-  Interface surface;
+  coupling::Interface surface;
   std::vector<GlobalIndex> vertices, faces;  ///< ascending
 };
 
@@ -33,7 +33,7 @@ struct SurfacePart {
 class Surroundings {
  public:
   /// `part`: this rank's part, corners by position in the list of vertices. It must outlive this.
-  Surroundings(MPI_Comm comm, const Interface& part);
+  Surroundings(MPI_Comm comm, const coupling::Interface& part);
   bool has_corners() const { return has_corners_; }  ///< on all ranks; false where there are no faces
   PointSet vertices() const;                         ///< this rank's
   PointSet faces() const;
@@ -44,8 +44,8 @@ class Surroundings {
 
  private:
   MPI_Comm comm_;
-  const Interface& part_;
-  Starts vertex_starts_, face_starts_;
+  const coupling::Interface& part_;
+  coupling::Starts vertex_starts_, face_starts_;
   bool has_corners_;
 };
 

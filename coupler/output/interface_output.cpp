@@ -58,15 +58,16 @@ InterfaceOutput::InterfaceOutput(MPI_Comm comm, fs::path folder, const std::vect
                                  double restart_time)
     : comm_(comm), folder_(std::move(folder)) {
   std::error_code failed;
-  if (comm_rank(comm) == 0) fs::create_directories(folder_, failed);
-  if (any(comm, bool(failed)))
+  if (parallel::comm_rank(comm) == 0) fs::create_directories(folder_, failed);
+  if (parallel::any(comm, bool(failed)))
     throw Error("Cannot create the folder {}: {}.", folder_.string(), failed.message());
   for (const Side& side : sides) {
-    const Interface& i = side.interface;
+    const coupling::Interface& i = side.interface;
     if (side.faces.back() == 0) continue;
     const std::size_t n = i.face_vertices.size();
-    const Starts corners = starts_of(all_gather(comm, std::vector<GlobalIndex>{GlobalIndex(n)}));
-    const GlobalIndex first = corners[std::size_t(comm_rank(comm))];
+    const coupling::Starts corners =
+        coupling::starts_of(parallel::all_gather(comm, std::vector<GlobalIndex>{GlobalIndex(n)}));
+    const GlobalIndex first = corners[std::size_t(parallel::comm_rank(comm))];
     std::vector<Transfer::Entry> entries;
     for (std::size_t k = 0; k < n; ++k) entries.push_back({first + GlobalIndex(k), i.face_vertices[k], 1});
     Surface& s = surfaces_.emplace_back();
@@ -80,21 +81,21 @@ InterfaceOutput::InterfaceOutput(MPI_Comm comm, fs::path folder, const std::vect
   }
 }
 
-void InterfaceOutput::write(double time, int number, const std::vector<Exchange>& given,
-                            const std::vector<Exchange>& taken) {
+void InterfaceOutput::write(double time, int number, const std::vector<coupling::Exchange>& given,
+                            const std::vector<coupling::Exchange>& taken) {
   for (std::size_t s = 0; s < surfaces_.size(); ++s) {
     Surface& surface = surfaces_[s];
     const std::string stem = fmt::format("{}-{:06d}", surface.side->name, number);
-    write_piece(surface, folder_ / fmt::format("{}.{}.vtp", stem, comm_rank(comm_)), given[surface.index],
-                taken[surface.index]);
+    write_piece(surface, folder_ / fmt::format("{}.{}.vtp", stem, parallel::comm_rank(comm_)),
+                given[surface.index], taken[surface.index]);
     surface.files.emplace_back(time, stem);
-    if (comm_rank(comm_) == 0) write_list(surface);
+    if (parallel::comm_rank(comm_) == 0) write_list(surface);
   }
 }
 
-void InterfaceOutput::write_piece(const Surface& surface, const fs::path& file, const Exchange& given,
-                                  const Exchange& taken) const {
-  const Interface& i = surface.side->interface;
+void InterfaceOutput::write_piece(const Surface& surface, const fs::path& file,
+                                  const coupling::Exchange& given, const coupling::Exchange& taken) const {
+  const coupling::Interface& i = surface.side->interface;
   const std::size_t faces = i.face_centres.size();
   const bool has_corners = !i.face_vertices.empty();
   // Without known vertices a face is its centre.
@@ -116,19 +117,20 @@ void InterfaceOutput::write_piece(const Surface& surface, const fs::path& file, 
   integers(out, "connectivity", connectivity);
   integers(out, "offsets", offsets);
   out << "</" << kind << ">\n";
-  std::vector<std::pair<const Interface::Datum*, const std::vector<double>*>> data;
+  std::vector<std::pair<const coupling::Interface::Datum*, const std::vector<double>*>> data;
   for (const auto& [list, values] : {std::pair{&i.gives, &given}, std::pair{&i.takes, &taken}})
     for (const auto& datum : *list)
       if (const auto found = values->find(datum.name); found != values->end())
         data.emplace_back(&datum, &found->second);
   out << "<PointData>\n";
   for (const auto& [datum, values] : data)
-    if (datum->place == Interface::Place::vertices && surface.side->faces.back() > 0)
+    if (datum->place == coupling::Interface::Place::vertices && surface.side->faces.back() > 0)
       if (const auto at_corners = surface.to_corners.apply(*values, datum->size(i.dim)); has_corners)
         array(out, datum->name, at_corners, datum->size(i.dim));
   out << "</PointData>\n<CellData>\n";
   for (const auto& [datum, values] : data)
-    if (datum->place == Interface::Place::faces) array(out, datum->name, *values, datum->size(i.dim));
+    if (datum->place == coupling::Interface::Place::faces)
+      array(out, datum->name, *values, datum->size(i.dim));
   out << "</CellData>\n</Piece>\n</PolyData>\n</VTKFile>\n";
   if (!out) throw Error("Cannot write {}: is the disk full?", file.string());
 }
@@ -139,7 +141,7 @@ void InterfaceOutput::write_list(const Surface& surface) const {
     std::ofstream out(part);
     out << "<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n";
     for (const auto& [time, stem] : surface.files)
-      for (int r = 0; r < comm_size(comm_); ++r)
+      for (int r = 0; r < parallel::comm_size(comm_); ++r)
         out << fmt::format("  <DataSet timestep=\"{:.12g}\" part=\"{}\" file=\"{}.{}.vtp\"/>\n", time, r,
                            stem, r);
     out << "</Collection>\n</VTKFile>\n";

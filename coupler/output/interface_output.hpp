@@ -20,7 +20,8 @@ class InterfaceOutput {
   InterfaceOutput(MPI_Comm comm, std::filesystem::path folder, const std::vector<Side>& sides,
                   double restart_time);
   /// What each has given and taken last. Collective.
-  void write(double time, int number, const std::vector<Exchange>& given, const std::vector<Exchange>& taken);
+  void write(double time, int number, const std::vector<coupling::Exchange>& given,
+             const std::vector<coupling::Exchange>& taken);
 
  private:
   struct Surface {
@@ -30,8 +31,8 @@ class InterfaceOutput {
     std::vector<double> corners;  // 3 coordinates each
     std::vector<std::pair<double, std::string>> files;
   };
-  void write_piece(const Surface& surface, const std::filesystem::path& file, const Exchange& given,
-                   const Exchange& taken) const;
+  void write_piece(const Surface& surface, const std::filesystem::path& file, const coupling::Exchange& given,
+                   const coupling::Exchange& taken) const;
   void write_list(const Surface& surface) const;
 
   MPI_Comm comm_;

@@ -40,7 +40,7 @@ std::vector<std::string> participant_columns(const std::vector<std::string>& nam
 Monitor::Monitor(MPI_Comm comm, std::filesystem::path folder, std::vector<std::string> names,
                  const std::vector<std::string>& balanced, int dim, double end_time, double restart_time)
     : folder_(std::move(folder)),
-      writes_(comm_rank(comm) == 0),
+      writes_(parallel::comm_rank(comm) == 0),
       names_(std::move(names)),
       dim_(dim),
       end_time_(end_time),
@@ -61,7 +61,7 @@ Monitor::Monitor(MPI_Comm comm, std::filesystem::path folder, std::vector<std::s
     balance_.emplace(folder_ / "balance.csv", balance_columns(balanced, dim), restart_time);
 }
 
-void Monitor::iteration(const Step& step, int number, const Residual& residual, double omega) {
+void Monitor::iteration(const coupling::Step& step, int number, const Residual& residual, double omega) {
   if (!writes_) return;
   residuals_->row(std::array<double, 7>{step.time + step.dt, step.dt, double(step.number + 1), double(number),
                                         residual.relative, residual.absolute, omega});
@@ -116,7 +116,7 @@ namespace {
 
 /// Processor seconds of this process without what it waited for replies.
 double own_seconds(const std::vector<Partner>& partners) {
-  double seconds = processor_seconds();
+  double seconds = coupling::processor_seconds();
   for (const Partner& p : partners) seconds -= p.channel->waiting_seconds();
   return seconds;
 }
@@ -128,7 +128,7 @@ void Monitor::start(const std::vector<Partner>& partners) {
   own_before_ = own_seconds(partners);
 }
 
-void Monitor::step(const Step& step, double time, const FixedPointResult& result,
+void Monitor::step(const coupling::Step& step, double time, const FixedPointResult& result,
                    const std::vector<Partner>& partners) {
   const auto now = Clock::now();
   const double wall = std::chrono::duration<double>(now - step_start_).count();
@@ -153,12 +153,12 @@ void Monitor::step(const Step& step, double time, const FixedPointResult& result
   own_ += own - std::exchange(own_before_, own);
   if (!writes_) return;
   participants_->row(row);
-  if (step.scheme == Scheme::explicit_ && std::chrono::duration<double>(now - last_line_).count() < 0.5 &&
-      time < end_time_)
+  if (step.scheme == coupling::Scheme::explicit_ &&
+      std::chrono::duration<double>(now - last_line_).count() < 0.5 && time < end_time_)
     return;
   last_line_ = now;
   log::info("t={:.6g}/{:g} s  step {}{}  {} its  |r|={:.1e}{}  {}", time, end_time_, step.number + 1,
-            step.scheme == Scheme::explicit_ ? " (explicit)" : "", result.iterations,
+            step.scheme == coupling::Scheme::explicit_ ? " (explicit)" : "", result.iterations,
             result.residual.relative, text,
             log::eta(time - start_time_, end_time_ - start_time_,
                      std::chrono::duration<double>(now - start_).count()));

@@ -31,12 +31,12 @@ class Monitor {
 
   /// The first step begins now: what went before is not its work.
   void start(const std::vector<Partner>& partners);
-  void iteration(const Step& step, int number, const Residual& residual, double omega);
+  void iteration(const coupling::Step& step, int number, const Residual& residual, double omega);
   void balance(double time, const std::vector<SideBalance>& sides);
   void amounts(double time, const std::vector<Links::Amount>& amounts);
   void volume(double time, const VolumeLevel& level);
   void watched(double time, const std::vector<std::string>& columns, const std::vector<double>& values);
-  void step(const Step& step, double time, const FixedPointResult& result,
+  void step(const coupling::Step& step, double time, const FixedPointResult& result,
             const std::vector<Partner>& partners);
   /// Mean and largest number of iterations, time by participant.
   std::string summary(int halvings) const;
@@ -46,7 +46,7 @@ class Monitor {
   std::filesystem::path folder_;
   bool writes_;
   std::vector<std::string> names_;
-  std::optional<Series> residuals_, participants_, balance_, amounts_, volume_, watched_;
+  std::optional<io::Series> residuals_, participants_, balance_, amounts_, volume_, watched_;
   int dim_;
   double end_time_, restart_time_, start_time_;
   Clock::time_point start_ = Clock::now(), step_start_ = Clock::now(), last_line_{};

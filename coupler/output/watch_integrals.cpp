@@ -13,27 +13,28 @@
 namespace couplet::coupler {
 namespace {
 
-using Datum = Interface::Datum;
-using Place = Interface::Place;
+using Datum = coupling::Interface::Datum;
+using Place = coupling::Interface::Place;
 
-const Datum* find(const Interface& interface, const std::string& name) {
+const Datum* find(const coupling::Interface& interface, const std::string& name) {
   for (const auto* list : {&interface.gives, &interface.takes})
     for (const Datum& datum : *list)
       if (datum.name == name) return &datum;
   return nullptr;
 }
 
-std::string names_of(const Interface& interface) {
+std::string names_of(const coupling::Interface& interface) {
   std::vector<std::string> names;
   for (const auto* list : {&interface.gives, &interface.takes})
     for (const Datum& datum : *list)
       if (std::ranges::find(names, datum.name) == names.end()) names.push_back(datum.name);
-  return names.empty() ? "nothing" : join(names);
+  return names.empty() ? "nothing" : base::join(names);
 }
 
 /// What it gives itself, else what it takes.
-const std::vector<double>* values_of(const std::string& name, const Exchange& given, const Exchange& taken) {
-  for (const Exchange* data : {&given, &taken})
+const std::vector<double>* values_of(const std::string& name, const coupling::Exchange& given,
+                                     const coupling::Exchange& taken) {
+  for (const coupling::Exchange* data : {&given, &taken})
     if (const auto found = data->find(name); found != data->end()) return &found->second;
   return nullptr;
 }
@@ -58,29 +59,31 @@ Vec3 area_of(const std::vector<double>& xyz, std::size_t from, std::size_t to, i
 }
 
 std::vector<bool> faces_of_part(MPI_Comm comm, const std::string& name, const WatchParameters& p,
-                                const Interface& interface) {
+                                const coupling::Interface& interface) {
   std::vector<bool> counts(interface.face_centres.size(), true);
   if (p.part.empty()) return counts;
   const auto found = std::ranges::find(interface.parts, p.part);
   const int number = found == interface.parts.end() ? -1 : int(found - interface.parts.begin());
   for (std::size_t f = 0; f < counts.size(); ++f)
     counts[f] = number >= 0 && f < interface.face_part.size() && interface.face_part[f] == number;
-  if (sum(comm, GlobalIndex(std::ranges::count(counts, true))) == 0)
+  if (parallel::sum(comm, GlobalIndex(std::ranges::count(counts, true))) == 0)
     throw Error("coupling.watch.{}.part: the interface of '{}' has no part '{}'. Its parts are: {}.", name,
-                p.participant, p.part, interface.parts.empty() ? "none with a name" : join(interface.parts));
+                p.participant, p.part,
+                interface.parts.empty() ? "none with a name" : base::join(interface.parts));
   return counts;
 }
 
 }  // namespace
 
 WatchIntegrals::Surface WatchIntegrals::surface_of(const Side& side, std::size_t index) const {
-  const Interface& i = side.interface;
+  const coupling::Interface& i = side.interface;
   Surface s{index, i.dim, false, false, {}, {}, i.face_offset, i.face_areas, {}};
   const std::size_t n = i.face_vertices.size();
-  s.knows_corners = sum(comm_, GlobalIndex(n)) > 0;
+  s.knows_corners = parallel::sum(comm_, GlobalIndex(n)) > 0;
   if (!s.knows_corners) return s;
-  const Starts corners = starts_of(all_gather(comm_, std::vector<GlobalIndex>{GlobalIndex(n)}));
-  const GlobalIndex first = corners[std::size_t(comm_rank(comm_))];
+  const coupling::Starts corners =
+      coupling::starts_of(parallel::all_gather(comm_, std::vector<GlobalIndex>{GlobalIndex(n)}));
+  const GlobalIndex first = corners[std::size_t(parallel::comm_rank(comm_))];
   std::vector<Transfer::Entry> entries;
   for (std::size_t k = 0; k < n; ++k) entries.push_back({first + GlobalIndex(k), i.face_vertices[k], 1});
   s.to_corners = Transfer(comm_, corners, side.vertices, std::move(entries));
@@ -105,7 +108,7 @@ WatchIntegrals::Integral WatchIntegrals::integral_of(const std::string& name, co
                 p.participant, p.data, names_of(side.interface));
   const int n = datum->size(side.interface.dim);
   Integral i{0, Kind::amount, *datum, faces_of_part(comm_, name, p, side.interface), std::size_t(n)};
-  if (is_amount(*datum)) {
+  if (coupling::is_amount(*datum)) {
     if (datum->place == Place::faces) return i;
     if (!p.part.empty())
       throw Error(
@@ -162,11 +165,11 @@ WatchIntegrals::WatchIntegrals(MPI_Comm comm, const std::vector<Side>& sides,
   }
 }
 
-std::vector<Vec3> WatchIntegrals::areas(const Surface& s, const Exchange& given,
-                                        const Exchange& taken) const {
+std::vector<Vec3> WatchIntegrals::areas(const Surface& s, const coupling::Exchange& given,
+                                        const coupling::Exchange& taken) const {
   const std::vector<double>* moved = s.moves ? values_of("displacement", given, taken) : nullptr;
   // A rank without vertices has no such name: all ranks together must know.
-  if (!any(comm_, moved != nullptr)) return s.reference_area;
+  if (!parallel::any(comm_, moved != nullptr)) return s.reference_area;
   std::vector<double> at = s.to_corners.apply(moved ? *moved : std::vector<double>{}, s.dim);
   for (std::size_t k = 0; k < at.size(); ++k) at[k] += s.corners[k];
   std::vector<Vec3> areas;
@@ -197,14 +200,14 @@ void WatchIntegrals::add_up(const Integral& i, const std::vector<double>& values
   }
 }
 
-std::vector<double> WatchIntegrals::row(const std::vector<Exchange>& given,
-                                        const std::vector<Exchange>& taken) const {
+std::vector<double> WatchIntegrals::row(const std::vector<coupling::Exchange>& given,
+                                        const std::vector<coupling::Exchange>& taken) const {
   std::vector<double> row(columns_.size(), 0);
   std::size_t column = 0;
   for (const Integral& i : integrals_) {
     const Surface& s = surfaces_[i.surface];
     const std::vector<double>* values = values_of(i.datum.name, given[s.side], taken[s.side]);
-    const bool known = any(comm_, values != nullptr);
+    const bool known = parallel::any(comm_, values != nullptr);
     if (known) {
       std::vector<double> here = values ? *values : std::vector<double>{};
       if (i.kind != Kind::amount && i.datum.place == Place::vertices)

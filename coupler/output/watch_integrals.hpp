@@ -27,7 +27,8 @@ class WatchIntegrals {
   /// "tip force x [N]"
   const std::vector<std::string>& columns() const { return columns_; }
   /// One value a column, the same on all ranks; NaN where a datum has not gone over yet. Collective.
-  std::vector<double> row(const std::vector<Exchange>& given, const std::vector<Exchange>& taken) const;
+  std::vector<double> row(const std::vector<coupling::Exchange>& given,
+                          const std::vector<coupling::Exchange>& taken) const;
 
  private:
   enum class Kind { amount, scalar, flux };
@@ -45,14 +46,15 @@ class WatchIntegrals {
   struct Integral {
     std::size_t surface;
     Kind kind;
-    Interface::Datum datum;
+    coupling::Interface::Datum datum;
     std::vector<bool> counts;  // by face (vertex for amounts there) of this rank
     std::size_t columns;
   };
   Surface surface_of(const Side& side, std::size_t index) const;
   Integral integral_of(const std::string& name, const WatchParameters& p, const Side& side,
                        const Surface& surface) const;
-  std::vector<Vec3> areas(const Surface& s, const Exchange& given, const Exchange& taken) const;
+  std::vector<Vec3> areas(const Surface& s, const coupling::Exchange& given,
+                          const coupling::Exchange& taken) const;
   void add_up(const Integral& i, const std::vector<double>& values, const std::vector<Vec3>& areas,
               double* sums) const;
 

@@ -16,7 +16,7 @@ using AccelerationType = AccelerationParameters::Type;
 using MappingType = MappingParameters::Type;
 
 std::string when(bool on, const char* reason) { return on ? reason : ""; }
-bool iterates(const P& p) { return p.scheme != Scheme::explicit_; }
+bool iterates(const P& p) { return p.scheme != coupling::Scheme::explicit_; }
 /// Whether participants see the motion of the guess before the structure has given its own.
 bool predicts(const P& p) { return predictor_order_of(p) > 0; }
 bool is_quasi_newton(const P& p) {
@@ -26,10 +26,10 @@ bool is_quasi_newton(const P& p) {
 // One pass a step holds while the guess that the load is of is not thrown over: a guess with velocity v^n returns
 // r = added mass / mass of the last change, lambda = -r; one of 2 v^n - v^{n-1} (order 2) gives
 // lambda^2 + r (2 lambda - 1) = 0, which reaches -1 at r = 1/3. The error goes with r: half the limit is asked for.
-std::optional<EffectVerdict> judge_one_pass(const P& p, const CouplingEvidence& e) {
-  if (p.scheme != Scheme::explicit_ || std::isnan(e.returned)) return {};
+std::optional<effects::EffectVerdict> judge_one_pass(const P& p, const CouplingEvidence& e) {
+  if (p.scheme != coupling::Scheme::explicit_ || std::isnan(e.returned)) return {};
   const double limit = limit_of_one_pass(p);
-  return verdict(
+  return effects::verdict(
       e.returned, limit / 2,
       fmt::format(
           "added-mass ratio: {:.3g} of a change of the motion returns through the load in the next pass; "
@@ -39,8 +39,8 @@ std::optional<EffectVerdict> judge_one_pass(const P& p, const CouplingEvidence& 
       std::min(e.returned, 1.));  // what the load of this step leaves to the next
 }
 
-std::optional<EffectVerdict> judge_lost_load(const P&, const CouplingEvidence& e) {
-  return verdict(
+std::optional<effects::EffectVerdict> judge_lost_load(const P&, const CouplingEvidence& e) {
+  return effects::verdict(
       e.lost_load, 0.02, fmt::format("fluid forces not taken / taken by the structure = {:.2g}", e.lost_load),
       "let the structure take 'viscous-force' as well ('interface: {load: forces}' of a solid)", e.lost_load);
 }
@@ -52,25 +52,26 @@ const std::array cards{
                  {"sums of the exchanged amounts", 0, 0}},
     CouplingCard{"iteration of the whole step",
                  "`scheme: implicit`",
-                 [](const P& p) { return when(p.scheme == Scheme::implicit, "scheme: implicit"); },
+                 [](const P& p) { return when(p.scheme == coupling::Scheme::implicit, "scheme: implicit"); },
                  {"all participants and the mesh motion once per pass", 0, 0}},
     CouplingCard{
         "iteration of pressure and structure",
         "`scheme: semi-implicit`",
-        [](const P& p) { return when(p.scheme == Scheme::semi_implicit, "scheme: semi-implicit"); },
+        [](const P& p) { return when(p.scheme == coupling::Scheme::semi_implicit, "scheme: semi-implicit"); },
         {"a pressure solve and a structure step per pass; mesh motion and predictor once per step", 0, 0},
         "explicit: share of a change of the motion that the next pass returns, 0.5 (predictor of order 2: "
         "0.17); two additional passes in the second step and in steps 4, 16, 64, ...",
         judge_one_pass},
-    CouplingCard{"friction of the current wall velocity",
-                 "`scheme: semi-implicit`, implicit viscous term",
-                 [](const P& p) { return when(p.scheme == Scheme::semi_implicit, "scheme: semi-implicit"); },
-                 {"two vectors per interface face, a loop over it per pass", 0, 0}},
+    CouplingCard{
+        "friction of the current wall velocity",
+        "`scheme: semi-implicit`, implicit viscous term",
+        [](const P& p) { return when(p.scheme == coupling::Scheme::semi_implicit, "scheme: semi-implicit"); },
+        {"two vectors per interface face, a loop over it per pass", 0, 0}},
     CouplingCard{
         "prediction renewed",
         "`scheme: semi-implicit`, where the friction error exceeds 0.1 % of the load (heavy structures: 5 "
         "%), up to four times per step",
-        [](const P& p) { return when(p.scheme == Scheme::semi_implicit, "scheme: semi-implicit"); },
+        [](const P& p) { return when(p.scheme == coupling::Scheme::semi_implicit, "scheme: semi-implicit"); },
         {"sums over the interface per pass; where active, the first part of the fluid's step is repeated "
          "each time",
          0, 0}},

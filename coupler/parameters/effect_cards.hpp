@@ -20,7 +20,7 @@ struct CouplingEvidence {
 };
 /// Share of a change of the motion that one pass a step bears to have returned by the next pass.
 double limit_of_one_pass(const CouplingParameters& parameters);
-using CouplingCard = EffectCard<CouplingParameters, CouplingEvidence>;
+using CouplingCard = effects::EffectCard<CouplingParameters, CouplingEvidence>;
 /// All that a coupling can have beside one pass a step over matching surfaces, in the order in which it is told.
 std::span<const CouplingCard> coupling_effect_cards();
 

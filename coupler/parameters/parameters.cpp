@@ -86,7 +86,7 @@ void declare(config::Section& section, WatchParameters& p, const std::vector<std
         return std::ranges::find(partners, p.participant) != partners.end()
                    ? ""
                    : fmt::format("'{}' takes no part in the coupling; the participants are: {}",
-                                 p.participant, join(partners));
+                                 p.participant, base::join(partners));
       },
       "participant");
 }
@@ -100,7 +100,7 @@ std::string problem_of_sub_steps(const CouplingParameters& p) {
     if (n != std::round(n) || n < 1 || n > 10000)
       return fmt::format("'{}' needs a whole number of sub-steps from 1 to 10000", name);
     if (n == 1 || !p.fluid || name != p.fluid->participant) continue;
-    if (p.scheme == Scheme::semi_implicit)
+    if (p.scheme == coupling::Scheme::semi_implicit)
       return "the fluid supports no sub-steps in the semi-implicit scheme, which splits its step in two; "
              "use `scheme: implicit` or `explicit`";
     if (p.mesh)
@@ -200,9 +200,9 @@ void declare(config::Section& section, MappingParameters& p) {
 void declare(config::Section& section, CouplingParameters& p) {
   section
       .choice("scheme", p.scheme,
-              {{"explicit", Scheme::explicit_},
-               {"semi-implicit", Scheme::semi_implicit},
-               {"implicit", Scheme::implicit}})
+              {{"explicit", coupling::Scheme::explicit_},
+               {"semi-implicit", coupling::Scheme::semi_implicit},
+               {"implicit", coupling::Scheme::implicit}})
       .doc(
           "explicit: one pass per step; semi-implicit: mesh motion and momentum predictor once per step, "
           "pressure and structure iterated; implicit: everything iterated");
@@ -277,7 +277,7 @@ void declare(config::Section& section, CouplingParameters& p) {
   section.check([&] { return problem_of_sub_steps(p); }, "sub-steps");
   section.check(
       [&] {
-        return p.mesh_on_guess && (p.scheme != Scheme::implicit || !p.mesh)
+        return p.mesh_on_guess && (p.scheme != coupling::Scheme::implicit || !p.mesh)
                    ? "it requires `scheme: implicit` with a `mesh` mover; the semi-implicit scheme always "
                      "does so"
                    : "";

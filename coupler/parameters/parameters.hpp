@@ -48,7 +48,7 @@ struct ExchangeParameters {
 };
 
 struct CouplingParameters {
-  Scheme scheme = Scheme::semi_implicit;
+  coupling::Scheme scheme = coupling::Scheme::semi_implicit;
   struct Role {
     std::string participant;
   };
@@ -85,7 +85,7 @@ struct CouplingParameters {
   /// The same with the scheme that is in force: one pass where nothing is iterated.
   CouplingParameters in_force() const {
     CouplingParameters p = *this;
-    if (moves_alone()) p.scheme = Scheme::explicit_;
+    if (moves_alone()) p.scheme = coupling::Scheme::explicit_;
     return p;
   }
 };

@@ -18,16 +18,16 @@ int Schedule::sub_steps_of(const std::string& name) const {
 }
 
 int predictor_order_of(const CouplingParameters& p) {
-  const bool one_pass = p.scheme == Scheme::explicit_;
+  const bool one_pass = p.scheme == coupling::Scheme::explicit_;
   return int(p.predictor_order.value_or(p.exchange && one_pass ? 0 : 2));
 }
 
 Schedule schedule_of(const CouplingParameters& p) {
   Schedule s;
   s.scheme = p.scheme;
-  s.iterates = p.scheme != Scheme::explicit_;
+  s.iterates = p.scheme != coupling::Scheme::explicit_;
   s.mesh_on_guess = p.mesh_on_guess;
-  s.moves_in_each_pass = p.scheme != Scheme::semi_implicit;
+  s.moves_in_each_pass = p.scheme != coupling::Scheme::semi_implicit;
   s.waveform = p.waveform == CouplingParameters::Waveform::linear;
   for (const auto& [name, steps] : p.sub_steps) s.sub_steps[name] = int(std::lround(steps));
   if (p.exchange) {

@@ -16,7 +16,7 @@ namespace couplet::coupler {
 /// The fluid prepares its step (mesh, momentum predictor) in its first pass by itself: that part of the
 /// semi-implicit scheme is the participants' (Step::scheme).
 struct Schedule {
-  Scheme scheme = Scheme::semi_implicit;
+  coupling::Scheme scheme = coupling::Scheme::semi_implicit;
   std::vector<std::string> group;  ///< in the order of a pass
   bool side_by_side = false;
   bool iterates = true;

@@ -11,31 +11,32 @@
 namespace couplet::fluid {
 namespace {
 
-void check_names(const Mesh& mesh, const FluidParameters& parameters) {
+void check_names(const mesh::Mesh& mesh, const FluidParameters& parameters) {
   std::vector<std::string> patches, missing;
-  for (const Patch& patch : mesh.patches) {
+  for (const mesh::Patch& patch : mesh.patches) {
     patches.push_back(patch.name);
     if (!parameters.boundaries.contains(patch.name)) missing.push_back(patch.name);
   }
   for (const auto& [name, unused] : parameters.boundaries)
     if (!mesh.find_patch(name))
       throw Error("boundaries.{}: the mesh '{}' has no patch '{}'. {}", name, parameters.mesh, name,
-                  did_you_mean(name, patches, "patches"));
+                  base::did_you_mean(name, patches, "patches"));
   if (!missing.empty())
     throw Error(
         "boundaries: the mesh '{}' has patches without a boundary condition: {}. Give each of them a type ({}).",
-        parameters.mesh, join(missing), condition_names(" or "));
+        parameters.mesh, base::join(missing), condition_names(" or "));
 }
 
 }  // namespace
 
 template <int D>
-Boundary<D>::Boundary(const Mesh& mesh, const Geometry& geometry, const FluidParameters& parameters)
+Boundary<D>::Boundary(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                      const FluidParameters& parameters)
     : comm_(mesh.comm), rows_(mesh.boundary.n_owned()) {
   check_names(mesh, parameters);
   interface_.assign(rows_.pressure.size(), 0);
   convective_ = interface_;
-  for (const Patch& patch : mesh.patches)
+  for (const mesh::Patch& patch : mesh.patches)
     add_patch(mesh, geometry, patch, parameters.boundaries.at(patch.name));
   add_openings(mesh, parameters);
   rows_.sort();
@@ -43,10 +44,10 @@ Boundary<D>::Boundary(const Mesh& mesh, const Geometry& geometry, const FluidPar
 
 /// What a compressible fluid makes of inlets and outlets.
 template <int D>
-void Boundary<D>::add_openings(const Mesh& mesh, const FluidParameters& parameters) {
+void Boundary<D>::add_openings(const mesh::Mesh& mesh, const FluidParameters& parameters) {
   const bool compressible = parameters.is_compressible();
   const bool has_volume = compressible && parameters.compressibility->upstream_volume > 0;
-  for (const Patch& patch : mesh.patches) {
+  for (const mesh::Patch& patch : mesh.patches) {
     const BoundaryParameters& b = parameters.boundaries.at(patch.name);
     const FaceRange faces{patch.first - mesh.n_interior, patch.count};
     const Condition& condition = condition_of(b);
@@ -80,17 +81,17 @@ void Boundary<D>::add_openings(const Mesh& mesh, const FluidParameters& paramete
 }
 
 template <int D>
-void Boundary<D>::add_patch(const Mesh& mesh, const Geometry& geometry, const Patch& patch,
+void Boundary<D>::add_patch(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch,
                             const BoundaryParameters& b) {
   const FaceRange faces{patch.first - mesh.n_interior, patch.count};
   const std::string where = "boundaries." + patch.name;
   const Condition& condition = condition_of(b);
-  if (condition.joined && sum(comm_, GlobalIndex(patch.count)) > 0)
+  if (condition.joined && parallel::sum(comm_, GlobalIndex(patch.count)) > 0)
     throw Error("{}: the mesh is not joined at this periodic patch.", where);
   rows_.set(faces, condition.row(b), condition.velocity == GivenBy::mesh);
   if (gives_pressure(b)) {
     closed_ = false;
-    pressure_patches_.push_back({faces, Expression(b.pressure, where + ".pressure")});
+    pressure_patches_.push_back({faces, fv::Expression(b.pressure, where + ".pressure")});
   }
   if (condition.velocity == GivenBy::keys) {
     velocity_patches_.emplace_back(mesh, geometry, patch, b);
@@ -109,7 +110,8 @@ void Boundary<D>::add_patch(const Mesh& mesh, const Geometry& geometry, const Pa
 }
 
 template <int D>
-void Boundary<D>::add_interface(const Patch& patch, const FaceRange& faces, const BoundaryParameters& b) {
+void Boundary<D>::add_interface(const mesh::Patch& patch, const FaceRange& faces,
+                                const BoundaryParameters& b) {
   interface_patches_.push_back(patch.name);
   if (b.foresees()) {
     yields_ = true;
@@ -157,8 +159,8 @@ void Boundary<D>::pressure_at(double t, const std::vector<Vec3>& centres, std::v
 
 /// u_b = t w + (1 - t) u_P + (1 - q - t) n n.(w - u_P), q = 1 where the pressure is given.
 template <int D>
-void Boundary<D>::close(const Mesh& mesh, const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& w,
-                        Vectors<D>& u_boundary) const {
+void Boundary<D>::close(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
+                        const Vectors<D>& w, Vectors<D>& u_boundary) const {
   u_boundary.resize(rows_.pressure.size());
   for (std::size_t b = 0; b < u_boundary.size(); ++b) {
     const Index f = mesh.n_interior + static_cast<Index>(b);

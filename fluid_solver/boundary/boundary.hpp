@@ -22,7 +22,7 @@ template <int D>
 class Boundary {
  public:
   /// Throws Error if a patch has no boundary or a boundary names no patch.
-  Boundary(const Mesh& mesh, const Geometry& geometry, const FluidParameters& parameters);
+  Boundary(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const FluidParameters& parameters);
 
   /// What the conditions give to the loops over boundary faces.
   const FaceRows& rows() const { return rows_; }
@@ -31,7 +31,7 @@ class Boundary {
   /// Names of the patches of type interface.
   const std::vector<std::string>& interface_patches() const { return interface_patches_; }
   /// Patches of type body.
-  const std::vector<const Patch*>& body_patches() const { return body_patches_; }
+  const std::vector<const mesh::Patch*>& body_patches() const { return body_patches_; }
   /// A wall whose velocity is given from outside: by the structure or by the prescribed motion.
   bool is_interface(Index boundary_face) const { return interface_[boundary_face] != 0; }
 
@@ -51,15 +51,15 @@ class Boundary {
   bool walls_turn() const { return turns_; }
   /// The turn (see turn_of()) of the walls whose velocity the case gives and that differs from place to place, at
   /// their faces of `turn`, which has all boundary faces. `points`: of the mesh at time t.
-  void add_turn(const Mesh& mesh, std::span<const Vec3> points, double t, Vectors<D>& turn) const;
+  void add_turn(const mesh::Mesh& mesh, std::span<const Vec3> points, double t, Vectors<D>& turn) const;
   /// p at time t [Pa] at the faces with given pressure; the others are left as they are.
   void pressure_at(double t, const std::vector<Vec3>& centres, std::vector<double>& p) const;
   /// Velocity at all boundary faces from that in the cells, see FaceRow.
-  void close(const Mesh& mesh, const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& w,
+  void close(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& w,
              Vectors<D>& u_boundary) const;
   /// w one sub-step further at convective outlets, from w and u at its begin: dw/dt + U dw/dn = 0, implicit,
   /// U the mean outflow speed of the patch. Collective.
-  void convect(const Mesh& mesh, const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& w_begin,
+  void convect(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& w_begin,
                double dt, Vectors<D>& w) const;
   /// Faces that take up what a closed domain would let out or in: convective outlets, else interfaces.
   bool is_adjustable(Index boundary_face) const {
@@ -76,16 +76,17 @@ class Boundary {
  private:
   struct GivenPressure {
     FaceRange faces;
-    Expression value;
+    fv::Expression value;
   };
-  void add_patch(const Mesh& mesh, const Geometry& geometry, const Patch& patch, const BoundaryParameters& b);
-  void add_interface(const Patch& patch, const FaceRange& faces, const BoundaryParameters& b);
-  void add_openings(const Mesh& mesh, const FluidParameters& parameters);
+  void add_patch(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch,
+                 const BoundaryParameters& b);
+  void add_interface(const mesh::Patch& patch, const FaceRange& faces, const BoundaryParameters& b);
+  void add_openings(const mesh::Mesh& mesh, const FluidParameters& parameters);
   MPI_Comm comm_;
   FaceRows rows_;
   std::vector<char> interface_, convective_;
   std::vector<std::string> interface_patches_;
-  std::vector<const Patch*> body_patches_;
+  std::vector<const mesh::Patch*> body_patches_;
   std::vector<GivenVelocity<D>> velocity_patches_;
   std::vector<GivenPressure> pressure_patches_;
   std::vector<FaceRange> convective_patches_;  // also empty ones

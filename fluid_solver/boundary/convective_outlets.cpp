@@ -7,7 +7,7 @@
 namespace couplet::fluid {
 
 template <int D>
-void Boundary<D>::convect(const Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
+void Boundary<D>::convect(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
                           const Vectors<D>& w_begin, double dt, Vectors<D>& w) const {
   for (const auto& [first, count] : convective_patches_) {
     double sums[2] = {0, 0};
@@ -26,9 +26,9 @@ void Boundary<D>::convect(const Mesh& mesh, const Placement<D>& at, const Vector
   }
 }
 
-template void Boundary<2>::convect(const Mesh&, const Placement<2>&, const Vectors<2>&, const Vectors<2>&,
-                                   double, Vectors<2>&) const;
-template void Boundary<3>::convect(const Mesh&, const Placement<3>&, const Vectors<3>&, const Vectors<3>&,
-                                   double, Vectors<3>&) const;
+template void Boundary<2>::convect(const mesh::Mesh&, const Placement<2>&, const Vectors<2>&,
+                                   const Vectors<2>&, double, Vectors<2>&) const;
+template void Boundary<3>::convect(const mesh::Mesh&, const Placement<3>&, const Vectors<3>&,
+                                   const Vectors<3>&, double, Vectors<3>&) const;
 
 }  // namespace couplet::fluid

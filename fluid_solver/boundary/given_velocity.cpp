@@ -13,14 +13,14 @@
 namespace couplet::fluid {
 namespace {
 
-Expression turning_of(const BoundaryParameters& b, const std::string& where) {
-  Expression speed(b.rotation->speed, where + ".rotation.speed");
+fv::Expression turning_of(const BoundaryParameters& b, const std::string& where) {
+  fv::Expression speed(b.rotation->speed, where + ".rotation.speed");
   if (speed.uses_space()) throw Error("{}.rotation.speed: it may depend on t only.", where);
   return speed;
 }
 
-bool uses_space(const std::vector<Expression>& expressions) {
-  return std::ranges::any_of(expressions, [](const Expression& e) { return e.uses_space(); });
+bool uses_space(const std::vector<fv::Expression>& expressions) {
+  return std::ranges::any_of(expressions, [](const fv::Expression& e) { return e.uses_space(); });
 }
 
 double ramp_factor(const BoundaryParameters& b, double t) {
@@ -31,18 +31,18 @@ double ramp_factor(const BoundaryParameters& b, double t) {
 }  // namespace
 
 template <int D>
-GivenVelocity<D>::GivenVelocity(const Mesh& mesh, const Geometry& geometry, const Patch& patch,
-                                const BoundaryParameters& b)
+GivenVelocity<D>::GivenVelocity(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                                const mesh::Patch& patch, const BoundaryParameters& b)
     : faces_{patch.first - mesh.n_interior, patch.count}, patch_(&patch), parameters_(b) {
   const std::string where = "boundaries." + patch.name;
   if (b.rotation) turning_ = turning_of(b, where);
   if (b.table) {
     table_ = velocity_table(b.table->file, b.table->outside, D);
   } else if (b.mean_speed) {
-    mean_speed_ = Expression(*b.mean_speed, where + ".mean-speed");
+    mean_speed_ = fv::Expression(*b.mean_speed, where + ".mean-speed");
     shape_ = inlet_shape<D>(mesh, geometry, patch, b.profile);
   } else if (!b.velocity.empty()) {
-    velocity_ = make_expressions(b.velocity, D, where + ".velocity");
+    velocity_ = fv::make_expressions(b.velocity, D, where + ".velocity");
   }
   turns_ = is_wall(b) && (b.rotation || b.table || uses_space(velocity_));
 }

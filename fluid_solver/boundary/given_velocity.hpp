@@ -16,11 +16,11 @@ template <int D>
 class GivenVelocity {
  public:
   /// Throws Error if the keys do not fit the patch. Collective.
-  GivenVelocity(const Mesh& mesh, const Geometry& geometry, const Patch& patch,
+  GivenVelocity(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch,
                 const BoundaryParameters& parameters);
 
   const FaceRange& faces() const { return faces_; }
-  const Patch& patch() const { return *patch_; }
+  const mesh::Patch& patch() const { return *patch_; }
   /// A wall whose velocity differs from place to place.
   bool turns() const { return turns_; }
   /// At places of the patch, in the order of its faces where a profile was made for them [m/s].
@@ -28,13 +28,13 @@ class GivenVelocity {
 
  private:
   FaceRange faces_;
-  const Patch* patch_;
+  const mesh::Patch* patch_;
   BoundaryParameters parameters_;
-  std::vector<Expression> velocity_;
-  Expression mean_speed_;
-  InletShape<D> shape_;             // with mean_speed
-  std::optional<GridTable> table_;  // of the velocity
-  Expression turning_;              // [rad/s], with a rotation
+  std::vector<fv::Expression> velocity_;
+  fv::Expression mean_speed_;
+  InletShape<D> shape_;                 // with mean_speed
+  std::optional<fv::GridTable> table_;  // of the velocity
+  fv::Expression turning_;              // [rad/s], with a rotation
   bool turns_ = false;
 };
 

@@ -19,7 +19,7 @@ struct Extent {
   double size = 0, radius = 0;  // sum of |S|; largest distance of a point from the centre
 };
 
-Extent extent_of(const Mesh& mesh, const Geometry& g, const Patch& patch) {
+Extent extent_of(const mesh::Mesh& mesh, const mesh::Geometry& g, const mesh::Patch& patch) {
   double sums[7] = {};
   for (Index f = patch.first; f < patch.first + patch.count; ++f) {
     const double size = g.face_area[f].norm();
@@ -33,14 +33,14 @@ Extent extent_of(const Mesh& mesh, const Geometry& g, const Patch& patch) {
   Extent e{{sums[0], sums[1], sums[2]}, Vec3(sums[3], sums[4], sums[5]) / sums[6], sums[6], 0};
   for (Index f = patch.first; f < patch.first + patch.count; ++f)
     for (const Index p : mesh.face_points[f]) e.radius = std::max(e.radius, (g.points[p] - e.centre).norm());
-  e.radius = max(mesh.comm, e.radius);
+  e.radius = parallel::max(mesh.comm, e.radius);
   return e;
 }
 
 }  // namespace
 
 template <int D>
-InletShape<D> inlet_shape(const Mesh& mesh, const Geometry& geometry, const Patch& patch,
+InletShape<D> inlet_shape(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch,
                           InletProfile profile) {
   const Extent e = extent_of(mesh, geometry, patch);
   if (!(e.area.norm() > (1 - flat_enough) * e.size))
@@ -59,12 +59,14 @@ InletShape<D> inlet_shape(const Mesh& mesh, const Geometry& geometry, const Patc
     shape.speed.push_back(profile == InletProfile::parabolic ? std::max(0.0, 1 - r * r) : 1.0);
     flow -= shape.speed.back() * shape.direction.dot(geometry.face_area[f].template head<D>());
   }
-  const double mean = sum(mesh.comm, flow) / e.size;
+  const double mean = parallel::sum(mesh.comm, flow) / e.size;
   for (double& speed : shape.speed) speed /= mean;
   return shape;
 }
 
-template InletShape<2> inlet_shape<2>(const Mesh&, const Geometry&, const Patch&, InletProfile);
-template InletShape<3> inlet_shape<3>(const Mesh&, const Geometry&, const Patch&, InletProfile);
+template InletShape<2> inlet_shape<2>(const mesh::Mesh&, const mesh::Geometry&, const mesh::Patch&,
+                                      InletProfile);
+template InletShape<3> inlet_shape<3>(const mesh::Mesh&, const mesh::Geometry&, const mesh::Patch&,
+                                      InletProfile);
 
 }  // namespace couplet::fluid

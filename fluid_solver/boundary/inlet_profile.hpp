@@ -16,7 +16,7 @@ struct InletShape {
 /// Parabolic: 4 s (1 - s) between the two ends of a line (2-D), 1 - (r/R)^2 on a disc (3-D), scaled to the
 /// mean. Throws Error if the patch is no straight line or no disc. Collective.
 template <int D>
-InletShape<D> inlet_shape(const Mesh& mesh, const Geometry& geometry, const Patch& patch,
+InletShape<D> inlet_shape(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch,
                           InletProfile profile);
 
 }  // namespace couplet::fluid

@@ -17,8 +17,8 @@ constexpr double always = 0.9, much = 0.1;
 
 }  // namespace
 
-Openings::Openings(const Mesh& mesh, const FluidParameters& parameters, bool at_rest) : mesh_(mesh) {
-  for (const Patch& patch : mesh.patches) {
+Openings::Openings(const mesh::Mesh& mesh, const FluidParameters& parameters, bool at_rest) : mesh_(mesh) {
+  for (const mesh::Patch& patch : mesh.patches) {
     const BoundaryParameters& b = parameters.boundaries.at(patch.name);
     const bool inlet = condition_of(b).passage == Passage::in;
     // A pressure that is given on purpose may push.
@@ -38,7 +38,7 @@ void Openings::add(std::span<const double> phi, double dt) {
 std::vector<std::string> Openings::doubts() const {
   std::vector<double> sums;
   for (const Opening& opening : openings_) sums.insert(sums.end(), {opening.net, opening.gross});
-  for (double& value : sums) value = sum(mesh_.comm, value);
+  for (double& value : sums) value = parallel::sum(mesh_.comm, value);
   double largest = 0;
   for (std::size_t i = 1; i < sums.size(); i += 2) largest = std::max(largest, sums[i]);
   std::vector<std::string> doubts;

@@ -14,7 +14,7 @@ namespace couplet::fluid {
 class Openings {
  public:
   /// `at_rest`: no wall moves; one that does may draw fluid in through an outlet.
-  Openings(const Mesh& mesh, const FluidParameters& parameters, bool at_rest);
+  Openings(const mesh::Mesh& mesh, const FluidParameters& parameters, bool at_rest);
   /// phi: volume flux of each flux face, outward at boundaries [m^3/s].
   void add(std::span<const double> phi, double dt);
   /// Inlets through which fluid left, outlets through which it entered, all the time: a sign or a name is wrong. Collective.
@@ -22,11 +22,11 @@ class Openings {
 
  private:
   struct Opening {
-    const Patch* patch;
+    const mesh::Patch* patch;
     bool inlet;
     double net = 0, gross = 0;  // outward, of this rank [m^3]
   };
-  const Mesh& mesh_;
+  const mesh::Mesh& mesh_;
   std::vector<Opening> openings_;
 };
 

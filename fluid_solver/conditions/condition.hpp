@@ -30,7 +30,7 @@ enum class InletProfile { uniform, parabolic };
 /// Velocities in a file, see GridTable: columns u, v (and w) over some of x, y, z, t.
 struct VelocityTableParameters {
   std::string file;
-  GridTable::Outside outside = GridTable::Outside::error;
+  fv::GridTable::Outside outside = fv::GridTable::Outside::error;
 };
 
 /// omega(t) a x (x - c), besides the other velocity.

@@ -40,7 +40,7 @@ void declare_table_and_rotation(config::Section& s, BoundaryParameters& b) {
                 "CSV file next to the case; its first line names the columns: some of x, y, z [m], t [s], "
                 "and u, v, w [m/s]; its lines form a full grid with linear interpolation");
         t.choice("outside", table.outside,
-                 {{"error", GridTable::Outside::error}, {"clamp", GridTable::Outside::clamp}})
+                 {{"error", fv::GridTable::Outside::error}, {"clamp", fv::GridTable::Outside::clamp}})
             .doc("for values beyond the ends: error, or clamp (hold the end values)");
       },
       "velocity from a file, instead of 'velocity'");

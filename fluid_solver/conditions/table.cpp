@@ -41,7 +41,7 @@ std::string condition_names(const std::string& last) {
   for (const auto& [type, condition] : condition_table()) names.push_back(condition.name);
   const std::string end = names.back();
   names.pop_back();
-  return join(names) + last + end;
+  return base::join(names) + last + end;
 }
 
 void declare_boundary(config::Section& s, BoundaryParameters& b) {
@@ -53,7 +53,7 @@ void declare_boundary(config::Section& s, BoundaryParameters& b) {
     });
     if (!condition.about.empty()) about.push_back(condition.about);
   }
-  s.variant("type", b.type, cases, join(about, "; "), true);
+  s.variant("type", b.type, cases, base::join(about, "; "), true);
 }
 
 }  // namespace couplet::fluid

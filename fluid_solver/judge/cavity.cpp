@@ -17,7 +17,7 @@ template <int D>
 std::pair<double, double> open_share(const Fluid<D>& fluid) {
   double sums[4] = {};  // S, |S|
   for (const std::string& name : fluid.boundary().interface_patches()) {
-    const Patch& patch = *fluid.mesh().find_patch(name);
+    const mesh::Patch& patch = *fluid.mesh().find_patch(name);
     for (Index f = patch.first; f < patch.first + patch.count; ++f) {
       const Vec<D>& area = fluid.state().placement->area[f];
       for (int c = 0; c < D; ++c) sums[c] += area[c];
@@ -42,11 +42,11 @@ double given_inflow(const Fluid<D>& fluid, const Placement<D>& at, double t) {
 }  // namespace
 
 template <int D>
-void check_cavity(const Fluid<D>& fluid, Scheme scheme) {
+void check_cavity(const Fluid<D>& fluid, coupling::Scheme scheme) {
   const Boundary<D>& boundary = fluid.boundary();
   const bool closed = boundary.closed() && !boundary.has_convective_outlet();
   if (fluid.parameters().volume_level == VolumeLevelBy::structure) {
-    if (scheme == Scheme::standalone)
+    if (scheme == coupling::Scheme::standalone)
       throw Error("volume-level: structure: this fluid runs alone, without a structure; remove the key.");
     if (fluid.parameters().is_compressible())
       throw Error(
@@ -64,8 +64,8 @@ void check_cavity(const Fluid<D>& fluid, Scheme scheme) {
                                             : "has bodies that move as prescribed");
     return;
   }
-  if (scheme == Scheme::standalone || !closed || boundary.interface_patches().empty() || boundary.yields() ||
-      fluid.parameters().is_compressible())
+  if (scheme == coupling::Scheme::standalone || !closed || boundary.interface_patches().empty() ||
+      boundary.yields() || fluid.parameters().is_compressible())
     return;
   const auto [share, area] = open_share(fluid);
   if (share <= largest_open_share) return;
@@ -92,8 +92,8 @@ std::vector<double> inflow_shares(const Fluid<D>& fluid, const std::vector<Index
   return shares;
 }
 
-template void check_cavity(const Fluid<2>&, Scheme);
-template void check_cavity(const Fluid<3>&, Scheme);
+template void check_cavity(const Fluid<2>&, coupling::Scheme);
+template void check_cavity(const Fluid<3>&, coupling::Scheme);
 template std::vector<double> inflow_shares(const Fluid<2>&, const std::vector<Index>&, double, double);
 template std::vector<double> inflow_shares(const Fluid<3>&, const std::vector<Index>&, double, double);
 

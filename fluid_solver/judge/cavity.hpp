@@ -12,7 +12,7 @@ namespace couplet::fluid {
 /// its pressure level (`volume-level`). Throws Error for a fluid whose volume is trapped, or that asks for a level it
 /// does not need. Collective.
 template <int D>
-void check_cavity(const Fluid<D>& fluid, Scheme scheme);
+void check_cavity(const Fluid<D>& fluid, coupling::Scheme scheme);
 
 /// What the given velocities let into the fluid at t^{n+1} and t^n [m^3/s], for each of the interface's faces (face
 /// by face, two values) its share by area: the sums are the inflows. Collective.

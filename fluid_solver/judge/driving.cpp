@@ -16,7 +16,7 @@ constexpr double still = 1e-6;  // of the largest value: a gust that has passed,
 
 Driving::Driving(const FluidParameters& parameters) {
   const auto add = [this](const config::ExpressionText& text) {
-    if (Expression found(text); found.uses_time()) timed_.push_back(std::move(found));
+    if (fv::Expression found(text); found.uses_time()) timed_.push_back(std::move(found));
   };
   for (const auto& [patch, b] : parameters.boundaries)
     if (condition_of(b).velocity == GivenBy::structure) return;
@@ -30,7 +30,7 @@ Driving::Driving(const FluidParameters& parameters) {
 bool Driving::acts(MPI_Comm comm, std::span<const Vec3> places, double time, double dt) const {
   double change = 0;  // largest of the expressions, each over its own largest value
   const std::size_t stride = 1 + places.size() / places_looked_at;
-  for (const Expression& e : timed_) {
+  for (const fv::Expression& e : timed_) {
     double largest = 0, apart = 0;
     for (std::size_t i = 0; i < places.size(); i += stride) {
       const double now = e(places[i], time);
@@ -41,7 +41,7 @@ bool Driving::acts(MPI_Comm comm, std::span<const Vec3> places, double time, dou
         apart = std::max(apart, std::abs(now - before));
       }
     }
-    largest = max(comm, largest), apart = max(comm, apart);
+    largest = parallel::max(comm, largest), apart = parallel::max(comm, apart);
     if (largest > 0) change = std::max(change, apart / largest);
   }
   return change > still;

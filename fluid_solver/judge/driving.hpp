@@ -24,7 +24,7 @@ class Driving {
   bool acts(MPI_Comm comm, std::span<const Vec3> places, double time, double dt) const;
 
  private:
-  std::vector<Expression> timed_;
+  std::vector<fv::Expression> timed_;
 };
 
 }  // namespace couplet::fluid

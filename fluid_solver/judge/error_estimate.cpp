@@ -46,7 +46,7 @@ double FluidErrorEstimate<D>::size(const Vectors<D>& values) const {
     squares += volume[c] * values[c].squaredNorm();
     whole += volume[c];
   }
-  squares = sum(fluid_.mesh().comm, squares), whole = sum(fluid_.mesh().comm, whole);
+  squares = parallel::sum(fluid_.mesh().comm, squares), whole = parallel::sum(fluid_.mesh().comm, whole);
   return whole > 0 ? std::sqrt(squares / whole) : 0;
 }
 
@@ -131,7 +131,7 @@ void FluidErrorEstimate<D>::accepted(double dt) {
 template <int D>
 double FluidErrorEstimate<D>::recovered_difference() const {
   const State<D>& s = fluid_.state();
-  const Mesh& mesh = fluid_.mesh();
+  const mesh::Mesh& mesh = fluid_.mesh();
   const Placement<D>& at = *s.placement;
   std::vector<Fit<D>> fits(mesh.cells.n_local());
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
@@ -170,7 +170,7 @@ void FluidErrorEstimate<D>::add_compression(std::vector<double>& net) const {
 template <int D>
 double FluidErrorEstimate<D>::net_outflow() const {
   const State<D>& s = fluid_.state();
-  const Mesh& mesh = fluid_.mesh();
+  const mesh::Mesh& mesh = fluid_.mesh();
   std::vector<double> net(mesh.cells.n_local()), through(mesh.cells.n_local());
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
     net[mesh.owner[f]] += s.phi[f], through[mesh.owner[f]] += 0.5 * std::abs(s.phi[f]);
@@ -180,7 +180,7 @@ double FluidErrorEstimate<D>::net_outflow() const {
   if (fluid_.parameters().is_compressible()) add_compression(net);
   double left = 0, all = 0;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) left += net[c] * net[c], all += through[c] * through[c];
-  left = sum(mesh.comm, left), all = sum(mesh.comm, all);
+  left = parallel::sum(mesh.comm, left), all = parallel::sum(mesh.comm, all);
   return all > 0 ? std::sqrt(left / all) : 0;
 }
 
@@ -195,8 +195,8 @@ double FluidErrorEstimate<D>::step_part() const {
 }
 
 template <int D>
-ErrorParts FluidErrorEstimate<D>::parts() const {
-  ErrorParts parts;
+coupling::ErrorParts FluidErrorEstimate<D>::parts() const {
+  coupling::ErrorParts parts;
   parts.dimension = D;
   const double speed = size(fluid_.state().u);
   if (!(speed > 0) || seen_ == 0) return parts;
@@ -239,7 +239,7 @@ void FluidErrorEstimate<D>::restore(std::span<const double> state) {
   time_ = power_ = gain_ = energy_ = work_ = held_ = left_of_late_ = carried_ = changed_ = 0;
   u_.clear(), rate_.clear(), rate_change_.clear(), left_.clear();
   if (state.empty()) return;
-  SavedNumbers saved(state, "step errors");
+  base::SavedNumbers saved(state, "step errors");
   seen_ = int(saved.count(1e9)), judged_ = saved.real() != 0, dt_old_ = saved.real();
   for (double* value :
        {&time_, &power_, &gain_, &energy_, &work_, &held_, &left_of_late_, &carried_, &changed_})

@@ -30,7 +30,7 @@ class FluidErrorEstimate {
   explicit FluidErrorEstimate(const Fluid<D>& fluid) : fluid_(fluid), driving_(fluid.parameters()) {}
   /// After the step of `dt` [s] was accepted.
   void accepted(double dt);
-  ErrorParts parts() const;
+  coupling::ErrorParts parts() const;
   /// For checkpoints.
   std::vector<double> state() const;
   /// After the fluid's own state; empty: of a run that collected nothing.
@@ -49,7 +49,7 @@ class FluidErrorEstimate {
   int seen_ = 0;                       // steps that these hold
   bool judged_ = false;                // a step has been judged
   double dt_old_ = 0;
-  StepErrors steps_;
+  time::StepErrors steps_;
   double time_ = 0;                           // judged so far [s]
   double power_ = 0, gain_ = 0, energy_ = 0;  // means of late: work and gain of energy [W], energy [J]
   double work_ = 0, held_ = 0;                // what the ledger had: work and energy [J]

@@ -13,7 +13,7 @@ constexpr int rung_steps = 10;
 }  // namespace
 
 template <int D>
-double RingingWatch::share(const Mesh& mesh, const State<D>& s) {
+double RingingWatch::share(const mesh::Mesh& mesh, const State<D>& s) {
   if (!s.pressure[2]) return 0;
   const std::vector<double>&p0 = s.pressure[0]->p, &p1 = s.pressure[1]->p, &p2 = s.pressure[2]->p;
   double sums[3] = {};
@@ -32,7 +32,7 @@ bool RingingWatch::add(double share) {
   return !std::exchange(told_, true);
 }
 
-template double RingingWatch::share<2>(const Mesh&, const State<2>&);
-template double RingingWatch::share<3>(const Mesh&, const State<3>&);
+template double RingingWatch::share<2>(const mesh::Mesh&, const State<2>&);
+template double RingingWatch::share<3>(const mesh::Mesh&, const State<3>&);
 
 }  // namespace couplet::fluid

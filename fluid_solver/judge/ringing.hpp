@@ -12,7 +12,7 @@ class RingingWatch {
  public:
   /// After a step: the share |p_0 - 2 p_1 + p_2| / (4 |p_0|) if it rings, else 0. Collective.
   template <int D>
-  static double share(const Mesh& mesh, const State<D>& state);
+  static double share(const mesh::Mesh& mesh, const State<D>& state);
   /// Of each step; true when it has rung for as many steps in a row as say so, once.
   bool add(double share);
   double largest() const { return largest_; }

@@ -9,12 +9,12 @@
 
 namespace couplet::fluid {
 template <int D>
-double set_body_start(const Mesh& mesh, std::span<const Vec3> points, const Boundary<D>& boundary,
-                      const MotionParameters& motion, double time, Vectors<D>& w, Vectors<D>& turn) {
-  const PrescribedMotion prescribed(motion, D);
-  const double length = mesh_size(mesh, points);
+double set_body_start(const mesh::Mesh& mesh, std::span<const Vec3> points, const Boundary<D>& boundary,
+                      const fv::MotionParameters& motion, double time, Vectors<D>& w, Vectors<D>& turn) {
+  const fv::PrescribedMotion prescribed(motion, D);
+  const double length = io::mesh_size(mesh, points);
   double largest = 0;
-  for (const Patch* patch : boundary.body_patches()) {
+  for (const mesh::Patch* patch : boundary.body_patches()) {
     std::vector<Vec3> corners;
     for (Index f = patch->first; f < patch->first + patch->count; ++f)
       for (const Index v : mesh.face_points[f]) corners.push_back(points[v]);
@@ -29,12 +29,12 @@ double set_body_start(const Mesh& mesh, std::span<const Vec3> points, const Boun
       largest = std::max(largest, w[f - mesh.n_interior].norm());
     }
   }
-  return max(mesh.comm, largest);
+  return parallel::max(mesh.comm, largest);
 }
 
-template double set_body_start<2>(const Mesh&, std::span<const Vec3>, const Boundary<2>&,
-                                  const MotionParameters&, double, Vectors<2>&, Vectors<2>&);
-template double set_body_start<3>(const Mesh&, std::span<const Vec3>, const Boundary<3>&,
-                                  const MotionParameters&, double, Vectors<3>&, Vectors<3>&);
+template double set_body_start<2>(const mesh::Mesh&, std::span<const Vec3>, const Boundary<2>&,
+                                  const fv::MotionParameters&, double, Vectors<2>&, Vectors<2>&);
+template double set_body_start<3>(const mesh::Mesh&, std::span<const Vec3>, const Boundary<3>&,
+                                  const fv::MotionParameters&, double, Vectors<3>&, Vectors<3>&);
 
 }  // namespace couplet::fluid

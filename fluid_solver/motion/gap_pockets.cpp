@@ -17,8 +17,8 @@ constexpr double inlet_leftover = 1e-6;
 }  // namespace
 
 template <int D>
-GapPockets<D>::GapPockets(const Mesh& mesh, const FluidParameters& parameters) : mesh_(mesh) {
-  for (const Patch& patch : mesh.patches) {
+GapPockets<D>::GapPockets(const mesh::Mesh& mesh, const FluidParameters& parameters) : mesh_(mesh) {
+  for (const mesh::Patch& patch : mesh.patches) {
     const BoundaryParameters& b = parameters.boundaries.at(patch.name);
     if (condition_of(b).passage != Passage::none) (gives_pressure(b) ? open_ : given_).push_back(&patch);
   }
@@ -45,15 +45,15 @@ void GapPockets<D>::find(const std::vector<int>& gap) {
       for (Index f = mesh_.n_interior; f-- > 0;) join(f);
     }
     mesh_.cells.update_ghosts(label_);
-  } while (any(mesh_.comm, before != label_));
+  } while (parallel::any(mesh_.comm, before != label_));
   std::vector<double> all, open;
   for (const double label : label_) all.push_back(label);
-  for (const Patch* patch : open_)
+  for (const mesh::Patch* patch : open_)
     for (Index f = patch->first; f < patch->first + patch->count; ++f) open.push_back(label_[mesh_.owner[f]]);
   for (auto* labels : {&all, &open}) {
     std::ranges::sort(*labels);
     labels->erase(std::unique(labels->begin(), labels->end()), labels->end());
-    *labels = all_gather(mesh_.comm, *labels);
+    *labels = parallel::all_gather(mesh_.comm, *labels);
     std::ranges::sort(*labels);
     labels->erase(std::unique(labels->begin(), labels->end()), labels->end());
   }
@@ -90,12 +90,12 @@ void GapPockets<D>::check(const Placement<D>& at, const Vectors<D>& w, double ti
       throw SchemeFailure(
           "gaps: at t = {:.6g} s the closed gap reaches '{}', where {:.3g} m^3/s would cross its blocked "
           "cells. Keep the gap wider than 'opening' there, or reduce that velocity to zero before it closes.",
-          time, join(names), sizes[i]);
+          time, base::join(names), sizes[i]);
     throw SchemeFailure(
         "gaps: at t = {:.6g} s the closed gap separates '{}' from every outlet, but {:.3g} m^3/s are to "
         "flow {} there, which cannot be balanced. Give that part of the fluid an outlet, reduce the "
         "velocity to zero before the gap closes, or prescribe a pressure instead (type outlet).",
-        time, join(names), std::abs(sums[i]), sums[i] < 0 ? "in" : "out");
+        time, base::join(names), std::abs(sums[i]), sums[i] < 0 ? "in" : "out");
   }
 }
 

@@ -15,7 +15,7 @@ namespace couplet::fluid {
 template <int D>
 class GapPockets {
  public:
-  GapPockets(const Mesh& mesh, const FluidParameters& parameters);
+  GapPockets(const mesh::Mesh& mesh, const FluidParameters& parameters);
   /// To be called when other cells are blocked than before. `gap`: per local cell, below 0: free. Collective.
   void find(const std::vector<int>& gap);
   /// Throws SchemeFailure, naming the inlets and a place, if the velocities `w` of the boundary faces let a pocket
@@ -26,8 +26,8 @@ class GapPockets {
   std::string cause(const Placement<D>& at) const;
 
  private:
-  const Mesh& mesh_;
-  std::vector<const Patch*> open_,
+  const mesh::Mesh& mesh_;
+  std::vector<const mesh::Patch*> open_,
       given_;                  // given pressure; given velocity but of walls. The same on all ranks
   std::vector<double> label_;  // per local cell: least cell id of its part, plus 1; 0: blocked
   std::vector<double> shut_;   // labels of the parts without an outlet, and 0, ascending

@@ -17,12 +17,12 @@ namespace {
 /// Of x from segments (2-D) or triangles, whose corners stand one after the other.
 template <int D>
 double distance(const Vec3& x, const std::vector<double>& corners) {
-  double least = infinity;
+  double least = base::infinity;
   const auto corner = [&](std::size_t i) { return Vec3(Eigen::Map<const Vec3>(corners.data() + 3 * i)); };
   for (std::size_t i = 0; i + D <= corners.size() / 3; i += D)
-    least = std::min(least,
-                     D == 2 ? nearest_on_segment(corner(i), corner(i + 1), x).distance
-                            : nearest_on_triangle(corner(i), corner(i + 1), corner(i + D - 1), x).distance);
+    least = std::min(
+        least, D == 2 ? base::nearest_on_segment(corner(i), corner(i + 1), x).distance
+                      : base::nearest_on_triangle(corner(i), corner(i + 1), corner(i + D - 1), x).distance);
   return least;
 }
 
@@ -33,10 +33,10 @@ bool inside(const Vec3& x, const Vec3& low, const Vec3& high) {
 }  // namespace
 
 template <int D>
-Gaps<D>::Gaps(const Mesh& mesh, const FluidParameters& parameters)
+Gaps<D>::Gaps(const mesh::Mesh& mesh, const FluidParameters& parameters)
     : mesh_(mesh), never_(mesh.cells.n_local(), 0), gap_(mesh.cells.n_local(), -1) {
   std::vector<std::string> there;
-  for (const Patch& patch : mesh.patches) there.push_back(patch.name);
+  for (const mesh::Patch& patch : mesh.patches) there.push_back(patch.name);
   for (const auto& [name, gap] : parameters.gaps) {
     names_.push_back(name);
     limit_.push_back(gap.opening);
@@ -45,7 +45,7 @@ Gaps<D>::Gaps(const Mesh& mesh, const FluidParameters& parameters)
       const std::string& patch = gap.between[side];
       if (!mesh.find_patch(patch))
         throw Error("gaps.{}.between: the mesh has no patch '{}'. {}", name, patch,
-                    did_you_mean(patch, there, "patches"));
+                    base::did_you_mean(patch, there, "patches"));
       if (!is_wall(parameters.boundaries.at(patch)))
         throw Error("gaps.{}.between: '{}' is not a wall; a gap lies between two walls.", name, patch);
       walls_.back()[side].patches.push_back(mesh.find_patch(patch));
@@ -53,7 +53,7 @@ Gaps<D>::Gaps(const Mesh& mesh, const FluidParameters& parameters)
   }
   facts_.resize(names_.size());
   std::vector<double> never(mesh.cells.n_local(), 0.0);
-  for (const Patch& patch : mesh.patches)
+  for (const mesh::Patch& patch : mesh.patches)
     if (gives_pressure(parameters.boundaries.at(patch.name)))
       for (Index f = patch.first; f < patch.first + patch.count; ++f) never[mesh.owner[f]] = 1;
   mesh.cells.update_ghosts(never);
@@ -61,8 +61,9 @@ Gaps<D>::Gaps(const Mesh& mesh, const FluidParameters& parameters)
 }
 
 template <int D>
-void Gaps<D>::Wall::extend(const Mesh& mesh, std::span<const Vec3> points, Vec3& low, Vec3& high) const {
-  for (const Patch* patch : patches)
+void Gaps<D>::Wall::extend(const mesh::Mesh& mesh, std::span<const Vec3> points, Vec3& low,
+                           Vec3& high) const {
+  for (const mesh::Patch* patch : patches)
     for (Index f = patch->first; f < patch->first + patch->count; ++f)
       for (const Index v : mesh.face_points[f])
         low = low.cwiseMin(points[v]), high = high.cwiseMax(points[v]);
@@ -72,10 +73,10 @@ void Gaps<D>::Wall::extend(const Mesh& mesh, std::span<const Vec3> points, Vec3&
 
 /// Of the faces of all ranks that reach into a box, as segments or triangles.
 template <int D>
-std::vector<double> Gaps<D>::Wall::corners(const Mesh& mesh, std::span<const Vec3> points, const Vec3& low,
-                                           const Vec3& high) const {
+std::vector<double> Gaps<D>::Wall::corners(const mesh::Mesh& mesh, std::span<const Vec3> points,
+                                           const Vec3& low, const Vec3& high) const {
   std::vector<double> mine;
-  for (const Patch* patch : patches)
+  for (const mesh::Patch* patch : patches)
     for (Index f = patch->first; f < patch->first + patch->count; ++f) {
       const auto v = mesh.face_points[f];
       Vec3 least = points[v[0]], most = least;
@@ -88,7 +89,7 @@ std::vector<double> Gaps<D>::Wall::corners(const Mesh& mesh, std::span<const Vec
       if (D == 2) add({0, 1});
       for (std::size_t i = 2; D == 3 && i < v.size(); ++i) add({0, i - 1, i});
     }
-  return all_gather(mesh.comm, mine);
+  return parallel::all_gather(mesh.comm, mine);
 }
 
 template <int D>
@@ -98,8 +99,8 @@ void Gaps<D>::mark_gap(int gap, std::span<const Vec3> points, const Placement<D>
   facts = {std::numeric_limits<double>::quiet_NaN(), 0, 0};
   std::array<Vec3, 2> low, high;
   for (int side = 0; side < 2; ++side) {
-    low[side].setConstant(infinity);
-    high[side].setConstant(-infinity);
+    low[side].setConstant(base::infinity);
+    high[side].setConstant(-base::infinity);
     walls_[gap][side].extend(mesh_, points, low[side], high[side]);
   }
   // A cell that is blocked is nearer than the limit to both.
@@ -108,7 +109,7 @@ void Gaps<D>::mark_gap(int gap, std::span<const Vec3> points, const Placement<D>
   if ((from.array() > to.array()).any()) return;
   const std::vector<double> one = walls_[gap][0].corners(mesh_, points, from - room, to + room),
                             other = walls_[gap][1].corners(mesh_, points, from - room, to + room);
-  double least = infinity, sums[2] = {0, 0};
+  double least = base::infinity, sums[2] = {0, 0};
   for (Index c = 0; c < mesh_.cells.n_local(); ++c) {
     Vec3 x = Vec3::Zero();
     x.template head<D>() = at.centre[c];
@@ -122,7 +123,7 @@ void Gaps<D>::mark_gap(int gap, std::span<const Vec3> points, const Placement<D>
     sums[1] += at.volume[c];
   }
   MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-  least = min(mesh_.comm, least);
+  least = parallel::min(mesh_.comm, least);
   facts = {std::isfinite(least) ? least : facts.opening, sums[0], sums[1]};
 }
 
@@ -132,7 +133,7 @@ bool Gaps<D>::mark(std::span<const Vec3> points, const Placement<D>& at) {
   std::fill(gap_.begin(), gap_.end(), -1);
   for (std::size_t g = 0; g < names_.size(); ++g) mark_gap(static_cast<int>(g), points, at);
   active_ = std::ranges::any_of(facts_, [](const Facts& f) { return f.cells > 0; });
-  return any(mesh_.comm, before != gap_);
+  return parallel::any(mesh_.comm, before != gap_);
 }
 
 template <int D>
@@ -161,7 +162,7 @@ bool Gaps<D>::differs(const std::vector<char>* marks) const {
   bool other = false;
   for (std::size_t c = 0; c < gap_.size(); ++c)
     other |= is_blocked(static_cast<Index>(c)) != (marks && (*marks)[c]);
-  return any(mesh_.comm, other);
+  return parallel::any(mesh_.comm, other);
 }
 
 template class Gaps<2>;

@@ -23,7 +23,7 @@ template <int D>
 class Gaps {
  public:
   /// Throws Error if a gap names what is no patch, or less than two.
-  Gaps(const Mesh& mesh, const FluidParameters& parameters);
+  Gaps(const mesh::Mesh& mesh, const FluidParameters& parameters);
 
   /// Marks the cells of a placement. Gives whether any mark changed on any rank. Collective.
   bool mark(std::span<const Vec3> points, const Placement<D>& at);
@@ -50,14 +50,14 @@ class Gaps {
 
  private:
   struct Wall {
-    std::vector<const Patch*> patches;
-    std::vector<double> corners(const Mesh& mesh, std::span<const Vec3> points, const Vec3& low,
+    std::vector<const mesh::Patch*> patches;
+    std::vector<double> corners(const mesh::Mesh& mesh, std::span<const Vec3> points, const Vec3& low,
                                 const Vec3& high) const;
-    void extend(const Mesh& mesh, std::span<const Vec3> points, Vec3& low, Vec3& high) const;
+    void extend(const mesh::Mesh& mesh, std::span<const Vec3> points, Vec3& low, Vec3& high) const;
   };
   void mark_gap(int gap, std::span<const Vec3> points, const Placement<D>& at);
 
-  const Mesh& mesh_;
+  const mesh::Mesh& mesh_;
   std::vector<std::string> names_;
   std::vector<double> limit_;               // opening [m]
   std::vector<std::array<Wall, 2>> walls_;  // of each gap

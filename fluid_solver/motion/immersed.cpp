@@ -10,7 +10,7 @@
 namespace couplet::fluid {
 
 template <int D>
-ImmersedBodies<D>::ImmersedBodies(const Mesh& mesh, const FluidParameters& parameters)
+ImmersedBodies<D>::ImmersedBodies(const mesh::Mesh& mesh, const FluidParameters& parameters)
     : mesh_(mesh),
       body_(mesh.cells.n_local(), -1),
       depth_(mesh.cells.n_local(), 0.0),
@@ -20,7 +20,7 @@ ImmersedBodies<D>::ImmersedBodies(const Mesh& mesh, const FluidParameters& param
     level_.emplace_back(body.level, "bodies." + name + ".level");
     speed_.emplace_back();
     if (!body.velocity.empty())
-      speed_.back() = make_expressions(body.velocity, D, "bodies." + name + ".velocity");
+      speed_.back() = fv::make_expressions(body.velocity, D, "bodies." + name + ".velocity");
   }
 }
 
@@ -48,7 +48,7 @@ bool ImmersedBodies<D>::mark(double t, const Placement<D>& at) {
   faces_.clear();
   for (Index f = 0; f < mesh_.n_interior; ++f)
     if (is_solid(mesh_.owner[f]) != is_solid(mesh_.neighbour[f])) faces_.push_back(f);
-  return any(mesh_.comm, before != body_);
+  return parallel::any(mesh_.comm, before != body_);
 }
 
 template <int D>
@@ -112,7 +112,7 @@ double ImmersedBodies<D>::leak(const Placement<D>& at, const std::vector<double>
     const Index fluid = is_solid(mesh_.owner[f]) ? mesh_.neighbour[f] : mesh_.owner[f];
     if (fluid < mesh_.cells.n_owned()) total += std::abs(phi[f] - flux(f, at));
   }
-  return sum(mesh_.comm, total);
+  return parallel::sum(mesh_.comm, total);
 }
 
 template class ImmersedBodies<2>;

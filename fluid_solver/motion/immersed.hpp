@@ -17,7 +17,7 @@ namespace couplet::fluid {
 template <int D>
 class ImmersedBodies {
  public:
-  ImmersedBodies(const Mesh& mesh, const FluidParameters& parameters);
+  ImmersedBodies(const mesh::Mesh& mesh, const FluidParameters& parameters);
 
   /// Marks the cells at time t. Gives whether any mark changed on any rank. Collective.
   bool mark(double t, const Placement<D>& at);
@@ -39,10 +39,10 @@ class ImmersedBodies {
 
  private:
   Vec<D> velocity_of(Index solid_cell) const { return velocity_[solid_cell]; }
-  const Mesh& mesh_;
+  const mesh::Mesh& mesh_;
   std::vector<std::string> names_;
-  std::vector<Expression> level_;
-  std::vector<std::vector<Expression>> speed_;
+  std::vector<fv::Expression> level_;
+  std::vector<std::vector<fv::Expression>> speed_;
   std::vector<int> body_;      // per local cell; -1: fluid
   std::vector<double> depth_;  // per local cell: lowest level of all bodies [m]
   Vectors<D> velocity_;        // per local cell, of its body

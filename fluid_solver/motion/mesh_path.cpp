@@ -16,11 +16,11 @@ constexpr double most_torn = 1e-8;
 
 /// Whoever moved the points: a cell turned over has no flow.
 template <int D>
-void refuse_inverted(const Mesh& mesh, const Placement<D>& at, double time) {
+void refuse_inverted(const mesh::Mesh& mesh, const Placement<D>& at, double time) {
   struct {
     double value;
     int rank;
-  } least{std::numeric_limits<double>::infinity(), comm_rank(mesh.comm)};
+  } least{std::numeric_limits<double>::infinity(), parallel::comm_rank(mesh.comm)};
   Index where = 0;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
     if (at.volume[c] >= least.value) continue;
@@ -40,19 +40,19 @@ void refuse_inverted(const Mesh& mesh, const Placement<D>& at, double time) {
 }  // namespace
 
 template <int D>
-MeshPath<D>::MeshPath(const Mesh& mesh, const Geometry& geometry, const FluidParameters& parameters,
-                      bool moves)
+MeshPath<D>::MeshPath(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                      const FluidParameters& parameters, bool moves)
     : mesh_(mesh),
       points_at_rest_(geometry.points),
       moves_(moves),
       translates_(parameters.motion && parameters.motion->translates()) {
   if (moves_ && !translates_ &&
-      any(mesh.comm, !mesh.neighbour_shift.empty()))  // a rank without cells has none
+      parallel::any(mesh.comm, !mesh.neighbour_shift.empty()))  // a rank without cells has none
     periodic_.emplace(mesh, geometry);
 }
 
 template <int D>
-std::shared_ptr<const Placement<D>> MeshPath<D>::start(const Geometry& geometry) {
+std::shared_ptr<const Placement<D>> MeshPath<D>::start(const mesh::Geometry& geometry) {
   std::shared_ptr<const Placement<D>> first =
       moves_ ? make_placement<D>(mesh_, geometry.points) : make_placement<D>(mesh_, geometry);
   if (!translates_) return first;
@@ -83,7 +83,7 @@ SubStep<D> MeshPath<D>::sub_step(const State<D>& level, double dt, double s, std
   }
   step.to = at(step.points);
   if (!translates_) refuse_inverted(mesh_, *step.to, time);
-  step.swept = swept_volumes(mesh_, level.points, step.points);
+  step.swept = mesh::swept_volumes(mesh_, level.points, step.points);
   step.swept.resize(mesh_.n_flux_faces());
   return step;
 }
@@ -97,7 +97,7 @@ void MeshPath<D>::refuse_torn(std::span<const Vec3> points, double time) const {
   const double gap = periodic_->largest_gap(moved, mesh_.dim);
   double size = 0;
   for (Index f = 0; f < mesh_.n_interior; ++f) size = std::max(size, mesh_.shift(f).norm());
-  if (gap > most_torn * max(mesh_.comm, size))
+  if (gap > most_torn * parallel::max(mesh_.comm, size))
     throw Error(
         "The mesh motion to t = {:.6g} s separates the two sides of periodic patches by {:.3g} m. Both must "
         "move alike: set 'type: periodic' for them in the mesh mover as well; a 'motion' must be periodic "

@@ -16,7 +16,8 @@ template <int D>
 class MeshPath {
  public:
   /// `geometry`: of the mesh at rest, of which the points alone are kept. `moves`: the mesh will. Collective.
-  MeshPath(const Mesh& mesh, const Geometry& geometry, const FluidParameters& parameters, bool moves);
+  MeshPath(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const FluidParameters& parameters,
+           bool moves);
 
   /// As read, per local point [m].
   const std::vector<Vec3>& points_at_rest() const { return points_at_rest_; }
@@ -25,7 +26,7 @@ class MeshPath {
   /// As a frame that does not turn.
   bool translates() const { return translates_; }
   /// Of the mesh at rest; a frame that is only translated keeps its shape, and with it the pressure equation and its factors.
-  std::shared_ptr<const Placement<D>> start(const Geometry& geometry);
+  std::shared_ptr<const Placement<D>> start(const mesh::Geometry& geometry);
   /// Of other points; empty: of those at rest.
   std::shared_ptr<const Placement<D>> at(std::span<const Vec3> points) const;
   /// What a sub-step of `dt` needs of the mesh that ends at the share `s` of the way from `begin` to `end` (empty: it rests
@@ -37,11 +38,11 @@ class MeshPath {
   void refuse_torn(std::span<const Vec3> points, double time) const;
 
  private:
-  const Mesh& mesh_;
+  const mesh::Mesh& mesh_;
   const std::vector<Vec3> points_at_rest_;
   bool moves_, translates_;
-  std::optional<PeriodicPoints> periodic_;     // with patches joined on a mesh that moves
-  std::shared_ptr<const Placement<D>> frame_;  // with translates_: the placement at rest
+  std::optional<mesh::PeriodicPoints> periodic_;  // with patches joined on a mesh that moves
+  std::shared_ptr<const Placement<D>> frame_;     // with translates_: the placement at rest
 };
 
 }  // namespace couplet::fluid

@@ -35,7 +35,7 @@ class RotatingFrame {
  private:
   double speed(double t) const { return speed_(Vec3::Zero(), t); }
 
-  Expression speed_;  // [rad/s]
+  fv::Expression speed_;  // [rad/s]
   Vec3 centre_, axis_;
 };
 

@@ -35,7 +35,7 @@ struct StepStatistics {
 /// from one part to the next.
 template <int D>
 struct StepWork {
-  const Mesh& mesh;
+  const mesh::Mesh& mesh;
   const std::vector<Vec3>& points_at_rest;  ///< as read, per local point [m]
   const Boundary<D>& boundary;
   const FluidParameters& parameters;

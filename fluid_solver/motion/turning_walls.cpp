@@ -23,7 +23,7 @@ Vec<D> turn_of(std::span<const Vec3> corners, std::span<const Vec3> velocities) 
 }
 
 template <int D>
-void set_turn(const Mesh& mesh, const Patch& patch, std::span<const Vec3> points,
+void set_turn(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const Vec3> points,
               std::span<const Vec3> velocities, Vectors<D>& turn) {
   std::vector<Vec3> corners;
   std::size_t first = 0;
@@ -37,10 +37,11 @@ void set_turn(const Mesh& mesh, const Patch& patch, std::span<const Vec3> points
 
 /// Of the walls whose velocity the case gives; the others' was given before.
 template <int D>
-void Boundary<D>::add_turn(const Mesh& mesh, std::span<const Vec3> points, double t, Vectors<D>& turn) const {
+void Boundary<D>::add_turn(const mesh::Mesh& mesh, std::span<const Vec3> points, double t,
+                           Vectors<D>& turn) const {
   for (const GivenVelocity<D>& given : velocity_patches_) {
     if (!given.turns()) continue;
-    const Patch& patch = given.patch();
+    const mesh::Patch& patch = given.patch();
     std::vector<Vec3> corners;
     for (Index f = patch.first; f < patch.first + patch.count; ++f)
       for (const Index v : mesh.face_points[f]) corners.push_back(points[v]);
@@ -69,12 +70,12 @@ void Fluid<D>::add_turning() {
 
 template Vec<2> turn_of<2>(std::span<const Vec3>, std::span<const Vec3>);
 template Vec<3> turn_of<3>(std::span<const Vec3>, std::span<const Vec3>);
-template void set_turn<2>(const Mesh&, const Patch&, std::span<const Vec3>, std::span<const Vec3>,
+template void set_turn<2>(const mesh::Mesh&, const mesh::Patch&, std::span<const Vec3>, std::span<const Vec3>,
                           Vectors<2>&);
-template void set_turn<3>(const Mesh&, const Patch&, std::span<const Vec3>, std::span<const Vec3>,
+template void set_turn<3>(const mesh::Mesh&, const mesh::Patch&, std::span<const Vec3>, std::span<const Vec3>,
                           Vectors<3>&);
-template void Boundary<2>::add_turn(const Mesh&, std::span<const Vec3>, double, Vectors<2>&) const;
-template void Boundary<3>::add_turn(const Mesh&, std::span<const Vec3>, double, Vectors<3>&) const;
+template void Boundary<2>::add_turn(const mesh::Mesh&, std::span<const Vec3>, double, Vectors<2>&) const;
+template void Boundary<3>::add_turn(const mesh::Mesh&, std::span<const Vec3>, double, Vectors<3>&) const;
 template void Fluid<2>::add_turning();
 template void Fluid<3>::add_turning();
 

@@ -17,7 +17,7 @@ Vec<D> turn_of(std::span<const Vec3> corners, std::span<const Vec3> velocities);
 
 /// Sets `turn` at the faces of a patch from the velocities of their corners, face by face. `points`: of the mesh.
 template <int D>
-void set_turn(const Mesh& mesh, const Patch& patch, std::span<const Vec3> points,
+void set_turn(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const Vec3> points,
               std::span<const Vec3> velocities, Vectors<D>& turn);
 
 /// Force on what is outside by the transposed gradient, -mu T; that by du/dn is the flux of Loads.

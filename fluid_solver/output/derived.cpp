@@ -33,7 +33,7 @@ std::vector<double> q_criterion(const std::vector<Tensor<D>>& gradient) {
 
 template <int D>
 std::vector<std::array<double, 2>> wall_units(const Fluid<D>& fluid) {
-  const Mesh& mesh = fluid.mesh();
+  const mesh::Mesh& mesh = fluid.mesh();
   const Placement<D>& at = *fluid.state().placement;
   const double rho = fluid.parameters().density, nu = fluid.parameters().viscosity / rho;
   std::vector<std::array<double, 2>> units(fluid.viscous_force().size());
@@ -49,8 +49,8 @@ std::vector<std::array<double, 2>> wall_units(const Fluid<D>& fluid) {
 }
 
 template <int D>
-WallSummary summarise_wall(const Fluid<D>& fluid, const Patch& patch) {
-  const Mesh& mesh = fluid.mesh();
+WallSummary summarise_wall(const Fluid<D>& fluid, const mesh::Patch& patch) {
+  const mesh::Mesh& mesh = fluid.mesh();
   const auto units = wall_units(fluid);
   double sums[3] = {}, largest[2] = {};
   if (!units.empty())
@@ -71,10 +71,10 @@ WallSummary summarise_wall(const Fluid<D>& fluid, const Patch& patch) {
 
 template <int D>
 double through_moving_walls(const Fluid<D>& fluid) {
-  const Mesh& mesh = fluid.mesh();
+  const mesh::Mesh& mesh = fluid.mesh();
   const State<D>& s = fluid.state();
   double worst = std::numeric_limits<double>::quiet_NaN();
-  for (const Patch& patch : mesh.patches) {
+  for (const mesh::Patch& patch : mesh.patches) {
     if (!is_moving_wall(fluid.parameters().boundaries.at(patch.name))) continue;
     double through = 0, size = 0;
     for (Index f = patch.first; f < patch.first + patch.count; ++f) {
@@ -82,7 +82,7 @@ double through_moving_walls(const Fluid<D>& fluid) {
       through += std::abs(w.dot(s.placement->area[f]));
       size += w.norm() * s.placement->area[f].norm();
     }
-    through = sum(mesh.comm, through), size = sum(mesh.comm, size);
+    through = parallel::sum(mesh.comm, through), size = parallel::sum(mesh.comm, size);
     if (size > 0) worst = std::isnan(worst) ? through / size : std::max(worst, through / size);
   }
   return worst;
@@ -93,10 +93,10 @@ template double through_moving_walls<3>(const Fluid<3>&);
 
 template <int D>
 Coefficients force_coefficients(const Fluid<D>& fluid, const CoefficientParameters& c) {
-  const Mesh& mesh = fluid.mesh();
+  const mesh::Mesh& mesh = fluid.mesh();
   Vec3 sums[2] = {Vec3::Zero(), Vec3::Zero()};  // force, moment
   for (const std::string& name : c.patches) {
-    const Patch& patch = *mesh.find_patch(name);
+    const mesh::Patch& patch = *mesh.find_patch(name);
     if (fluid.pressure_force().empty()) break;  // before the first step
     for (Index b = patch.first - mesh.n_interior; b < patch.first - mesh.n_interior + patch.count; ++b) {
       Vec3 force = Vec3::Zero();
@@ -113,7 +113,7 @@ Coefficients force_coefficients(const Fluid<D>& fluid, const CoefficientParamete
 
 template <int D>
 EnergyBudget energy_budget(const Fluid<D>& fluid) {
-  const Mesh& mesh = fluid.mesh();
+  const mesh::Mesh& mesh = fluid.mesh();
   const State<D>& s = fluid.state();
   const Placement<D>& at = *s.placement;
   const double rho = fluid.parameters().density, mu = fluid.parameters().viscosity;
@@ -151,8 +151,8 @@ template std::vector<double> q_criterion<2>(const std::vector<Tensor<2>>&);
 template std::vector<double> q_criterion<3>(const std::vector<Tensor<3>>&);
 template std::vector<std::array<double, 2>> wall_units<2>(const Fluid<2>&);
 template std::vector<std::array<double, 2>> wall_units<3>(const Fluid<3>&);
-template WallSummary summarise_wall<2>(const Fluid<2>&, const Patch&);
-template WallSummary summarise_wall<3>(const Fluid<3>&, const Patch&);
+template WallSummary summarise_wall<2>(const Fluid<2>&, const mesh::Patch&);
+template WallSummary summarise_wall<3>(const Fluid<3>&, const mesh::Patch&);
 template Coefficients force_coefficients<2>(const Fluid<2>&, const CoefficientParameters&);
 template Coefficients force_coefficients<3>(const Fluid<3>&, const CoefficientParameters&);
 template EnergyBudget energy_budget<2>(const Fluid<2>&);

@@ -22,7 +22,7 @@ struct WallSummary {
 };
 /// Collective.
 template <int D>
-WallSummary summarise_wall(const Fluid<D>& fluid, const Patch& patch);
+WallSummary summarise_wall(const Fluid<D>& fluid, const mesh::Patch& patch);
 /// tau [Pa] and y+ at each boundary face; empty before the first step.
 template <int D>
 std::vector<std::array<double, 2>> wall_units(const Fluid<D>& fluid);

@@ -11,11 +11,11 @@ namespace couplet::fluid {
 template <int D>
 void FluidOutput<D>::check_flow_areas() const {
   std::vector<std::string> names;
-  for (const Patch& patch : mesh_.patches) names.push_back(patch.name);
+  for (const mesh::Patch& patch : mesh_.patches) names.push_back(patch.name);
   const auto check = [&](const std::string& name, const char* key, const std::string& patch) {
     if (std::ranges::find(names, patch) == names.end())
       throw Error("output.flow-areas.{}.{}: there is no patch '{}'. {}", name, key, patch,
-                  did_you_mean(patch, names, "patches"));
+                  base::did_you_mean(patch, names, "patches"));
   };
   for (const auto& [name, area] : fluid_.parameters().output.flow_areas) {
     check(name, "from", area.from);

@@ -11,9 +11,9 @@ namespace {
 
 /// This rank's part; the pressure times the area.
 template <int D>
-void add_faces(const Fluid<D>& fluid, std::span<const double> pressure, const Patch& patch,
+void add_faces(const Fluid<D>& fluid, std::span<const double> pressure, const mesh::Patch& patch,
                std::span<double> sums) {
-  const Mesh& mesh = fluid.mesh();
+  const mesh::Mesh& mesh = fluid.mesh();
   const State<D>& s = fluid.state();
   for (Index f = patch.first; f < patch.first + patch.count; ++f) {
     const Index b = f - mesh.n_interior;
@@ -33,7 +33,7 @@ void add_faces(const Fluid<D>& fluid, std::span<const double> pressure, const Pa
 template <int D>
 std::vector<PatchFlux<D>> patch_fluxes(const Fluid<D>& fluid) {
   constexpr std::size_t width = 3 + D;
-  const Mesh& mesh = fluid.mesh();
+  const mesh::Mesh& mesh = fluid.mesh();
   const auto pressure = fluid.pressure();
   if (!pressure || fluid.pressure_force().empty()) return {};
   std::vector<double> sums(mesh.patches.size() * width, 0);

@@ -17,10 +17,13 @@
 namespace couplet::fluid {
 
 template <int D>
-FluidOutput<D>::FluidOutput(const Fluid<D>& fluid, const Geometry& geometry, FluidContext context)
-    : fluid_(fluid), mesh_(fluid.mesh()), context_(std::move(context)), root_(comm_rank(mesh_.comm) == 0) {
+FluidOutput<D>::FluidOutput(const Fluid<D>& fluid, const mesh::Geometry& geometry, FluidContext context)
+    : fluid_(fluid),
+      mesh_(fluid.mesh()),
+      context_(std::move(context)),
+      root_(parallel::comm_rank(mesh_.comm) == 0) {
   set_up_points(geometry);
-  for (const Patch& patch : mesh_.patches)
+  for (const mesh::Patch& patch : mesh_.patches)
     if (is_wall(fluid.parameters().boundaries.at(patch.name))) walls_.push_back(&patch);
   check_coefficients();
   check_flow_areas();
@@ -30,12 +33,12 @@ FluidOutput<D>::FluidOutput(const Fluid<D>& fluid, const Geometry& geometry, Flu
 template <int D>
 void FluidOutput<D>::check_coefficients() const {
   std::vector<std::string> names;
-  for (const Patch* patch : walls_) names.push_back(patch->name);
+  for (const mesh::Patch* patch : walls_) names.push_back(patch->name);
   for (const auto& [name, c] : fluid_.parameters().output.coefficients)
     for (const std::string& patch : c.patches)
       if (std::ranges::find(names, patch) == names.end())
         throw Error("output.coefficients.{}.patches: '{}' is not a wall. {}", name, patch,
-                    did_you_mean(patch, names, "walls"));
+                    base::did_you_mean(patch, names, "walls"));
 }
 
 template <int D>
@@ -62,13 +65,13 @@ void FluidOutput<D>::write_fields(double time, const RunningStatistics<D>* stati
   if (!fields_)
     fields_.emplace(mesh_, fluid_.points_at_rest(), context_.output_folder, context_.name, fluid_.moving(),
                     context_.restart_time);
-  using Place = OutputField::Place;
+  using Place = io::OutputField::Place;
   const State<D>& s = fluid_.state();
   const FluidOutputParameters& wanted = fluid_.parameters().output;
   const std::vector<double> none(mesh_.cells.n_local(), 0.0);
   const auto pressure = fluid_.pressure();
-  std::vector<OutputField> fields{{"velocity", "m/s", Place::cells, D, flat<D>(s.u)},
-                                  {"pressure", "Pa", Place::cells, 1, pressure ? pressure->p : none}};
+  std::vector<io::OutputField> fields{{"velocity", "m/s", Place::cells, D, flat<D>(s.u)},
+                                      {"pressure", "Pa", Place::cells, 1, pressure ? pressure->p : none}};
   std::vector<double> curl, q, p_rms, shear;
   Vectors<D> u_rms;
   if (wanted.vorticity || wanted.q_criterion) {
@@ -137,7 +140,7 @@ void FluidOutput<D>::write_fluxes(double time) {
     for (const PatchFlux<D>& flux : all) {
       columns.push_back(flux.patch + " volume [m^3/s]");
       for (int c = 0; c < D; ++c)
-        columns.push_back(fmt::format("{} momentum {} [N]", flux.patch, axis_letters[c]));
+        columns.push_back(fmt::format("{} momentum {} [N]", flux.patch, base::axis_letters[c]));
       columns.push_back(flux.patch + " mean pressure [Pa]");
     }
     fluxes_.emplace(open("fluxes.csv", columns));
@@ -148,14 +151,14 @@ void FluidOutput<D>::write_fluxes(double time) {
 template <int D>
 void FluidOutput<D>::write_walls(double time) {
   std::vector<double> row{time};
-  for (const Patch* patch : walls_) {
+  for (const mesh::Patch* patch : walls_) {
     const WallSummary w = summarise_wall(fluid_, *patch);
     row.insert(row.end(), {w.mean_shear, w.largest_shear, w.mean_yplus, w.largest_yplus});
   }
   if (!root_) return;
   if (!walls_series_) {
     std::vector<std::string> columns{"time [s]"};
-    for (const Patch* patch : walls_)
+    for (const mesh::Patch* patch : walls_)
       for (const char* what : {"mean shear [Pa]", "largest shear [Pa]", "mean y+ [-]", "largest y+ [-]"})
         columns.push_back(fmt::format("{} {}", patch->name, what));
     walls_series_.emplace(open("walls.csv", columns));
@@ -179,7 +182,7 @@ void FluidOutput<D>::write_bodies(double time) {
     for (const std::string& name : fluid_.bodies()->names())
       for (const char* part : {"pressure", "viscous"})
         for (int c = 0; c < D; ++c)
-          columns.push_back(fmt::format("{} {} {} [N]", name, part, axis_letters[c]));
+          columns.push_back(fmt::format("{} {} {} [N]", name, part, base::axis_letters[c]));
     columns.push_back("leak [m^3/s]");
     bodies_.emplace(open("bodies.csv", columns));
   }
@@ -213,15 +216,15 @@ void FluidOutput<D>::write_energy(double time) {
 }
 
 template <int D>
-Series FluidOutput<D>::open(const std::string& file, const std::vector<std::string>& columns) const {
-  return Series(context_.output_folder / file, columns, context_.restart_time);
+io::Series FluidOutput<D>::open(const std::string& file, const std::vector<std::string>& columns) const {
+  return io::Series(context_.output_folder / file, columns, context_.restart_time);
 }
 
 // Forces of the fluid on each wall, means over the coupling step.
 template <int D>
 void FluidOutput<D>::write_forces(double time) {
   std::vector<double> row{time};
-  for (const Patch* patch : walls_)
+  for (const mesh::Patch* patch : walls_)
     for (const Vectors<D>* force : {&fluid_.pressure_force(), &fluid_.viscous_force()}) {
       Vec<D> total = Vec<D>::Zero();
       if (!force->empty())
@@ -234,10 +237,10 @@ void FluidOutput<D>::write_forces(double time) {
   if (!root_) return;
   if (!forces_) {
     std::vector<std::string> columns{"time [s]"};
-    for (const Patch* patch : walls_)
+    for (const mesh::Patch* patch : walls_)
       for (const char* part : {"pressure", "viscous"})
         for (int c = 0; c < D; ++c)
-          columns.push_back(fmt::format("{} {} {} [N]", patch->name, part, axis_letters[c]));
+          columns.push_back(fmt::format("{} {} {} [N]", patch->name, part, base::axis_letters[c]));
     forces_.emplace(open("forces.csv", columns));
   }
   forces_->row(row);
@@ -266,7 +269,7 @@ void FluidOutput<D>::write_balance(double time) {
     sums[energy] += 0.5 * fluid_.parameters().density * at.volume[c] * s.u[c].squaredNorm();
   }
   MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-  worst = max(mesh_.comm, worst);
+  worst = parallel::max(mesh_.comm, worst);
   if (!root_) return;
   if (!balance_)
     balance_.emplace(

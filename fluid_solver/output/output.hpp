@@ -29,7 +29,7 @@ template <int D>
 class FluidOutput {
  public:
   /// `geometry`: of the mesh at rest, looked at while this is made.
-  FluidOutput(const Fluid<D>& fluid, const Geometry& geometry, FluidContext context);
+  FluidOutput(const Fluid<D>& fluid, const mesh::Geometry& geometry, FluidContext context);
   /// `statistics` may be null.
   void write_fields(double time, const RunningStatistics<D>* statistics);
   void write_series(double time);
@@ -39,7 +39,7 @@ class FluidOutput {
   void write_samples(double time, const RunningStatistics<D>* statistics);
 
  private:
-  void set_up_points(const Geometry& geometry);
+  void set_up_points(const mesh::Geometry& geometry);
   void write_forces(double time);
   void write_walls(double time);
   void write_coefficients(double time);
@@ -52,23 +52,23 @@ class FluidOutput {
   void write_gaps(double time);
   void write_balance(double time);
   void write_probes(double time);
-  Series open(const std::string& file, const std::vector<std::string>& columns) const;
+  io::Series open(const std::string& file, const std::vector<std::string>& columns) const;
 
   const Fluid<D>& fluid_;
-  const Mesh& mesh_;
+  const mesh::Mesh& mesh_;
   FluidContext context_;
   bool root_;
-  std::vector<Probe> probes_;
+  std::vector<io::Probe> probes_;
   std::vector<Sample> samples_;
   std::optional<PointValues<D>> point_values_;  // only with probes or samples
-  std::vector<const Patch*> walls_;
-  std::optional<FieldWriter> fields_;
+  std::vector<const mesh::Patch*> walls_;
+  std::optional<io::FieldWriter> fields_;
   std::optional<FluidSurfaces<D>> surfaces_;
   std::vector<double> divergence_;
-  std::optional<Series> forces_, coefficients_, walls_series_, fluxes_, flow_areas_, balance_, energy_,
+  std::optional<io::Series> forces_, coefficients_, walls_series_, fluxes_, flow_areas_, balance_, energy_,
       bodies_, gaps_,
-      probe_series_;                                  // on rank 0
-  std::vector<std::optional<Series>> sample_series_;  // one a sample, on rank 0
+      probe_series_;                                      // on rank 0
+  std::vector<std::optional<io::Series>> sample_series_;  // one a sample, on rank 0
 };
 
 }  // namespace couplet::fluid

@@ -14,21 +14,21 @@ namespace {
 template <int D>
 void add_columns(std::vector<std::string>& columns, const std::string& before, const std::string& after) {
   for (int c = 0; c < D; ++c)
-    columns.push_back(fmt::format("{}velocity{} {} [m/s]", before, after, axis_letters[c]));
+    columns.push_back(fmt::format("{}velocity{} {} [m/s]", before, after, base::axis_letters[c]));
   columns.push_back(fmt::format("{}pressure{} [Pa]", before, after));
 }
 
 }  // namespace
 
 template <int D>
-void FluidOutput<D>::set_up_points(const Geometry& geometry) {
+void FluidOutput<D>::set_up_points(const mesh::Geometry& geometry) {
   const FluidParameters& p = fluid_.parameters();
   std::vector<Vec3> places;
   for (const auto& [name, probe] : p.probes) {
     probes_.emplace_back(mesh_, geometry.points, name, probe.point);
     places.push_back(probe.point);
   }
-  doubt_mesh_scale(mesh_, geometry.points, places);
+  io::doubt_mesh_scale(mesh_, geometry.points, places);
   for (const auto& [name, sample] : p.output.samples)
     samples_.emplace_back(mesh_, geometry.points, name, sample);
   if (!probes_.empty() || !samples_.empty()) point_values_.emplace(fluid_, geometry);
@@ -41,7 +41,7 @@ void FluidOutput<D>::write_probes(double time) {
   point_values_->follow();
   std::vector<double> row{time}, at_points(mesh_.points.n_local() * (D + 1), 0.0);
   point_values_->state(probes_, at_points);
-  for (const Probe& probe : probes_) {
+  for (const io::Probe& probe : probes_) {
     const std::vector<double> sampled = probe.sample(at_points, D + 1);
     row.insert(row.end(), sampled.begin(), sampled.end());
   }
@@ -88,8 +88,8 @@ void FluidOutput<D>::write_samples(double time, const RunningStatistics<D>* stat
   }
 }
 
-template void FluidOutput<2>::set_up_points(const Geometry&);
-template void FluidOutput<3>::set_up_points(const Geometry&);
+template void FluidOutput<2>::set_up_points(const mesh::Geometry&);
+template void FluidOutput<3>::set_up_points(const mesh::Geometry&);
 template void FluidOutput<2>::write_probes(double);
 template void FluidOutput<3>::write_probes(double);
 template void FluidOutput<2>::write_samples(double, const RunningStatistics<2>*);

@@ -10,29 +10,29 @@
 namespace couplet::fluid {
 
 template <int D>
-PointValues<D>::PointValues(const Fluid<D>& fluid, const Geometry& geometry)
+PointValues<D>::PointValues(const Fluid<D>& fluid, const mesh::Geometry& geometry)
     : fluid_(fluid),
       interpolation_(fluid.mesh(), geometry,
-                     std::vector<PatchStencil>(fluid.mesh().patches.size(), PatchStencil::open)) {}
+                     std::vector<fv::PatchStencil>(fluid.mesh().patches.size(), fv::PatchStencil::open)) {}
 
 template <int D>
 void PointValues<D>::follow() {
   const State<D>& s = fluid_.state();
-  if (fluid_.moving()) interpolation_.update(compute_geometry(fluid_.mesh(), s.points));
+  if (fluid_.moving()) interpolation_.update(mesh::compute_geometry(fluid_.mesh(), s.points));
 }
 
 template <int D>
-void PointValues<D>::fill(std::span<const Probe> probes, Flat cell_velocity, Flat face_velocity,
+void PointValues<D>::fill(std::span<const io::Probe> probes, Flat cell_velocity, Flat face_velocity,
                           Flat cell_pressure, Flat face_pressure, std::span<double> values, int stride,
                           int offset) const {
-  const Mesh& mesh = fluid_.mesh();
+  const mesh::Mesh& mesh = fluid_.mesh();
   std::vector<double> velocity(face_velocity.begin(), face_velocity.end()),
       pressure(face_pressure.begin(), face_pressure.end());
   velocity.resize(std::size_t(mesh.boundary.n_local()) * D, 0.0);
   pressure.resize(mesh.boundary.n_local(), 0.0);
   mesh.boundary.update_ghosts(velocity, D);
   mesh.boundary.update_ghosts(pressure);
-  for (const Probe& probe : probes)
+  for (const io::Probe& probe : probes)
     for (const Index point : probe.points()) {
       double* at = values.data() + std::size_t(point) * stride + offset;
       const Vec<D> u = interpolation_.template scalar_at<D>(point, cell_velocity, velocity);
@@ -42,14 +42,14 @@ void PointValues<D>::fill(std::span<const Probe> probes, Flat cell_velocity, Fla
 }
 
 template <int D>
-void PointValues<D>::state(std::span<const Probe> probes, std::span<double> values) const {
+void PointValues<D>::state(std::span<const io::Probe> probes, std::span<double> values) const {
   const State<D>& s = fluid_.state();
   const auto pressure = fluid_.pressure();
   fill(probes, flat<D>(s.u), flat<D>(s.u_boundary), pressure->p, pressure->boundary, values, D + 1, 0);
 }
 
 template <int D>
-void PointValues<D>::means(const RunningStatistics<D>& statistics, std::span<const Probe> probes,
+void PointValues<D>::means(const RunningStatistics<D>& statistics, std::span<const io::Probe> probes,
                            std::span<double> values) const {
   const std::size_t n = statistics.cells();
   const auto add = [&](const Vectors<D>& velocity, const std::vector<double>& pressure, int offset) {
@@ -60,25 +60,26 @@ void PointValues<D>::means(const RunningStatistics<D>& statistics, std::span<con
   add(statistics.velocity_rms(), statistics.pressure_rms(), D + 1);
 }
 
-Sample::Sample(const Mesh& mesh, std::span<const Vec3> places, std::string name, const SampleParameters& p)
+Sample::Sample(const mesh::Mesh& mesh, std::span<const Vec3> places, std::string name,
+               const SampleParameters& p)
     : name_(std::move(name)) {
   const int rows = p.type == SampleParameters::Type::plane ? p.rows : 1;
-  const PlaceSearch search(mesh, places);
+  const io::PlaceSearch search(mesh, places);
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < p.points; ++i) {
       const double s = double(i) / (p.points - 1), r = rows > 1 ? double(j) / (rows - 1) : 0.0;
-      auto probe = Probe::in(search, p.from + s * (p.to - p.from) + r * (p.up - p.from));
+      auto probe = io::Probe::in(search, p.from + s * (p.to - p.from) + r * (p.up - p.from));
       if (!probe) continue;  // on all ranks
       probes_.push_back(*std::move(probe));
       along_.push_back({s, r});
     }
   if (probes_.empty()) try {
-      Probe(mesh, places, name_, p.from);
+      io::Probe(mesh, places, name_, p.from);
     } catch (const Error& outside) {
       throw Error("output.samples.{}: none of its points is in the mesh. {}", name_, outside.what());
     }
   const auto asked = std::size_t(p.points) * std::size_t(rows);
-  if (probes_.size() < asked && comm_rank(mesh.comm) == 0)
+  if (probes_.size() < asked && parallel::comm_rank(mesh.comm) == 0)
     log::info("output.samples.{}: {} of {} points are outside the mesh and are omitted", name_,
               asked - probes_.size(), asked);
 }
@@ -86,13 +87,13 @@ Sample::Sample(const Mesh& mesh, std::span<const Vec3> places, std::string name,
 std::vector<double> Sample::gather(MPI_Comm comm, std::span<const double> at_points, int components) const {
   std::vector<double> values(probes_.size() * components, 0.0);
   for (std::size_t k = 0; k < probes_.size(); ++k) {
-    const Probe& probe = probes_[k];
+    const io::Probe& probe = probes_[k];
     for (std::size_t i = 0; i < probe.points().size(); ++i)
       for (int c = 0; c < components; ++c)
         values[k * components + c] +=
             probe.weights()[i] * at_points[std::size_t(probe.points()[i]) * components + c];
   }
-  const bool root = comm_rank(comm) == 0;  // all ranks but one bring zeros
+  const bool root = parallel::comm_rank(comm) == 0;  // all ranks but one bring zeros
   MPI_Reduce(root ? MPI_IN_PLACE : values.data(), values.data(), static_cast<int>(values.size()), MPI_DOUBLE,
              MPI_SUM, 0, comm);
   if (!root) values.clear();

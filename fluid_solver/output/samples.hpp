@@ -19,32 +19,32 @@ template <int D>
 class PointValues {
  public:
   /// `geometry`: of the mesh at rest, looked at while this is made.
-  PointValues(const Fluid<D>& fluid, const Geometry& geometry);
+  PointValues(const Fluid<D>& fluid, const mesh::Geometry& geometry);
   /// To be called when the mesh may have moved, before the others. Collective.
   void follow();
   /// At the probes' local points: velocity, then pressure of the accepted state. `values`: D + 1 a local point,
   /// the others are left alone. Collective.
-  void state(std::span<const Probe> probes, std::span<double> values) const;
+  void state(std::span<const io::Probe> probes, std::span<double> values) const;
   /// The mean velocity, mean pressure, rms of velocity, of pressure: 2 (D + 1) a local point. Collective.
-  void means(const RunningStatistics<D>& statistics, std::span<const Probe> probes,
+  void means(const RunningStatistics<D>& statistics, std::span<const io::Probe> probes,
              std::span<double> values) const;
 
  private:
   using Flat = std::span<const double>;
-  void fill(std::span<const Probe> probes, Flat cell_velocity, Flat face_velocity, Flat cell_pressure,
+  void fill(std::span<const io::Probe> probes, Flat cell_velocity, Flat face_velocity, Flat cell_pressure,
             Flat face_pressure, std::span<double> values, int stride, int offset) const;
   const Fluid<D>& fluid_;
-  VertexInterpolation interpolation_;
+  fv::VertexInterpolation interpolation_;
 };
 
 /// The places of a line or plane that lie in the mesh.
 class Sample {
  public:
   /// `places`: of the local points [m]. Throws Error if none does. Collective.
-  Sample(const Mesh& mesh, std::span<const Vec3> places, std::string name,
+  Sample(const mesh::Mesh& mesh, std::span<const Vec3> places, std::string name,
          const SampleParameters& parameters);
   const std::string& name() const { return name_; }
-  const std::vector<Probe>& probes() const { return probes_; }
+  const std::vector<io::Probe>& probes() const { return probes_; }
   /// Of each probe: how far along from-to and from-up, 0 to 1.
   const std::vector<std::array<double, 2>>& along() const { return along_; }
   /// Values at each probe from those at local points, `components` each, on rank 0; empty elsewhere. Collective.
@@ -52,7 +52,7 @@ class Sample {
 
  private:
   std::string name_;
-  std::vector<Probe> probes_;
+  std::vector<io::Probe> probes_;
   std::vector<std::array<double, 2>> along_;
 };
 

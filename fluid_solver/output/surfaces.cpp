@@ -22,7 +22,7 @@ FluidSurfaces<D>::FluidSurfaces(const Fluid<D>& fluid)
 // The forces are those of forces.csv, so that their sum is.
 template <int D>
 typename FluidSurfaces<D>::Faces FluidSurfaces<D>::faces() const {
-  const Mesh& mesh = fluid_.mesh();
+  const mesh::Mesh& mesh = fluid_.mesh();
   const std::size_t n = mesh.boundary.n_owned();
   const auto units = wall_units(fluid_);
   Faces faces{std::vector<double>(n * D), std::vector<double>(n * D), std::vector<double>(n)};
@@ -39,7 +39,7 @@ typename FluidSurfaces<D>::Faces FluidSurfaces<D>::faces() const {
 
 /// Per boundary face; empty where no coefficients are of this patch. The first by name counts.
 template <int D>
-std::vector<double> FluidSurfaces<D>::pressure_coefficient(const Patch& patch,
+std::vector<double> FluidSurfaces<D>::pressure_coefficient(const mesh::Patch& patch,
                                                            std::span<const double> pressure) const {
   for (const auto& [name, c] : fluid_.parameters().output.coefficients) {
     if (std::ranges::find(c.patches, patch.name) == c.patches.end()) continue;
@@ -58,12 +58,12 @@ void FluidSurfaces<D>::write(double time, const FluidContext& context) {
   if (!is_open_) series_.open(context.output_folder, fluid_.moving(), context.restart_time);
   is_open_ = true;
   const Faces all = faces();
-  using Place = OutputField::Place;
+  using Place = io::OutputField::Place;
   for (std::size_t i = 0; i < series_.patches().size(); ++i) {
-    const Patch& patch = *series_.patches()[i];
-    std::vector<OutputField> fields{{"pressure", "Pa", Place::cells, 1, pressure->boundary},
-                                    {"traction", "Pa", Place::cells, D, all.traction},
-                                    {"wall-shear", "Pa", Place::cells, D, all.shear}};
+    const mesh::Patch& patch = *series_.patches()[i];
+    std::vector<io::OutputField> fields{{"pressure", "Pa", Place::cells, 1, pressure->boundary},
+                                        {"traction", "Pa", Place::cells, D, all.traction},
+                                        {"wall-shear", "Pa", Place::cells, D, all.shear}};
     if (is_wall(fluid_.parameters().boundaries.at(patch.name)))
       fields.push_back({"y-plus", "-", Place::cells, 1, all.yplus});
     const std::vector<double> cp = pressure_coefficient(patch, pressure->boundary);

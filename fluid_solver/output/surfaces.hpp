@@ -24,10 +24,10 @@ class FluidSurfaces {
  private:
   struct Faces;
   Faces faces() const;
-  std::vector<double> pressure_coefficient(const Patch& patch, std::span<const double> pressure) const;
+  std::vector<double> pressure_coefficient(const mesh::Patch& patch, std::span<const double> pressure) const;
 
   const Fluid<D>& fluid_;
-  SurfaceSeries series_;
+  io::SurfaceSeries series_;
   bool is_open_ = false;
 };
 

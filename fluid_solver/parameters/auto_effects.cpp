@@ -16,14 +16,15 @@ constexpr double laminar = 2300;  // of a channel or pipe
 constexpr double resolved = 10;   // cell Reynolds number of a mesh that needs no model
 constexpr int samples = 20;
 
-double largest(const std::vector<config::ExpressionText>& components, const MeshFacts& mesh, double end) {
+double largest(const std::vector<config::ExpressionText>& components, const mesh::MeshFacts& mesh,
+               double end) {
   double most = 0;
-  std::vector<Expression> parts;
+  std::vector<fv::Expression> parts;
   for (const auto& text : components) parts.emplace_back(text, "velocity");
   for (int i = 0; i <= samples; ++i)
     for (int k = 0; k <= samples; ++k) {
       double squared = 0;
-      for (const Expression& part : parts) {
+      for (const fv::Expression& part : parts) {
         const double value = part(double(k) / samples * mesh.size, end * i / samples);
         squared += value * value;
       }
@@ -32,7 +33,7 @@ double largest(const std::vector<config::ExpressionText>& components, const Mesh
   return most;
 }
 
-double speed_of(const FluidParameters& p, const MeshFacts& mesh, double end) {
+double speed_of(const FluidParameters& p, const mesh::MeshFacts& mesh, double end) {
   double speed = largest(p.initial_velocity, mesh, 0);
   for (const auto& [name, b] : p.boundaries) {
     speed = std::max(speed, largest(b.velocity, mesh, end));
@@ -41,9 +42,9 @@ double speed_of(const FluidParameters& p, const MeshFacts& mesh, double end) {
   return speed;
 }
 
-EffectChoice turbulence(const FluidParameters& p, const MeshFacts& mesh, double speed) {
+effects::EffectChoice turbulence(const FluidParameters& p, const mesh::MeshFacts& mesh, double speed) {
   const auto without = [](std::string reason) {
-    return EffectChoice{"turbulence", "", "none, laminar", std::move(reason), false};
+    return effects::EffectChoice{"turbulence", "", "none, laminar", std::move(reason), false};
   };
   if (mesh.dim == 2) return without("eddies are three-dimensional");
   if (!(speed > 0)) return without("no boundary or initial condition sets a speed");
@@ -63,7 +64,7 @@ EffectChoice turbulence(const FluidParameters& p, const MeshFacts& mesh, double 
 
 /// Explicit diffusion holds to nu dt (sum of 4/h^2) <= 1, convection to about half a cell a step: the implicit term costs about
 /// as much as two explicit steps.
-EffectChoice viscous(const FluidParameters& p, const MeshFacts& mesh, double speed) {
+effects::EffectChoice viscous(const FluidParameters& p, const mesh::MeshFacts& mesh, double speed) {
   const double nu = p.viscosity / p.density, h = mesh.shortest_edge;
   const double diffusion = nu > 0 ? h * h / (4 * mesh.dim * nu) : std::numeric_limits<double>::infinity();
   const double convection = speed > 0 ? 0.5 * h / speed : std::numeric_limits<double>::infinity();
@@ -77,7 +78,7 @@ EffectChoice viscous(const FluidParameters& p, const MeshFacts& mesh, double spe
           false};
 }
 
-EffectChoice mesh_motion(const FluidParameters& p, const ChoiceScene& scene) {
+effects::EffectChoice mesh_motion(const FluidParameters& p, const effects::ChoiceScene& scene) {
   if (scene.has_mover) return {"", "", "moving mesh", "'coupling.mesh' names a mesh mover", false};
   if (p.motion) return {"", "", "moving mesh", "'motion' prescribes it", false};
   const bool interface = std::ranges::any_of(
@@ -90,8 +91,8 @@ EffectChoice mesh_motion(const FluidParameters& p, const ChoiceScene& scene) {
 
 }  // namespace
 
-std::vector<EffectChoice> choose_effects(const FluidParameters& p, const MeshFacts& mesh,
-                                         const ChoiceScene& scene) {
+std::vector<effects::EffectChoice> choose_effects(const FluidParameters& p, const mesh::MeshFacts& mesh,
+                                                  const effects::ChoiceScene& scene) {
   const double speed = speed_of(p, mesh, scene.end_time);
   return {{"dimension", std::to_string(mesh.dim), std::to_string(mesh.dim),
            mesh.dim == 2 ? "the mesh has two-dimensional cells only" : "the mesh has volumes", false},
@@ -101,7 +102,7 @@ std::vector<EffectChoice> choose_effects(const FluidParameters& p, const MeshFac
           mesh_motion(p, scene)};
 }
 
-ExpectedCost expected_cost(const FluidParameters& p, const MeshFacts& mesh) {
+effects::ExpectedCost expected_cost(const FluidParameters& p, const mesh::MeshFacts& mesh) {
   // Measured: 53 and 136 MB with 4096 and 65536 cells in 2-D, 55 and 139 MB with 4096 and 64000 in 3-D.
   const double cells = double(mesh.cells), eddies = p.turbulence ? 8 : 0;
   return {mesh.cells, 48e6 + (1380 + eddies) * cells, 2e-6 * cells};

@@ -14,14 +14,16 @@ namespace couplet::fluid {
 /// computed, and whether the mesh moves.
 /// The speed is the largest that boundaries, profiles and the start name; the Reynolds number stands on the smallest side of
 /// the mesh's box.
-std::vector<EffectChoice> choose_effects(const FluidParameters& parameters, const MeshFacts& mesh,
-                                         const ChoiceScene& scene);
+std::vector<effects::EffectChoice> choose_effects(const FluidParameters& parameters,
+                                                  const mesh::MeshFacts& mesh,
+                                                  const effects::ChoiceScene& scene);
 
 /// Of these whether pressure waves are computed: where sound takes longer across the mesh than 0.3/omega of what boundaries and
 /// motions prescribe, where gaps shut off an inlet, and where an interface moves in a fluid without an outlet.
-EffectChoice choose_waves(const FluidParameters& parameters, const MeshFacts& mesh, const ChoiceScene& scene);
+effects::EffectChoice choose_waves(const FluidParameters& parameters, const mesh::MeshFacts& mesh,
+                                   const effects::ChoiceScene& scene);
 
 /// By the numbers of configs/cavity and taylor-green-3d on one rank.
-ExpectedCost expected_cost(const FluidParameters& parameters, const MeshFacts& mesh);
+effects::ExpectedCost expected_cost(const FluidParameters& parameters, const mesh::MeshFacts& mesh);
 
 }  // namespace couplet::fluid

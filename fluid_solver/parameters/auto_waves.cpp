@@ -15,8 +15,8 @@ constexpr double slow = 0.3;  // of the audit: travel time of sound over 1/omega
 constexpr int most_samples = 2000, places = 4;
 
 /// Root mean square rate of what is prescribed over its root mean square about the mean [1/s]; 0: it does not change.
-double rate_of(const config::ExpressionText& text, const Vec3& at, const ChoiceScene& scene) {
-  const Expression value(text, "what is prescribed");
+double rate_of(const config::ExpressionText& text, const Vec3& at, const effects::ChoiceScene& scene) {
+  const fv::Expression value(text, "what is prescribed");
   const int n = std::clamp(int(scene.end_time / std::max(scene.time_step, 1e-300)), 2, most_samples);
   const double dt = std::min(scene.time_step, scene.end_time / n);
   double last = value(at, 0), sum = last, square = last * last, changes = 0;
@@ -31,7 +31,8 @@ double rate_of(const config::ExpressionText& text, const Vec3& at, const ChoiceS
 }
 
 /// The fastest of all that is prescribed.
-double largest_rate(const FluidParameters& p, const MeshFacts& mesh, const ChoiceScene& scene) {
+double largest_rate(const FluidParameters& p, const mesh::MeshFacts& mesh,
+                    const effects::ChoiceScene& scene) {
   std::vector<config::ExpressionText> texts;
   const auto add = [&texts](const auto& more) { texts.insert(texts.end(), more.begin(), more.end()); };
   for (const auto& [name, b] : p.boundaries) {
@@ -54,12 +55,14 @@ double largest_rate(const FluidParameters& p, const MeshFacts& mesh, const Choic
 
 }  // namespace
 
-EffectChoice choose_waves(const FluidParameters& p, const MeshFacts& mesh, const ChoiceScene& scene) {
+effects::EffectChoice choose_waves(const FluidParameters& p, const mesh::MeshFacts& mesh,
+                                   const effects::ChoiceScene& scene) {
   const auto without = [](std::string reason) {
-    return EffectChoice{"compressibility", "", "none, incompressible", std::move(reason), false};
+    return effects::EffectChoice{"compressibility", "", "none, incompressible", std::move(reason), false};
   };
   const auto with = [](std::string reason) {
-    return EffectChoice{"compressibility", "{scheme: three-level}", "three-level", std::move(reason), false};
+    return effects::EffectChoice{"compressibility", "{scheme: three-level}", "three-level", std::move(reason),
+                                 false};
   };
   const auto has = [&p](const auto& fact) {
     return std::ranges::any_of(p.boundaries, [&](const auto& b) { return fact(b.second); });

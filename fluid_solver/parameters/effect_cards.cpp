@@ -12,7 +12,7 @@ namespace {
 
 using S = FluidScene;
 using E = FluidEvidence;
-using V = std::optional<EffectVerdict>;
+using V = std::optional<effects::EffectVerdict>;
 
 std::string when(bool on, const char* reason) { return on ? reason : ""; }
 
@@ -31,7 +31,7 @@ V judge_turbulence(const S&, const E& e) {
   if (std::isnan(e.largest_peclet)) return {};
   const bool resolved_walls = e.largest_yplus > 0 && e.largest_yplus <= 1;
   const double limit = resolved_walls ? 250. : 50.;
-  EffectVerdict v{
+  effects::EffectVerdict v{
       "", e.largest_peclet, limit,
       fmt::format("max cell Reynolds number = {:.3g}, max y+ = {:.3g}", e.largest_peclet, e.largest_yplus),
       "steep layers may be thinner than the mesh: refine it, or add 'turbulence' if the flow is turbulent"};
@@ -42,7 +42,7 @@ V judge_turbulence(const S&, const E& e) {
 
 V judge_walls(const S&, const E& e) {
   if (std::isnan(e.largest_yplus)) return {};
-  return EffectVerdict{
+  return effects::EffectVerdict{
       "", e.largest_yplus, 2,
       fmt::format("max y+ = {:.3g}, max cell Reynolds number = {:.3g}", e.largest_yplus, e.largest_peclet),
       "there is no wall function: refine at the walls to y+ of about 1"};
@@ -51,7 +51,7 @@ V judge_walls(const S&, const E& e) {
 /// What the model adds to the viscosity decides what it does.
 V spare_turbulence(const S&, const E& e) {
   if (std::isnan(e.eddy_viscosity)) return {};
-  return EffectVerdict{
+  return effects::EffectVerdict{
       .effect = "",
       .number = e.eddy_viscosity,
       .threshold = 0.01,
@@ -67,7 +67,7 @@ V judge_compressibility(const S& s, const E& e) {
   const auto sound = sound_in(s);
   if (!sound || std::isnan(e.largest_speed)) return {};
   const double mach = e.largest_speed / sound->speed;
-  return EffectVerdict{
+  return effects::EffectVerdict{
       .effect = "",
       .number = mach,
       .threshold = 0.3,
@@ -82,7 +82,7 @@ V judge_compressibility(const S& s, const E& e) {
 // Where flow is stopped or driven faster than waves cross the domain the pressure rises as rho c du or rho L
 // du/dt, whatever the Mach number; the density follows by dp/(rho c^2). What the speed itself explains of that, 2 M^2 of a
 // body in a stream (pressures from 1 to -3 of rho u^2/2), is the compressibility's share.
-EffectVerdict judge_density(const S& s, const E& e, const Sound& sound) {
+effects::EffectVerdict judge_density(const S& s, const E& e, const Sound& sound) {
   const double change = e.pressure_range / (s.parameters.density * sound.speed * sound.speed);
   return {.effect = "",
           .number = change,
@@ -98,7 +98,7 @@ EffectVerdict judge_density(const S& s, const E& e, const Sound& sound) {
 
 // What the walls displace goes partly into compression, V dp / (rho c^2) = V dp / (gamma p) of a gas: of the volume of their
 // stroke it is what an incompressible fluid pushes through the openings instead.
-EffectVerdict judge_compliance(const S& s, const E& e, const Sound& sound) {
+effects::EffectVerdict judge_compliance(const S& s, const E& e, const Sound& sound) {
   const double share =
       e.pressure_volume / (s.parameters.density * sound.speed * sound.speed) / std::max(e.stroke, 1e-300);
   return {
@@ -113,7 +113,7 @@ EffectVerdict judge_compliance(const S& s, const E& e, const Sound& sound) {
 }
 
 // A column of length L answers a motion of rate omega as tan(omega L/c) / (omega L/c): 3 % more than without waves at 0.3.
-EffectVerdict judge_wave_time(const S&, const E& e, const Sound& sound) {
+effects::EffectVerdict judge_wave_time(const S&, const E& e, const Sound& sound) {
   const double phase = e.wall_rate * e.size / sound.speed;
   return {.effect = "",
           .number = phase,
@@ -137,7 +137,7 @@ V judge_waves(const S& s, const E& e) {
   const auto sound = sound_in(s);
   if (!sound) return {};
   V worst;
-  const auto add = [&worst](EffectVerdict v) {
+  const auto add = [&worst](effects::EffectVerdict v) {
     if (!worst || !(v.number / v.threshold <= worst->number / worst->threshold)) worst = std::move(v);
   };
   if (!std::isnan(e.pressure_range)) add(judge_density(s, e, *sound));
@@ -151,7 +151,7 @@ V judge_waves(const S& s, const E& e) {
 // The guard ends a run that grows at once; what grows slowly is said.
 V judge_energy(const S&, const E& e) {
   if (std::isnan(e.energy_excess)) return {};
-  return EffectVerdict{
+  return effects::EffectVerdict{
       .effect = "",
       .number = e.energy_excess,
       .threshold = 0.1,
@@ -163,7 +163,7 @@ V judge_energy(const S&, const E& e) {
 
 V judge_still_mesh(const S& s, const E& e) {
   if (s.moving_mesh || std::isnan(e.wall_displacement)) return {};
-  return EffectVerdict{
+  return effects::EffectVerdict{
       "", e.wall_displacement, 0.1,
       fmt::format("max interface displacement / adjacent cell height = {:.2g}", e.wall_displacement),
       "add a mesh mover: 'coupling: {mesh: {participant: ...}}'"};
@@ -172,7 +172,7 @@ V judge_still_mesh(const S& s, const E& e) {
 // A wall that moves across itself on a mesh that rests is an inlet.
 V judge_moving_walls(const S&, const E& e) {
   if (std::isnan(e.through_walls)) return {};
-  return EffectVerdict{
+  return effects::EffectVerdict{
       "", e.through_walls, 0.1,
       fmt::format("a moving wall has a normal velocity of {:.2g} times its speed", e.through_walls),
       "its mesh is at rest, so fluid crosses the wall: use a tangential velocity, make it an inlet, or move "
@@ -181,9 +181,9 @@ V judge_moving_walls(const S&, const E& e) {
 
 V judge_blocked(const S&, const E& e) {
   if (std::isnan(e.blocked_cells)) return {};
-  return EffectVerdict{"", e.blocked_cells, 0.5,
-                       fmt::format("blocked by gaps: {:.2g} of all cells", e.blocked_cells),
-                       "is 'opening' in metres, and smaller than the channel?"};
+  return effects::EffectVerdict{"", e.blocked_cells, 0.5,
+                                fmt::format("blocked by gaps: {:.2g} of all cells", e.blocked_cells),
+                                "is 'opening' in metres, and smaller than the channel?"};
 }
 
 const std::array cards{

@@ -35,7 +35,7 @@ struct FluidEvidence {
   double blocked_cells = unknown;   ///< share of all cells that gaps block
 };
 
-using FluidCard = EffectCard<FluidScene, FluidEvidence>;
+using FluidCard = effects::EffectCard<FluidScene, FluidEvidence>;
 std::span<const FluidCard> fluid_effect_cards();
 
 }  // namespace couplet::fluid

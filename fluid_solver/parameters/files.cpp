@@ -5,15 +5,16 @@
 
 namespace couplet::fluid {
 
-GridTable velocity_table(const std::filesystem::path& file, GridTable::Outside outside, int dimension) {
+fv::GridTable velocity_table(const std::filesystem::path& file, fv::GridTable::Outside outside,
+                             int dimension) {
   std::vector<std::string> columns{"u", "v", "w"};
   columns.resize(std::size_t(dimension));
-  return GridTable::read(file, columns, outside);
+  return fv::GridTable::read(file, columns, outside);
 }
 
-std::vector<ProblemOfKey> problems_of_files(const FluidParameters& parameters,
-                                            const std::filesystem::path& case_folder) {
-  std::vector<ProblemOfKey> all;
+std::vector<app::ProblemOfKey> problems_of_files(const FluidParameters& parameters,
+                                                 const std::filesystem::path& case_folder) {
+  std::vector<app::ProblemOfKey> all;
   for (const auto& [patch, boundary] : parameters.boundaries) {
     if (!boundary.table) continue;
     try {

@@ -10,10 +10,11 @@
 namespace couplet::fluid {
 
 /// The velocities of a boundary from its file, in `dimension` components. Throws Error with file:line.
-GridTable velocity_table(const std::filesystem::path& file, GridTable::Outside outside, int dimension);
+fv::GridTable velocity_table(const std::filesystem::path& file, fv::GridTable::Outside outside,
+                             int dimension);
 
 /// For --check: tables of boundaries that are missing or broken.
-std::vector<ProblemOfKey> problems_of_files(const FluidParameters& parameters,
-                                            const std::filesystem::path& case_folder);
+std::vector<app::ProblemOfKey> problems_of_files(const FluidParameters& parameters,
+                                                 const std::filesystem::path& case_folder);
 
 }  // namespace couplet::fluid

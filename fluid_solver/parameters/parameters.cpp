@@ -11,7 +11,7 @@ std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& 
   std::map<std::string, std::string> partner_of;
   for (const auto& [name, b] : parameters.boundaries)
     if (condition_of(b).joined) partner_of[name] = b.partner;
-  return periodic_pairs(partner_of);
+  return mesh::periodic_pairs(partner_of);
 }
 
 namespace {
@@ -164,9 +164,9 @@ void declare_moving_parts(config::Section& s, FluidParameters& p) {
       "gaps", p.gaps, declare_gap, "gap",
       "gaps that nearly close as the mesh moves: their cells block the flow, do not limit the step size, "
       "and open again");
-  s.optional_section<MotionParameters>(
+  s.optional_section<fv::MotionParameters>(
       "motion", p.motion,
-      [](config::Section& m, MotionParameters& motion) { couplet::declare(m, motion, true); },
+      [](config::Section& m, fv::MotionParameters& motion) { couplet::fv::declare(m, motion, true); },
       "prescribed motion of the whole mesh or around a body, without a mesh mover; it starts from the "
       "reference configuration; absent: none");
   s.optional_section<RotationParameters>(
@@ -211,7 +211,7 @@ void declare_written(config::Section& s, FluidParameters& p) {
       "output",
       [&p](config::Section& o) {
         declare_output(o, p.output);
-        o.check([&p] { return wrong_surfaces(p.output.surfaces, p.boundaries); }, "surfaces");
+        o.check([&p] { return io::wrong_surfaces(p.output.surfaces, p.boundaries); }, "surfaces");
       },
       "output in addition to velocity, pressure, forces and balance");
   s.map<ProbeParameters>(

@@ -106,7 +106,7 @@ struct FluidParameters {
   FluidOutputParameters output;
   std::map<std::string, BodyParameters> bodies;
   std::map<std::string, GapParameters> gaps;
-  std::optional<MotionParameters> motion;            // of the mesh; absent: none
+  std::optional<fv::MotionParameters> motion;        // of the mesh; absent: none
   std::optional<RotationParameters> rotating_frame;  // that mesh and velocities are seen from; absent: none
   ExplicitScheme scheme = ExplicitScheme::adams_bashforth;
   Projection projection = Projection::flux_memory;

@@ -100,7 +100,7 @@ void declare(config::Section& s, CompressibilityParameters& p) {
       .positive()
       .doc("speed of sound of the fluid");
   s.value("substance", p.substance)
-      .doc("alternative: a gas or liquid with known speed of sound: " + join(substances()));
+      .doc("alternative: a gas or liquid with known speed of sound: " + base::join(substances()));
   s.value("temperature", p.temperature)
       .unit("K")
       .plausible(70, 5000)
@@ -130,7 +130,7 @@ void declare(config::Section& s, CompressibilityParameters& p) {
         const std::vector<std::string> known = substances();
         if (std::ranges::count(known, p.substance) == 0)
           return fmt::format("unknown substance '{}'. {}", p.substance,
-                             did_you_mean(p.substance, known, "substances"));
+                             base::did_you_mean(p.substance, known, "substances"));
         return p.speed_of_sound || p.pressure ? "give only one of 'speed-of-sound', 'substance' and "
                                                 "'pressure'"
                                               : "";

@@ -64,7 +64,7 @@ double Compression<D>::add_to(std::vector<double>& b) const {
     }
     square += changed * changed;
   }
-  return std::sqrt(sum(k_.mesh.comm, square));
+  return std::sqrt(parallel::sum(k_.mesh.comm, square));
 }
 
 template <int D>

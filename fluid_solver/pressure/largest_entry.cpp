@@ -9,7 +9,7 @@
 namespace couplet::fluid {
 
 template <int D>
-std::string largest_entry(const Mesh& mesh, const Placement<D>& at,
+std::string largest_entry(const mesh::Mesh& mesh, const Placement<D>& at,
                           const std::function<double(Index)>& size) {
   struct {
     double value;
@@ -37,7 +37,9 @@ std::string largest_entry(const Mesh& mesh, const Placement<D>& at,
                      static_cast<GlobalIndex>(data[3]), data[0], data[1], data[2]);
 }
 
-template std::string largest_entry(const Mesh&, const Placement<2>&, const std::function<double(Index)>&);
-template std::string largest_entry(const Mesh&, const Placement<3>&, const std::function<double(Index)>&);
+template std::string largest_entry(const mesh::Mesh&, const Placement<2>&,
+                                   const std::function<double(Index)>&);
+template std::string largest_entry(const mesh::Mesh&, const Placement<3>&,
+                                   const std::function<double(Index)>&);
 
 }  // namespace couplet::fluid

@@ -13,6 +13,7 @@ namespace couplet::fluid {
 /// (0.1, 0.5, 0) m." Such an entry that is not a number counts as larger than all. `size`: of an owned cell's entry.
 /// Collective; the same on all ranks.
 template <int D>
-std::string largest_entry(const Mesh& mesh, const Placement<D>& at, const std::function<double(Index)>& size);
+std::string largest_entry(const mesh::Mesh& mesh, const Placement<D>& at,
+                          const std::function<double(Index)>& size);
 
 }  // namespace couplet::fluid

@@ -15,7 +15,7 @@ namespace couplet::fluid {
 constexpr GlobalIndex largest_direct = 120000;
 
 template <int D>
-PressureEquation<D>::PressureEquation(const Mesh& mesh, const Boundary<D>& boundary, bool fixed)
+PressureEquation<D>::PressureEquation(const mesh::Mesh& mesh, const Boundary<D>& boundary, bool fixed)
     : mesh_(mesh),
       boundary_(boundary),
       fixed_(fixed),
@@ -38,7 +38,7 @@ void PressureEquation<D>::make_pattern() {
     add(mesh_.neighbour[f], mesh_.owner[f]);
   }
   values_.resize(row.size());
-  matrix_ = std::make_unique<SparseMatrix>(mesh_.comm, owned, std::move(row), std::move(column));
+  matrix_ = std::make_unique<linalg::SparseMatrix>(mesh_.comm, owned, std::move(row), std::move(column));
 }
 
 template <int D>
@@ -72,7 +72,7 @@ void PressureEquation<D>::make_fixed(const Placement<D>& at) {
     count(mesh_.owner[f], mesh_.neighbour[f]);
     count(mesh_.neighbour[f], mesh_.owner[f]);
   }
-  matrix_ = std::make_unique<SparseMatrix>(mesh_.comm, own, other);
+  matrix_ = std::make_unique<linalg::SparseMatrix>(mesh_.comm, own, other);
   const auto set = [&](Index from, Index to, double value) {
     if (from < owned) matrix_->set(mesh_.cells.global(from), mesh_.cells.global(to), value);
   };
@@ -111,7 +111,7 @@ void PressureEquation<D>::fill(std::span<const double> coefficients) {
 }
 
 template <int D>
-void PressureEquation<D>::save(CheckpointWriter& file) const {
+void PressureEquation<D>::save(io::CheckpointWriter& file) const {
   if (fixed_) return;
   file.write_scalar("pressure-preconditioner-due", accepted_.memory.is_due);
   file.write_scalar("pressure-preconditioner-single", accepted_.memory.is_single);
@@ -120,9 +120,9 @@ void PressureEquation<D>::save(CheckpointWriter& file) const {
 }
 
 template <int D>
-void PressureEquation<D>::load(CheckpointReader& file) {
+void PressureEquation<D>::load(io::CheckpointReader& file) {
   if (fixed_) return;
-  PreconditionerMemory memory;
+  linalg::PreconditionerMemory memory;
   memory.is_due = file.read_scalar("pressure-preconditioner-due") != 0;
   memory.is_single = file.read_scalar("pressure-preconditioner-single") != 0;
   memory.most_iterations = static_cast<int>(file.read_count("pressure-preconditioner-iterations", 1000000));
@@ -131,7 +131,7 @@ void PressureEquation<D>::load(CheckpointReader& file) {
   if (!memory.is_due && saved.size() != coefficients)
     throw Error("The checkpoint's preconditioner of the pressure is damaged. Use an earlier one.");
   const bool is_here = solver_->memory() == memory && *now_.made_from == saved;
-  if (any(mesh_.comm, !is_here)) {
+  if (parallel::any(mesh_.comm, !is_here)) {
     if (!memory.is_due) fill(saved);
     solver_->restore(memory);
     now_ = {memory, std::make_shared<const std::vector<double>>(std::move(saved))};
@@ -156,25 +156,26 @@ void PressureEquation<D>::set(const Placement<D>& at, bool regular, std::span<co
     matrix_->fill(values_);
   }
   if (solver_) return solver_->matrix_changed();
-  LinearOptions options;
-  options.method = !direct_ ? LinearMethod::cg_multigrid
-                   : fixed_ ? LinearMethod::cg_direct
-                            : LinearMethod::cg_single;
-  solver_ = std::make_unique<LinearSolver>("pressure", *matrix_, options);
+  linalg::LinearOptions options;
+  options.method = !direct_ ? linalg::LinearMethod::cg_multigrid
+                   : fixed_ ? linalg::LinearMethod::cg_direct
+                            : linalg::LinearMethod::cg_single;
+  solver_ = std::make_unique<linalg::LinearSolver>("pressure", *matrix_, options);
 }
 
 // A closed domain has a pressure up to a constant only if the fluxes add up to nothing.
 template <int D>
 void PressureEquation<D>::remove_mean(std::vector<double>& b) const {
-  const double mean =
-      sum(mesh_.comm, std::accumulate(b.begin(), b.end(), 0.0)) / static_cast<double>(mesh_.cells.n_global());
+  const double mean = parallel::sum(mesh_.comm, std::accumulate(b.begin(), b.end(), 0.0)) /
+                      static_cast<double>(mesh_.cells.n_global());
   for (double& value : b) value -= mean;
 }
 
 /// A tolerance that is not finite would let anything pass: fluxes whose squares overflow make one.
 template <int D>
-SolveStatistics PressureEquation<D>::solve_or_tell(const Placement<D>& at, std::span<const double> b,
-                                                   std::span<double> p, double relative, double absolute) {
+linalg::SolveStatistics PressureEquation<D>::solve_or_tell(const Placement<D>& at, std::span<const double> b,
+                                                           std::span<double> p, double relative,
+                                                           double absolute) {
   const auto where = [&] { return largest_entry<D>(mesh_, at, [&](Index c) { return b[c]; }); };
   if (!std::isfinite(absolute))
     throw SolveFailure("The fluxes of the pressure equation are out of range. {}", where());
@@ -186,9 +187,9 @@ SolveStatistics PressureEquation<D>::solve_or_tell(const Placement<D>& at, std::
 }
 
 template <int D>
-SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::vector<double>& b,
-                                           std::vector<double>& p, double relative, double absolute,
-                                           double answer, double size) {
+linalg::SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::vector<double>& b,
+                                                   std::vector<double>& p, double relative, double absolute,
+                                                   double answer, double size) {
   const Index owned = mesh_.cells.n_owned();
   if (singular()) {
     remove_mean(b);
@@ -208,7 +209,7 @@ SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::vector<d
     relative = 0;
   }
   const int made = solver_->preconditioners_built();
-  const SolveStatistics statistics =
+  const linalg::SolveStatistics statistics =
       solve_or_tell(at, b, std::span<double>(p).first(owned), relative, absolute);
   if (!fixed_) {
     now_.memory = solver_->memory();

@@ -19,18 +19,18 @@ template <int D>
 class PressureEquation {
  public:
   /// `fixed`: the mesh rests; nothing is kept for a second set().
-  PressureEquation(const Mesh& mesh, const Boundary<D>& boundary, bool fixed);
+  PressureEquation(const mesh::Mesh& mesh, const Boundary<D>& boundary, bool fixed);
   /// `regular`: walls or openings answer to the pressure with `admittance`, per boundary face [m], or cells with `storage`,
   /// per owned cell [m], so that a closed domain has a level. Collective.
   void set(const Placement<D>& at, bool regular = false, std::span<const double> admittance = {},
            std::span<const double> storage = {});
   /// The preconditioner lags behind a matrix that moves: what it was made from, to make it again. A fixed matrix needs
   /// none of this.
-  void save(CheckpointWriter& file) const;
+  void save(io::CheckpointWriter& file) const;
   /// What save() saves is what there is now.
   void accept() { accepted_ = now_; }
   /// The matrix is then that of the preconditioner: set() has to come before the next solve. Collective.
-  void load(CheckpointReader& file);
+  void load(io::CheckpointReader& file);
   /// A new preconditioner at the next solve.
   void refresh() {
     if (solver_) solver_->refresh();
@@ -40,8 +40,8 @@ class PressureEquation {
   /// exit. Stops at max(relative |b|, absolute). With `answer`, the residual of the guess falls to this share, too, down to
   /// least_answer relative |b|: a partner that changes b sees p change by what it has changed. `size`: in the
   /// place of |b|, below 0: |b| itself. Collective.
-  SolveStatistics solve(const Placement<D>& at, std::vector<double>& b, std::vector<double>& p,
-                        double relative, double absolute, double answer = 0, double size = -1);
+  linalg::SolveStatistics solve(const Placement<D>& at, std::vector<double>& b, std::vector<double>& p,
+                                double relative, double absolute, double answer = 0, double size = -1);
   static constexpr double least_answer = 1e-4;
 
  private:
@@ -52,21 +52,21 @@ class PressureEquation {
   std::vector<double> diagonal(const Placement<D>& at, std::span<const double> admittance,
                                std::span<const double> storage) const;
   void remove_mean(std::vector<double>& b) const;
-  SolveStatistics solve_or_tell(const Placement<D>& at, std::span<const double> b, std::span<double> p,
-                                double relative, double absolute);
-  const Mesh& mesh_;
+  linalg::SolveStatistics solve_or_tell(const Placement<D>& at, std::span<const double> b,
+                                        std::span<double> p, double relative, double absolute);
+  const mesh::Mesh& mesh_;
   const Boundary<D>& boundary_;
   bool fixed_, regular_ = false;
   bool direct_;  // small 2-D meshes: kept Cholesky factors
-  std::unique_ptr<SparseMatrix> matrix_;
-  std::unique_ptr<LinearSolver> solver_;
+  std::unique_ptr<linalg::SparseMatrix> matrix_;
+  std::unique_ptr<linalg::LinearSolver> solver_;
   std::vector<double> coefficients() const;
   void fill(std::span<const double> coefficients);
   // Of a moving mesh: the matrix's triplets, and the preconditioner with the coefficients that it was made from: now,
   // and as the accepted level had it.
   std::vector<double> values_;
   struct Lagging {
-    PreconditionerMemory memory;
+    linalg::PreconditionerMemory memory;
     std::shared_ptr<const std::vector<double>> made_from;
   };
   Lagging now_, accepted_;

@@ -52,7 +52,7 @@ void PressureProjection<D>::assemble() {
 
 template <int D>
 void PressureProjection<D>::set_obliqueness(const Placement<D>& at) {
-  k_.degrees = std::atan(max(k_.mesh.comm, at.obliqueness)) * 180 / std::numbers::pi;
+  k_.degrees = std::atan(parallel::max(k_.mesh.comm, at.obliqueness)) * 180 / std::numbers::pi;
   k_.very_oblique = k_.degrees > largest_degrees;
 }
 
@@ -194,8 +194,8 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
   }
   b_.resize(k_.mesh.cells.n_owned());
   const double changed = compression_ ? add_waves() : -1;
-  const double floor = flux_floor * factor * std::sqrt(sum(k_.mesh.comm, size));
-  const SolveStatistics solved = pressure_.solve(
+  const double floor = flux_floor * factor * std::sqrt(parallel::sum(k_.mesh.comm, size));
+  const linalg::SolveStatistics solved = pressure_.solve(
       now, b_, k_.p, tolerance, std::max(floor, std::numeric_limits<double>::min()), answer, changed);
   k_.statistics.pressure_iterations += solved.iterations;
   if (k_.bodies) fill_pressure_in_bodies();
@@ -279,7 +279,7 @@ void PressureProjection<D>::solve_initial(const Placement<D>& at) {
   if (k_.gap_closed()) clear_gaps(b_);
   if (k_.bodies) clear_bodies(b_);
   b_.resize(k_.mesh.cells.n_owned());
-  const double floor = 1e-14 * std::sqrt(sum(k_.mesh.comm, size));
+  const double floor = 1e-14 * std::sqrt(parallel::sum(k_.mesh.comm, size));
   pressure_.solve(at, b_, k_.p, std::min(1e-8, k_.parameters.pressure_tolerance),
                   std::max(floor, std::numeric_limits<double>::min()));
   if (k_.bodies) fill_pressure_in_bodies();

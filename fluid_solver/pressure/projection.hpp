@@ -40,8 +40,8 @@ class PressureProjection {
   }
   /// What the solves depend on beside the level they start from, as of the last accept(). load(): collective.
   void accept();
-  void save(CheckpointWriter& file) const;
-  void load(CheckpointReader& file);
+  void save(io::CheckpointWriter& file) const;
+  void load(io::CheckpointReader& file);
   /// The matrix of the work's step, if that of another placement is there. Collective.
   void assemble();
   /// p and p_b for the given velocities w at t^{n+1}. Collective.

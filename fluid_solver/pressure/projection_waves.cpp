@@ -11,13 +11,13 @@ namespace couplet::fluid {
 namespace {
 
 /// Largest extent of the mesh [m]. Collective.
-double size_of(const Mesh& mesh, std::span<const Vec3> points) {
+double size_of(const mesh::Mesh& mesh, std::span<const Vec3> points) {
   constexpr double far = std::numeric_limits<double>::max();
   double size = 0;
   for (int c = 0; c < mesh.dim; ++c) {
     double low = far, high = -far;
     for (const Vec3& x : points) low = std::min(low, x[c]), high = std::max(high, x[c]);
-    size = std::max(size, max(mesh.comm, high) - min(mesh.comm, low));
+    size = std::max(size, parallel::max(mesh.comm, high) - parallel::min(mesh.comm, low));
   }
   return size;
 }
@@ -68,13 +68,13 @@ void PressureProjection<D>::accept() {
 }
 
 template <int D>
-void PressureProjection<D>::save(CheckpointWriter& file) const {
+void PressureProjection<D>::save(io::CheckpointWriter& file) const {
   pressure_.save(file);
   if (upstream_) upstream_->save(file);
 }
 
 template <int D>
-void PressureProjection<D>::load(CheckpointReader& file) {
+void PressureProjection<D>::load(io::CheckpointReader& file) {
   pressure_.load(file);
   if (upstream_) upstream_->load(file);
 }
@@ -85,15 +85,15 @@ template std::span<const double> PressureProjection<2>::storage() const;
 template double PressureProjection<2>::add_waves();
 template std::array<double, 3> PressureProjection<2>::matrix_rule() const;
 template void PressureProjection<2>::accept();
-template void PressureProjection<2>::save(CheckpointWriter&) const;
-template void PressureProjection<2>::load(CheckpointReader&);
+template void PressureProjection<2>::save(io::CheckpointWriter&) const;
+template void PressureProjection<2>::load(io::CheckpointReader&);
 template void PressureProjection<3>::make_waves();
 template void PressureProjection<3>::set_waves(const State<3>&);
 template std::span<const double> PressureProjection<3>::storage() const;
 template double PressureProjection<3>::add_waves();
 template std::array<double, 3> PressureProjection<3>::matrix_rule() const;
 template void PressureProjection<3>::accept();
-template void PressureProjection<3>::save(CheckpointWriter&) const;
-template void PressureProjection<3>::load(CheckpointReader&);
+template void PressureProjection<3>::save(io::CheckpointWriter&) const;
+template void PressureProjection<3>::load(io::CheckpointReader&);
 
 }  // namespace couplet::fluid

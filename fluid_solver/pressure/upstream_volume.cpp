@@ -66,7 +66,7 @@ void UpstreamVolume<D>::prepare(const State<D>& from, double rate) {
       const Index f = k_.mesh.n_interior + b;
       flux += from.phi[f] - from.w[b].dot(from.placement->area[f]);
     }
-  past_ = -rate_ * begin() - stiffness_ * sum(k_.mesh.comm, flux);
+  past_ = -rate_ * begin() - stiffness_ * parallel::sum(k_.mesh.comm, flux);
 }
 
 template <int D>
@@ -86,7 +86,7 @@ double UpstreamVolume<D>::add_to(std::vector<double>& b_side) {
       flux += k_.phi_p[f] - k_.w[b].dot(at.area[f]);
     }
   for (std::size_t c = 0; c < b_side.size(); ++c) flux += factor * response_[c] * b_side[c];
-  flux = sum(k_.mesh.comm, flux);
+  flux = parallel::sum(k_.mesh.comm, flux);
   const double open = faces_ - answer_;
   if (rate_ > 0 || open > least_answer * faces_)
     pressure_ = (stiffness_ * flux - past_) / (rate_ + stiffness_ * factor * open);
@@ -99,7 +99,7 @@ double UpstreamVolume<D>::add_to(std::vector<double>& b_side) {
       b_side[k_.mesh.owner[f]] += at.conductance[f] * pressure_;
       square += std::pow(at.conductance[f] * change, 2);
     }
-  return std::sqrt(sum(k_.mesh.comm, square));
+  return std::sqrt(parallel::sum(k_.mesh.comm, square));
 }
 
 template <int D>
@@ -121,7 +121,7 @@ void UpstreamVolume<D>::complete(PressureLevel<D>& level) const {
 }
 
 template <int D>
-void UpstreamVolume<D>::load(CheckpointReader& file) {
+void UpstreamVolume<D>::load(io::CheckpointReader& file) {
   response_ = file.read_or_none("upstream-response", k_.mesh.cells.n_local());
   accepted_ = response_;
 }

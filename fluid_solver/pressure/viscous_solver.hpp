@@ -12,7 +12,7 @@ namespace couplet::fluid {
 template <int D>
 class ViscousSolver {
  public:
-  ViscousSolver(const Mesh& mesh, const Boundary<D>& boundary) : mesh_(mesh), boundary_(boundary) {}
+  ViscousSolver(const mesh::Mesh& mesh, const Boundary<D>& boundary) : mesh_(mesh), boundary_(boundary) {}
   /// The system of the solves that follow. `at` has to stay.
   void prepare(const Placement<D>& at, double beta);
   /// Of its diagonal, per owned cell.
@@ -32,7 +32,7 @@ class ViscousSolver {
   };
   void add_boundary(const Vectors<D>& w, Vectors<D>& b) const;
   void multiply(Vectors<D>& x, Vectors<D>& y) const;
-  const Mesh& mesh_;
+  const mesh::Mesh& mesh_;
   const Boundary<D>& boundary_;
   const Placement<D>* at_ = nullptr;
   double beta_ = 0;

@@ -33,7 +33,7 @@ void set_face(Placement<D>& p, Index f, const Vec<D>& d) {
 /// B of each cell. The Gauss gradient takes its values where the weights lead to on the line between the
 /// cells: (1 - w) d from the owner, -w d from the neighbour.
 template <int D>
-void cure_gradients(const Mesh& mesh, Placement<D>& p) {
+void cure_gradients(const mesh::Mesh& mesh, Placement<D>& p) {
   p.gradient_cure.assign(mesh.cells.n_local(), Tensor<D>::Zero());
   for (Index f = 0; f < mesh.n_interior; ++f) {
     const Index o = mesh.owner[f], n = mesh.neighbour[f];
@@ -55,7 +55,7 @@ void cure_gradients(const Mesh& mesh, Placement<D>& p) {
 
 /// All that follows from volumes, centres and S; `centre_of(f)`: centre of a flux face.
 template <int D, class FaceCentre>
-void set_faces(const Mesh& mesh, const FaceCentre& centre_of, Placement<D>& p) {
+void set_faces(const mesh::Mesh& mesh, const FaceCentre& centre_of, Placement<D>& p) {
   const Index n_faces = mesh.n_flux_faces();
   p.conductance.resize(n_faces);
   p.oblique.resize(n_faces);
@@ -80,7 +80,7 @@ void set_faces(const Mesh& mesh, const FaceCentre& centre_of, Placement<D>& p) {
     p.boundary_centre[f - mesh.n_interior].template head<D>() = centre;
     set_face<D>(p, f, centre - p.centre[mesh.owner[f]]);
   }
-  if (std::sqrt(max(mesh.comm, skewness)) > least_skewness)
+  if (std::sqrt(parallel::max(mesh.comm, skewness)) > least_skewness)
     cure_gradients(mesh, p);
   else
     Vectors<D>().swap(p.skew);
@@ -89,7 +89,7 @@ void set_faces(const Mesh& mesh, const FaceCentre& centre_of, Placement<D>& p) {
 
 /// Cell by cell, counter-clockwise, which writes every value once. Triangles from the mean of the points keep
 /// round-off small far from the origin.
-void set_cells(const Mesh& mesh, std::span<const Vec3> points, Placement<2>& p) {
+void set_cells(const mesh::Mesh& mesh, std::span<const Vec3> points, Placement<2>& p) {
   p.volume.resize(mesh.cells.n_local());
   p.centre.resize(mesh.cells.n_local());
   for (Index c = 0; c < mesh.cells.n_local(); ++c) {
@@ -114,7 +114,7 @@ void set_cells(const Mesh& mesh, std::span<const Vec3> points, Placement<2>& p) 
 }  // namespace
 
 template <int D>
-std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, const Geometry& geometry) {
+std::shared_ptr<const Placement<D>> make_placement(const mesh::Mesh& mesh, const mesh::Geometry& geometry) {
   auto placement = std::make_shared<Placement<D>>();
   Placement<D>& p = *placement;
   p.volume = geometry.volume;
@@ -129,7 +129,7 @@ std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, const Geome
 
 /// In two dimensions without the arrays of a Geometry. Periodic cells do not have all points of their faces.
 template <int D>
-std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, std::span<const Vec3> points) {
+std::shared_ptr<const Placement<D>> make_placement(const mesh::Mesh& mesh, std::span<const Vec3> points) {
   if constexpr (D == 2) {
     if (mesh.neighbour_shift.empty()) {
       auto placement = std::make_shared<Placement<2>>();
@@ -147,7 +147,7 @@ std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, std::span<c
       return placement;
     }
   }
-  return make_placement<D>(mesh, compute_geometry(mesh, {points.begin(), points.end()}));
+  return make_placement<D>(mesh, mesh::compute_geometry(mesh, {points.begin(), points.end()}));
 }
 
 template <int D>
@@ -161,9 +161,9 @@ std::shared_ptr<const Placement<D>> translated(const Placement<D>& from, const V
 
 template std::shared_ptr<const Placement<2>> translated<2>(const Placement<2>&, const Vec3&);
 template std::shared_ptr<const Placement<3>> translated<3>(const Placement<3>&, const Vec3&);
-template std::shared_ptr<const Placement<2>> make_placement<2>(const Mesh&, const Geometry&);
-template std::shared_ptr<const Placement<3>> make_placement<3>(const Mesh&, const Geometry&);
-template std::shared_ptr<const Placement<2>> make_placement<2>(const Mesh&, std::span<const Vec3>);
-template std::shared_ptr<const Placement<3>> make_placement<3>(const Mesh&, std::span<const Vec3>);
+template std::shared_ptr<const Placement<2>> make_placement<2>(const mesh::Mesh&, const mesh::Geometry&);
+template std::shared_ptr<const Placement<3>> make_placement<3>(const mesh::Mesh&, const mesh::Geometry&);
+template std::shared_ptr<const Placement<2>> make_placement<2>(const mesh::Mesh&, std::span<const Vec3>);
+template std::shared_ptr<const Placement<3>> make_placement<3>(const mesh::Mesh&, std::span<const Vec3>);
 
 }  // namespace couplet::fluid

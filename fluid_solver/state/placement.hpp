@@ -55,9 +55,9 @@ constexpr double orthogonal = 1e-9;
 
 /// Collective.
 template <int D>
-std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, const Geometry& geometry);
+std::shared_ptr<const Placement<D>> make_placement(const mesh::Mesh& mesh, const mesh::Geometry& geometry);
 template <int D>
-std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, std::span<const Vec3> points);
+std::shared_ptr<const Placement<D>> make_placement(const mesh::Mesh& mesh, std::span<const Vec3> points);
 /// The same shape elsewhere: only the centres differ. `from` must have a shape.
 template <int D>
 std::shared_ptr<const Placement<D>> translated(const Placement<D>& from, const Vec3& by);

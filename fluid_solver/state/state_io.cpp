@@ -7,13 +7,13 @@ namespace couplet::fluid {
 namespace {
 
 template <int D>
-void read_vectors(CheckpointReader& file, const std::string& name, Vectors<D>& values, std::size_t n) {
+void read_vectors(io::CheckpointReader& file, const std::string& name, Vectors<D>& values, std::size_t n) {
   values.resize(n);
   file.read(name, flat<D>(values));
 }
 
 template <int D>
-void write_waves(CheckpointWriter& file, const State<D>& s, int levels) {
+void write_waves(io::CheckpointWriter& file, const State<D>& s, int levels) {
   for (int k = 0; k < levels; ++k) {
     const std::string name = "pressure-" + std::to_string(k);
     file.write_scalar(name + "-upstream", s.pressure[k]->upstream);
@@ -25,7 +25,7 @@ void write_waves(CheckpointWriter& file, const State<D>& s, int levels) {
 }
 
 template <int D>
-void read_waves(CheckpointReader& file, const Mesh& mesh, State<D>& s, int levels) {
+void read_waves(io::CheckpointReader& file, const mesh::Mesh& mesh, State<D>& s, int levels) {
   const std::size_t cells = mesh.cells.n_local(), faces = mesh.boundary.n_owned();
   for (int k = 0; k < levels; ++k) {
     const std::string name = "pressure-" + std::to_string(k);
@@ -42,7 +42,7 @@ void read_waves(CheckpointReader& file, const Mesh& mesh, State<D>& s, int level
 }  // namespace
 
 template <int D>
-void write_state(CheckpointWriter& file, const State<D>& s, bool compressible) {
+void write_state(io::CheckpointWriter& file, const State<D>& s, bool compressible) {
   int levels = 0;
   while (levels < 3 && s.pressure[levels]) ++levels;
   file.write_scalar("time", s.time);
@@ -89,8 +89,8 @@ void write_state(CheckpointWriter& file, const State<D>& s, bool compressible) {
 }
 
 template <int D>
-State<D> read_state(CheckpointReader& file, const Mesh& mesh, std::shared_ptr<const Placement<D>> at_rest,
-                    bool compressible) {
+State<D> read_state(io::CheckpointReader& file, const mesh::Mesh& mesh,
+                    std::shared_ptr<const Placement<D>> at_rest, bool compressible) {
   const bool moving = !at_rest;
   State<D> s;
   const std::size_t cells = mesh.cells.n_local(), faces = mesh.boundary.n_owned();
@@ -145,9 +145,11 @@ State<D> read_state(CheckpointReader& file, const Mesh& mesh, std::shared_ptr<co
   return s;
 }
 
-template void write_state<2>(CheckpointWriter&, const State<2>&, bool);
-template void write_state<3>(CheckpointWriter&, const State<3>&, bool);
-template State<2> read_state<2>(CheckpointReader&, const Mesh&, std::shared_ptr<const Placement<2>>, bool);
-template State<3> read_state<3>(CheckpointReader&, const Mesh&, std::shared_ptr<const Placement<3>>, bool);
+template void write_state<2>(io::CheckpointWriter&, const State<2>&, bool);
+template void write_state<3>(io::CheckpointWriter&, const State<3>&, bool);
+template State<2> read_state<2>(io::CheckpointReader&, const mesh::Mesh&, std::shared_ptr<const Placement<2>>,
+                                bool);
+template State<3> read_state<3>(io::CheckpointReader&, const mesh::Mesh&, std::shared_ptr<const Placement<3>>,
+                                bool);
 
 }  // namespace couplet::fluid

@@ -124,7 +124,7 @@ bool FractionalStep<D>::too_fast() const {
   bool crosses = false;
   for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c)
     crosses |= !(std::pow(k_.right_side[c].norm() * k_.step.dt, D) <= k_.step.to->volume[c]);
-  return any(k_.mesh.comm, crosses);
+  return parallel::any(k_.mesh.comm, crosses);
 }
 
 /// Where it went wrong: the fastest cell if that is out of bounds, else the one that gained most energy.
@@ -137,7 +137,7 @@ void FractionalStep<D>::check(const State<D>& from) {
   struct {
     double value;
     int rank;
-  } worst{-std::numeric_limits<double>::infinity(), comm_rank(k_.mesh.comm)};
+  } worst{-std::numeric_limits<double>::infinity(), parallel::comm_rank(k_.mesh.comm)};
   Index where = 0;
   for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) {
     const double square = k_.right_side[c].squaredNorm();
@@ -151,7 +151,7 @@ void FractionalStep<D>::check(const State<D>& from) {
   MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, k_.mesh.comm);
   std::string cause;
   double data[4] = {};
-  if (comm_rank(k_.mesh.comm) == worst.rank) {
+  if (parallel::comm_rank(k_.mesh.comm) == worst.rank) {
     Vec3 place = Vec3::Zero();
     place.template head<D>() = k_.step.to->centre[where];
     std::copy_n(place.data(), 3, data);
@@ -160,7 +160,7 @@ void FractionalStep<D>::check(const State<D>& from) {
                          k_.frame ? k_.frame->rate(k_.by.time, k_.step.dt) : 0);
   }
   MPI_Bcast(data, 4, MPI_DOUBLE, worst.rank, k_.mesh.comm);
-  broadcast(k_.mesh.comm, cause, worst.rank);
+  parallel::broadcast(k_.mesh.comm, cause, worst.rank);
   if (k_.gap_closed())
     if (const std::string shut = k_.pockets->cause(*k_.step.to); !shut.empty()) cause = shut;
   const EnergyJudgement& e = judgement_.energy;

@@ -159,8 +159,8 @@ EnergyJudgement EnergyGuard<D>::judge(const EnergyStep<D>& s) const {
 }
 
 template <int D>
-std::string likely_cause(const Mesh& mesh, const Boundary<D>& boundary, const EnergyStep<D>& s, Index cell,
-                         double nu, bool implicit, double frame_rate) {
+std::string likely_cause(const mesh::Mesh& mesh, const Boundary<D>& boundary, const EnergyStep<D>& s,
+                         Index cell, double nu, bool implicit, double frame_rate) {
   double convection = 0, diffusion = 0, tangent = 0;
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
     const bool outside = f >= mesh.n_interior;
@@ -202,9 +202,9 @@ std::string likely_cause(const Mesh& mesh, const Boundary<D>& boundary, const En
 
 template class EnergyGuard<2>;
 template class EnergyGuard<3>;
-template std::string likely_cause<2>(const Mesh&, const Boundary<2>&, const EnergyStep<2>&, Index, double,
-                                     bool, double);
-template std::string likely_cause<3>(const Mesh&, const Boundary<3>&, const EnergyStep<3>&, Index, double,
-                                     bool, double);
+template std::string likely_cause<2>(const mesh::Mesh&, const Boundary<2>&, const EnergyStep<2>&, Index,
+                                     double, bool, double);
+template std::string likely_cause<3>(const mesh::Mesh&, const Boundary<3>&, const EnergyStep<3>&, Index,
+                                     double, bool, double);
 
 }  // namespace couplet::fluid

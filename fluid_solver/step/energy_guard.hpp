@@ -47,7 +47,7 @@ template <int D>
 class EnergyGuard {
  public:
   /// `pressure_tolerance`: of the pressure's solver, relative; `sound`: speed [m/s], 0: incompressible.
-  EnergyGuard(const Mesh& mesh, const Boundary<D>& boundary, double density, double viscosity,
+  EnergyGuard(const mesh::Mesh& mesh, const Boundary<D>& boundary, double density, double viscosity,
               double pressure_tolerance, double sound = 0)
       : mesh_(mesh),
         boundary_(boundary),
@@ -70,7 +70,7 @@ class EnergyGuard {
   double level_of(const EnergyStep<D>& step) const;
   double energy_at_rest(const EnergyStep<D>& step) const;
   void add_boundary(const EnergyStep<D>& step, double level, double* sums) const;
-  const Mesh& mesh_;
+  const mesh::Mesh& mesh_;
   const Boundary<D>& boundary_;
   double rho_, mu_, pressure_tolerance_, bulk_;
 };
@@ -78,7 +78,7 @@ class EnergyGuard {
 /// Why a step may have gone wrong in one cell, as a sentence; local. `cell`: owned. `frame_rate`: |2 omega| of a frame
 /// that turns [1/s], 0 without.
 template <int D>
-std::string likely_cause(const Mesh& mesh, const Boundary<D>& boundary, const EnergyStep<D>& step, Index cell,
-                         double kinematic_viscosity, bool implicit, double frame_rate);
+std::string likely_cause(const mesh::Mesh& mesh, const Boundary<D>& boundary, const EnergyStep<D>& step,
+                         Index cell, double kinematic_viscosity, bool implicit, double frame_rate);
 
 }  // namespace couplet::fluid

@@ -8,7 +8,7 @@
 namespace couplet::fluid {
 
 template <int D>
-Fluid<D>::Fluid(const Mesh& mesh, const Geometry& geometry, const FluidParameters& parameters,
+Fluid<D>::Fluid(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const FluidParameters& parameters,
                 bool moving_mesh, double start_time)
     : mesh_(mesh),
       parameters_(parameters),

@@ -32,8 +32,8 @@ template <int D>
 class Fluid {
  public:
   /// `geometry`: of the mesh at rest; of it the points alone are kept.
-  Fluid(const Mesh& mesh, const Geometry& geometry, const FluidParameters& parameters, bool moving_mesh,
-        double start_time = 0);
+  Fluid(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const FluidParameters& parameters,
+        bool moving_mesh, double start_time = 0);
 
   void begin_step(double time, double dt);
   /// `points`: at t^{n+1}, empty if the mesh rests. `wall_velocity`: per boundary face at t^{n+1} [m/s], only
@@ -47,7 +47,7 @@ class Fluid {
   }
   /// Before yield_from(): Boundary::set_wall_mass. Collective.
   void set_wall_mass(std::span<const Index> boundary_faces, std::span<const double> masses) {
-    if (any(mesh_.comm, boundary_.set_wall_mass(boundary_faces, masses))) step_.forget_walls();
+    if (parallel::any(mesh_.comm, boundary_.set_wall_mass(boundary_faces, masses))) step_.forget_walls();
   }
   /// At the boundary faces, of the last solve_pressure() [Pa].
   const std::vector<double>& boundary_pressure() const { return step_.boundary_pressure(); }
@@ -80,7 +80,7 @@ class Fluid {
   const Vectors<D>& viscous_force() const { return viscous_force_; }
 
   const Boundary<D>& boundary() const { return boundary_; }
-  const Mesh& mesh() const { return mesh_; }
+  const mesh::Mesh& mesh() const { return mesh_; }
   /// Per local point, as read [m].
   const std::vector<Vec3>& points_at_rest() const { return path_.points_at_rest(); }
   const FluidParameters& parameters() const { return parameters_; }
@@ -97,7 +97,7 @@ class Fluid {
   /// What the sub-step under way starts from.
   const State<D>& level() const { return split_ ? trial_ : accepted_; }
   void run_stages(SubStep<D>& step, double done, const Vectors<D>& wall_velocity);
-  void start(const Geometry& geometry, double time);
+  void start(const mesh::Geometry& geometry, double time);
   void check_wall_velocity() const;
   Vectors<D> wall_velocity_at(double done, const Vectors<D>& interface_velocity,
                               const SubStep<D>& step) const;
@@ -105,7 +105,7 @@ class Fluid {
   void add_forces(double share);
   void add_turning();
 
-  const Mesh& mesh_;
+  const mesh::Mesh& mesh_;
   FluidParameters parameters_;
   MeshPath<D> path_;
   Boundary<D> boundary_;

@@ -12,7 +12,7 @@ namespace couplet::fluid {
 namespace {
 
 template <int D>
-void check_frame(const Mesh& mesh, const Boundary<D>& boundary, const FluidParameters& parameters,
+void check_frame(const mesh::Mesh& mesh, const Boundary<D>& boundary, const FluidParameters& parameters,
                  bool moving) {
   if (!parameters.rotating_frame) return;
   const auto refuse = [](const char* what) { throw Error("rotating-frame: {}", what); };
@@ -30,7 +30,7 @@ void check_frame(const Mesh& mesh, const Boundary<D>& boundary, const FluidParam
   bool across = false;
   for (const Vec3& shift : mesh.neighbour_shift)
     across = across || shift.cross(axis).norm() > 1e-6 * shift.norm();
-  if (any(mesh.comm, across))
+  if (parallel::any(mesh.comm, across))
     refuse("the centrifugal force differs between periodic patches that are not shifted along the axis.");
 }
 
@@ -46,18 +46,19 @@ void check_waves(const FluidParameters& parameters) {
 }
 
 void check_axes(const FluidParameters& parameters, int dim) {
-  if (parameters.rotating_frame) check_axis(parameters.rotating_frame->axis, dim, "rotating-frame.axis");
+  if (parameters.rotating_frame) fv::check_axis(parameters.rotating_frame->axis, dim, "rotating-frame.axis");
   for (const auto& [name, b] : parameters.boundaries)
-    if (b.rotation) check_axis(b.rotation->axis, dim, "boundaries." + name + ".rotation.axis");
+    if (b.rotation) fv::check_axis(b.rotation->axis, dim, "boundaries." + name + ".rotation.axis");
   for (const auto& [name, c] : parameters.output.coefficients)
-    check_axis(Vec3(c.axis[0], c.axis[1], std::abs(c.axis[2])), dim,  // a moment may be taken about -z
-               "output.coefficients." + name + ".axis");
+    fv::check_axis(Vec3(c.axis[0], c.axis[1], std::abs(c.axis[2])), dim,  // a moment may be taken about -z
+                   "output.coefficients." + name + ".axis");
 }
 
 }  // namespace
 
 template <int D>
-void check_together(const Mesh& mesh, const Boundary<D>& boundary, FluidParameters& parameters, bool moving) {
+void check_together(const mesh::Mesh& mesh, const Boundary<D>& boundary, FluidParameters& parameters,
+                    bool moving) {
   check_axes(parameters, D);
   check_frame(mesh, boundary, parameters, moving);
   if (!parameters.bodies.empty()) {
@@ -84,7 +85,7 @@ void check_together(const Mesh& mesh, const Boundary<D>& boundary, FluidParamete
   parameters.viscous = ViscousTreatment::explicit_;
 }
 
-template void check_together<2>(const Mesh&, const Boundary<2>&, FluidParameters&, bool);
-template void check_together<3>(const Mesh&, const Boundary<3>&, FluidParameters&, bool);
+template void check_together<2>(const mesh::Mesh&, const Boundary<2>&, FluidParameters&, bool);
+template void check_together<3>(const mesh::Mesh&, const Boundary<3>&, FluidParameters&, bool);
 
 }  // namespace couplet::fluid

@@ -8,6 +8,7 @@ namespace couplet::fluid {
 /// Throws Error for effects that do not go together; where one leaves a single choice of another, sets it. `moving`: the
 /// mesh will move. Collective.
 template <int D>
-void check_together(const Mesh& mesh, const Boundary<D>& boundary, FluidParameters& parameters, bool moving);
+void check_together(const mesh::Mesh& mesh, const Boundary<D>& boundary, FluidParameters& parameters,
+                    bool moving);
 
 }  // namespace couplet::fluid

@@ -42,7 +42,7 @@ void Fluid<D>::check_wall_velocity() const {
   double worst = 0;
   Index where = -1;
   for (const std::string& name : boundary_.interface_patches()) {
-    const Patch& patch = *mesh_.find_patch(name);
+    const mesh::Patch& patch = *mesh_.find_patch(name);
     for (Index f = patch.first; f < patch.first + patch.count; ++f) {
       const Index b = f - mesh_.n_interior;
       const double square = last_w_[b].squaredNorm();
@@ -53,11 +53,11 @@ void Fluid<D>::check_wall_velocity() const {
     }
   }
   const double limit = step_.largest_speed() > 0 ? most_times_faster * step_.largest_speed() : most_speed;
-  if (!any(mesh_.comm, !(std::sqrt(worst) <= limit))) return;
+  if (!parallel::any(mesh_.comm, !(std::sqrt(worst) <= limit))) return;
   struct {
     double value;
     int rank;
-  } first{worst, comm_rank(mesh_.comm)};
+  } first{worst, parallel::comm_rank(mesh_.comm)};
   MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_DOUBLE_INT, MPI_MAXLOC, mesh_.comm);
   Vec3 place = where < 0 ? Vec3(Vec3::Zero()) : level().placement->boundary_centre[where];
   MPI_Bcast(place.data(), 3, MPI_DOUBLE, first.rank, mesh_.comm);

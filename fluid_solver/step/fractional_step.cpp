@@ -9,7 +9,7 @@
 namespace couplet::fluid {
 
 template <int D>
-FractionalStep<D>::FractionalStep(const Mesh& mesh, const std::vector<Vec3>& points_at_rest,
+FractionalStep<D>::FractionalStep(const mesh::Mesh& mesh, const std::vector<Vec3>& points_at_rest,
                                   const Boundary<D>& boundary, const FluidParameters& parameters, bool moving)
     : k_{mesh,
          points_at_rest,
@@ -93,8 +93,8 @@ void FractionalStep<D>::mark_level(State<D>& s) {
 /// flow.
 template <int D>
 void FractionalStep<D>::project_initial(State<D>& s) {
-  k_.oblique =
-      max(k_.mesh.comm, s.placement->obliqueness) > orthogonal || (!s.points.empty() && !s.placement->shape);
+  k_.oblique = parallel::max(k_.mesh.comm, s.placement->obliqueness) > orthogonal ||
+               (!s.points.empty() && !s.placement->shape);
   const Placement<D>& at = *s.placement;
   projection_.set_obliqueness(at);
   k_.phi_p.assign(k_.mesh.n_flux_faces(), 0.0);

@@ -25,7 +25,7 @@ template <int D>
 class FractionalStep {
  public:
   /// `moving`: the mesh will move.
-  FractionalStep(const Mesh& mesh, const std::vector<Vec3>& points_at_rest, const Boundary<D>& boundary,
+  FractionalStep(const mesh::Mesh& mesh, const std::vector<Vec3>& points_at_rest, const Boundary<D>& boundary,
                  const FluidParameters& parameters, bool moving);
 
   /// `by`: how the step sees the level it starts from; `w`: given velocity per boundary face at t^{n+1}, as
@@ -74,8 +74,8 @@ class FractionalStep {
   const std::vector<double>& boundary_pressure() const { return k_.p_boundary; }
   /// What the next solves depend on beside the level they start from, as of the last keep(). load(): collective.
   void keep() { projection_.accept(); }
-  void save(CheckpointWriter& file) const { projection_.save(file); }
-  void load(CheckpointReader& file) {
+  void save(io::CheckpointWriter& file) const { projection_.save(file); }
+  void load(io::CheckpointReader& file) {
     projection_.load(file);
     k_.assembled = nullptr;
   }

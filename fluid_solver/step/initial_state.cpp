@@ -6,7 +6,7 @@
 namespace couplet::fluid {
 
 template <int D>
-void Fluid<D>::start(const Geometry& geometry, double time) {
+void Fluid<D>::start(const mesh::Geometry& geometry, double time) {
   State<D>& s = accepted_;
   s.time = time;
   if (path_.moves()) s.points = geometry.points;
@@ -16,7 +16,7 @@ void Fluid<D>::start(const Geometry& geometry, double time) {
   s.w.assign(mesh_.boundary.n_owned(), Vec<D>::Zero());
   s.u_boundary = s.w;
   if (!parameters_.initial_velocity.empty()) {
-    const auto expressions = make_expressions(parameters_.initial_velocity, D, "initial-velocity");
+    const auto expressions = fv::make_expressions(parameters_.initial_velocity, D, "initial-velocity");
     for (int c = 0; c < D; ++c) {
       expressions[c].evaluate(geometry.cell_centre, time, flat<D>(s.u), D, c);
       expressions[c].evaluate(at.boundary_centre, time, flat<D>(s.u_boundary), D, c);
@@ -40,8 +40,8 @@ void Fluid<D>::start(const Geometry& geometry, double time) {
     if (boundary_.is_convective(b)) s.w[b] = s.u_boundary[b];
   for (const Index b : boundary_.rows().of_pressure) s.u_boundary[b] = s.u[mesh_.owner[mesh_.n_interior + b]];
   step_.project_initial(s);
-  const Expression initial_pressure(parameters_.initial_pressure.value_or(config::ExpressionText{}),
-                                    "initial-pressure");
+  const fv::Expression initial_pressure(parameters_.initial_pressure.value_or(config::ExpressionText{}),
+                                        "initial-pressure");
   const bool is_state =
       parameters_.is_compressible() && (parameters_.initial_pressure || s.start == Start::at_rest);
   if (is_state || !initial_pressure.is_zero()) {
@@ -61,7 +61,7 @@ void Fluid<D>::start(const Geometry& geometry, double time) {
   step_.keep();
 }
 
-template void Fluid<2>::start(const Geometry&, double);
-template void Fluid<3>::start(const Geometry&, double);
+template void Fluid<2>::start(const mesh::Geometry&, double);
+template void Fluid<3>::start(const mesh::Geometry&, double);
 
 }  // namespace couplet::fluid

@@ -23,7 +23,7 @@ Predictor<D>::Predictor(StepWork<D>& work)
       rate_operator_(work.mesh, work.boundary, work.nu, work.sound > 0),
       viscous_solver_(work.mesh, work.boundary) {
   if (!work.parameters.body_force.empty())
-    body_force_ = make_expressions(work.parameters.body_force, D, "body-force");
+    body_force_ = fv::make_expressions(work.parameters.body_force, D, "body-force");
 }
 
 template <int D>

@@ -43,7 +43,7 @@ class Predictor {
   StepWork<D>& k_;
   RateOperator<D> rate_operator_;
   ViscousSolver<D> viscous_solver_;
-  std::vector<Expression> body_force_;
+  std::vector<fv::Expression> body_force_;
   Rates<D> rates_;
   Vectors<D> shear_;  // viscous flux through the boundary, of level n
   double weight_ = 0;

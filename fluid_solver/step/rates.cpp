@@ -8,7 +8,7 @@
 namespace couplet::fluid {
 
 template <int D>
-void velocity_gradient(const Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
+void velocity_gradient(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
                        const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient) {
   gradient.assign(mesh.cells.n_local(), Tensor<D>::Zero());
   for (Index f = 0; f < mesh.n_interior; ++f) {
@@ -28,8 +28,8 @@ void velocity_gradient(const Mesh& mesh, const Placement<D>& at, const Vectors<D
 }
 
 template <int D>
-void mean_flux(const Mesh& mesh, const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& u_boundary,
-               std::vector<Tensor<D>>& gradient, std::span<double> flux) {
+void mean_flux(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
+               const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient, std::span<double> flux) {
   for (Index f = 0; f < mesh.n_interior; ++f)
     flux[f] = 0.5 * (u[mesh.owner[f]] + u[mesh.neighbour[f]]).dot(at.area[f]);
   if (!at.skewed()) return;
@@ -137,7 +137,7 @@ void RateOperator<D>::apply(const State<D>& state, bool split, bool correct_obli
 }
 
 template <int D>
-void wall_flux(const Mesh& mesh, const Placement<D>& at, double viscosity, const Vectors<D>& u,
+void wall_flux(const mesh::Mesh& mesh, const Placement<D>& at, double viscosity, const Vectors<D>& u,
                const Vectors<D>& u_boundary, Vectors<D>& force) {
   force.resize(u_boundary.size());
   for (std::size_t b = 0; b < u_boundary.size(); ++b) {
@@ -146,19 +146,19 @@ void wall_flux(const Mesh& mesh, const Placement<D>& at, double viscosity, const
   }
 }
 
-template void velocity_gradient<2>(const Mesh&, const Placement<2>&, const Vectors<2>&, const Vectors<2>&,
-                                   std::vector<Tensor<2>>&);
-template void velocity_gradient<3>(const Mesh&, const Placement<3>&, const Vectors<3>&, const Vectors<3>&,
-                                   std::vector<Tensor<3>>&);
-template void mean_flux<2>(const Mesh&, const Placement<2>&, const Vectors<2>&, const Vectors<2>&,
+template void velocity_gradient<2>(const mesh::Mesh&, const Placement<2>&, const Vectors<2>&,
+                                   const Vectors<2>&, std::vector<Tensor<2>>&);
+template void velocity_gradient<3>(const mesh::Mesh&, const Placement<3>&, const Vectors<3>&,
+                                   const Vectors<3>&, std::vector<Tensor<3>>&);
+template void mean_flux<2>(const mesh::Mesh&, const Placement<2>&, const Vectors<2>&, const Vectors<2>&,
                            std::vector<Tensor<2>>&, std::span<double>);
-template void mean_flux<3>(const Mesh&, const Placement<3>&, const Vectors<3>&, const Vectors<3>&,
+template void mean_flux<3>(const mesh::Mesh&, const Placement<3>&, const Vectors<3>&, const Vectors<3>&,
                            std::vector<Tensor<3>>&, std::span<double>);
 template class RateOperator<2>;
 template class RateOperator<3>;
-template void wall_flux<2>(const Mesh&, const Placement<2>&, double, const Vectors<2>&, const Vectors<2>&,
-                           Vectors<2>&);
-template void wall_flux<3>(const Mesh&, const Placement<3>&, double, const Vectors<3>&, const Vectors<3>&,
-                           Vectors<3>&);
+template void wall_flux<2>(const mesh::Mesh&, const Placement<2>&, double, const Vectors<2>&,
+                           const Vectors<2>&, Vectors<2>&);
+template void wall_flux<3>(const mesh::Mesh&, const Placement<3>&, double, const Vectors<3>&,
+                           const Vectors<3>&, Vectors<3>&);
 
 }  // namespace couplet::fluid

@@ -11,14 +11,14 @@ namespace couplet::fluid {
 /// Gauss gradient du_i/dx_j per local cell (ghosts updated): (1/V) sum u_f S, u_f linear between the cells;
 /// on skewed meshes made exact for linear fields. Collective.
 template <int D>
-void velocity_gradient(const Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
+void velocity_gradient(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
                        const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient);
 
 /// u.S of the interior faces [m^3/s]: the mean of the cells, on skewed meshes carried on to the face's centre
 /// by the mean gradient (which is filled then; else left alone). Collective.
 template <int D>
-void mean_flux(const Mesh& mesh, const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& u_boundary,
-               std::vector<Tensor<D>>& gradient, std::span<double> flux);
+void mean_flux(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
+               const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient, std::span<double> flux);
 
 /// nu_t (grad u + grad u^T).S at an interior face between p and n [m^4/s^2], force per density.
 template <int D>
@@ -39,7 +39,7 @@ class RateOperator {
  public:
   /// `compressible`: phi is not free of divergence, and half of u div u is put back, so that convection still gives no
   /// energy.
-  RateOperator(const Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity,
+  RateOperator(const mesh::Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity,
                bool compressible = false)
       : mesh_(mesh), boundary_(boundary), nu_(kinematic_viscosity), compressible_(compressible) {}
   /// `gradient`: that of the state's velocity, if it is at hand.
@@ -58,7 +58,7 @@ class RateOperator {
   template <bool Split>
   void face_loop(const State<D>& state, Rates<D>& rates) const;
   void add_dilatation(const State<D>& state, Vectors<D>& rate);
-  const Mesh& mesh_;
+  const mesh::Mesh& mesh_;
   const Boundary<D>& boundary_;
   double nu_;
   bool compressible_;
@@ -68,7 +68,7 @@ class RateOperator {
 
 /// Viscous flux of momentum out of the fluid through each boundary face [N]: mu g (u_P - u_b), as the equation has it.
 template <int D>
-void wall_flux(const Mesh& mesh, const Placement<D>& at, double viscosity, const Vectors<D>& u,
+void wall_flux(const mesh::Mesh& mesh, const Placement<D>& at, double viscosity, const Vectors<D>& u,
                const Vectors<D>& u_boundary, Vectors<D>& force);
 
 }  // namespace couplet::fluid

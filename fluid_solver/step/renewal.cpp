@@ -45,7 +45,7 @@ template <int D>
 double Renewal<D>::contraction(MPI_Comm comm, const Vectors<D>& w) {
   double square = 0;
   for (std::size_t b = 0; b < w.size(); ++b) square += (w[b] - last_[b]).squaredNorm();
-  const double change = std::sqrt(sum(comm, square)), before = std::exchange(last_change_, change);
+  const double change = std::sqrt(parallel::sum(comm, square)), before = std::exchange(last_change_, change);
   last_ = w;
   return before > 0 ? change / before : 0;
 }

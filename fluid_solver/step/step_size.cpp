@@ -108,7 +108,7 @@ double explicit_limit(double angle, ExplicitScheme scheme) {
 }
 
 template <int D>
-StepSize<D>::StepSize(const Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity,
+StepSize<D>::StepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity,
                       ExplicitScheme scheme)
     : mesh_(mesh), boundary_(boundary), nu_(kinematic_viscosity), scheme_(scheme) {
   std::vector<int> faces(std::size_t(mesh.cells.n_local()), 0);
@@ -122,7 +122,8 @@ StepSize<D>::StepSize(const Mesh& mesh, const Boundary<D>& boundary, double kine
 /// Of the implicit term, by what friction does in a cell whose explicit rates have this angle and size.
 template <int D>
 double StepSize<D>::friction_limit(Index cell, double angle, double size) const {
-  return few_faces_[cell] && size > 0 ? longest_implicit * explicit_limit(angle, scheme_) / size : infinity;
+  return few_faces_[cell] && size > 0 ? longest_implicit * explicit_limit(angle, scheme_) / size
+                                      : base::infinity;
 }
 
 // The stress nu_t (grad u + grad u^T) has at most twice the rate of nu_t grad u.
@@ -153,7 +154,7 @@ double StepSize<D>::add_rates(const State<D>& s, bool peclet) {
     rates_[p] += part;
     rates_[n] += part;
     if (!peclet) continue;
-    const double number = nu_ > 0 ? flux / (nu_ * g) : infinity;
+    const double number = nu_ > 0 ? flux / (nu_ * g) : base::infinity;
     largest = std::max(largest, number);
     peclet_of_[p] = std::max(peclet_of_[p], number);
     peclet_of_[n] = std::max(peclet_of_[n], number);
@@ -170,13 +171,13 @@ double StepSize<D>::add_rates(const State<D>& s, bool peclet) {
 /// No friction damps what the frame makes of the fluid as a whole.
 template <int D>
 double StepSize<D>::frame_limit() const {
-  return frame_rate_ > 0 ? explicit_limit(std::numbers::pi / 2, scheme_) / frame_rate_ : infinity;
+  return frame_rate_ > 0 ? explicit_limit(std::numbers::pi / 2, scheme_) / frame_rate_ : base::infinity;
 }
 
 template <int D>
 double StepSize<D>::explicit_viscous_limit(const State<D>& s) {
   add_rates(s, false);
-  double least = infinity;
+  double least = base::infinity;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
     if (s.blocked && (*s.blocked)[c]) continue;
     const Vec<2> rate = (rates_[c] + Vec<2>(0, eddy_.empty() ? 0 : eddy_[c])) / s.placement->volume[c];
@@ -184,7 +185,7 @@ double StepSize<D>::explicit_viscous_limit(const State<D>& s) {
     if (lowest * lowest < least * least * rate.squaredNorm())
       least = std::min(least, explicit_limit(std::atan2(rate[0], rate[1]), scheme_) / rate.norm());
   }
-  return round_down(std::min(min(mesh_.comm, least), frame_limit()));
+  return round_down(std::min(parallel::min(mesh_.comm, least), frame_limit()));
 }
 
 /// The limit is at most that of the negative real axis, and a cell's diffusion at least that of one of its
@@ -197,7 +198,8 @@ bool StepSize<D>::explicit_viscous_limit_is_below(double size, const State<D>& s
     return 2 * nu_ * at.conductance[f] / at.volume[mesh_.owner[f]];
   };
   const double highest = explicit_limit(0, scheme_);
-  if (any(mesh_.comm, stiff_face_ >= 0 && highest < 0.999 * size * stiffness(stiff_face_))) return true;
+  if (parallel::any(mesh_.comm, stiff_face_ >= 0 && highest < 0.999 * size * stiffness(stiff_face_)))
+    return true;
   stiff_face_ = -1;
   for (Index f = 0; f < mesh_.n_interior; ++f)
     if (mesh_.owner[f] < mesh_.cells.n_owned() && (stiff_face_ < 0 || stiffness(f) > stiffness(stiff_face_)))
@@ -210,7 +212,7 @@ StepLimits StepSize<D>::limits(const State<D>& s) {
   const Placement<D>& at = *s.placement;
   const double largest = add_rates(s, true);
   const double lowest_implicit = implicit_table().least();
-  double least[3] = {infinity, infinity, -largest};
+  double least[3] = {base::infinity, base::infinity, -largest};
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
     if (s.blocked && (*s.blocked)[c]) continue;
     const double convection = rates_[c][0] / at.volume[c];
@@ -237,7 +239,7 @@ template <int D>
 StepLimiter StepSize<D>::limiter(const State<D>& s, bool implicit) {
   const Placement<D>& at = *s.placement;
   add_rates(s, implicit);
-  StepLimiter found{infinity};
+  StepLimiter found{base::infinity};
   Index where = -1;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
     if (s.blocked && (*s.blocked)[c]) continue;
@@ -246,10 +248,10 @@ StepLimiter StepSize<D>::limiter(const State<D>& s, bool implicit) {
     const double diffusion = rates_[c][1] / at.volume[c] + eddy;
     const double size = std::hypot(convection, diffusion);
     const double angle = std::atan2(convection, diffusion);
-    double limit = size > 0 ? explicit_limit(angle, scheme_) / size : infinity;
+    double limit = size > 0 ? explicit_limit(angle, scheme_) / size : base::infinity;
     bool friction = diffusion > convection;
     if (implicit) {
-      limit = convection > 0 ? implicit_convective_limit(4 / peclet_of_[c]) / convection : infinity;
+      limit = convection > 0 ? implicit_convective_limit(4 / peclet_of_[c]) / convection : base::infinity;
       if (eddy > 0)
         limit = std::min(limit, explicit_limit(std::atan2(convection, eddy)) / std::hypot(convection, eddy));
       friction = eddy > convection;
@@ -260,7 +262,7 @@ StepLimiter StepSize<D>::limiter(const State<D>& s, bool implicit) {
     where = c;
   }
   if (where >= 0) found.place.template head<D>() = at.centre[where];
-  const std::vector<StepLimiter> all = all_gather(mesh_.comm, std::vector<StepLimiter>{found});
+  const std::vector<StepLimiter> all = parallel::all_gather(mesh_.comm, std::vector<StepLimiter>{found});
   return *std::ranges::min_element(all, [](const StepLimiter& a, const StepLimiter& b) {
     return a.limit != b.limit ? a.limit < b.limit : a.cell < b.cell;
   });

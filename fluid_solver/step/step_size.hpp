@@ -37,7 +37,7 @@ std::string in_words(const StepLimiter& limiter);
 template <int D>
 class StepSize {
  public:
-  StepSize(const Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity,
+  StepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity,
            ExplicitScheme scheme = ExplicitScheme::adams_bashforth);
   /// Largest rate of the Coriolis force [1/s]; 0: none.
   void set_frame_rate(double rate) { frame_rate_ = rate; }
@@ -56,7 +56,7 @@ class StepSize {
   void add_eddies(const State<D>& state);
   double frame_limit() const;
   double friction_limit(Index cell, double angle, double size) const;
-  const Mesh& mesh_;
+  const mesh::Mesh& mesh_;
   const Boundary<D>& boundary_;
   double nu_, frame_rate_ = 0;
   ExplicitScheme scheme_;

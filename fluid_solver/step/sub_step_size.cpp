@@ -20,7 +20,8 @@ double parts(double dt, double limit) {
 }  // namespace
 
 template <int D>
-SubStepSize<D>::SubStepSize(const Mesh& mesh, const Boundary<D>& boundary, const FluidParameters& parameters)
+SubStepSize<D>::SubStepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary,
+                            const FluidParameters& parameters)
     : parameters_(parameters),
       size_(mesh, boundary, parameters.viscosity / parameters.density, parameters.scheme) {}
 

@@ -9,7 +9,7 @@ namespace couplet::fluid {
 template <int D>
 class SubStepSize {
  public:
-  SubStepSize(const Mesh& mesh, const Boundary<D>& boundary, const FluidParameters& parameters);
+  SubStepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary, const FluidParameters& parameters);
 
   /// Of a coupling step [s] that starts from `level`; `frame_rate`: see StepSize. Chooses begin.implicit, and begins the
   /// multi-step schemes anew where that changes. Collective.

@@ -87,7 +87,7 @@ std::vector<double> RunningStatistics<D>::reynolds_shear() const {
 }
 
 template <int D>
-void RunningStatistics<D>::save(CheckpointWriter& file) const {
+void RunningStatistics<D>::save(io::CheckpointWriter& file) const {
   file.write_scalar("statistics-duration", duration_);
   file.write("statistics-velocity", flat<D>(velocity_));
   file.write("statistics-normal", flat<D>(normal_));
@@ -97,7 +97,7 @@ void RunningStatistics<D>::save(CheckpointWriter& file) const {
 }
 
 template <int D>
-void RunningStatistics<D>::load(CheckpointReader& file) {
+void RunningStatistics<D>::load(io::CheckpointReader& file) {
   duration_ = file.read_scalar("statistics-duration");
   file.read("statistics-velocity", flat<D>(velocity_));
   file.read("statistics-normal", flat<D>(normal_));

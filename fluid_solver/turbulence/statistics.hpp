@@ -28,8 +28,8 @@ class RunningStatistics {
   /// <u'v'> in 2-D; <u'v'>, <u'w'>, <v'w'> in 3-D, per cell [m^2/s^2].
   std::vector<double> reynolds_shear() const;
 
-  void save(CheckpointWriter& file) const;
-  void load(CheckpointReader& file);
+  void save(io::CheckpointWriter& file) const;
+  void load(io::CheckpointReader& file);
 
  private:
   void add(std::size_t entry, const Vec<D>& velocity, double dt);

@@ -26,11 +26,11 @@ constexpr double most_energy = 1e6;
 // Of the Armijo rule.
 constexpr double least_decrease = 1e-4, shortest_step = 1e-8;
 
-LinearOptions options_of(const Mesh& mesh, const LinearOptions& wanted) {
-  LinearOptions options;
-  options.method = wanted.method == LinearMethod::direct_symmetric && mesh.dim == 2
-                       ? LinearMethod::cg_direct
-                       : LinearMethod::cg_multigrid;
+linalg::LinearOptions options_of(const mesh::Mesh& mesh, const linalg::LinearOptions& wanted) {
+  linalg::LinearOptions options;
+  options.method = wanted.method == linalg::LinearMethod::direct_symmetric && mesh.dim == 2
+                       ? linalg::LinearMethod::cg_direct
+                       : linalg::LinearMethod::cg_multigrid;
   options.relative_tolerance = linear_tolerance;
   options.max_iterations = std::max(wanted.max_iterations, 500);
   return options;
@@ -38,8 +38,8 @@ LinearOptions options_of(const Mesh& mesh, const LinearOptions& wanted) {
 
 }  // namespace
 
-BarrierMotion::BarrierMotion(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters,
-                             std::span<const double> volumes)
+BarrierMotion::BarrierMotion(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                             const Parameters& parameters, std::span<const double> volumes)
     : mesh_(mesh),
       dim_(mesh.dim),
       simplices_(make_simplices(
@@ -48,8 +48,8 @@ BarrierMotion::BarrierMotion(const Mesh& mesh, const Geometry& geometry, const P
       held_(find_held_points(mesh, geometry, parameters)),
       system_(mesh, geometry, simplices_, held_),
       displacement_(std::size_t(mesh.points.n_local()) * mesh.dim, 0.0) {
-  solver_ = std::make_unique<LinearSolver>("the mesh displacement", system_.matrix(),
-                                           options_of(mesh, parameters.linear));
+  solver_ = std::make_unique<linalg::LinearSolver>("the mesh displacement", system_.matrix(),
+                                                   options_of(mesh, parameters.linear));
 }
 
 double BarrierMotion::remaining(std::span<const double> prescribed, std::span<const double> u,
@@ -64,7 +64,7 @@ double BarrierMotion::remaining(std::span<const double> prescribed, std::span<co
     for (int c = 0; c < dim_; ++c) way[std::size_t(v) * dim_ + c] = left[c];
     most = std::max(most, left.cwiseAbs().maxCoeff());
   }
-  return max(mesh_.comm, most);
+  return parallel::max(mesh_.comm, most);
 }
 
 /// The largest of 1, 1/2, 1/4, ... times `limit` whose energy is at most `most` + `slope` times it.
@@ -88,7 +88,7 @@ bool BarrierMotion::find_direction(const std::vector<double>& u, const std::vect
   system_.assemble(u, way, residual_, hessian);
   std::ranges::fill(direction_, 0.0);
   try {
-    const SolveStatistics s = solver_->solve(residual_, {direction_.data(), owned});
+    const linalg::SolveStatistics s = solver_->solve(residual_, {direction_.data(), owned});
     last_.iterations += s.iterations;
     last_.seconds += s.seconds;
     if (solver_->preconditioners_built() > built_) {
@@ -103,12 +103,12 @@ bool BarrierMotion::find_direction(const std::vector<double>& u, const std::vect
   }
   slope_ = 0;
   for (std::size_t i = 0; i < owned; ++i) slope_ -= residual_[i] * direction_[i];
-  slope_ = sum(mesh_.comm, slope_);
+  slope_ = parallel::sum(mesh_.comm, slope_);
   return slope_ <= 0;
 }
 
-void BarrierMotion::save(CheckpointWriter& file) const {
-  const PreconditionerMemory memory = solver_->memory();
+void BarrierMotion::save(io::CheckpointWriter& file) const {
+  const linalg::PreconditionerMemory memory = solver_->memory();
   file.write("barrier", displacement_);
   file.write("barrier-factors", factored_at_);
   file.write_scalar("barrier-factors-exact", factored_ == BarrierSystem::Hessian::exact ? 1 : 0);
@@ -116,12 +116,12 @@ void BarrierMotion::save(CheckpointWriter& file) const {
   file.write_scalar("barrier-factors-most", memory.most_iterations);
 }
 
-void BarrierMotion::load(CheckpointReader& file) {
+void BarrierMotion::load(io::CheckpointReader& file) {
   file.read("barrier", displacement_);
   factored_at_ = file.read("barrier-factors");
   const bool exact = file.read_scalar("barrier-factors-exact") > 0;
   factored_ = exact ? BarrierSystem::Hessian::exact : BarrierSystem::Hessian::projected;
-  PreconditionerMemory memory;
+  linalg::PreconditionerMemory memory;
   memory.is_due = file.read_scalar("barrier-factors-due") > 0;
   memory.most_iterations = int(file.read_scalar("barrier-factors-most"));
   if (!memory.is_due)

@@ -22,13 +22,13 @@ namespace couplet::mesh_mover {
 class BarrierMotion final : public MotionMethod {
  public:
   /// `volumes`: V per local cell; empty: those of the mesh. Throws Error if no patch holds the mesh.
-  BarrierMotion(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters,
+  BarrierMotion(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters,
                 std::span<const double> volumes = {});
 
   std::vector<double> solve(std::span<const double> prescribed) override;
-  SolveStatistics last() const override { return last_; }
-  void save(CheckpointWriter& file) const override;
-  void load(CheckpointReader& file) override;
+  linalg::SolveStatistics last() const override { return last_; }
+  void save(io::CheckpointWriter& file) const override;
+  void load(io::CheckpointReader& file) override;
 
  private:
   /// The remaining way of held directions; its largest component over all ranks. Collective.
@@ -42,19 +42,19 @@ class BarrierMotion final : public MotionMethod {
   double line_search(std::vector<double>& u, double limit, double most, double slope);
   void arrive(std::span<const double> prescribed, std::vector<double>& u) const;
 
-  const Mesh& mesh_;
+  const mesh::Mesh& mesh_;
   int dim_;
   Simplices simplices_;
   HeldPoints held_;
   BarrierSystem system_;
-  std::unique_ptr<LinearSolver> solver_;
+  std::unique_ptr<linalg::LinearSolver> solver_;
   std::vector<double> displacement_;  // dim per local point: of the last solve, which the next starts from
   std::vector<double> residual_, direction_, trial_;
   double slope_ = 0, energy_ = 0;
   int built_ = 0;                    // preconditioners so far
   std::vector<double> factored_at_;  // displacement whose Hessian the preconditioner is of
   BarrierSystem::Hessian factored_ = BarrierSystem::Hessian::exact;
-  SolveStatistics last_;
+  linalg::SolveStatistics last_;
 };
 
 }  // namespace couplet::mesh_mover

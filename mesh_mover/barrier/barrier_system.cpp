@@ -17,8 +17,8 @@ namespace {
 template <int D>
 struct SimplexEdges {
   using Matrix = Eigen::Matrix<double, D, D>;
-  const Mesh& mesh;
-  const Geometry& geometry;
+  const mesh::Mesh& mesh;
+  const mesh::Geometry& geometry;
   const Simplices& simplices;
 
   Matrix placed(Index s, std::span<const double> u) const {
@@ -95,8 +95,8 @@ double step_here(const SimplexEdges<D>& edges, std::span<const double> u, std::s
 
 }  // namespace
 
-BarrierSystem::BarrierSystem(const Mesh& mesh, const Geometry& geometry, const Simplices& simplices,
-                             const HeldPoints& held)
+BarrierSystem::BarrierSystem(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                             const Simplices& simplices, const HeldPoints& held)
     : mesh_(mesh), geometry_(geometry), simplices_(simplices), held_(held), dim_(mesh.dim) {
   make_pattern();
 }
@@ -137,20 +137,20 @@ void BarrierSystem::make_pattern() {
           row.push_back(mesh_.points.global(v) * dim_ + i);
           column.push_back(mesh_.points.global(w) * dim_ + j);
         }
-  matrix_ = std::make_unique<SparseMatrix>(mesh_.comm, GlobalIndex(n) * dim_, std::move(row),
-                                           std::move(column), dim_);
+  matrix_ = std::make_unique<linalg::SparseMatrix>(mesh_.comm, GlobalIndex(n) * dim_, std::move(row),
+                                                   std::move(column), dim_);
 }
 
 double BarrierSystem::energy(std::span<const double> u) const {
-  return sum(mesh_.comm, dim_ == 2 ? energy_here(SimplexEdges<2>{mesh_, geometry_, simplices_}, u)
-                                   : energy_here(SimplexEdges<3>{mesh_, geometry_, simplices_}, u));
+  return parallel::sum(mesh_.comm, dim_ == 2 ? energy_here(SimplexEdges<2>{mesh_, geometry_, simplices_}, u)
+                                             : energy_here(SimplexEdges<3>{mesh_, geometry_, simplices_}, u));
 }
 
 double BarrierSystem::largest_step(std::span<const double> u, std::span<const double> direction,
                                    double least) const {
-  return min(mesh_.comm, dim_ == 2
-                             ? step_here(SimplexEdges<2>{mesh_, geometry_, simplices_}, u, direction, least)
-                             : step_here(SimplexEdges<3>{mesh_, geometry_, simplices_}, u, direction, least));
+  return parallel::min(
+      mesh_.comm, dim_ == 2 ? step_here(SimplexEdges<2>{mesh_, geometry_, simplices_}, u, direction, least)
+                            : step_here(SimplexEdges<3>{mesh_, geometry_, simplices_}, u, direction, least));
 }
 
 // Per simplex with the gradients b_k of its corner functions: g_k = w P b_k, H_kl = w b_k . d2W/dF2 . b_l, in the frame
@@ -241,7 +241,7 @@ Vec3 BarrierSystem::worst_place(std::span<const double> u) const {
     for (int c = 0; c < dim_; ++c)
       here.place[c] += (geometry_.points[v][c] + u[std::size_t(v) * dim_ + c]) / (dim_ + 1);
   }
-  const std::vector<Entry> all = all_gather(mesh_.comm, std::vector<Entry>{here});
+  const std::vector<Entry> all = parallel::all_gather(mesh_.comm, std::vector<Entry>{here});
   const Entry& worst = *std::ranges::max_element(all, {}, &Entry::energy);
   return {worst.place[0], worst.place[1], worst.place[2]};
 }

@@ -18,7 +18,7 @@ class BarrierSystem {
  public:
   enum class Hessian { exact, projected };
   /// All by reference. Collective.
-  BarrierSystem(const Mesh& mesh, const Geometry& geometry, const Simplices& simplices,
+  BarrierSystem(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Simplices& simplices,
                 const HeldPoints& held);
 
   /// Sum of weight x W; infinite if a simplex is not positive. Collective.
@@ -33,7 +33,7 @@ class BarrierSystem {
                       double least) const;
   /// Where the cell with the largest energy per weight lies [m], moved. Collective.
   Vec3 worst_place(std::span<const double> displacement) const;
-  const SparseMatrix& matrix() const { return *matrix_; }
+  const linalg::SparseMatrix& matrix() const { return *matrix_; }
 
  private:
   template <int D>
@@ -43,16 +43,16 @@ class BarrierSystem {
   void finish_rows(std::vector<double>& residual);
   void make_pattern();
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
   const Simplices& simplices_;
   const HeldPoints& held_;
   int dim_;
-  Csr graph_;                    // per owned point: local points of the simplices around it
+  mesh::Csr graph_;              // per owned point: local points of the simplices around it
   std::vector<Index> diagonal_;  // per owned point: its own entry of the graph
   std::vector<Index> entry_;  // per simplex and pair of its points: entry of the graph, -1: not an owned row
   std::vector<double> blocks_;  // per entry of the graph: dim x dim by rows
-  std::unique_ptr<SparseMatrix> matrix_;
+  std::unique_ptr<linalg::SparseMatrix> matrix_;
 };
 
 }  // namespace couplet::mesh_mover

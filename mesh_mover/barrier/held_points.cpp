@@ -15,7 +15,7 @@ namespace {
 constexpr double same_surface = 0.9, new_direction = 0.1;
 
 template <class Action>
-void for_faces(const Patch& patch, const Action& action) {
+void for_faces(const mesh::Patch& patch, const Action& action) {
   for (Index f = patch.first; f < patch.first + patch.count; ++f) action(f);
   for (Index f = patch.ghost_first; f < patch.ghost_first + patch.ghost_count; ++f) action(f);
 }
@@ -48,11 +48,12 @@ Tensor3 held_by(std::vector<Vec3> areas) {
 
 }  // namespace
 
-HeldPoints find_held_points(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters) {
+HeldPoints find_held_points(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                            const Parameters& parameters) {
   const Index n = mesh.points.n_local();
   std::vector<char> is_fixed(n, 0), is_moved(n, 0);
   std::vector<std::vector<std::pair<GlobalIndex, Vec3>>> slides(n);
-  for (const Patch& patch : mesh.patches) {
+  for (const mesh::Patch& patch : mesh.patches) {
     const BoundaryMotion motion = parameters.boundaries.at(patch.name).motion;
     if (motion == BoundaryMotion::periodic)
       throw Error(
@@ -82,7 +83,7 @@ HeldPoints find_held_points(const Mesh& mesh, const Geometry& geometry, const Pa
     held.moved[v] = is_moved[v] && !is_fixed[v] ? across : Tensor3(Tensor3::Zero());
     if (is_fixed[v] || is_moved[v]) anything = 1;
   }
-  if (max(mesh.comm, anything) == 0)
+  if (parallel::max(mesh.comm, anything) == 0)
     throw Error("No patch holds the mesh: at least one needs type: fixed, moving or interface.");
   for (std::vector<Tensor3>* tensors : {&held.free, &held.moved})  // a ghost's faces may be on other ranks
     mesh.points.update_ghosts({tensors->data()->data(), tensors->size() * 9}, 9);

@@ -18,6 +18,7 @@ struct HeldPoints {
 };
 
 /// Throws Error if no patch holds or moves the mesh, or one is periodic. Collective.
-HeldPoints find_held_points(const Mesh& mesh, const Geometry& geometry, const Parameters& parameters);
+HeldPoints find_held_points(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                            const Parameters& parameters);
 
 }  // namespace couplet::mesh_mover

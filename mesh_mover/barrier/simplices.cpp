@@ -13,14 +13,15 @@ namespace couplet::mesh_mover {
 namespace {
 
 /// The simplices of a kind of cell, by corners of the cell.
-std::span<const CellCorner> simplices_of(CellType type) {
+std::span<const CellCorner> simplices_of(mesh::CellType type) {
   const std::vector<CellCorner>& corners = corners_of(type).corners;
-  const bool is_simplex = type == CellType::triangle || type == CellType::tetrahedron;
+  const bool is_simplex = type == mesh::CellType::triangle || type == mesh::CellType::tetrahedron;
   return {corners.data(), is_simplex ? 1 : corners.size()};
 }
 
 template <int D>
-void append(const Mesh& mesh, const Geometry& geometry, Index cell, double stiffness, Simplices& s) {
+void append(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index cell, double stiffness,
+            Simplices& s) {
   using Matrix = Eigen::Matrix<double, D, D>;
   const auto corner = mesh.cell_points[cell];
   const auto all = simplices_of(mesh.cell_type[cell]);
@@ -51,13 +52,13 @@ void append(const Mesh& mesh, const Geometry& geometry, Index cell, double stiff
 
 }  // namespace
 
-Simplices make_simplices(const Mesh& mesh, const Geometry& geometry, double stiffening,
+Simplices make_simplices(const mesh::Mesh& mesh, const mesh::Geometry& geometry, double stiffening,
                          const std::vector<double>& volumes) {
   Simplices s;
   s.dim = mesh.dim;
   double volume = 0;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += volumes[c];
-  const double mean = sum(mesh.comm, volume) / static_cast<double>(mesh.cells.n_global());
+  const double mean = parallel::sum(mesh.comm, volume) / static_cast<double>(mesh.cells.n_global());
   for (Index c = 0; c < mesh.cells.n_local(); ++c) {
     const double stiffness = std::pow(volumes[c] / mean, -stiffening);
     mesh.dim == 2 ? append<2>(mesh, geometry, c, stiffness, s) : append<3>(mesh, geometry, c, stiffness, s);
@@ -65,7 +66,7 @@ Simplices make_simplices(const Mesh& mesh, const Geometry& geometry, double stif
   }
   double total = 0;
   for (Index i = 0; i < s.n_owned; ++i) total += s.weight[i];
-  s.total = sum(mesh.comm, total);
+  s.total = parallel::sum(mesh.comm, total);
   return s;
 }
 

@@ -21,7 +21,7 @@ struct Simplices {
 };
 
 /// `volumes`: V per local cell. Throws SolveFailure if a simplex of the reference mesh is flat or inverted. Collective.
-Simplices make_simplices(const Mesh& mesh, const Geometry& geometry, double stiffening,
+Simplices make_simplices(const mesh::Mesh& mesh, const mesh::Geometry& geometry, double stiffening,
                          const std::vector<double>& volumes);
 
 }  // namespace couplet::mesh_mover

@@ -95,11 +95,11 @@ void check_names(const Midsurface& s, const Parameters& p, const std::string& na
   for (const auto& [zone, values] : p.zones)
     if (std::ranges::find(s.zones, zone) == s.zones.end())
       throw Error("participants.{}.zones: the mesh has no zone '{}'; it has {}.", name, zone,
-                  join(quoted(s.zones)));
+                  base::join(quoted(s.zones)));
   for (const auto& [patch, values] : p.boundaries)
     if (std::ranges::find(s.patches, patch) == s.patches.end())
       throw Error("participants.{}.boundaries: the mesh has no patch '{}'; it has {}.", name, patch,
-                  join(quoted(s.patches)));
+                  base::join(quoted(s.patches)));
   for (const std::string& patch : s.patches)
     if (!p.boundaries.contains(patch))
       throw Error(
@@ -121,26 +121,26 @@ std::filesystem::path mesh_file(const Parameters& p, const std::filesystem::path
         "The mesh '{}' is already meshed, so 'mesh-parameters' cannot change it. Remove them, or give the "
         ".geo it was made from.",
         file.string());
-  if (kind == ".unv" || kind == ".med" || kind == ".cgns") return convert_mesh(file);
+  if (kind == ".unv" || kind == ".med" || kind == ".cgns") return mesh::convert_mesh(file);
   if (kind != ".msh" && kind != ".geo")
     throw Error("The mesh file '{}' is not a .msh, .geo, .unv, .med or .cgns file.", file.string());
-  return kind == ".geo" ? mesh_geo(file, 2, p.mesh_parameters) : file;
+  return kind == ".geo" ? mesh::mesh_geo(file, 2, p.mesh_parameters) : file;
 }
 
 /// The mid-surface of the mesh that the parameters name, its lengths times their scale.
 Midsurface read(const Parameters& p, const std::filesystem::path& folder) {
   const std::filesystem::path file = mesh_file(p, folder);
-  RawMesh raw = read_msh(file);
+  mesh::RawMesh raw = mesh::read_msh(file);
   if (raw.dim != 2 || raw.cell_type.empty())
     throw Error(
         "The mesh '{}' is not two-dimensional. The mid-surface of a plate needs a 2-D mesh with its surface "
         "in a physical group.",
         (folder / *p.mesh).string());
   for (Vec3& x : raw.points) x *= p.mesh_scale;
-  Midsurface surface = midsurface_of(raw, read_boundary_entities(file));
+  Midsurface surface = midsurface_of(raw, mesh::read_boundary_entities(file));
   for (Vec3& x : raw.points) x.z() = 0;  // what rounding the file left of another plane
-  const LoadedMesh flat = distribute(MPI_COMM_SELF, raw);
-  check_and_report(flat.mesh, flat.geometry);
+  const mesh::LoadedMesh flat = mesh::distribute(MPI_COMM_SELF, raw);
+  mesh::check_and_report(flat.mesh, flat.geometry);
   return surface;
 }
 
@@ -148,9 +148,9 @@ Midsurface read(const Parameters& p, const std::filesystem::path& folder) {
 double rigid_limit(const PlateModel& plate) { return 1e-6 * plate.frequency_scale(); }
 
 /// A plate that may fall and turn in some ways must be able to do so in all of them.
-void refuse_lost_rigid(const PlateModel& plate, const EigenModes& modes) {
+void refuse_lost_rigid(const PlateModel& plate, const modes::EigenModes& modes) {
   if (!(modes.next < rigid_limit(plate))) return;
-  const EigenModes first = plate.modes(3);  // there are no more: a fall and two turns
+  const modes::EigenModes first = plate.modes(3);  // there are no more: a fall and two turns
   const auto rigid =
       std::ranges::count_if(first.eigenvalue, [&](double value) { return value < rigid_limit(plate); });
   throw Error(
@@ -160,7 +160,7 @@ void refuse_lost_rigid(const PlateModel& plate, const EigenModes& modes) {
 }
 
 /// The key of the data with a digest of what was made of them: a file whose values were edited is not used again.
-std::string key_with_content(const std::string& key, const ModalModel& model) {
+std::string key_with_content(const std::string& key, const modes::ModalModel& model) {
   Key content;
   content.add(model.vertices);
   content.add(model.faces.offset);
@@ -174,10 +174,10 @@ std::string key_with_content(const std::string& key, const ModalModel& model) {
 
 /// Takes the modes of an earlier run if they belong to the same mesh and data and are as they were written.
 bool reuse_modes(Built& built, const std::filesystem::path& file, const std::string& key) {
-  const std::string kept = key_of_modes(file);
+  const std::string kept = modes::key_of_modes(file);
   if (!kept.starts_with(key + "-")) return false;
   try {
-    ModalModel model = read_modes(file);
+    modes::ModalModel model = modes::read_modes(file);
     if (key_with_content(key, model) == kept) {
       built.model = std::move(model);
       built.reused = true;
@@ -209,17 +209,17 @@ void look_at_corners(Built& built, const Midsurface& surface, const std::vector<
       "however many sides it has (Babuska's paradox), and obtuse corners need a very fine mesh: with 13 "
       "edges per side a 20-gon deflects 13 % too much, with 16 edges per side a 12-gon 22 % too little. "
       "Draw curved edges as curves (Circle, Ellipse, Spline); otherwise compare with a finer mesh.",
-      corners.size(), corners.size() > 1 ? "s" : "", corners.size() > 1 ? "" : "s", least / degree,
-      most / degree, x.x(), x.y(), order);
+      corners.size(), corners.size() > 1 ? "s" : "", corners.size() > 1 ? "" : "s", least / base::degree,
+      most / base::degree, x.x(), x.y(), order);
 }
 
 void add_modes(Built& built, const PlateModel& plate, const Parameters& p, const PlateContext& context) {
   const std::filesystem::path file = context.output_folder / "modes.h5";
   const std::string key = key_of(plate, p);
   if (!context.output_folder.empty() && reuse_modes(built, file, key)) return;
-  const EigenModes modes = plate.modes(p.n_modes());
+  const modes::EigenModes modes = plate.modes(p.n_modes());
   refuse_lost_rigid(plate, modes);
-  if (cuts_a_group(modes, 1e-3))
+  if (modes::cuts_a_group(modes, 1e-3))
     built.note = fmt::format(
         "modes {} and {} have the same frequency (to 0.1 %), but only the first is kept, so the response "
         "differs between equivalent directions. Keep one more or one fewer.",
@@ -230,7 +230,7 @@ void add_modes(Built& built, const PlateModel& plate, const Parameters& p, const
     if (f < least) f = 0;
   // Without the key they are found again, and what was noted is said again.
   if (!context.output_folder.empty())
-    write_modes(file, built.model, built.note.empty() ? key_with_content(key, built.model) : "");
+    modes::write_modes(file, built.model, built.note.empty() ? key_with_content(key, built.model) : "");
 }
 
 }  // namespace
@@ -250,9 +250,10 @@ PlateModel plate_of(Midsurface surface, const Parameters& p, const std::string& 
   return PlateModel(std::move(surface), std::move(cells), support);
 }
 
-ModalModel modes_of_file(const Parameters& p, const std::filesystem::path& file) {
-  ModalModel model = read_modes(file);
-  const std::string problem = facing_problem_of(model, p.cavity ? Facing::inward : Facing::outward);
+modes::ModalModel modes_of_file(const Parameters& p, const std::filesystem::path& file) {
+  modes::ModalModel model = modes::read_modes(file);
+  const std::string problem =
+      modes::facing_problem_of(model, p.cavity ? modes::Facing::inward : modes::Facing::outward);
   if (problem.empty()) return model;
   throw Error(
       "modes.file: cannot use the modes file '{}': {}. {}docs/formats.md describes the required content.",
@@ -262,10 +263,10 @@ ModalModel modes_of_file(const Parameters& p, const std::filesystem::path& file)
                  "'modes.cavity: true'. ");
 }
 
-Built build_model(const Parameters& p, const PlateContext& context, const RawMesh* raw) {
+Built build_model(const Parameters& p, const PlateContext& context, const mesh::RawMesh* raw) {
   Built built;
-  const SlepcEnvironment slepc;
-  on_root(context.comm, [&] {
+  const modes::SlepcEnvironment slepc;
+  mesh::on_root(context.comm, [&] {
     if (p.modes_file) {
       built.model = modes_of_file(p, context.case_folder / *p.modes_file);
       return;

@@ -21,7 +21,7 @@ struct PlateContext {
 
 /// What the configuration describes, on rank 0 (the model is empty elsewhere).
 struct Built {
-  ModalModel model;
+  modes::ModalModel model;
   std::unique_ptr<PlateModel> plate;  ///< of a mesh, but for a modal analysis
   bool reused = false;                ///< modes of an earlier run
   /// Of a plate with two held edges or more: deflection over thickness from which its stretch matters; 0: it has none.
@@ -38,10 +38,11 @@ PlateModel plate_of(Midsurface surface, const Parameters& parameters, const std:
 /// Modes of the mesh (from modes.h5 of the output folder if they belong to the same mesh and data), or those
 /// of the file that the parameters name. `raw`: mesh on rank 0 in place of that of the parameters.
 /// Collective.
-Built build_model(const Parameters& parameters, const PlateContext& context, const RawMesh* raw = nullptr);
+Built build_model(const Parameters& parameters, const PlateContext& context,
+                  const mesh::RawMesh* raw = nullptr);
 
 /// Modes of another program, whose surface says by its faces alone where its outside is. Throws Error.
-ModalModel modes_of_file(const Parameters& parameters, const std::filesystem::path& file);
+modes::ModalModel modes_of_file(const Parameters& parameters, const std::filesystem::path& file);
 
 /// kappa / S of thesis (4.33) for f_SI = 1: bulk modulus over thickness [N/m^3].
 double seat_stiffness(const Parameters& parameters);

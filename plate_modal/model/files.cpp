@@ -6,8 +6,8 @@
 
 namespace couplet::plate {
 
-std::vector<ProblemOfKey> problems_of_files(const Parameters& parameters,
-                                            const std::filesystem::path& case_folder) {
+std::vector<app::ProblemOfKey> problems_of_files(const Parameters& parameters,
+                                                 const std::filesystem::path& case_folder) {
   if (!parameters.modes_file) return {};
   try {
     (void)modes_of_file(parameters, case_folder / *parameters.modes_file);

@@ -10,7 +10,7 @@
 namespace couplet::plate {
 
 /// For --check: modes that are missing, broken or of no structure.
-std::vector<ProblemOfKey> problems_of_files(const Parameters& parameters,
-                                            const std::filesystem::path& case_folder);
+std::vector<app::ProblemOfKey> problems_of_files(const Parameters& parameters,
+                                                 const std::filesystem::path& case_folder);
 
 }  // namespace couplet::plate

@@ -27,7 +27,7 @@ double least_corner(const Midsurface& s, std::span<const Index> cell) {
 
 /// The model lies in the plane of the mesh's x and y, and 'placement' says where that is in space: a mesh that stands
 /// in another plane, or is no plane, would be seen from above only.
-void refuse_out_of_plane(const RawMesh& raw) {
+void refuse_out_of_plane(const mesh::RawMesh& raw) {
   constexpr double tolerance =
       1e-6;  // of the mesh's size: coordinates of a file have no more digits than this
   std::vector<Index> used;
@@ -50,7 +50,7 @@ void refuse_out_of_plane(const RawMesh& raw) {
       low.z(), high.z(), x.x(), x.y(), x.z());
 }
 
-void add_cells(const RawMesh& raw, Midsurface& s) {
+void add_cells(const mesh::RawMesh& raw, Midsurface& s) {
   std::vector<Index> number(raw.points.size(), -1);
   for (Index c = 0; c < raw.cell_points.size(); ++c)
     for (const Index p : raw.cell_points[c]) number[p] = 0;
@@ -76,7 +76,7 @@ void add_cells(const RawMesh& raw, Midsurface& s) {
   if (s.zones.empty()) s.zones = {"plate"};
 }
 
-std::map<std::pair<Index, Index>, Index> element_of_edges(const RawMesh& raw) {
+std::map<std::pair<Index, Index>, Index> element_of_edges(const mesh::RawMesh& raw) {
   std::vector<Index> number(raw.points.size(), -1);
   Index next = 0;
   for (Index c = 0; c < raw.cell_points.size(); ++c)
@@ -99,7 +99,7 @@ std::map<std::pair<Index, Index>, Index> element_of_edges(const RawMesh& raw) {
 }
 
 /// Edges of a patch that are not on the outline would hold nothing, whatever their entry says.
-void refuse_inside(const Midsurface& s, const RawMesh& raw,
+void refuse_inside(const Midsurface& s, const mesh::RawMesh& raw,
                    const std::map<std::pair<Index, Index>, Index>& elements,
                    const std::map<std::pair<Index, Index>, int>& uses) {
   for (const auto& [edge, element] : elements) {
@@ -115,7 +115,7 @@ void refuse_inside(const Midsurface& s, const RawMesh& raw,
 
 }  // namespace
 
-Midsurface midsurface_of(const RawMesh& raw, std::span<const int> curves) {
+Midsurface midsurface_of(const mesh::RawMesh& raw, std::span<const int> curves) {
   Midsurface s;
   s.patches = raw.patches;
   refuse_out_of_plane(raw);

@@ -14,7 +14,7 @@ using Vec2 = Eigen::Vector2d;
 /// The mid-surface of a plate, whole, on one rank: a plane mesh of triangles and quadrilaterals.
 struct Midsurface {
   std::vector<Vec2> points;  ///< [m]
-  Csr cells;                 ///< points of each cell, counter-clockwise
+  mesh::Csr cells;           ///< points of each cell, counter-clockwise
   std::vector<int> zone;     ///< per cell, index into `zones`
   std::vector<std::string> zones;
   struct Edge {
@@ -31,6 +31,6 @@ struct Midsurface {
 /// outline. Throws Error naming the place of an edge without a patch, of two patches or of one inside the plate, of a
 /// cell without area, or of a point out of the plane. `curves`: of each boundary element the curve of the drawing; empty:
 /// not known.
-Midsurface midsurface_of(const RawMesh& raw, std::span<const int> curves = {});
+Midsurface midsurface_of(const mesh::RawMesh& raw, std::span<const int> curves = {});
 
 }  // namespace couplet::plate

@@ -11,7 +11,7 @@
 namespace couplet::plate {
 namespace {
 
-constexpr double sharp = 55 * degree, least = 0.5 * degree, least_share = 0.6;
+constexpr double sharp = 55 * base::degree, least = 0.5 * base::degree, least_share = 0.6;
 // Below it a corner is told: right angles have 2.
 constexpr double least_order = 1.9;
 
@@ -85,7 +85,7 @@ double order_at_corner(double kink) {
 }
 
 double with_corners(double gap, std::span<const double> kinks) {
-  constexpr double counts_fully = 20 * degree;
+  constexpr double counts_fully = 20 * base::degree;
   double most = gap;
   for (const double kink : kinks)
     most = std::max(most, std::min(1.0, std::abs(kink) / counts_fully) *

@@ -136,7 +136,8 @@ void declare_modes(config::Section& s, Parameters& p) {
       "modes of the structure; those of a mesh are stored in modes.h5 of the output folder and reused while "
       "mesh and data are the same");
   s.section(
-      "time-scheme", [&](config::Section& t) { couplet::declare(t, p.time_scheme); }, "integration in time");
+      "time-scheme", [&](config::Section& t) { couplet::time::declare(t, p.time_scheme); },
+      "integration in time");
   s.optional_section<Damping>(
       "damping", p.damping,
       [](config::Section& d, Damping& v) {
@@ -172,8 +173,8 @@ void declare_loads(config::Section& s, Parameters& p) {
             .unit("Pa")
             .plausible(1e-9, 1e11)
             .doc("pressure on the opposite side (with 'modes.file': -z), of x, y, z, t");
-        l.check([&] { return v.upper ? problem_of(*v.upper) : ""; }, "upper-pressure");
-        l.check([&] { return v.lower ? problem_of(*v.lower) : ""; }, "lower-pressure");
+        l.check([&] { return v.upper ? fv::problem_of(*v.upper) : ""; }, "upper-pressure");
+        l.check([&] { return v.lower ? fv::problem_of(*v.lower) : ""; }, "lower-pressure");
       },
       "pressures acting on the sides, in addition to those of a fluid; a table of a file: 'table(t, "
       "\"p.csv\")'");
@@ -246,7 +247,7 @@ void check_together(config::Section& s, Parameters& p) {
   s.check(
       [&] {
         return p.contact && p.contact->rule == ContactRule::conserving &&
-                       p.time_scheme.type != TimeScheme::trapezoidal
+                       p.time_scheme.type != time::TimeScheme::trapezoidal
                    ? "'rule: conserving' requires the trapezoidal time scheme; use 'rule: midpoint'"
                    : "";
       },
@@ -293,8 +294,9 @@ void declare(config::Section& s, ContactParameters& c) {
           "conserving: a bounce conserves the energy to rounding, with the trapezoidal time scheme only; "
           "midpoint: the force where the scheme has equilibrium, with any scheme");
   const auto problem = [](const config::ExpressionText& text) -> std::string {
-    if (std::string wrong = problem_of(text); !wrong.empty()) return wrong;
-    return Expression(text).uses_time() ? "the seat is at rest: use an expression of x, y, z, without t" : "";
+    if (std::string wrong = fv::problem_of(text); !wrong.empty()) return wrong;
+    return fv::Expression(text).uses_time() ? "the seat is at rest: use an expression of x, y, z, without t"
+                                            : "";
   };
   s.check(
       [&] {

@@ -60,7 +60,7 @@ struct Parameters {
   Wetted wetted = Wetted::both;
   std::optional<double> number;  // of modes of a mesh
   int n_modes() const { return number ? static_cast<int>(*number) : 15; }
-  TimeSchemeParameters time_scheme;
+  time::TimeSchemeParameters time_scheme;
   std::optional<Damping> damping;
   std::vector<double> gravity;  // [m/s^2]; empty: none
   std::optional<Load> load;

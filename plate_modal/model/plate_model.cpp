@@ -19,7 +19,7 @@ namespace {
 /// meet in a blunt corner, or of two kinds, whose tangents a coarse mesh knows less well. At a blunt corner of simply supported
 /// edges both slopes are 0 in the limit, too, but the deflection there is as smooth as r^1.1 only: with both held the middle of a
 /// plate of 20 sides with 7 edges each is 47 % too stiff, where it is 15 % too soft with one.
-constexpr double blunt = 25 * degree, unlike = 10 * degree, rounding = 1e-6;
+constexpr double blunt = 25 * base::degree, unlike = 10 * base::degree, rounding = 1e-6;
 
 /// The direction in which a support holds the slope at an edge with this tangent: w = 0 along an edge leaves no slope along it,
 /// symmetry leaves none across it.
@@ -131,8 +131,8 @@ void PlateModel::assemble() {
     m_values.push_back(0);
   }
   const auto n = static_cast<GlobalIndex>(n_unknowns());
-  stiffness_ = std::make_unique<SparseMatrix>(MPI_COMM_SELF, n, row, column);
-  mass_ = std::make_unique<SparseMatrix>(MPI_COMM_SELF, n, std::move(row), std::move(column));
+  stiffness_ = std::make_unique<linalg::SparseMatrix>(MPI_COMM_SELF, n, row, column);
+  mass_ = std::make_unique<linalg::SparseMatrix>(MPI_COMM_SELF, n, std::move(row), std::move(column));
   stiffness_->fill(k_values);
   mass_->fill(m_values);
 }
@@ -196,14 +196,14 @@ double PlateModel::frequency_scale() const {
   return least / (length * length * length * length);
 }
 
-EigenModes PlateModel::modes(int n) const {
+modes::EigenModes PlateModel::modes(int n) const {
   const auto free = std::ranges::count(fixed_, false);
   if (n >= free)
     throw Error(
         "{} modes are requested, but the plate has {} free unknowns, and one mode must be left over. "
         "Request fewer, or use a finer mesh: modes beyond a tenth of the unknowns are mesh artefacts.",
         n, free);
-  EigenModes modes = lowest_modes(*stiffness_, *mass_, n, -frequency_scale());
+  modes::EigenModes modes = modes::lowest_modes(*stiffness_, *mass_, n, -frequency_scale());
   for (std::vector<double>& shape : modes.shape) {
     // One of the two signs: the first of the largest deflections is positive.
     double largest = 0;
@@ -219,11 +219,11 @@ EigenModes PlateModel::modes(int n) const {
 }
 
 void PlateModel::stiffen(double shift) {
-  petsc_check(MatAXPY(stiffness_->petsc(), shift, mass_->petsc(), SAME_NONZERO_PATTERN));
+  linalg::petsc_check(MatAXPY(stiffness_->petsc(), shift, mass_->petsc(), SAME_NONZERO_PATTERN));
 }
 
 std::vector<double> PlateModel::deflect(std::span<const double> load) const {
-  LinearSolver solver("deflection", *stiffness_, {.method = LinearMethod::direct_symmetric});
+  linalg::LinearSolver solver("deflection", *stiffness_, {.method = linalg::LinearMethod::direct_symmetric});
   std::vector<double> u(load.size(), 0);
   solver.solve(load, u);
   return u;

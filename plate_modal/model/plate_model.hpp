@@ -34,8 +34,8 @@ class PlateModel final {
 
   const Midsurface& surface() const { return surface_; }
   const PlateCell& cell(Index c) const { return cells_[c]; }
-  const SparseMatrix& stiffness() const { return *stiffness_; }
-  const SparseMatrix& mass() const { return *mass_; }
+  const linalg::SparseMatrix& stiffness() const { return *stiffness_; }
+  const linalg::SparseMatrix& mass() const { return *mass_; }
   std::size_t n_unknowns() const { return 3 * surface_.points.size(); }
   bool is_supported(std::size_t unknown) const { return fixed_[unknown]; }
 
@@ -51,7 +51,7 @@ class PlateModel final {
   double frequency_scale() const;
 
   /// The plate's lowest modes.
-  EigenModes modes(int n) const;
+  modes::EigenModes modes(int n) const;
   /// Puts K + shift M in the place of K.
   void stiffen(double shift);
   /// K u = load. Throws Error if the supports leave it free, SolveFailure. In unknowns.
@@ -66,7 +66,7 @@ class PlateModel final {
   std::vector<PlateCell> cells_;
   std::vector<Vec2> axis_;  // per point: direction of its second unknown
   std::vector<bool> fixed_;
-  std::unique_ptr<SparseMatrix> stiffness_, mass_;
+  std::unique_ptr<linalg::SparseMatrix> stiffness_, mass_;
 };
 
 }  // namespace couplet::plate

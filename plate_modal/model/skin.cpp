@@ -21,7 +21,7 @@ std::vector<double> half_thickness(const PlateModel& plate) {
 
 /// Vertices of one side, numbered like the points of the mid-surface from `first` on, and its faces.
 void add_side(const Midsurface& s, const Placement& placement, const std::vector<double>& height, double sign,
-              ModalModel& model) {
+              modes::ModalModel& model) {
   const Index first = static_cast<Index>(model.vertices.size());
   for (std::size_t p = 0; p < s.points.size(); ++p)
     model.vertices.push_back(placement.place(s.points[p], sign * height[p]));
@@ -33,7 +33,7 @@ void add_side(const Midsurface& s, const Placement& placement, const std::vector
   }
 }
 
-void add_rim(const Midsurface& s, const std::vector<bool>& open, ModalModel& model) {
+void add_rim(const Midsurface& s, const std::vector<bool>& open, modes::ModalModel& model) {
   const Index upper = 0, lower = static_cast<Index>(s.points.size());
   for (const auto& edge : s.edges)
     if (open[edge.patch])
@@ -43,14 +43,14 @@ void add_rim(const Midsurface& s, const std::vector<bool>& open, ModalModel& mod
 
 class Shapes {
  public:
-  Shapes(const PlateModel& plate, const EigenModes& modes, const Placement& placement)
+  Shapes(const PlateModel& plate, const modes::EigenModes& modes, const Placement& placement)
       : plate_(plate), placement_(placement), n_(modes.shape.size()) {
     for (const auto& shape : modes.shape) {
       points_.push_back(plate.to_points(shape));
       means_.push_back(plate.cell_means(points_.back()));
     }
   }
-  void add_side(const std::vector<double>& height, double sign, ModalModel& model) const {
+  void add_side(const std::vector<double>& height, double sign, modes::ModalModel& model) const {
     const std::size_t n_points = height.size(), first = model.vertex_shape.size();
     model.vertex_shape.resize(first + 3 * n_points * n_);
     for (std::size_t p = 0; p < n_points; ++p)
@@ -60,7 +60,7 @@ class Shapes {
       }
   }
   /// In place of the means of the corners: the exact mean of the deflection.
-  void refine_side(Index first_face, ModalModel& model) const {
+  void refine_side(Index first_face, modes::ModalModel& model) const {
     const Vec3 normal = placement_.normal();
     for (std::size_t c = 0; c < means_.front().size(); ++c)
       for (std::size_t m = 0; m < n_; ++m) {
@@ -96,12 +96,12 @@ class Shapes {
 
 }  // namespace
 
-ModalModel skin_of(const PlateModel& plate, const EigenModes& modes, const Placement& placement,
-                   Wetted wetted, const std::vector<bool>& open) {
+modes::ModalModel skin_of(const PlateModel& plate, const modes::EigenModes& modes, const Placement& placement,
+                          Wetted wetted, const std::vector<bool>& open) {
   const Midsurface& s = plate.surface();
   const std::vector<double> height = half_thickness(plate);
   const Shapes shapes(plate, modes, placement);
-  ModalModel model;
+  modes::ModalModel model;
   for (const double value : modes.eigenvalue)
     model.frequency.push_back(std::sqrt(std::max(0., value)) / (2 * std::numbers::pi));
   std::vector<double> signs;
@@ -112,7 +112,7 @@ ModalModel skin_of(const PlateModel& plate, const EigenModes& modes, const Place
     shapes.add_side(height, sign, model);
   }
   if (wetted == Wetted::both) add_rim(s, open, model);
-  average_faces(model);
+  modes::average_faces(model);
   for (std::size_t i = 0; i < signs.size(); ++i) shapes.refine_side(Index(i) * s.cells.size(), model);
   model.participation = shapes.participation();
   const std::vector<double> areas = plate.cell_areas();

@@ -26,7 +26,7 @@ struct Placement {
 /// sits in its wall. The thickness at a point is the mean of the cells around it, by area. Shapes are means
 /// over the faces: those of the sides exact for the plate's cubic deflection, those of the rim the mean of
 /// the corners.
-ModalModel skin_of(const PlateModel& plate, const EigenModes& modes, const Placement& placement,
-                   Wetted wetted, const std::vector<bool>& open);
+modes::ModalModel skin_of(const PlateModel& plate, const modes::EigenModes& modes, const Placement& placement,
+                          Wetted wetted, const std::vector<bool>& open);
 
 }  // namespace couplet::plate

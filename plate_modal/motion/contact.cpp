@@ -21,7 +21,7 @@ Contact::Contact(const Share& share, const ContactParameters& p, const Vec3& nor
     : share_(share), rule_(p.rule), n_modes_(share.n_modes()) {
   const Vec3 direction = p.direction.empty() ? normal : Vec3(p.direction[0], p.direction[1], p.direction[2]);
   std::vector<std::size_t> faces;
-  const Expression height(p.height, "contact.height"), where(p.where, "contact.where");
+  const fv::Expression height(p.height, "contact.height"), where(p.where, "contact.where");
   for (std::size_t f = 0; f < share.n_faces(); ++f) {
     const Vec3 &x = share.centres()[f], &area = share.areas()[f];
     const double towards = -area.dot(direction);
@@ -36,7 +36,7 @@ Contact::Contact(const Share& share, const ContactParameters& p, const Vec3& nor
       shape_.push_back(along);
     }
   }
-  if (couplet::sum(share.comm(), GlobalIndex(gap_.size())) == 0)
+  if (couplet::parallel::sum(share.comm(), GlobalIndex(gap_.size())) == 0)
     throw Error("contact: no face of the structure points towards the seat. Check 'direction' and 'where'.");
   refuse_sliding(direction, faces);
 }
@@ -71,7 +71,7 @@ Contact::Place Contact::deepest(std::span<const double> q) const {
   for (std::size_t f = 0; f < gap_.size(); ++f)
     if (const double delta = penetration(f, q); delta > here[0])
       here = {delta, centre_[f].x(), centre_[f].y(), centre_[f].z()};
-  const std::vector<double> all = all_gather(share_.comm(), here);
+  const std::vector<double> all = parallel::all_gather(share_.comm(), here);
   std::size_t best = 0;
   for (std::size_t i = 0; i < all.size(); i += 4)
     if (all[i] > all[best]) best = i;
@@ -87,7 +87,7 @@ double Contact::stiffness_of_impact(std::span<const double> from, std::span<cons
     seen += kappa_[f] * along * along;
   }
   const double square = force.squaredNorm();
-  seen = couplet::sum(share_.comm(), seen);
+  seen = couplet::parallel::sum(share_.comm(), seen);
   return square > 0 ? seen / square : 0;
 }
 
@@ -158,7 +158,7 @@ void Contact::look(std::span<const double> q, Result& r) const {
   share_.sum(sums);
   r.energy = sums[0];
   r.total = sums[1];
-  r.penetration = couplet::max(share_.comm(), deepest);
+  r.penetration = couplet::parallel::max(share_.comm(), deepest);
 }
 
 }  // namespace couplet::plate

@@ -18,7 +18,7 @@ constexpr double newton_tolerance = 1e-13;
 }  // namespace
 
 Oscillators::Oscillators(std::vector<double> omega, std::vector<double> damping, std::vector<double> gravity,
-                         TimeSchemeParameters scheme, const Contact* contact)
+                         time::TimeSchemeParameters scheme, const Contact* contact)
     : omega_(std::move(omega)),
       damping_(std::move(damping)),
       gravity_(std::move(gravity)),
@@ -40,8 +40,8 @@ ModalState Oscillators::start(std::vector<double> q, std::vector<double> v) cons
   ModalState state;
   state.q = std::move(q);
   state.v = std::move(v);
-  if (uses_acceleration(scheme_.type)) state.a.assign(state.q.size(), 0);
-  if (uses_old_level(scheme_.type)) state.q_old = state.v_old = state.q;
+  if (time::uses_acceleration(scheme_.type)) state.a.assign(state.q.size(), 0);
+  if (time::uses_old_level(scheme_.type)) state.q_old = state.v_old = state.q;
   Contact::Result seat;
   if (contact_) contact_->look(state.q, seat);
   Energies& e = state.energies;
@@ -56,7 +56,7 @@ ModalState Oscillators::start(std::vector<double> q, std::vector<double> v) cons
 }
 
 /// The part of a combination that does not depend on the unknown.
-double Oscillators::known(const Levels& l, const ModalState& at, std::size_t m) const {
+double Oscillators::known(const time::Levels& l, const ModalState& at, std::size_t m) const {
   double value = l.u * at.q[m] + l.v * at.v[m];
   if (!at.a.empty()) value += l.a * at.a[m];
   if (!at.q_old.empty()) value += l.u_old * at.q_old[m] + l.v_old * at.v_old[m];
@@ -64,11 +64,12 @@ double Oscillators::known(const Levels& l, const ModalState& at, std::size_t m) 
 }
 
 void Oscillators::step(const ModalState& now, double dt, const LoadAt& load, ModalState& next) {
-  const std::vector<Stage> stages = second_order_stages(scheme_, dt, {now.dt > 0 ? 1 : 0, now.dt});
+  const std::vector<time::Stage> stages =
+      time::second_order_stages(scheme_, dt, {now.dt > 0 ? 1 : 0, now.dt});
   iterations_ = 0;
   work_ = now;
   for (std::size_t i = 0; i < stages.size(); ++i) {
-    const Stage& stage = stages[i];
+    const time::Stage& stage = stages[i];
     load(stage.start + stage.place * stage.dt, load_);
     advance(stage, work_, next);
     add_energies(stage, work_, next);
@@ -77,7 +78,7 @@ void Oscillators::step(const ModalState& now, double dt, const LoadAt& load, Mod
     next.q_old = work_.q, next.v_old = work_.v;
     std::swap(work_, next);
   }
-  if (uses_old_level(scheme_.type)) {
+  if (time::uses_old_level(scheme_.type)) {
     next.q_old = now.q, next.v_old = now.v;
   } else {
     next.q_old.clear(), next.v_old.clear();
@@ -87,7 +88,7 @@ void Oscillators::step(const ModalState& now, double dt, const LoadAt& load, Mod
 }
 
 /// One stage for all modes: acceleration + c rate + omega^2 x = load, each a combination of levels of x.
-void Oscillators::advance(const Stage& stage, const ModalState& at, ModalState& next) {
+void Oscillators::advance(const time::Stage& stage, const ModalState& at, ModalState& next) {
   const std::size_t n = omega_.size();
   for (std::size_t m = 0; m < n; ++m) {
     diagonal_[m] = stage.acceleration.x + damping_[m] * stage.rate.x + omega_[m] * omega_[m];
@@ -107,11 +108,11 @@ void Oscillators::advance(const Stage& stage, const ModalState& at, ModalState& 
 
 /// Newton's method on diagonal x - rhs - impact(x) = 0. The impact is the slope of a convex energy, so a step
 /// that makes the residual smaller always exists along the correction.
-void Oscillators::solve_contact(const Stage& stage, const ModalState& at) {
+void Oscillators::solve_contact(const time::Stage& stage, const ModalState& at) {
   const std::size_t n = omega_.size();
-  const Levels shown = scheme_.type == TimeScheme::trapezoidal && contact_->is_conserving()
-                           ? stage.end_value
-                           : Levels{1, 0, 0, 0, 0, 0};
+  const time::Levels shown = scheme_.type == time::TimeScheme::trapezoidal && contact_->is_conserving()
+                                 ? stage.end_value
+                                 : time::Levels{1, 0, 0, 0, 0, 0};
   double scale = 0;
   const auto evaluate = [&] {
     for (std::size_t m = 0; m < n; ++m) shown_[m] = shown.x * x_[m] + known(shown, at, m);
@@ -146,7 +147,7 @@ void Oscillators::solve_contact(const Stage& stage, const ModalState& at) {
   }
 }
 
-void Oscillators::add_energies(const Stage& stage, const ModalState& at, ModalState& next) {
+void Oscillators::add_energies(const time::Stage& stage, const ModalState& at, ModalState& next) {
   Energies& e = next.energies;
   for (std::size_t m = 0; m < omega_.size(); ++m) {
     const double moved = next.q[m] - at.q[m];

@@ -36,7 +36,7 @@ class Oscillators final {
  public:
   /// `damping`: c of each mode [1/s]; `gravity`: its load on each mode; `contact`: null without a seat.
   Oscillators(std::vector<double> omega, std::vector<double> damping, std::vector<double> gravity,
-              TimeSchemeParameters scheme, const Contact* contact);
+              time::TimeSchemeParameters scheme, const Contact* contact);
 
   /// A state at rest with these displacements and rates.
   ModalState start(std::vector<double> q, std::vector<double> v) const;
@@ -51,14 +51,14 @@ class Oscillators final {
   const Contact::Result& seat() const { return seat_; }  ///< at the end of the last step
 
  private:
-  double known(const Levels& levels, const ModalState& at, std::size_t mode) const;
-  void advance(const Stage& stage, const ModalState& at, ModalState& next);
-  void solve_contact(const Stage& stage, const ModalState& at);
-  void add_energies(const Stage& stage, const ModalState& at, ModalState& next);
+  double known(const time::Levels& levels, const ModalState& at, std::size_t mode) const;
+  void advance(const time::Stage& stage, const ModalState& at, ModalState& next);
+  void solve_contact(const time::Stage& stage, const ModalState& at);
+  void add_energies(const time::Stage& stage, const ModalState& at, ModalState& next);
   void finish(ModalState& state);
 
   std::vector<double> omega_, damping_, gravity_;
-  TimeSchemeParameters scheme_;
+  time::TimeSchemeParameters scheme_;
   const Contact* contact_;
   std::vector<double> load_, diagonal_, rhs_, x_, shown_;
   ModalState work_;

@@ -33,13 +33,13 @@ PressureLoad::PressureLoad(const Share& share, const Load& load, const Vec3& nor
     if (!*side) continue;
     const auto faces =
         std::ranges::count_if(share.areas(), [&](const Vec3& area) { return is_on(area, normal_, sign); });
-    if (couplet::sum(share.comm(), GlobalIndex(faces)) == 0)
+    if (couplet::parallel::sum(share.comm(), GlobalIndex(faces)) == 0)
       throw Error(
           "load.{}-pressure: the surface of the structure has no face on this side ({:g}, {:g}, {:g}).", name,
           sign * normal.x(), sign * normal.y(), sign * normal.z());
     if ((*side)->uses_space()) continue;
     unit.assign(share.n_modes(), 0);
-    add_faces(Expression(1.0), sign, 0, unit);
+    add_faces(fv::Expression(1.0), sign, 0, unit);
   }
 }
 
@@ -57,7 +57,8 @@ double PressureLoad::push(const Vec3& area, const Vec3& x, double t) const {
   return sum;
 }
 
-void PressureLoad::add_faces(const Expression& side, double sign, double t, std::span<double> load) const {
+void PressureLoad::add_faces(const fv::Expression& side, double sign, double t,
+                             std::span<double> load) const {
   std::vector<double> force(3 * share_.n_faces(), 0);
   for (std::size_t f = 0; f < share_.n_faces(); ++f) {
     const Vec3& area = share_.areas()[f];
@@ -83,7 +84,7 @@ void PressureLoad::fill(double t, std::span<double> load) const {
   }
 }
 
-double PressureLoad::value(const Expression& side, const Vec3& x, double t) const {
+double PressureLoad::value(const fv::Expression& side, const Vec3& x, double t) const {
   const auto fail = [&](const std::string& what) {
     throw Error("participants.{}.load.{}-pressure: at t = {:g} s{}: {}", name_,
                 &side == &*upper_ ? "upper" : "lower", t,
@@ -113,7 +114,8 @@ void PressureLoad::at(double t, std::span<double> load) const {
   if (!std::ranges::any_of(load, [](double one) { return std::isnan(one); })) return;
   // The same sentence on every rank: that of the first which has one.
   if (!problem.empty()) problem += '\n';
-  const std::vector<char> all = all_gather(share_.comm(), std::vector<char>(problem.begin(), problem.end()));
+  const std::vector<char> all =
+      parallel::all_gather(share_.comm(), std::vector<char>(problem.begin(), problem.end()));
   const std::string texts(all.begin(), all.end());
   throw Error(texts.substr(0, texts.find('\n')));
 }

@@ -22,8 +22,8 @@ class PressureLoad final {
   /// `name`: of the participant, for messages.
   PressureLoad(const Share& share, const Load& load, const Vec3& normal, std::string name = "plate");
 
-  const std::optional<Expression>& upper() const { return upper_; }
-  const std::optional<Expression>& lower() const { return lower_; }
+  const std::optional<fv::Expression>& upper() const { return upper_; }
+  const std::optional<fv::Expression>& lower() const { return lower_; }
   bool changes_in_time() const;
   bool is_uniform() const;  ///< in space: cheap to ask for
   /// Loads on the modes at t [N/sqrt(kg)], of all ranks. Collective. Throws Error with key, time and place, the same on
@@ -31,7 +31,7 @@ class PressureLoad final {
   void at(double t, std::span<double> load) const;
 
   /// Of one of the two sides at a place and time [Pa]. Throws as at().
-  double value(const Expression& side, const Vec3& x, double t) const;
+  double value(const fv::Expression& side, const Vec3& x, double t) const;
   /// Pressures at x on a face of this area, those that push against its normal [Pa].
   double push(const Vec3& area, const Vec3& x, double t) const;
 
@@ -44,13 +44,13 @@ class PressureLoad final {
   Seen seen(double t, double dt, int samples) const;
 
  private:
-  void add_faces(const Expression& side, double sign, double t, std::span<double> load) const;
+  void add_faces(const fv::Expression& side, double sign, double t, std::span<double> load) const;
   void fill(double t, std::span<double> load) const;
 
   const Share& share_;
   Vec3 normal_;
   std::string name_;
-  std::optional<Expression> upper_, lower_;
+  std::optional<fv::Expression> upper_, lower_;
   std::array<std::vector<double>, 2>
       of_one_pascal_;  // on this rank's faces: upper, lower; empty: not uniform
 };

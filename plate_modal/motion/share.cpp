@@ -10,7 +10,7 @@ namespace couplet::plate {
 namespace {
 
 std::vector<int> shares(MPI_Comm comm, std::size_t n) {
-  const int ranks = comm_size(comm);
+  const int ranks = parallel::comm_size(comm);
   std::vector<int> counts;
   for (int r = 0; r < ranks; ++r) counts.push_back(int(n * (r + 1) / ranks - n * r / ranks));
   return counts;
@@ -32,7 +32,7 @@ std::vector<int> starts(const std::vector<int>& counts) {
 /// This rank's rows, each of `width` values, of rank 0's table.
 std::vector<double> scatter(MPI_Comm comm, const std::vector<int>& counts, int width, const double* on_root) {
   const std::vector<int> n = scaled(counts, width), first = starts(n);
-  std::vector<double> here(n[comm_rank(comm)]);
+  std::vector<double> here(n[parallel::comm_rank(comm)]);
   MPI_Scatterv(on_root, n.data(), first.data(), MPI_DOUBLE, here.data(), int(here.size()), MPI_DOUBLE, 0,
                comm);
   return here;
@@ -50,21 +50,21 @@ const double* flat_data(const std::vector<Vec3>& values) {
 
 }  // namespace
 
-Share::Share(MPI_Comm comm, const ModalModel& whole)
+Share::Share(MPI_Comm comm, const modes::ModalModel& whole)
     : comm_(comm), omega_(whole.frequency), participation_(whole.participation), mass_(whole.mass) {
   std::vector<double> sizes{double(whole.faces.size()), double(whole.vertices.size()), whole.mass};
-  broadcast(comm, sizes);
-  broadcast(comm, omega_);
+  mesh::broadcast(comm, sizes);
+  mesh::broadcast(comm, omega_);
   for (double& omega : omega_) omega *= 2 * std::numbers::pi;
-  broadcast(comm, participation_);
+  mesh::broadcast(comm, participation_);
   mass_ = sizes[2];
   face_counts_ = shares(comm, std::size_t(sizes[0]));
   vertex_counts_ = shares(comm, std::size_t(sizes[1]));
   interface_.dim = 3;
-  if (comm_rank(comm) == 0) {
+  if (parallel::comm_rank(comm) == 0) {
     interface_.vertices = whole.vertices;
-    interface_.face_centres = face_centres(whole);
-    interface_.face_areas = face_areas(whole);
+    interface_.face_centres = modes::face_centres(whole);
+    interface_.face_areas = modes::face_areas(whole);
     interface_.face_offset = whole.faces.offset;
     interface_.face_vertices = whole.faces.index;
   }
@@ -95,9 +95,9 @@ void Share::add_load(std::span<const double> force, std::span<double> load) cons
 
 std::vector<double> Share::scatter_faces(const std::vector<double>& on_root) const {
   const std::size_t n = interface_.face_centres.size();
-  const std::vector<double> zeros(on_root.empty() && comm_rank(comm_) == 0 ? 3 * n : 0);
+  const std::vector<double> zeros(on_root.empty() && parallel::comm_rank(comm_) == 0 ? 3 * n : 0);
   const std::vector<double>& values = zeros.empty() ? on_root : zeros;
-  if (comm_rank(comm_) == 0 && values.size() != 3 * n)
+  if (parallel::comm_rank(comm_) == 0 && values.size() != 3 * n)
     throw Error("The structure received {} force values, but its surface has {} faces with 3 components.",
                 values.size(), n);
   return scatter(comm_, face_counts_, 3, values.data());

@@ -17,7 +17,7 @@ namespace couplet::plate {
 class Share final {
  public:
   /// `whole`: on rank 0; the small parts of it (frequencies, participation) go to every rank. Collective.
-  Share(MPI_Comm comm, const ModalModel& whole);
+  Share(MPI_Comm comm, const modes::ModalModel& whole);
 
   int n_modes() const { return static_cast<int>(omega_.size()); }
   const std::vector<double>& omega() const { return omega_; }
@@ -41,7 +41,7 @@ class Share final {
   /// sum q_m phi_m at this rank's vertices, gathered on rank 0 (empty elsewhere); 3 a vertex. Collective.
   std::vector<double> gather_vertices(std::span<const double> q) const;
   /// Places, areas of the whole surface on rank 0; takes and gives stay empty.
-  Interface describe() const { return interface_; }
+  coupling::Interface describe() const { return interface_; }
   /// Sums over the ranks. Collective.
   void sum(std::span<double> values) const;
   MPI_Comm comm() const { return comm_; }
@@ -52,7 +52,7 @@ class Share final {
   std::vector<Vec3> centres_, areas_;
   double mass_ = 0;
   std::vector<int> face_counts_, vertex_counts_;  // entries of each rank
-  Interface interface_;
+  coupling::Interface interface_;
 };
 
 }  // namespace couplet::plate

@@ -8,10 +8,11 @@ namespace couplet::solid {
 namespace {
 
 template <int D>
-void interpolate(const ElasticOperator& elastic, std::span<const Index> points, std::span<const double> cells,
-                 std::span<const double> faces, std::span<const double> known, std::span<double> values) {
+void interpolate(const elastic::ElasticOperator& elastic, std::span<const Index> points,
+                 std::span<const double> cells, std::span<const double> faces, std::span<const double> known,
+                 std::span<double> values) {
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const VertexConstraints& constraints = elastic.constraints();
+    const elastic::VertexConstraints& constraints = elastic.constraints();
     Vec<D> value = Vec<D>::Zero();
     if (!constraints.is_fixed(points[i])) {
       value = elastic.vertices().template scalar_at<D>(points[i], cells, faces);
@@ -39,7 +40,7 @@ std::vector<double> SolidBody::at_points(std::span<const Index> points, std::spa
 std::vector<double> SolidBody::to_points(std::span<const double> cells, std::span<const double> faces,
                                          std::span<const double> known) const {
   std::vector<double> values;
-  if (kernel_.scheme() == FaceGradientScheme::thesis) {
+  if (kernel_.scheme() == elastic::FaceGradientScheme::thesis) {
     std::vector<Index> all(mesh_.points.n_local());
     for (Index v = 0; v < mesh_.points.n_local(); ++v) all[v] = v;
     values = at_points(all, cells, faces, known);
@@ -65,7 +66,7 @@ std::vector<double> SolidBody::unknowns_of(std::span<const double> cells,
 /// What of a point's value is not free, and the known faces.
 std::vector<double> SolidBody::known_of(const BodyField& field) const {
   const int dim = mesh_.dim;
-  const VertexConstraints& constraints = elastic_.constraints();
+  const elastic::VertexConstraints& constraints = elastic_.constraints();
   std::vector<double> known(elastic_.n_known() * dim, 0);
   const auto at = [dim](std::span<const double> values, Index i) {
     Vec3 u = Vec3::Zero();
@@ -83,7 +84,8 @@ std::vector<double> SolidBody::known_of(const BodyField& field) const {
   return known;
 }
 
-void SolidBody::visit_gradients(const BodyField& field, const ElasticKernel::TakeGradient& take) const {
+void SolidBody::visit_gradients(const BodyField& field,
+                                const elastic::ElasticKernel::TakeGradient& take) const {
   kernel_.face_gradients(unknowns_of(field.cells, field.faces), known_of(field), take, 0,
                          mesh_.n_flux_faces());
 }

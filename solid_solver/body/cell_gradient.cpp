@@ -10,7 +10,7 @@ namespace {
 
 /// Cells all of whose neighbours by vertex are of the same kind and material. Elsewhere the values at points
 /// are less exact (kind) or have no one gradient (material).
-std::vector<bool> uniform_surroundings(const Mesh& mesh) {
+std::vector<bool> uniform_surroundings(const mesh::Mesh& mesh) {
   constexpr int unseen = -1, several = -2;
   std::vector<int> around(mesh.points.n_local(), unseen);
   for (Index c = 0; c < mesh.cells.n_local(); ++c) {
@@ -54,7 +54,7 @@ std::vector<Tensor3> SolidFields::cell_gradient(std::span<const double> points) 
   if (!body_.is_corrected()) return gradient;
 
   const std::vector<Tensor3> at_points = point_tensors().interpolate_full(gradient, on_boundary);
-  const std::vector<Tensor3> better = gradients_from_points(mesh_, geometry_, points, at_points);
+  const std::vector<Tensor3> better = fv::gradients_from_points(mesh_, geometry_, points, at_points);
   const std::vector<bool> uniform = uniform_surroundings(mesh_);
   for (Index c = 0; c < n_owned; ++c)
     if (uniform[c]) gradient[c] = better[c];

@@ -7,14 +7,14 @@ namespace couplet::solid {
 namespace {
 
 /// Of the mean over the vertices, in that over the volume: exact for simplices and boxes.
-double share_of_vertices(CellType type) {
+double share_of_vertices(mesh::CellType type) {
   switch (type) {
-    case CellType::triangle:
+    case mesh::CellType::triangle:
       return 1. / 4;
-    case CellType::tetrahedron:
+    case mesh::CellType::tetrahedron:
       return 1. / 5;
-    case CellType::prism:
-    case CellType::pyramid:
+    case mesh::CellType::prism:
+    case mesh::CellType::pyramid:
       return 7. / 24;
     default:
       return 1. / 3;
@@ -23,7 +23,7 @@ double share_of_vertices(CellType type) {
 
 }  // namespace
 
-Tensor3 cell_moment(const Mesh& mesh, const Geometry& geometry, Index cell) {
+Tensor3 cell_moment(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index cell) {
   Tensor3 moment = Tensor3::Zero();
   for (const Index v : mesh.cell_points[cell]) {
     const Vec3 arm = geometry.points[v] - geometry.cell_centre[cell];
@@ -32,10 +32,10 @@ Tensor3 cell_moment(const Mesh& mesh, const Geometry& geometry, Index cell) {
   return moment * (share_of_vertices(mesh.cell_type[cell]) / double(mesh.cell_points[cell].size()));
 }
 
-Csr boundary_faces_of_cells(const Mesh& mesh) {
-  Csr owners;
+mesh::Csr boundary_faces_of_cells(const mesh::Mesh& mesh) {
+  mesh::Csr owners;
   for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f) owners.push_row({&mesh.owner[f], 1});
-  Csr faces = transpose(owners, 0, mesh.cells.n_local());
+  mesh::Csr faces = mesh::transpose(owners, 0, mesh.cells.n_local());
   for (Index& f : faces.index) f += mesh.n_interior;
   return faces;
 }

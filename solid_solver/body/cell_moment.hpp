@@ -7,8 +7,8 @@
 namespace couplet::solid {
 
 /// Mean of (x - x_c) (x - x_c)^T over a local cell [m^2], from its vertices: exact for simplices and boxes.
-Tensor3 cell_moment(const Mesh& mesh, const Geometry& geometry, Index cell);
+Tensor3 cell_moment(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index cell);
 /// Boundary faces of each local cell, counted among all faces.
-Csr boundary_faces_of_cells(const Mesh& mesh);
+mesh::Csr boundary_faces_of_cells(const mesh::Mesh& mesh);
 
 }  // namespace couplet::solid

@@ -15,7 +15,8 @@ std::vector<double> SmallStrain::force_of_known(std::span<const double> known) c
   return force;
 }
 
-SolveStatistics SmallStrain::find(const EquilibriumLoad& load, SolidSystem& system, std::span<double> u) {
+linalg::SolveStatistics SmallStrain::find(const EquilibriumLoad& load, SolidSystem& system,
+                                          std::span<double> u) {
   return system.method->solve(load.rows, u);
 }
 
@@ -26,12 +27,13 @@ std::vector<double> SmallStrain::forces(std::span<const double> unknowns, std::s
 }
 
 double SmallStrain::energy(std::span<const double> unknowns, std::span<const double> known) {
-  const ElasticField u{unknowns, known};
-  return sum(mesh_.comm, 0.5 * kernel_.product(ElasticPart::stiffness, u, u));
+  const elastic::ElasticField u{unknowns, known};
+  return parallel::sum(mesh_.comm, 0.5 * kernel_.product(elastic::ElasticPart::stiffness, u, u));
 }
 
-std::vector<Wrench> SmallStrain::holding_forces(std::span<const double> unknowns,
-                                                std::span<const double> known, const ElasticLoads& loads) {
+std::vector<elastic::Wrench> SmallStrain::holding_forces(std::span<const double> unknowns,
+                                                         std::span<const double> known,
+                                                         const elastic::ElasticLoads& loads) {
   return kernel_.holding_forces(unknowns, known, loads);
 }
 

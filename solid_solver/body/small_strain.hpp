@@ -15,8 +15,8 @@ class SmallStrain final : public Equilibrium {
  public:
   using Effects = std::vector<std::unique_ptr<SolidEffect>>;
   /// All by reference.
-  SmallStrain(const Mesh& mesh, const ElasticKernel& kernel, const ElasticOperator& rows,
-              const Effects& effects, const SolidParameters& parameters)
+  SmallStrain(const mesh::Mesh& mesh, const elastic::ElasticKernel& kernel,
+              const elastic::ElasticOperator& rows, const Effects& effects, const SolidParameters& parameters)
       : mesh_(mesh), kernel_(kernel), rows_(rows), effects_(effects), parameters_(parameters) {}
 
   bool is_linear() const override { return true; }
@@ -24,20 +24,21 @@ class SmallStrain final : public Equilibrium {
   void prepare(const SolidProblem& problem, SolidSystem& system) const override;
   void set_pressure(std::vector<double>) override {}
   std::vector<double> force_of_known(std::span<const double> known) const override;
-  SolveStatistics find(const EquilibriumLoad& load, SolidSystem& system, std::span<double> u) override;
+  linalg::SolveStatistics find(const EquilibriumLoad& load, SolidSystem& system,
+                               std::span<double> u) override;
   std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;
   double energy(std::span<const double> unknowns, std::span<const double> known) override;
-  std::vector<Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
-                                     const ElasticLoads& loads) override;
+  std::vector<elastic::Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
+                                              const elastic::ElasticLoads& loads) override;
   double share_left(double residual, double rows) const override { return rows > 0 ? residual / rows : 0; }
   void to_strain(std::span<Tensor3> gradients) const override;
   std::vector<Tensor3> face_stress(const Displaced& state, Index first, Index count) override;
   std::vector<Tensor3> cell_stress(const Displaced& state) override;
 
  private:
-  const Mesh& mesh_;
-  const ElasticKernel& kernel_;
-  const ElasticOperator& rows_;
+  const mesh::Mesh& mesh_;
+  const elastic::ElasticKernel& kernel_;
+  const elastic::ElasticOperator& rows_;
   const Effects& effects_;
   const SolidParameters& parameters_;
 };

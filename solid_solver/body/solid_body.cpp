@@ -21,7 +21,7 @@ namespace {
 constexpr double most_poissons_ratio = 0.499;
 
 /// A face has a vertex that is free in a direction which the face knows.
-bool has_loose_vertex(const Mesh& mesh, const ElasticOperator& elastic) {
+bool has_loose_vertex(const mesh::Mesh& mesh, const elastic::ElasticOperator& elastic) {
   for (const Index f : elastic.known_faces()) {
     const Tensor3& known = elastic.at(f).known;
     for (const Index v : mesh.face_points[f])
@@ -31,20 +31,20 @@ bool has_loose_vertex(const Mesh& mesh, const ElasticOperator& elastic) {
 }
 
 /// Left to the program, the symmetric gradient steps aside where it would lose a part of the reaction.
-FaceGradientScheme scheme_for(const Mesh& mesh, const SolidParameters& parameters,
-                              const ElasticOperator& elastic) {
-  const FaceGradientScheme scheme = face_gradient_scheme(parameters);
+elastic::FaceGradientScheme scheme_for(const mesh::Mesh& mesh, const SolidParameters& parameters,
+                                       const elastic::ElasticOperator& elastic) {
+  const elastic::FaceGradientScheme scheme = face_gradient_scheme(parameters);
   const bool free_to_choose = parameters.method.face_gradient == MethodParameters::FaceGradient::automatic &&
                               !has_finite_strain(parameters) && !has_orthotropic(parameters) &&
                               !elastic.volume_by_cells() && !has_rigid_patch(parameters);
-  if (free_to_choose && scheme == FaceGradientScheme::symmetric &&
-      any(mesh.comm, has_loose_vertex(mesh, elastic)))
-    return FaceGradientScheme::thesis;
+  if (free_to_choose && scheme == elastic::FaceGradientScheme::symmetric &&
+      parallel::any(mesh.comm, has_loose_vertex(mesh, elastic)))
+    return elastic::FaceGradientScheme::thesis;
   return scheme;
 }
 
-std::unique_ptr<Equilibrium> make_equilibrium(const Mesh& mesh, const ElasticKernel& kernel,
-                                              const ElasticOperator& rows,
+std::unique_ptr<Equilibrium> make_equilibrium(const mesh::Mesh& mesh, const elastic::ElasticKernel& kernel,
+                                              const elastic::ElasticOperator& rows,
                                               const SmallStrain::Effects& effects,
                                               const SolidParameters& parameters) {
   if (!has_finite_strain(parameters))
@@ -56,7 +56,7 @@ std::unique_ptr<Equilibrium> make_equilibrium(const Mesh& mesh, const ElasticKer
 
 }  // namespace
 
-SolidBody::SolidBody(LoadedMesh body, SolidParameters parameters)
+SolidBody::SolidBody(mesh::LoadedMesh body, SolidParameters parameters)
     : mesh_(std::move(body.mesh)),
       geometry_(std::move(body.geometry)),
       parameters_(std::move(parameters)),
@@ -70,7 +70,7 @@ SolidBody::SolidBody(LoadedMesh body, SolidParameters parameters)
   equilibrium_ = make_equilibrium(mesh_, kernel_, elastic_, effects_, parameters_);
   find_mass();
   if (!parameters_.body_force.empty())
-    body_force_ = make_expressions(parameters_.body_force, mesh_.dim, "body-force");
+    body_force_ = fv::make_expressions(parameters_.body_force, mesh_.dim, "body-force");
   effects_ = make_effects(mesh_, elastic_, parameters_);
 }
 
@@ -87,12 +87,12 @@ void SolidBody::find_mass() {
   bool has_no_energy = false;
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
     has_no_energy = has_no_energy || elastic_.at(f).level;
-  if (kernel_.is_symmetric() && any(mesh_.comm, has_no_energy))
+  if (kernel_.is_symmetric() && parallel::any(mesh_.comm, has_no_energy))
     throw Error(
         "solution-method.face-gradient: symmetric: a boundary of 'type: zero-normal-gradient' has no energy "
         "functional, so this gradient does not support it; use 'symmetry' or 'frictionless', or "
         "'face-gradient: thesis'.");
-  if (kernel_.is_symmetric() && any(mesh_.comm, has_loose_vertex(mesh_, elastic_)))
+  if (kernel_.is_symmetric() && parallel::any(mesh_.comm, has_loose_vertex(mesh_, elastic_)))
     throw Error(
         "solution-method.face-gradient: symmetric: a part of a patch holds components of the displacement "
         "and ends at vertices that it does not hold; this gradient would lose part of the reaction there. "
@@ -116,7 +116,7 @@ bool SolidBody::apply_stiffness() {
     if (lame.empty()) continue;
     changed = true;
     elastic_.set_lame({lame.begin(), lame.end()});
-    kernel_ = ElasticKernel(mesh_, elastic_, kernel_.scheme());
+    kernel_ = elastic::ElasticKernel(mesh_, elastic_, kernel_.scheme());
     find_mass();
   }
   return changed;

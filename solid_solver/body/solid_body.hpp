@@ -27,19 +27,19 @@ struct BodyField {
 class SolidBody final {
  public:
   /// Throws Error for a scene that cannot be. Collective over mesh.comm.
-  SolidBody(LoadedMesh body, SolidParameters parameters);
+  SolidBody(mesh::LoadedMesh body, SolidParameters parameters);
   SolidBody(const SolidBody&) = delete;
   SolidBody& operator=(const SolidBody&) = delete;
 
-  const Mesh& mesh() const { return mesh_; }
+  const mesh::Mesh& mesh() const { return mesh_; }
   /// Of the undeformed body.
-  const Geometry& geometry() const { return geometry_; }
+  const mesh::Geometry& geometry() const { return geometry_; }
   const SolidParameters& parameters() const { return parameters_; }
   const std::vector<SolidMaterial>& materials() const { return materials_; }
   const SolidBoundaries& boundaries() const { return boundaries_; }
-  const ElasticOperator& elastic() const { return elastic_; }
+  const elastic::ElasticOperator& elastic() const { return elastic_; }
   /// The rows of elastic() with the face gradient that was chosen.
-  const ElasticKernel& kernel() const { return kernel_; }
+  const elastic::ElasticKernel& kernel() const { return kernel_; }
   /// How it resists, at small strain by kernel().
   Equilibrium& equilibrium() const { return *equilibrium_; }
   /// Patches that move as rigid bodies.
@@ -50,7 +50,7 @@ class SolidBody final {
   /// The kernel has its own mass, and all its nodes inertia.
   bool has_mass() const { return has_mass_; }
   bool is_dynamic() const { return parameters_.analysis == SolidParameters::Analysis::dynamic; }
-  bool is_corrected() const { return kernel_.scheme() == FaceGradientScheme::corrected; }
+  bool is_corrected() const { return kernel_.scheme() == elastic::FaceGradientScheme::corrected; }
   /// The acceleration is written or watched, so that it is kept.
   bool wants_acceleration() const;
   /// [kg/m^3]
@@ -87,7 +87,7 @@ class SolidBody final {
   std::vector<double> at_points(std::span<const Index> points, std::span<const double> cells,
                                 std::span<const double> faces, std::span<const double> known) const;
   /// Gradients of all flux faces. Collective.
-  void visit_gradients(const BodyField& field, const ElasticKernel::TakeGradient& take) const;
+  void visit_gradients(const BodyField& field, const elastic::ElasticKernel::TakeGradient& take) const;
   /// Those of the flux faces first, first + 1, ... (`count` of them). Collective.
   std::vector<Tensor3> face_gradients(Index first, Index count, const BodyField& field) const;
 
@@ -95,18 +95,18 @@ class SolidBody final {
   void check_supports() const;
   void find_mass();
 
-  const Mesh mesh_;
-  const Geometry geometry_;
+  const mesh::Mesh mesh_;
+  const mesh::Geometry geometry_;
   const SolidParameters parameters_;
   const std::vector<SolidMaterial> materials_;
   SolidBoundaries boundaries_;
-  ElasticOperator elastic_;
-  ElasticKernel kernel_;
+  elastic::ElasticOperator elastic_;
+  elastic::ElasticKernel kernel_;
   std::unique_ptr<Equilibrium> equilibrium_;
   bool has_mass_ = false;
   PrescribedDisplacement prescribed_;
   RigidPatches rigid_;
-  std::vector<Expression> body_force_;
+  std::vector<fv::Expression> body_force_;
   std::vector<std::unique_ptr<SolidEffect>> effects_;
 };
 

@@ -68,7 +68,7 @@ std::vector<Tensor3> SolidFields::cell_stress(std::span<const double> points) co
 const PointTensors& SolidFields::point_tensors() const {
   if (!point_tensors_) {
     std::vector<bool> is_symmetry;
-    for (const Patch& patch : mesh_.patches) {
+    for (const mesh::Patch& patch : mesh_.patches) {
       const auto found = parameters_.boundaries.find(patch.name);
       is_symmetry.push_back(found != parameters_.boundaries.end() && found->second.parts.empty() &&
                             is_symmetry_plane(found->second));
@@ -86,7 +86,7 @@ std::vector<SurfaceTraction> SolidFields::known_tractions() const {
     const Index f = mesh_.n_interior + Index(b);
     const double area = geometry_.face_area[f].norm();
     SurfaceTraction& known = result[b];
-    const BoundaryRow& row = elastic_.at(f);
+    const elastic::BoundaryRow& row = elastic_.at(f);
     if (row.is_free() && !body_.boundaries().knows_traction(f)) continue;
     if (row.spring.isZero(0)) known.projector = Tensor3::Identity() - row.passing;
     known.symmetry = row.mirrored;

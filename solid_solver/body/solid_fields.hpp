@@ -16,7 +16,7 @@ namespace couplet::solid {
 
 /// Force on the solid at a constrained patch [N], its moment about the origin [N m]: of the undeformed places, at large strain of
 /// the deformed ones.
-struct PatchForce : Wrench {
+struct PatchForce : elastic::Wrench {
   std::string patch;
 };
 
@@ -67,16 +67,16 @@ class SolidFields final {
   std::vector<SurfaceTraction> known_tractions() const;
   DiscreteStress discrete_stress(std::span<const double> points) const;
   std::vector<PatchForce> reactions_by_trial_functions() const;
-  ElasticLoads loads_now() const;
+  elastic::ElasticLoads loads_now() const;
   Displaced displaced(std::span<const double> points) const;
 
   const SolidBody& body_;
   const SolidState& state_;
   const LastSolve& last_;
-  const Mesh& mesh_;
-  const Geometry& geometry_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
   const SolidParameters& parameters_;
-  const ElasticOperator& elastic_;
+  const elastic::ElasticOperator& elastic_;
   mutable std::unique_ptr<PointTensors> point_tensors_;  // made when first asked for
   mutable std::unique_ptr<StressRecovery> recovery_;     // likewise
 };

@@ -10,8 +10,8 @@ namespace couplet::solid {
 namespace {
 
 /// Over the ranks. Collective.
-Wrench sum_of(const Wrench& here, MPI_Comm comm) {
-  Wrench total;
+elastic::Wrench sum_of(const elastic::Wrench& here, MPI_Comm comm) {
+  elastic::Wrench total;
   double numbers[6];
   for (int a = 0; a < 3; ++a) numbers[a] = here.force[a], numbers[3 + a] = here.moment[a];
   MPI_Allreduce(MPI_IN_PLACE, numbers, 6, MPI_DOUBLE, MPI_SUM, comm);
@@ -27,7 +27,7 @@ std::vector<PatchForce> SolidFields::reactions(std::span<const double> points) c
   // One pass over the faces between the first and the last that is held, often few of the boundary's.
   Index first = mesh_.n_flux_faces(), end = mesh_.n_interior;
   for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
-    const Patch& patch = mesh_.patches[p];
+    const mesh::Patch& patch = mesh_.patches[p];
     if (!body_.boundaries().holds(p) || patch.count == 0) continue;
     first = std::min(first, patch.first);
     end = std::max(end, patch.first + patch.count);
@@ -35,8 +35,8 @@ std::vector<PatchForce> SolidFields::reactions(std::span<const double> points) c
   const std::vector<Tensor3> stress = face_stress(first, std::max<Index>(end - first, 0), points);
   for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
     if (!body_.boundaries().holds(p)) continue;
-    const Patch& patch = mesh_.patches[p];
-    Wrench held;
+    const mesh::Patch& patch = mesh_.patches[p];
+    elastic::Wrench held;
     for (Index f = patch.first; f < patch.first + patch.count; ++f)
       held.add(elastic_.holding_force(f, stress[f - first], state_.face_u, state_.known),
                geometry_.face_centre[f]);
@@ -50,7 +50,7 @@ std::vector<PatchForce> SolidFields::reactions_by_trial_functions() const {
   std::vector<PatchForce> forces;
   const std::vector<double> u = body_.unknowns_of(state_.cell_u, state_.face_u);
   body_.place_pressures(state_.time);
-  const std::vector<Wrench> held = body_.equilibrium().holding_forces(u, state_.known, loads_now());
+  const std::vector<elastic::Wrench> held = body_.equilibrium().holding_forces(u, state_.known, loads_now());
   if (held.empty()) return forces;
   for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
     if (!body_.boundaries().holds(p)) continue;
@@ -60,8 +60,8 @@ std::vector<PatchForce> SolidFields::reactions_by_trial_functions() const {
 }
 
 /// At the accepted time; of the interface what it had in the last solve.
-ElasticLoads SolidFields::loads_now() const {
-  ElasticLoads loads;
+elastic::ElasticLoads SolidFields::loads_now() const {
+  elastic::ElasticLoads loads;
   loads.faces.assign(std::size_t(mesh_.boundary.n_owned()) * mesh_.dim, 0);
   body_.add_dead_loads(state_.time, loads.faces);
   for (std::size_t i = 0; i < last_.interface.size(); ++i) loads.faces[i] += last_.interface[i];
@@ -76,7 +76,7 @@ ElasticLoads SolidFields::loads_now() const {
 
 Vec3 SolidFields::total_load() const {
   Vec3 load = last_.body_force + last_.face_force + body_.equilibrium().pressure_force();
-  for (int a = 0; a < 3; ++a) load[a] = sum(mesh_.comm, load[a]);
+  for (int a = 0; a < 3; ++a) load[a] = parallel::sum(mesh_.comm, load[a]);
   return load;
 }
 
@@ -88,9 +88,9 @@ SolidEvidence SolidFields::deformation(std::span<const double> points) const {
     rotation = std::max(rotation, (0.5 * (g - g.transpose())).squaredNorm());
   });
   // The skew part of a rotation by a small angle phi holds phi twice.
-  return {.largest_gradient = max(mesh_.comm, std::sqrt(gradient)),
-          .largest_strain = max(mesh_.comm, std::sqrt(strain)),
-          .largest_rotation = max(mesh_.comm, std::sqrt(rotation / 2))};
+  return {.largest_gradient = parallel::max(mesh_.comm, std::sqrt(gradient)),
+          .largest_strain = parallel::max(mesh_.comm, std::sqrt(strain)),
+          .largest_rotation = parallel::max(mesh_.comm, std::sqrt(rotation / 2))};
 }
 
 double SolidFields::share_of_yield(std::span<const double> points) const {
@@ -105,7 +105,7 @@ double SolidFields::share_of_yield(std::span<const double> points) const {
     const Tensor3 deviator = stress[f] - stress[f].trace() / 3 * Tensor3::Identity();
     share = std::max(share, std::sqrt(1.5) * deviator.norm() / *yield);
   }
-  return max(mesh_.comm, share);
+  return parallel::max(mesh_.comm, share);
 }
 
 }  // namespace couplet::solid

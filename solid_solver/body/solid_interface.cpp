@@ -19,9 +19,9 @@ double speed_in(const SolidMaterial& m) {
 }
 
 /// For `interface: {surface-density: true}`. Collective.
-WallImpedance impedance_of(const SolidBody& body, const Interface& interface) {
-  const Geometry& geometry = body.geometry();
-  const Mesh& mesh = body.mesh();
+WallImpedance impedance_of(const SolidBody& body, const coupling::Interface& interface) {
+  const mesh::Geometry& geometry = body.geometry();
+  const mesh::Mesh& mesh = body.mesh();
   if (body.boundaries().interface_patches().empty())
     throw Error(
         "interface: surface-density: no patch has 'type: interface', so there is no face to give it "
@@ -42,19 +42,19 @@ WallImpedance impedance_of(const SolidBody& body, const Interface& interface) {
 }  // namespace
 
 SolidInterface::SolidInterface(const SolidBody& body) : body_(body) {
-  const Mesh& mesh = body.mesh();
+  const mesh::Mesh& mesh = body.mesh();
   const SolidParameters& parameters = body.parameters();
   if (!body.boundaries().interface_patches().empty()) {
-    map_ = std::make_unique<InterfaceMap>(mesh, body.boundaries().interface_patches());
+    map_ = std::make_unique<coupling::InterfaceMap>(mesh, body.boundaries().interface_patches());
     description_ = map_->describe(body.geometry());
   }
   description_.dim = mesh.dim;
   description_.takes = taken(parameters.interface_data.value_or(InterfaceData{}));
-  description_.gives = {{"displacement", "m", Interface::Place::vertices},
-                        {"velocity", "m/s", Interface::Place::vertices}};
+  description_.gives = {{"displacement", "m", coupling::Interface::Place::vertices},
+                        {"velocity", "m/s", coupling::Interface::Place::vertices}};
   if (parameters.interface_data && parameters.interface_data->surface_density) {
     impedance_ = impedance_of(body, description_);
-    description_.gives.push_back({"surface-density", "kg/m^2", Interface::Place::faces, 1});
+    description_.gives.push_back({"surface-density", "kg/m^2", coupling::Interface::Place::faces, 1});
   }
   if (!parameters.interface_data || !parameters.interface_data->temperature) return;
   if (!map_)
@@ -66,16 +66,16 @@ SolidInterface::SolidInterface(const SolidBody& body) : body_(body) {
     if (effect->wants_temperature()) effect->set_interface(description_.face_centres);
 }
 
-void SolidInterface::take_temperature(const Exchange& in) const {
+void SolidInterface::take_temperature(const coupling::Exchange& in) const {
   const auto found = in.find("temperature");
   const std::vector<double> faces = found == in.end() ? std::vector<double>{} : found->second;
   for (const auto& effect : body_.effects())
     if (effect->wants_temperature()) effect->take_temperature(faces);
 }
 
-std::vector<double> SolidInterface::load(const Exchange& in) const {
+std::vector<double> SolidInterface::load(const coupling::Exchange& in) const {
   if (!map_) return {};
-  const Mesh& mesh = body_.mesh();
+  const mesh::Mesh& mesh = body_.mesh();
   const int dim = mesh.dim;
   std::vector<double> total(description_.face_centres.size() * dim, 0.0);
   for (const auto& [name, values] : in) {
@@ -101,10 +101,10 @@ std::vector<double> SolidInterface::load(const Exchange& in) const {
   return force;
 }
 
-Exchange SolidInterface::values(const SolidState& state, double dt) const {
+coupling::Exchange SolidInterface::values(const SolidState& state, double dt) const {
   if (!map_) return {};
   const int dim = body_.mesh().dim;
-  Exchange out;
+  coupling::Exchange out;
   out["displacement"] =
       map_->gather_vertices(body_.at_points(map_->points(), state.cell_u, state.face_u, state.known), dim);
   out["velocity"] = map_->gather_vertices(

@@ -19,20 +19,20 @@ class SolidInterface final {
   /// Throws Error if a temperature or a surface density is wanted where there is no interface. Collective.
   explicit SolidInterface(const SolidBody& body);
 
-  const Interface& description() const { return description_; }
+  const coupling::Interface& description() const { return description_; }
   /// A temperature comes with the load, so that the loads it makes cannot be prepared before.
   bool takes_temperature() const { return takes_temperature_; }
   /// Hands the temperature that was given to the effects. Collective.
-  void take_temperature(const Exchange& in) const;
+  void take_temperature(const coupling::Exchange& in) const;
   /// Sum of the given forces, `dim` values a boundary face of owned cells; empty without interface.
-  std::vector<double> load(const Exchange& in) const;
+  std::vector<double> load(const coupling::Exchange& in) const;
   /// Displacement and velocity at the vertices, and what answers within a step `dt` if it was asked for. Collective.
-  Exchange values(const SolidState& state, double dt) const;
+  coupling::Exchange values(const SolidState& state, double dt) const;
 
  private:
   const SolidBody& body_;
-  std::unique_ptr<InterfaceMap> map_;  // none: no interface patch
-  Interface description_;
+  std::unique_ptr<coupling::InterfaceMap> map_;  // none: no interface patch
+  coupling::Interface description_;
   std::optional<WallImpedance> impedance_;  // none: not given
   bool takes_temperature_ = false;
 };

@@ -42,7 +42,7 @@ struct SolverEffort {
 
 /// A stage of the step under way, with all that does not depend on the interface load.
 struct StageWork {
-  Stage stage;
+  time::Stage stage;
   double damping_scale = 1;  ///< s = 1 + beta c
   SolidSystem* system = nullptr;
   double start_time = 0, place_time = 0, end_time = 0;
@@ -64,7 +64,7 @@ struct LastSolve {
   std::vector<double> interface;  ///< forces, `dim` values a boundary face of owned cells; empty: none
   Vec3 body_force = Vec3::Zero(), face_force = Vec3::Zero();  ///< sums
   /// Something was solved since the start or a restart. Collective.
-  bool is_known(MPI_Comm comm) const { return !any(comm, rhs.size() != unknowns.size()); }
+  bool is_known(MPI_Comm comm) const { return !parallel::any(comm, rhs.size() != unknowns.size()); }
 };
 
 }  // namespace couplet::solid

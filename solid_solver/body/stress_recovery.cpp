@@ -18,9 +18,11 @@ constexpr double of_traction = 1;           // weight of a traction over a sampl
 constexpr double of_scaled_traction = 0.1;  // ... and of displacement, as h t / (2 mu + lambda)
 constexpr double of_face = 3;               // weight of a face's displacement over a cell's
 
-bool is_simplex(CellType type) { return type == CellType::triangle || type == CellType::tetrahedron; }
+bool is_simplex(mesh::CellType type) {
+  return type == mesh::CellType::triangle || type == mesh::CellType::tetrahedron;
+}
 
-std::vector<Tensor3> with_ghosts(const IndexMap& map, const std::vector<Tensor3>& owned) {
+std::vector<Tensor3> with_ghosts(const parallel::IndexMap& map, const std::vector<Tensor3>& owned) {
   std::vector<Tensor3> all(std::size_t(map.n_local()), Tensor3::Zero());
   std::ranges::copy(owned, all.begin());
   map.update_ghosts(std::as_writable_bytes(std::span(all)), sizeof(Tensor3));
@@ -61,14 +63,14 @@ struct StressRecovery::Patch {
   std::vector<Index> mark;  // per local cell: for which cell it was last gathered
 };
 
-StressRecovery::StressRecovery(const Mesh& mesh, const ElasticOperator& rows)
+StressRecovery::StressRecovery(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows)
     : mesh_(mesh),
       geometry_(rows.geometry()),
       rows_(rows),
-      cells_of_point_(transpose(mesh.cell_points, 0, mesh.points.n_local())),
+      cells_of_point_(mesh::transpose(mesh.cell_points, 0, mesh.points.n_local())),
       faces_of_cell_(boundary_faces_of_cells(mesh)),
       moment_(std::size_t(mesh.cells.n_local()), Tensor3::Zero()) {
-  const Geometry& geometry = rows.geometry();
+  const mesh::Geometry& geometry = rows.geometry();
   for (Index c = 0; c < mesh.cells.n_local(); ++c) moment_[std::size_t(c)] = cell_moment(mesh, geometry, c);
 }
 
@@ -90,7 +92,7 @@ StressRecovery::Local StressRecovery::localise(const DiscreteStress& found) cons
 }
 
 void StressRecovery::gather(Index cell, const Local& local, Patch& patch) const {
-  const Geometry& g = geometry_;
+  const mesh::Geometry& g = geometry_;
   patch.cells.clear(), patch.faces.clear(), patch.loaded.clear(), patch.mirrors.clear();
   patch.mark.resize(std::size_t(mesh_.cells.n_local()), -1);
   patch.simplices = true, patch.at_surface = false;
@@ -125,7 +127,7 @@ void StressRecovery::fit_tensors(Index cell, const std::vector<Tensor3>& cells,
                                  const std::vector<Tensor3>& faces,
                                  const std::vector<SurfaceTraction>* surface, Patch& patch,
                                  QuadraticFit& fit) const {
-  const Geometry& g = geometry_;
+  const mesh::Geometry& g = geometry_;
   const Vec3 centre = g.cell_centre[cell];
   fit.start(mesh_.dim, tensor_size, centre, patch.reach);
   const auto add = [&](const Vec3& place, const Tensor3& moment, const Tensor3& value) {
@@ -155,7 +157,7 @@ void StressRecovery::fit_tensors(Index cell, const std::vector<Tensor3>& cells,
 }
 
 void StressRecovery::fit_displacement(Index cell, const Local& local, Patch& patch, QuadraticFit& fit) const {
-  const Geometry& g = geometry_;
+  const mesh::Geometry& g = geometry_;
   const Vec3 centre = g.cell_centre[cell];
   const int dim = mesh_.dim;
   fit.start(dim, dim, centre, patch.reach);
@@ -168,9 +170,9 @@ void StressRecovery::fit_displacement(Index cell, const Local& local, Patch& pat
       fit.add_sample(m.image(place), Tensor3::Zero(), {image.data(), 3}, weight);
     }
   };
-  for (const Index c : patch.cells) add(g.cell_centre[c], vector_at(local.cell_u, c, dim), 1);
+  for (const Index c : patch.cells) add(g.cell_centre[c], elastic::vector_at(local.cell_u, c, dim), 1);
   for (const Index f : patch.faces)
-    add(g.face_centre[f], vector_at(local.face_u, f - mesh_.n_interior, dim), of_face);
+    add(g.face_centre[f], elastic::vector_at(local.face_u, f - mesh_.n_interior, dim), of_face);
   const double unit = patch.reach / (2 * rows_.lame(cell).mu + rows_.lame(cell).lambda);
   for (const Index f : patch.loaded) {
     const SurfaceTraction& known = local.surface[std::size_t(f - mesh_.n_interior)];

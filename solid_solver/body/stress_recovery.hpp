@@ -40,7 +40,7 @@ struct DiscreteStress {
 class StressRecovery {
  public:
   /// Both by reference.
-  StressRecovery(const Mesh& mesh, const ElasticOperator& rows);
+  StressRecovery(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows);
 
   /// Packed stress [Pa] of all local points, the mean of the cells around. `wanted`: flags of local points, empty: all;
   /// others may hold anything. Collective.
@@ -57,11 +57,11 @@ class StressRecovery {
                    const std::vector<SurfaceTraction>* surface, Patch& patch, QuadraticFit& fit) const;
   void fit_displacement(Index cell, const Local& local, Patch& patch, QuadraticFit& fit) const;
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
-  const ElasticOperator& rows_;
-  Csr cells_of_point_, faces_of_cell_;  // boundary faces
-  std::vector<Tensor3> moment_;         // of local cells: mean of (x - x_c) (x - x_c)^T [m^2]
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
+  const elastic::ElasticOperator& rows_;
+  mesh::Csr cells_of_point_, faces_of_cell_;  // boundary faces
+  std::vector<Tensor3> moment_;               // of local cells: mean of (x - x_c) (x - x_c)^T [m^2]
 };
 
 }  // namespace couplet::solid

@@ -8,7 +8,8 @@ namespace couplet::solid {
 namespace {
 
 /// Unit normal of a boundary face whose points are at `places`, out of the body as the reference one is.
-Vec3 normal_at(const Mesh& mesh, const Geometry& geometry, Index face, std::span<const Vec3> places) {
+Vec3 normal_at(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index face,
+               std::span<const Vec3> places) {
   const auto corners = mesh.face_points[face];
   if (corners.size() == 2) {
     const auto turned = [&](std::span<const Vec3> x) {

@@ -21,13 +21,13 @@ constexpr int most_rounds = 20;
 
 }  // namespace
 
-BearingLoad::BearingLoad(const Mesh& mesh, const Geometry& geometry, std::vector<Index> faces,
+BearingLoad::BearingLoad(const mesh::Mesh& mesh, const mesh::Geometry& geometry, std::vector<Index> faces,
                          const TotalLoad& load, std::string where)
     : mesh_(&mesh),
       geometry_(&geometry),
       where_(std::move(where)),
       faces_(std::move(faces)),
-      force_(make_expressions(load.force, mesh.dim, where_ + ".force")) {
+      force_(fv::make_expressions(load.force, mesh.dim, where_ + ".force")) {
   find_axis();
   for (const Index f : faces_) {
     const Vec3& n = geometry.face_area[f];
@@ -43,7 +43,7 @@ void BearingLoad::find_axis() {
     spread += n * n.transpose() / n.norm();
     area += n.norm();
   }
-  area_ = sum(mesh_->comm, area);
+  area_ = parallel::sum(mesh_->comm, area);
   if (!(area_ > 0)) throw Error("{}: the faces with this load have zero area.", where_);
   const Eigen::SelfAdjointEigenSolver<Tensor3> axes(Tensor3(sum_of(mesh_->comm, spread) / area_));
   if (!(axes.eigenvalues()[1] > curved))
@@ -91,7 +91,7 @@ BearingLoad::Push BearingLoad::find_push(const Vec3& force) const {
     }
     bool fits = true;
     for (const Vec3& m : across_) fits = fits && (push.dot(m) < 0) == (better.dot(m) < 0);
-    if (!any(mesh_->comm, !fits) || round + 1 == most_rounds) return {push, better};
+    if (!parallel::any(mesh_->comm, !fits) || round + 1 == most_rounds) return {push, better};
     push = better;
   }
   return {push, push};

@@ -18,8 +18,8 @@ namespace couplet::solid {
 class BearingLoad {
  public:
   /// `faces`: this rank's. Throws Error, naming `where`, if they are no cylinder. Collective.
-  BearingLoad(const Mesh& mesh, const Geometry& geometry, std::vector<Index> faces, const TotalLoad& load,
-              std::string where);
+  BearingLoad(const mesh::Mesh& mesh, const mesh::Geometry& geometry, std::vector<Index> faces,
+              const TotalLoad& load, std::string where);
 
   /// Adds the forces at time t [N], `dim` values a boundary face of owned cells. Throws Error for a force along the axis and
   /// for one that no face can take. Collective.
@@ -34,12 +34,12 @@ class BearingLoad {
   };
   Push find_push(const Vec3& force) const;
 
-  const Mesh* mesh_;
-  const Geometry* geometry_;
+  const mesh::Mesh* mesh_;
+  const mesh::Geometry* geometry_;
   std::string where_;
   std::vector<Index> faces_;
   std::vector<Vec3> across_;  // m, one a face
-  std::vector<Expression> force_;
+  std::vector<fv::Expression> force_;
   Vec3 axis_ = Vec3::UnitZ();
   double area_ = 0;
 };

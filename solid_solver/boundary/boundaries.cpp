@@ -14,35 +14,35 @@ namespace {
 
 using Type = SolidCondition::Type;
 
-std::vector<std::string> patch_names(const Mesh& mesh) {
+std::vector<std::string> patch_names(const mesh::Mesh& mesh) {
   std::vector<std::string> names;
-  for (const Patch& patch : mesh.patches)
+  for (const mesh::Patch& patch : mesh.patches)
     if (!patch.bonded) names.push_back(patch.name);
   return names;
 }
 
-void check_names(const Mesh& mesh, const SolidParameters& parameters) {
+void check_names(const mesh::Mesh& mesh, const SolidParameters& parameters) {
   const std::vector<std::string> patches = patch_names(mesh);
   for (const auto& [name, boundary] : parameters.boundaries)
     if (std::ranges::find(patches, name) == patches.end())
       throw Error("boundaries.{}: mesh '{}' has no patch with this name. {} The patches are {}.", name,
-                  parameters.mesh, did_you_mean(name, patches, "patches"), join(patches));
+                  parameters.mesh, base::did_you_mean(name, patches, "patches"), base::join(patches));
   for (const std::string& name : patches)
     if (!parameters.boundaries.contains(name))
       throw Error(
           "boundaries: patch '{}' of mesh '{}' has no entry; each patch needs one (a stress-free patch: "
           "'type: free'). "
           "The patches are {}.",
-          name, parameters.mesh, join(patches));
+          name, parameters.mesh, base::join(patches));
 }
 
 }  // namespace
 
-SolidBoundaries::SolidBoundaries(const Mesh& mesh, const Geometry& geometry,
+SolidBoundaries::SolidBoundaries(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                                  const SolidParameters& parameters)
     : mesh_(&mesh), geometry_(&geometry), condition_of_face_(mesh.boundary.n_local(), -1) {
   check_names(mesh, parameters);
-  for (const Patch& patch : mesh.patches) {
+  for (const mesh::Patch& patch : mesh.patches) {
     holds_.push_back(0);
     if (patch.bonded) continue;
     const SolidBoundary& boundary = parameters.boundaries.at(patch.name);
@@ -73,20 +73,20 @@ SolidBoundaries::Condition SolidBoundaries::make_condition(const SolidCondition&
     // All components known: held like by `value`, at its vertices, too.
     c.by_component = c.known_components.head(dim).minCoeff() == 0;
   } else if (from.type == Type::fixed_displacement || from.type == Type::spring) {
-    if (!from.value.empty()) c.known = make_expressions(from.value, dim, where + ".value");
+    if (!from.value.empty()) c.known = fv::make_expressions(from.value, dim, where + ".value");
     c.known_components.head(dim).setConstant(from.type == Type::fixed_displacement);
   }
-  if (from.type == Type::roller && !Expression(from.along, where + ".value").is_zero())
+  if (from.type == Type::roller && !fv::Expression(from.along, where + ".value").is_zero())
     for (int i = 0; i < dim; ++i)
       c.known.emplace_back(
           config::ExpressionText{fmt::format("({})*({})", from.along.text, from.normal.normalized()[i])},
           where + ".value");
-  if (std::ranges::all_of(c.known, [](const Expression& e) { return e.is_zero(); })) c.known.clear();
-  if (from.type == Type::traction) c.traction = make_expressions(from.value, dim, where + ".value");
-  if (!from.traction.empty()) c.traction = make_expressions(from.traction, dim, where + ".traction");
+  if (std::ranges::all_of(c.known, [](const fv::Expression& e) { return e.is_zero(); })) c.known.clear();
+  if (from.type == Type::traction) c.traction = fv::make_expressions(from.value, dim, where + ".value");
+  if (!from.traction.empty()) c.traction = fv::make_expressions(from.traction, dim, where + ".traction");
   c.presses = from.type == Type::pressure;
-  if (c.presses) c.pressure = Expression(from.pressure, where + ".value");
-  if (from.type == Type::spring) c.stiffness = Expression(from.stiffness, where + ".stiffness");
+  if (c.presses) c.pressure = fv::Expression(from.pressure, where + ".value");
+  if (from.type == Type::spring) c.stiffness = fv::Expression(from.stiffness, where + ".stiffness");
   if (c.stiffness.uses_time())
     throw Error("{}.stiffness: the stiffness of a spring cannot depend on the time t.", where);
   c.along_normal = from.along_normal;
@@ -94,11 +94,11 @@ SolidBoundaries::Condition SolidBoundaries::make_condition(const SolidCondition&
   return c;
 }
 
-void SolidBoundaries::choose_faces(const Patch& patch, const SolidBoundary& boundary) {
+void SolidBoundaries::choose_faces(const mesh::Patch& patch, const SolidBoundary& boundary) {
   const auto own = static_cast<Index>(conditions_.size());
   const std::string where = "boundaries." + patch.name;
   conditions_.push_back(make_condition(boundary, where));
-  std::vector<Expression> tests;
+  std::vector<fv::Expression> tests;
   for (std::size_t i = 0; i < boundary.parts.size(); ++i) {
     const std::string part = fmt::format("{}.parts[{}]", where, i);
     conditions_.push_back(make_condition(boundary.parts[i], part));
@@ -114,7 +114,7 @@ void SolidBoundaries::choose_faces(const Patch& patch, const SolidBoundary& boun
   for (Index f = patch.first; f < patch.first + patch.count; ++f) choose(f);
   for (Index f = patch.ghost_first; f < patch.ghost_first + patch.ghost_count; ++f) choose(f);
   for (std::size_t i = 0; i < tests.size(); ++i)
-    if (!any(mesh_->comm, !conditions_[own + 1 + i].faces.empty()))
+    if (!parallel::any(mesh_->comm, !conditions_[own + 1 + i].faces.empty()))
       throw Error(
           "{}.parts[{}].where: '{}' selects no face of patch '{}'. It is evaluated at the face centres; "
           "widen it, for example to abs(z - 0.5) < half the height of a face.",
@@ -145,26 +145,27 @@ void SolidBoundaries::make_point_loads(const SolidParameters& parameters) {
 }
 
 /// All that the equations ask of a type: its projector and its stiffness at a face.
-BoundaryRow SolidBoundaries::row_at(const Condition& c, Index face) const {
+elastic::BoundaryRow SolidBoundaries::row_at(const Condition& c, Index face) const {
   const Vec3 n = geometry_->face_area[face].normalized();
   const Tensor3 none = Tensor3::Zero(), across = n * n.transpose(), lifted = c.normal * c.normal.transpose();
   switch (c.type) {
     case Type::symmetry:
-      return mirror_row();
+      return elastic::mirror_row();
     case Type::zero_normal_gradient:
-      return level_row();
+      return elastic::level_row();
     case Type::fixed_displacement:
-      return c.by_component ? support_row(c.known_components.asDiagonal(), none) : fixed_row();
+      return c.by_component ? elastic::support_row(c.known_components.asDiagonal(), none)
+                            : elastic::fixed_row();
     case Type::frictionless:
-      return support_row(across, none);
+      return elastic::support_row(across, none);
     case Type::roller:
     case Type::soft_support:
-      return support_row(lifted, none);
+      return elastic::support_row(lifted, none);
     case Type::hard_support: {
       const Vec3 along = n.cross(c.normal);
       // On the top or bottom of the plate there is no edge to go along.
       const bool has_edge = along.norm() > 1e-3;
-      return support_row(
+      return elastic::support_row(
           has_edge ? Tensor3(lifted + along * along.transpose() / along.squaredNorm()) : lifted, none);
     }
     case Type::spring: {
@@ -172,18 +173,18 @@ BoundaryRow SolidBoundaries::row_at(const Condition& c, Index face) const {
       if (stiffness < 0)
         throw Error("boundaries: the spring stiffness '{}' is {:g} N/m^3 at a face; it must not be negative.",
                     c.stiffness.text(), stiffness);
-      return support_row(none, stiffness * (c.along_normal ? across : Tensor3::Identity()));
+      return elastic::support_row(none, stiffness * (c.along_normal ? across : Tensor3::Identity()));
     }
     default:
-      return free_row();
+      return elastic::free_row();
   }
 }
 
-ElasticBoundary SolidBoundaries::elastic() const {
-  ElasticBoundary result;
+elastic::ElasticBoundary SolidBoundaries::elastic() const {
+  elastic::ElasticBoundary result;
   for (std::size_t b = 0; b < condition_of_face_.size(); ++b)
     result.add(condition_of_face_[b] < 0
-                   ? free_row()  // between materials
+                   ? elastic::free_row()  // between materials
                    : row_at(at(static_cast<Index>(b)), mesh_->n_interior + static_cast<Index>(b)));
   return result;
 }
@@ -229,14 +230,14 @@ void SolidBoundaries::add_forces(double t, std::span<double> forces, bool with_p
   for (const DistributedForce& load : point_loads_) load.add_forces(t, forces);
 }
 
-PrescribedDisplacement::PrescribedDisplacement(const Mesh& mesh, const SolidBoundaries& boundaries,
-                                               const ElasticOperator& elastic)
+PrescribedDisplacement::PrescribedDisplacement(const mesh::Mesh& mesh, const SolidBoundaries& boundaries,
+                                               const elastic::ElasticOperator& elastic)
     : dim_(mesh.dim), size_(elastic.n_known()) {
-  const Geometry& geometry = elastic.geometry();
+  const mesh::Geometry& geometry = elastic.geometry();
   std::vector<Group> all(boundaries.conditions_.size());
   for (std::size_t c = 0; c < all.size(); ++c) all[c].value = &boundaries.conditions_[c].known;
   const auto group_of = [&](Index entry) -> Group& { return all[boundaries.condition_of_face_[entry]]; };
-  const VertexConstraints& vertices = elastic.constraints();
+  const elastic::VertexConstraints& vertices = elastic.constraints();
   for (const Index f : elastic.known_faces()) {
     Group& group = group_of(f - mesh.n_interior);
     group.columns.push_back(elastic.known_of_face(f));
@@ -251,7 +252,7 @@ PrescribedDisplacement::PrescribedDisplacement(const Mesh& mesh, const SolidBoun
     }
   for (Group& group : all) {
     if (group.value->empty()) continue;
-    for (const Expression& e : *group.value) uses_time_ = uses_time_ || e.uses_time();
+    for (const fv::Expression& e : *group.value) uses_time_ = uses_time_ || e.uses_time();
     groups_.push_back(std::move(group));
   }
 }

@@ -21,10 +21,10 @@ class SolidBoundaries {
  public:
   /// Throws Error if a patch has no boundary, a boundary no patch, a part no face, or an expression is wrong.
   /// Collective.
-  SolidBoundaries(const Mesh& mesh, const Geometry& geometry, const SolidParameters& parameters);
+  SolidBoundaries(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const SolidParameters& parameters);
 
   /// For the operator.
-  ElasticBoundary elastic() const;
+  elastic::ElasticBoundary elastic() const;
   /// Faces of owned cells of each condition that moves as a rigid body.
   std::vector<std::vector<Index>> rigid_faces() const;
   /// The force on a boundary face of an owned cell is known, if its condition is one of forces.
@@ -44,12 +44,12 @@ class SolidBoundaries {
   /// One entry of the YAML: a patch or a part of it.
   struct Condition {
     SolidCondition::Type type;
-    bool is_load = true;               ///< knows no more than the force
-    std::vector<Expression> known;     // vector g of the support, or displacement; empty: zero
-    std::vector<Expression> traction;  // empty: none
-    Expression pressure;
+    bool is_load = true;                   ///< knows no more than the force
+    std::vector<fv::Expression> known;     // vector g of the support, or displacement; empty: zero
+    std::vector<fv::Expression> traction;  // empty: none
+    fv::Expression pressure;
     std::vector<Index> faces;  // those of owned cells
-    Expression stiffness;
+    fv::Expression stiffness;
     bool along_normal = false;
     /// fixed-displacement by component. A part of which all are known holds its faces, `value` also their
     /// vertices.
@@ -63,17 +63,17 @@ class SolidBoundaries {
     bool has_pressure() const { return presses || liquid; }
   };
   Condition make_condition(const SolidCondition& from, const std::string& where) const;
-  void choose_faces(const Patch& patch, const SolidBoundary& boundary);
+  void choose_faces(const mesh::Patch& patch, const SolidBoundary& boundary);
   void make_load(Condition& condition, const SolidCondition& from, const std::string& where) const;
   void make_point_loads(const SolidParameters& parameters);
   /// Calls take(face, pressure [Pa]) for the faces of a condition.
   template <class Take>
   void visit_pressures(const Condition& condition, double t, const Take& take) const;
-  BoundaryRow row_at(const Condition& condition, Index face) const;
+  elastic::BoundaryRow row_at(const Condition& condition, Index face) const;
   const Condition& at(Index entry) const { return conditions_[condition_of_face_[entry]]; }
 
-  const Mesh* mesh_;
-  const Geometry* geometry_;
+  const mesh::Mesh* mesh_;
+  const mesh::Geometry* geometry_;
   std::vector<Condition> conditions_;
   std::vector<Index> condition_of_face_;  // per local boundary face, -1: bonded
   std::vector<std::uint8_t> holds_;       // per patch
@@ -85,7 +85,8 @@ class SolidBoundaries {
 /// ends of springs.
 class PrescribedDisplacement {
  public:
-  PrescribedDisplacement(const Mesh& mesh, const SolidBoundaries& boundaries, const ElasticOperator& elastic);
+  PrescribedDisplacement(const mesh::Mesh& mesh, const SolidBoundaries& boundaries,
+                         const elastic::ElasticOperator& elastic);
 
   std::size_t size() const { return size_; }
   bool is_zero() const { return groups_.empty(); }
@@ -97,7 +98,7 @@ class PrescribedDisplacement {
 
  private:
   struct Group {  // all that takes its values from one condition
-    const std::vector<Expression>* value;
+    const std::vector<fv::Expression>* value;
     std::vector<Index> columns;
     std::vector<Vec3> places;
     std::vector<Tensor3> shares;  // one a place, after the places without (their share is I)

@@ -16,16 +16,16 @@ constexpr double flat = 1e-10;
 /// Of a moment about a line of faces, over what the load has.
 constexpr double rounding = 1e-9;
 
-std::vector<Expression> expressions(const std::vector<config::ExpressionText>& texts, int n,
-                                    const std::string& where) {
-  return texts.empty() ? std::vector<Expression>() : make_expressions(texts, n, where);
+std::vector<fv::Expression> expressions(const std::vector<config::ExpressionText>& texts, int n,
+                                        const std::string& where) {
+  return texts.empty() ? std::vector<fv::Expression>() : fv::make_expressions(texts, n, where);
 }
 
 }  // namespace
 
 Vec3 sum_of(MPI_Comm comm, const Vec3& value) {
   Vec3 total;
-  for (int a = 0; a < 3; ++a) total[a] = sum(comm, value[a]);
+  for (int a = 0; a < 3; ++a) total[a] = parallel::sum(comm, value[a]);
   return total;
 }
 
@@ -35,8 +35,9 @@ Tensor3 sum_of(MPI_Comm comm, const Tensor3& value) {
   return total;
 }
 
-DistributedForce::DistributedForce(const Mesh& mesh, const Geometry& geometry, std::vector<Index> faces,
-                                   const TotalLoad& load, bool has_point, const std::string& where)
+DistributedForce::DistributedForce(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                                   std::vector<Index> faces, const TotalLoad& load, bool has_point,
+                                   const std::string& where)
     : mesh_(&mesh),
       geometry_(&geometry),
       where_(where),
@@ -50,7 +51,7 @@ DistributedForce::DistributedForce(const Mesh& mesh, const Geometry& geometry, s
     area += size;
     first += size * geometry.face_centre[f];
   }
-  area_ = sum(mesh.comm, area);
+  area_ = parallel::sum(mesh.comm, area);
   if (!(area_ > 0)) throw Error("{}: the faces with this load have zero area.", where);
   centre_ = sum_of(mesh.comm, first) / area_;
   if (!has_point) return;

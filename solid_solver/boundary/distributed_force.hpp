@@ -20,7 +20,7 @@ namespace couplet::solid {
 class DistributedForce {
  public:
   /// `faces`: this rank's. `load.point` counts if `has_point`. Throws Error, naming `where`, if they have no area. Collective.
-  DistributedForce(const Mesh& mesh, const Geometry& geometry, std::vector<Index> faces,
+  DistributedForce(const mesh::Mesh& mesh, const mesh::Geometry& geometry, std::vector<Index> faces,
                    const TotalLoad& load, bool has_point, const std::string& where);
 
   /// Adds the forces at time t [N], `dim` values a boundary face of owned cells. Throws Error on all ranks where the faces lie
@@ -33,11 +33,11 @@ class DistributedForce {
   void find_spin();
   void check_taken(const Vec3& moment, const Vec3& force) const;
 
-  const Mesh* mesh_;
-  const Geometry* geometry_;
+  const mesh::Mesh* mesh_;
+  const mesh::Geometry* geometry_;
   std::string where_;
   std::vector<Index> faces_;
-  std::vector<Expression> force_, moment_;
+  std::vector<fv::Expression> force_, moment_;
   double area_ = 0;
   Vec3 centre_, arm_ = Vec3::Zero();   // arm_: p - c
   Tensor3 inertia_ = Tensor3::Zero();  // J

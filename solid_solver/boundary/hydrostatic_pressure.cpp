@@ -6,8 +6,8 @@
 
 namespace couplet::solid {
 
-HydrostaticPressure::HydrostaticPressure(const Mesh& mesh, const Geometry& geometry, const TotalLoad& load,
-                                         const std::string& where)
+HydrostaticPressure::HydrostaticPressure(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                                         const TotalLoad& load, const std::string& where)
     : mesh_(&mesh), geometry_(&geometry), level_(load.level, where + ".level") {
   Vec3 gravity = Vec3::Zero();
   for (std::size_t a = 0; a < load.gravity.size(); ++a) gravity[Index(a)] = load.gravity[a];

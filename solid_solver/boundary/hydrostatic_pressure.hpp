@@ -14,7 +14,7 @@ namespace couplet::solid {
 class HydrostaticPressure {
  public:
   /// Throws Error, naming `where`.
-  HydrostaticPressure(const Mesh& mesh, const Geometry& geometry, const TotalLoad& load,
+  HydrostaticPressure(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const TotalLoad& load,
                       const std::string& where);
 
   /// The free surface at time t [m].
@@ -23,9 +23,9 @@ class HydrostaticPressure {
   double mean(Index face, double level) const;
 
  private:
-  const Mesh* mesh_;
-  const Geometry* geometry_;
-  Expression level_;
+  const mesh::Mesh* mesh_;
+  const mesh::Geometry* geometry_;
+  fv::Expression level_;
   Vec3 up_ = Vec3::Zero();
   double weight_ = 0;  // rho |g| [N/m^3]
 };

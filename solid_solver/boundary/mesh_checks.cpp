@@ -26,27 +26,29 @@ struct Found {
 };
 
 /// Of points listed on each rank. Collective.
-std::optional<Found> find_any(const Mesh& mesh, const Geometry& geometry, const std::vector<Index>& points) {
+std::optional<Found> find_any(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                              const std::vector<Index>& points) {
   std::vector<double> first;
   if (!points.empty()) {
     const Vec3& x = geometry.points[points.front()];
     first.assign(x.data(), x.data() + 3);
   }
-  const std::vector<double> all = all_gather(mesh.comm, first);
+  const std::vector<double> all = parallel::all_gather(mesh.comm, first);
   if (all.empty()) return std::nullopt;
-  return Found{sum(mesh.comm, GlobalIndex(points.size())), Vec3(all[0], all[1], all[2])};
+  return Found{parallel::sum(mesh.comm, GlobalIndex(points.size())), Vec3(all[0], all[1], all[2])};
 }
 
 }  // namespace
 
-void check_mesh(const Mesh& mesh, const Geometry& geometry, const VertexInterpolation& vertices) {
-  if (const auto trouble = find_inverted(mesh, geometry))
+void check_mesh(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                const fv::VertexInterpolation& vertices) {
+  if (const auto trouble = mesh::find_inverted(mesh, geometry))
     throw Error(
         "The mesh has an inverted cell: cell {} at {} has the volume {:.3g} m^3. Its faces intersect; "
         "remesh there, coarser or with another element size.",
         trouble->cell_id, text_of(trouble->centre, mesh.dim), trouble->volume);
   // Where a cell does not lie behind its face the operator is not elliptic.
-  if (const auto fold = find_fold(mesh, geometry))
+  if (const auto fold = mesh::find_fold(mesh, geometry))
     throw Error(
         "The mesh is folded at {}: cell {} (counted from 0 in the file) is not behind its face there. A "
         "cell is inverted or bent over; remesh there.",
@@ -57,7 +59,7 @@ void check_mesh(const Mesh& mesh, const Geometry& geometry, const VertexInterpol
         "frictionless' also slides along curved surfaces.",
         text_of(bent->first, mesh.dim));
   if (const auto inexact = find_any(mesh, geometry, vertices.inexact_points());
-      inexact && comm_rank(mesh.comm) == 0)
+      inexact && parallel::comm_rank(mesh.comm) == 0)
     log::warn(
         "at {} vertices, the first at {}, the adjacent cells and faces do not span all directions: values "
         "there are plain means of the neighbours, exact for constant fields only",

@@ -8,6 +8,7 @@ namespace couplet::solid {
 
 /// Throws Error for inverted cells and for bent symmetry planes; warns of vertices whose value cannot be
 /// exact for linear fields. Collective.
-void check_mesh(const Mesh& mesh, const Geometry& geometry, const VertexInterpolation& vertices);
+void check_mesh(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                const fv::VertexInterpolation& vertices);
 
 }  // namespace couplet::solid

@@ -24,11 +24,11 @@ struct Nearest {
   int is_open = 0, patch = -1;
 };
 
-Nearest nearest_face(const Mesh& mesh, const Geometry& geometry, const Vec3& point,
+Nearest nearest_face(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Vec3& point,
                      std::span<const std::uint8_t> open) {
   Nearest mine;
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
-    const Patch& patch = mesh.patches[p];
+    const mesh::Patch& patch = mesh.patches[p];
     if (patch.bonded) continue;
     for (Index f = patch.first; f < patch.first + patch.count; ++f) {
       const double distance = (geometry.face_centre[f] - point).norm();
@@ -44,7 +44,7 @@ Nearest nearest_face(const Mesh& mesh, const Geometry& geometry, const Vec3& poi
     }
   }
   Nearest best;
-  for (const Nearest& other : all_gather(mesh.comm, std::vector<Nearest>{mine}))
+  for (const Nearest& other : parallel::all_gather(mesh.comm, std::vector<Nearest>{mine}))
     if (std::pair(other.distance, other.id) < std::pair(best.distance, best.id)) best = other;
   if (best.id != mine.id) best.face = -1;
   return best;
@@ -57,8 +57,9 @@ std::string place_of(const Vec3& x, int dim) {
 
 }  // namespace
 
-std::vector<Index> faces_of_point_load(const Mesh& mesh, const Geometry& geometry, const PointLoad& load,
-                                       std::span<const std::uint8_t> open, const std::string& where) {
+std::vector<Index> faces_of_point_load(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                                       const PointLoad& load, std::span<const std::uint8_t> open,
+                                       const std::string& where) {
   std::vector<Index> faces;
   const Nearest nearest = nearest_face(mesh, geometry, load.point, open);
   if (load.radius == 0) {
@@ -79,7 +80,7 @@ std::vector<Index> faces_of_point_load(const Mesh& mesh, const Geometry& geometr
     if (open[std::size_t(f - mesh.n_interior)] &&
         (geometry.face_centre[f] - load.point).norm() <= load.radius)
       faces.push_back(f);
-  if (!any(mesh.comm, !faces.empty()))
+  if (!parallel::any(mesh.comm, !faces.empty()))
     throw Error(
         "{}.radius: no unsupported face has its centre within {:g} m of {} m; the nearest face is {:g} m "
         "away{}.",

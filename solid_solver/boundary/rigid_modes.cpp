@@ -24,7 +24,7 @@ using Resistance = Eigen::Matrix<double, 6, 6>;
 
 /// Sum over the ranks, entry by entry.
 void add_over_ranks(MPI_Comm comm, std::vector<double>& values) {
-  const std::vector<double> all = all_gather(comm, values);
+  const std::vector<double> all = parallel::all_gather(comm, values);
   const std::size_t n = values.size();
   for (std::size_t i = 0; i < n; ++i) {
     values[i] = 0;
@@ -33,9 +33,9 @@ void add_over_ranks(MPI_Comm comm, std::vector<double>& values) {
 }
 
 /// The body of each local cell, numbered by the smallest cell_id in it.
-std::vector<Index> bodies_of_cells(const Mesh& mesh, Index& n_bodies) {
+std::vector<Index> bodies_of_cells(const mesh::Mesh& mesh, Index& n_bodies) {
   const Index n = mesh.cells.n_local();
-  DisjointSets sets(n);
+  base::DisjointSets sets(n);
   for (Index f = 0; f < mesh.n_interior; ++f) sets.join(mesh.owner[f], mesh.neighbour[f]);
   for (std::size_t b = 0; b < mesh.twin.size(); ++b)
     if (mesh.twin[b] >= 0)
@@ -51,14 +51,14 @@ std::vector<Index> bodies_of_cells(const Mesh& mesh, Index& n_bodies) {
     const std::vector<GlobalIndex> before = label;
     for (Index c = 0; c < n; ++c) label[c] = lowest[sets.find(c)];
     mesh.cells.update_ghosts(std::span<GlobalIndex>(label));
-    changed = any(mesh.comm, label != before);
+    changed = parallel::any(mesh.comm, label != before);
   }
   const auto owned_end = label.begin() + mesh.cells.n_owned();
   std::vector<GlobalIndex> names(label.begin(), owned_end);
   for (int pass = 0; pass < 2; ++pass) {
     std::ranges::sort(names);
     names.erase(std::unique(names.begin(), names.end()), names.end());
-    if (pass == 0) names = all_gather(mesh.comm, names);
+    if (pass == 0) names = parallel::all_gather(mesh.comm, names);
   }
   n_bodies = static_cast<Index>(names.size());
   std::vector<Index> body(n);
@@ -73,7 +73,7 @@ struct Body {
   Resistance resistance = Resistance::Zero();
 };
 
-std::vector<Body> place_bodies(const Mesh& mesh, const Geometry& geometry,
+std::vector<Body> place_bodies(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                                std::span<const Index> body_of_cell, Index n_bodies) {
   std::vector<double> sums(std::size_t(n_bodies) * 4, 0);
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
@@ -90,7 +90,7 @@ std::vector<Body> place_bodies(const Mesh& mesh, const Geometry& geometry,
       Body& body = bodies[body_of_cell[c]];
       body.size = std::max(body.size, (geometry.points[v] - body.centre).norm());
     }
-  for (Body& body : bodies) body.size = max(mesh.comm, body.size);
+  for (Body& body : bodies) body.size = parallel::max(mesh.comm, body.size);
   return bodies;
 }
 
@@ -110,14 +110,14 @@ Eigen::Matrix<double, 3, 6> normal_gradients(const Vec3& n) {
   return d;
 }
 
-void add_face(const Mesh& mesh, const ElasticOperator& elastic, Index face, Body& body) {
-  const Geometry& geometry = elastic.geometry();
+void add_face(const mesh::Mesh& mesh, const elastic::ElasticOperator& elastic, Index face, Body& body) {
+  const mesh::Geometry& geometry = elastic.geometry();
   const auto resist = [&](const Eigen::Matrix<double, 3, 6>& d, const Tensor3& by) {
     body.resistance += d.transpose() * by * d;
   };
   const auto at_centre = displacements(body, geometry.face_centre[face]);
   const Vec3 n = geometry.face_area[face].normalized();
-  const BoundaryRow& row = elastic.at(face);
+  const elastic::BoundaryRow& row = elastic.at(face);
   if (row.held) resist(at_centre, row.known);
   // Any spring holds: its stiffness only says how far the body moves.
   if (const double stiffest = row.spring.norm(); stiffest > 0) resist(at_centre, row.spring / stiffest);
@@ -147,7 +147,7 @@ std::vector<Motion> reduce(std::vector<Motion> rows, const std::array<int, 6>& c
 std::string direction(Vec3 d) {
   d.normalize();
   for (int a = 0; a < 3; ++a)
-    if (std::abs(d[a]) > 1 - 1e-6) return axis_letters[a];
+    if (std::abs(d[a]) > 1 - 1e-6) return base::axis_letters[a];
   const auto tidy = [](double value) { return std::abs(value) < 1e-6 ? 0.0 : value; };
   return fmt::format("({:.3g}, {:.3g}, {:.3g})", tidy(d[0]), tidy(d[1]), tidy(d[2]));
 }
@@ -189,8 +189,8 @@ std::vector<std::string> free_modes(const Body& body, int dim) {
 
 }  // namespace
 
-std::vector<FreeMotion> free_motions(const Mesh& mesh, const ElasticOperator& elastic) {
-  const Geometry& geometry = elastic.geometry();
+std::vector<FreeMotion> free_motions(const mesh::Mesh& mesh, const elastic::ElasticOperator& elastic) {
+  const mesh::Geometry& geometry = elastic.geometry();
   Index n_bodies = 0;
   const std::vector<Index> body_of_cell = bodies_of_cells(mesh, n_bodies);
   std::vector<Body> bodies = place_bodies(mesh, geometry, body_of_cell, n_bodies);
@@ -208,7 +208,7 @@ std::vector<FreeMotion> free_motions(const Mesh& mesh, const ElasticOperator& el
   return result;
 }
 
-void check_supported(const Mesh& mesh, const ElasticOperator& elastic) {
+void check_supported(const mesh::Mesh& mesh, const elastic::ElasticOperator& elastic) {
   const std::vector<FreeMotion> bodies = free_motions(mesh, elastic);
   std::string trouble;
   for (const FreeMotion& body : bodies) {

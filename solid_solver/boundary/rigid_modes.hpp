@@ -19,9 +19,9 @@ struct FreeMotion {
 /// One entry a body: cells that hang together by faces, in the order of their smallest cell_id. The rank of
 /// the conditions on the rigid motions (6, in 2-D 3) over all supported faces and vertices counts.
 /// Collective, the same on all ranks.
-std::vector<FreeMotion> free_motions(const Mesh& mesh, const ElasticOperator& elastic);
+std::vector<FreeMotion> free_motions(const mesh::Mesh& mesh, const elastic::ElasticOperator& elastic);
 
 /// Throws Error naming the free motions if the supports do not hold all bodies in place. Collective.
-void check_supported(const Mesh& mesh, const ElasticOperator& elastic);
+void check_supported(const mesh::Mesh& mesh, const elastic::ElasticOperator& elastic);
 
 }  // namespace couplet::solid

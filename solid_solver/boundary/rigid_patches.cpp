@@ -18,10 +18,10 @@ constexpr std::size_t motions = 6;
 
 }  // namespace
 
-RigidPatches::RigidPatches(const Mesh& mesh, const ElasticOperator& elastic,
+RigidPatches::RigidPatches(const mesh::Mesh& mesh, const elastic::ElasticOperator& elastic,
                            const std::vector<std::vector<Index>>& faces)
     : mesh_(&mesh) {
-  const Geometry& geometry = elastic.geometry();
+  const mesh::Geometry& geometry = elastic.geometry();
   const std::vector<Index>& unknown = elastic.unknown_faces();
   for (const std::vector<Index>& of_patch : faces) {
     Patch patch;
@@ -37,7 +37,7 @@ RigidPatches::RigidPatches(const Mesh& mesh, const ElasticOperator& elastic,
 
 void RigidPatches::make(Patch& patch) const {
   const MPI_Comm comm = mesh_->comm;
-  patch.share = 1 / sum(comm, double(patch.node.size()));
+  patch.share = 1 / parallel::sum(comm, double(patch.node.size()));
   Vec3 total = Vec3::Zero();
   for (const Vec3& x : patch.arm) total += x;
   const Vec3 centre = sum_of(comm, total) * patch.share;
@@ -65,7 +65,7 @@ void RigidPatches::project(std::span<double> unknowns) const {
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     Vec3 total = Vec3::Zero(), moment = Vec3::Zero();
     for (std::size_t i = 0; i < patches_[p].node.size(); ++i) {
-      const Vec3 v = vector_at(unknowns, Index(patches_[p].node[i]), dim);
+      const Vec3 v = elastic::vector_at(unknowns, Index(patches_[p].node[i]), dim);
       total += v;
       moment += patches_[p].arm[i].cross(v);
     }

@@ -17,7 +17,7 @@ class RigidPatches {
  public:
   RigidPatches() = default;
   /// `faces`: of owned cells, by patch, as many patches on all ranks. The faces must have an unknown. Collective.
-  RigidPatches(const Mesh& mesh, const ElasticOperator& elastic,
+  RigidPatches(const mesh::Mesh& mesh, const elastic::ElasticOperator& elastic,
                const std::vector<std::vector<Index>>& faces);
 
   bool empty() const { return patches_.empty(); }
@@ -33,7 +33,7 @@ class RigidPatches {
   };
   void make(Patch& patch) const;
 
-  const Mesh* mesh_ = nullptr;
+  const mesh::Mesh* mesh_ = nullptr;
   std::vector<Patch> patches_;
 };
 

@@ -39,7 +39,7 @@ std::vector<config::ExpressionText> loads_of(const SolidParameters& p) {
 double time_of_change(const std::vector<config::ExpressionText>& loads, const Vec3& at, double end) {
   double shortest = std::numeric_limits<double>::infinity();
   for (const auto& text : loads) {
-    const Expression load(text, "load");
+    const fv::Expression load(text, "load");
     if (!load.uses_time()) continue;
     double low = load(at, 0), high = low, before = low, fastest = 0;
     for (int i = 1; i <= samples; ++i) {
@@ -53,7 +53,7 @@ double time_of_change(const std::vector<config::ExpressionText>& loads, const Ve
   return shortest;
 }
 
-double lowest_period(const SolidParameters& p, const MeshFacts& mesh) {
+double lowest_period(const SolidParameters& p, const mesh::MeshFacts& mesh) {
   double slowest = 0;
   for (const SolidMaterial& m : materials_of(p))
     for (const double e : m.orthotropic ? m.orthotropic->youngs_moduli : std::vector{m.youngs_modulus})
@@ -62,10 +62,11 @@ double lowest_period(const SolidParameters& p, const MeshFacts& mesh) {
   return 2 * std::numbers::pi * length * length / (3.516 * height) * std::sqrt(12.0) * slowest;
 }
 
-EffectChoice inertia(const SolidParameters& p, const MeshFacts& mesh, const ChoiceScene& scene) {
+effects::EffectChoice inertia(const SolidParameters& p, const mesh::MeshFacts& mesh,
+                              const effects::ChoiceScene& scene) {
   const auto choose = [](bool dynamic, std::string reason) {
     const char* word = dynamic ? "dynamic" : "static";
-    return EffectChoice{"analysis", word, word, std::move(reason), false};
+    return effects::EffectChoice{"analysis", word, word, std::move(reason), false};
   };
   const bool takes_forces = !(p.interface_data && p.interface_data->temperature);
   const bool has_interface =
@@ -74,7 +75,7 @@ EffectChoice inertia(const SolidParameters& p, const MeshFacts& mesh, const Choi
     return choose(true, "the partner's forces vary in time");
   if (!p.initial_velocity.empty()) return choose(true, "'initial-velocity' is given");
   if (p.damping) return choose(true, "'damping' is given");
-  if (p.time_scheme.type != TimeScheme::trapezoidal) return choose(true, "'time-scheme' is given");
+  if (p.time_scheme.type != time::TimeScheme::trapezoidal) return choose(true, "'time-scheme' is given");
   const double change = time_of_change(loads_of(p), 0.5 * mesh.size, scene.end_time);
   if (std::isinf(change)) return choose(false, "no load varies in time");
   const double period = lowest_period(p, mesh);
@@ -85,16 +86,16 @@ EffectChoice inertia(const SolidParameters& p, const MeshFacts& mesh, const Choi
 
 }  // namespace
 
-std::vector<EffectChoice> choose_effects(const SolidParameters& p, const MeshFacts& mesh,
-                                         const ChoiceScene& scene) {
-  std::vector<EffectChoice> choices{
+std::vector<effects::EffectChoice> choose_effects(const SolidParameters& p, const mesh::MeshFacts& mesh,
+                                                  const effects::ChoiceScene& scene) {
+  std::vector<effects::EffectChoice> choices{
       {"dimension", std::to_string(mesh.dim), std::to_string(mesh.dim),
        mesh.dim == 2 ? "the mesh has two-dimensional cells only" : "the mesh has volumes", false}};
   if (p.analysis != SolidParameters::Analysis::thermal) choices.push_back(inertia(p, mesh, scene));
   return choices;
 }
 
-ExpectedCost expected_cost(const SolidParameters& p, const MeshFacts& mesh) {
+effects::ExpectedCost expected_cost(const SolidParameters& p, const mesh::MeshFacts& mesh) {
   // Measured in 3-D: 83 MB with 640 cells (factors, which grow as cells^(4/3)), 61 and 143 MB with 5120 and 40960
   // (multigrid); in 2-D 54 and 156 MB with 1024 and 16384.
   const double cells = double(mesh.cells);

@@ -15,15 +15,15 @@ namespace {
 
 using P = SolidParameters;
 using E = SolidEvidence;
-using V = std::optional<EffectVerdict>;
+using V = std::optional<effects::EffectVerdict>;
 
 bool is_dynamic(const P& p) { return p.analysis == P::Analysis::dynamic; }
 bool is_elastic(const P& p) { return p.analysis != P::Analysis::thermal; }
 std::string when(bool on, const char* reason) { return on ? reason : ""; }
 
 bool has_volume_strain_of_cells(const P& p) {
-  return is_elastic(p) && face_gradient_scheme(p) == FaceGradientScheme::symmetric &&
-         volume_strain_of(p) != VolumeStrain::faces;
+  return is_elastic(p) && face_gradient_scheme(p) == elastic::FaceGradientScheme::symmetric &&
+         volume_strain_of(p) != elastic::VolumeStrain::faces;
 }
 
 bool varies(const P& p) {
@@ -34,7 +34,7 @@ bool varies(const P& p) {
 /// Of an effect that is on: advice where it does next to nothing. `saves`: 0: what the card says.
 V spare(double number, double threshold, std::string sentence, double saves = 0) {
   if (std::isnan(number)) return {};
-  EffectVerdict v{"", number, threshold, std::move(sentence), ""};
+  effects::EffectVerdict v{"", number, threshold, std::move(sentence), ""};
   v.saves = saves;
   return v;
 }
@@ -43,8 +43,9 @@ V spare(double number, double threshold, std::string sentence, double saves = 0)
 // small, and all of it is wrong where it is not: a load that comes at once moves a body twice as far.
 V judge_inertia(const P& p, const E& e) {
   if (!is_elastic(p) || has_finite_strain(p)) return {};  // whose static steps are load steps: t is no time
-  return verdict(e.inertia_over_load, 0.01, fmt::format("inertia / load = {:.2g}", e.inertia_over_load),
-                 "use 'analysis: dynamic'", std::min(e.inertia_over_load, 1.));
+  return effects::verdict(e.inertia_over_load, 0.01,
+                          fmt::format("inertia / load = {:.2g}", e.inertia_over_load),
+                          "use 'analysis: dynamic'", std::min(e.inertia_over_load, 1.));
 }
 
 // A body that moves slowly enough holds next to no kinetic energy beside its strain energy, (w / w_1)^2 of it.
@@ -80,28 +81,28 @@ V judge_geometry(const P& p, const E& e) {
                                 : fmt::format(" (last: strain {:.2g}, rotation {:.2g} degrees)",
                                               e.largest_strain, 57.29578 * e.largest_rotation);
   const std::string change = e.large_strain.empty() ? "" : "; " + e.large_strain;
-  return verdict(g, 0.02, fmt::format("max |grad u| = {:.2g}{}{}", g, parts, change),
-                 e.buckling_factor < 3
-                     ? "lateral motion grows as the load nears the buckling load: use 'kinematics: "
-                       "finite-strain'"
-                 : g < 0.1 ? "expect errors of a few per cent"
-                           : "the result holds for linear theory, not for the body: use 'kinematics: "
-                             "finite-strain'",
-                 share_of_geometry(e));
+  return effects::verdict(
+      g, 0.02, fmt::format("max |grad u| = {:.2g}{}{}", g, parts, change),
+      e.buckling_factor < 3 ? "lateral motion grows as the load nears the buckling load: use 'kinematics: "
+                              "finite-strain'"
+      : g < 0.1             ? "expect errors of a few per cent"
+                            : "the result holds for linear theory, not for the body: use 'kinematics: "
+                              "finite-strain'",
+      share_of_geometry(e));
 }
 
 V judge_yield(const P& p, const E& e) {
   if (!is_elastic(p)) return {};
-  return verdict(e.share_of_yield, 1,
-                 fmt::format("max equivalent stress / yield strength = {:.2g}", e.share_of_yield),
-                 "the body would yield: the result is that of an elastic body; use a program with plasticity",
-                 std::max(0., e.share_of_yield - 1));
+  return effects::verdict(
+      e.share_of_yield, 1, fmt::format("max equivalent stress / yield strength = {:.2g}", e.share_of_yield),
+      "the body would yield: the result is that of an elastic body; use a program with plasticity",
+      std::max(0., e.share_of_yield - 1));
 }
 
 V judge_incompressibility(const P& p, const E&) {
   if (!is_elastic(p) || has_volume_strain_of_cells(p)) return {};
   const double nu = std::max(0.0, largest_poissons_ratio(p));
-  return verdict(
+  return effects::verdict(
       nu, 0.45, fmt::format("max Poisson's ratio = {:g}", nu),
       has_orthotropic(p)
           ? "coarse meshes may be too stiff there, and an orthotropic material has no volume strain per "
@@ -129,7 +130,7 @@ V judge_thermal_strain(const P& p, const E& e) {
   const double coefficient = own.value_or(1e-5),
                change = own ? std::fmax(e.temperature_range, e.temperature_change) : e.temperature_range,
                strain = coefficient * change;
-  return verdict(
+  return effects::verdict(
       strain / std::max(e.largest_gradient, 1e-300), 0.02,
       fmt::format(
           "a temperature {} of {:.3g} K would strain a free body with {:.3g} 1/K by {:.2g}; max |grad u| = {:.2g}",
@@ -138,9 +139,9 @@ V judge_thermal_strain(const P& p, const E& e) {
 }
 
 V judge_thermoelastic(const P&, const E& e) {
-  return verdict(e.coupling_number, 0.05,
-                 fmt::format("heat of deformation / stiffness = {:.1e}", e.coupling_number),
-                 "use 'thermoelastic-coupling: true'", e.coupling_number);
+  return effects::verdict(e.coupling_number, 0.05,
+                          fmt::format("heat of deformation / stiffness = {:.1e}", e.coupling_number),
+                          "use 'thermoelastic-coupling: true'", e.coupling_number);
 }
 
 V spare_thermoelastic(const P&, const E& e) {

@@ -29,7 +29,7 @@ struct SolidEvidence {
   double dynamic_steps = unknown;        ///< of a dynamic run
 };
 
-using SolidCard = EffectCard<SolidParameters, SolidEvidence>;
+using SolidCard = effects::EffectCard<SolidParameters, SolidEvidence>;
 /// All that a solid can simulate beside linear elasticity, in the order in which it is told.
 std::span<const SolidCard> solid_effect_cards();
 

@@ -23,23 +23,23 @@ constexpr double most_bound = 0.5;
 SolidErrorEstimate::SolidErrorEstimate(const SolidBody& body, const SolidStepper& stepper,
                                        const SolidFields& fields, const SolidJudge& judge)
     : body_(body), stepper_(stepper), fields_(fields), judge_(judge), steps_(body.parameters().time_scheme) {
-  const Geometry& geometry = body.geometry();
-  const Mesh& mesh = body.mesh();
+  const mesh::Geometry& geometry = body.geometry();
+  const mesh::Mesh& mesh = body.mesh();
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume_ += geometry.volume[c];
-  volume_ = sum(mesh.comm, volume_);
+  volume_ = parallel::sum(mesh.comm, volume_);
 }
 
 /// Over the volume; `dim` values a cell.
 double SolidErrorEstimate::mean_square(std::span<const double> cells) const {
-  const Mesh& mesh = body_.mesh();
-  const Geometry& geometry = body_.geometry();
+  const mesh::Mesh& mesh = body_.mesh();
+  const mesh::Geometry& geometry = body_.geometry();
   double squares = 0;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
     for (int a = 0; a < mesh.dim; ++a) {
       const double value = cells[std::size_t(c) * mesh.dim + a];
       squares += geometry.volume[c] * value * value;
     }
-  return sum(mesh.comm, squares) / volume_;
+  return parallel::sum(mesh.comm, squares) / volume_;
 }
 
 /// Over the size of the solution.
@@ -60,26 +60,26 @@ double SolidErrorEstimate::missed_work() const {
     work += last.unknowns[i] * last.rhs[i];
   }
   const MPI_Comm comm = body_.mesh().comm;
-  missed = sum(comm, missed), work = sum(comm, work);
+  missed = parallel::sum(comm, missed), work = parallel::sum(comm, work);
   return work != 0 ? std::abs(missed / work) : 0;
 }
 
 /// What effects load the solid with errs, too: the displacement that follows from it by as much, |u . b_effect| / u . K u of the whole.
-void SolidErrorEstimate::add_loads(ErrorParts& parts) const {
+void SolidErrorEstimate::add_loads(coupling::ErrorParts& parts) const {
   const MPI_Comm comm = body_.mesh().comm;
   const SolidState& state = stepper_.state();
   const std::vector<double> u = body_.unknowns_of(state.cell_u, state.face_u);
   std::vector<double> force(u.size());
   body_.kernel().apply(u, {}, force);
-  const double energy = sum(comm, std::inner_product(u.begin(), u.end(), force.begin(), 0.0));
+  const double energy = parallel::sum(comm, std::inner_product(u.begin(), u.end(), force.begin(), 0.0));
   for (const auto& effect : body_.effects()) {
-    const ErrorParts load = effect->error_parts();
+    const coupling::ErrorParts load = effect->error_parts();
     if (!load.known()) continue;
     std::vector<double> forces(u.size(), 0.0);
     effect->add_loads(state.time, body_.kernel(), forces);
-    const double work = sum(comm, std::inner_product(u.begin(), u.end(), forces.begin(), 0.0));
+    const double work = parallel::sum(comm, std::inner_product(u.begin(), u.end(), forces.begin(), 0.0));
     const double share = energy > 0 ? std::min(1.0, std::abs(work) / energy) : 1;
-    for (const auto part : {&ErrorParts::mesh, &ErrorParts::step})
+    for (const auto part : {&coupling::ErrorParts::mesh, &coupling::ErrorParts::step})
       parts.*part = std::fmax(parts.*part, share * load.*part);  // fmax: a number beats NaN
   }
 }
@@ -89,15 +89,15 @@ void SolidErrorEstimate::add_loads(ErrorParts& parts) const {
 /// since each gradient errs; or, if more, what quadrilaterals miss, by the law's moduli at rest.
 double SolidErrorEstimate::missed_of_large_strain(const SolidState& state,
                                                   std::span<const double> unknowns) const {
-  const Mesh& mesh = body_.mesh();
-  const Geometry& geometry = body_.geometry();
-  const ElasticOperator& rows = body_.elastic();
+  const mesh::Mesh& mesh = body_.mesh();
+  const mesh::Geometry& geometry = body_.geometry();
+  const elastic::ElasticOperator& rows = body_.elastic();
   const std::vector<double> known =
       body_.known_of({state.cell_u, state.face_u, fields_.point_displacement()});
   const auto strain = [](const Tensor3& h) { return Tensor3(0.5 * (h + h.transpose() + h.transpose() * h)); };
   const auto weight = [&](Index f) {
     if (mesh.owner[f] >= mesh.cells.n_owned()) return 0.0;
-    const auto [here, there] = pyramids(mesh, geometry, f);
+    const auto [here, there] = elastic::pyramids(mesh, geometry, f);
     return (here + there) * rows.lame(mesh.owner[f]).mu;
   };
   std::optional<InnerVariation> inner;
@@ -112,14 +112,14 @@ double SolidErrorEstimate::missed_of_large_strain(const SolidState& state,
         if (inner) inner->add(f, e);
       },
       0, mesh.n_flux_faces());
-  ElasticKernel(mesh, rows, FaceGradientScheme::corrected)
+  elastic::ElasticKernel(mesh, rows, elastic::FaceGradientScheme::corrected)
       .face_gradients(
           unknowns, known,
           [&](Index f, const Tensor3& gradient) {
             difference += weight(f) * (strain(gradient) - used[std::size_t(f)]).squaredNorm();
           },
           0, mesh.n_flux_faces());
-  size = sum(mesh.comm, size), difference = sum(mesh.comm, difference);
+  size = parallel::sum(mesh.comm, size), difference = parallel::sum(mesh.comm, difference);
   return std::max(size > 0 ? 0.5 * difference / size : 0, inner ? inner->missed() : 0);
 }
 
@@ -132,13 +132,13 @@ double SolidErrorEstimate::finite_mesh_error() const {
   try {
     return energy * body_.equilibrium().softness(unknowns, state.known);
   } catch (const SolveFailure&) {
-    return ErrorParts::unknown;
+    return coupling::ErrorParts::unknown;
   }
 }
 
 /// At least `known`. Energies are no measure of it where heat strains the body; one in motion need not be held, so that nothing is known.
 double SolidErrorEstimate::thermal_mesh_error(double known) const {
-  if (body_.is_dynamic()) return ErrorParts::unknown;
+  if (body_.is_dynamic()) return coupling::ErrorParts::unknown;
   const SolidState& state = stepper_.state();
   std::vector<double> pressure(std::size_t(body_.mesh().n_faces()), 0);
   for (const auto& effect : body_.effects()) {
@@ -156,24 +156,26 @@ void SolidErrorEstimate::see_step() {
   const SolidState &now = stepper_.trial(), &before = stepper_.state();
   const std::size_t n = std::size_t(body_.mesh().cells.n_owned()) * body_.mesh().dim;
   const auto norm = [this](std::span<const double> cells) { return std::sqrt(mean_square(cells)); };
-  const StepErrors::Seen step = steps_.add(std::span(before.cell_v).first(n), std::span(now.cell_v).first(n),
-                                           now.dt, before.dt, norm(now.cell_u), norm);
+  const time::StepErrors::Seen step =
+      steps_.add(std::span(before.cell_v).first(n), std::span(now.cell_v).first(n), now.dt, before.dt,
+                 norm(now.cell_u), norm);
   linear_.add({.error = left_by_solver() * step.size, .rate = step.rate, .size = step.size, .dt = step.dt});
   if (body_.equilibrium().is_linear()) see_swing(now, step);
 }
 
 /// Half of u . K u is the strain energy, of the gradients without an energy nearly so.
-void SolidErrorEstimate::see_swing(const SolidState& now, const StepErrors::Seen& step) {
+void SolidErrorEstimate::see_swing(const SolidState& now, const time::StepErrors::Seen& step) {
   const MPI_Comm comm = body_.mesh().comm;
   const std::vector<double> u = body_.unknowns_of(now.cell_u, now.face_u);
   std::vector<double> force(u.size());
   body_.kernel().apply(u, now.known, force);
-  const double strain = 0.5 * std::abs(sum(comm, std::inner_product(u.begin(), u.end(), force.begin(), 0.0)));
-  drift_.add(now.dt, step.rate, step.size, sum(comm, stepper_.ledger().kinetic(now)), strain);
+  const double strain =
+      0.5 * std::abs(parallel::sum(comm, std::inner_product(u.begin(), u.end(), force.begin(), 0.0)));
+  drift_.add(now.dt, step.rate, step.size, parallel::sum(comm, stepper_.ledger().kinetic(now)), strain);
 }
 
-ErrorParts SolidErrorEstimate::parts() const {
-  ErrorParts parts;
+coupling::ErrorParts SolidErrorEstimate::parts() const {
+  coupling::ErrorParts parts;
   parts.dimension = body_.mesh().dim;
   if (stepper_.state().steps == 0) return parts;
   if (body_.is_dynamic()) {
@@ -189,12 +191,12 @@ ErrorParts SolidErrorEstimate::parts() const {
   const StrainAudit audit = judge_.compared();
   parts.mesh = std::max(audit.mismatch(), audit.missed_by_mesh(body_.mesh().dim));
   parts.mesh = std::max(parts.mesh, audit.inner_variation);
-  if (!(audit.strain_energy > 0)) parts.mesh = ErrorParts::unknown;
+  if (!(audit.strain_energy > 0)) parts.mesh = coupling::ErrorParts::unknown;
   if (body_.is_dynamic()) {
     parts.mesh += drift_.over_size(parts.mesh);
     // Of tetrahedra a bound, up to 40 times too large: a large one says nothing.
     if (body_.mesh().dim == 3 && audit.smooth_difference && parts.mesh > most_bound)
-      parts.mesh = ErrorParts::unknown;
+      parts.mesh = coupling::ErrorParts::unknown;
   }
   add_loads(parts);
   if (body_.parameters().expansion) parts.mesh = thermal_mesh_error(parts.mesh);
@@ -215,7 +217,7 @@ void SolidErrorEstimate::restore(std::span<const double> state) {
     steps_.restore(state);
     return;
   }
-  SavedNumbers saved(state, "step errors");
+  base::SavedNumbers saved(state, "step errors");
   linear_.restore(saved.next(saved.count_of(1)));
   const std::span<const double> drift = saved.next(PhaseDrift::n_values);
   steps_.restore(saved.rest());

@@ -35,16 +35,16 @@ class SolidErrorEstimate {
   /// Between solve and acceptance.
   void see_step();
   /// After the last step.
-  ErrorParts parts() const;
+  coupling::ErrorParts parts() const;
   /// For checkpoints; empty: of a run that collected nothing.
   std::vector<double> state() const;
   void restore(std::span<const double> state);
 
  private:
-  void see_swing(const SolidState& now, const StepErrors::Seen& step);
+  void see_swing(const SolidState& now, const time::StepErrors::Seen& step);
   double left_by_solver() const;
   double missed_work() const;
-  void add_loads(ErrorParts& parts) const;
+  void add_loads(coupling::ErrorParts& parts) const;
   double missed_of_large_strain(const SolidState& state, std::span<const double> unknowns) const;
   double thermal_mesh_error(double known) const;
   double finite_mesh_error() const;
@@ -55,8 +55,8 @@ class SolidErrorEstimate {
   const SolidFields& fields_;
   const SolidJudge& judge_;
   double volume_ = 0;  // of the body [m^3]
-  VelocityErrors steps_;
-  StepErrors linear_;
+  time::VelocityErrors steps_;
+  time::StepErrors linear_;
   PhaseDrift drift_;
 };
 

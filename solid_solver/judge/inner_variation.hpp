@@ -15,9 +15,9 @@ namespace couplet::solid {
 class InnerVariation {
  public:
   /// Keeps both by reference.
-  InnerVariation(const Mesh& mesh, const ElasticOperator& rows);
+  InnerVariation(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows);
   /// The plane, isotropic or not, where the operator takes the volume strain of faces.
-  static bool is_needed(const Mesh& mesh, const ElasticOperator& rows);
+  static bool is_needed(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows);
   /// Strain of a flux face; those of partition faces on both ranks.
   void add(Index face, const Tensor3& strain);
   /// Over the strain energy of all cells; 0 where there is none. Collective.
@@ -26,9 +26,9 @@ class InnerVariation {
  private:
   void add_to(Index cell, double volume, const Tensor3& strain);
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
-  const ElasticOperator& rows_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
+  const elastic::ElasticOperator& rows_;
   std::vector<double> energy_;   // of owned cells: sum V_fP e : C : e
   std::vector<Tensor3> strain_;  // sum V_fP e
   std::vector<double> volume_;   // sum V_fP

@@ -28,7 +28,7 @@ void SolidJudge::look() {
   if (strain.is_doubtful() && strain.severity() > strain_told_) {
     strain_told_ = strain.severity();
     log::finding(
-        comm_rank(mesh_.comm),
+        parallel::comm_rank(mesh_.comm),
         {.id = "strain-energy",
          .severity = strain.severity(),
          .number = strain.mismatch(),
@@ -70,10 +70,10 @@ void SolidJudge::look_at_finite() {
 /// answer ends the run. Collective.
 void SolidJudge::judge_energy(double strain, const char* cure) {
   const SolidState& state = stepper_.state();
-  const double work = sum(mesh_.comm, state.load_work);
+  const double work = parallel::sum(mesh_.comm, state.load_work);
   energy_audit_.is_driven = work != 0;
-  energy_audit_.given = sum(mesh_.comm, state.energies.initial_kinetic) + work;
-  const double kinetic = sum(mesh_.comm, stepper_.ledger().kinetic(state));
+  energy_audit_.given = parallel::sum(mesh_.comm, state.energies.initial_kinetic) + work;
+  const double kinetic = parallel::sum(mesh_.comm, stepper_.ledger().kinetic(state));
   largest_kinetic_ = std::max(largest_kinetic_, kinetic);
   largest_strain_energy_ = std::max(largest_strain_energy_, strain);
   energy_audit_.held = kinetic + strain;
@@ -84,7 +84,7 @@ void SolidJudge::judge_energy(double strain, const char* cure) {
   if (!energy_audit_.is_doubtful() || energy_audit_.severity() <= energy_told_) return;
   energy_told_ = energy_audit_.severity();
   log::finding(
-      comm_rank(mesh_.comm),
+      parallel::comm_rank(mesh_.comm),
       {.id = "energy-growth",
        .severity = energy_told_,
        .number = energy_audit_.created(),
@@ -108,7 +108,7 @@ void SolidJudge::see_inertia() {
       inertia[a] += body_.density(c) * geometry_.volume[c] * (trial.cell_v[i] - state.cell_v[i]) /
                     (0.5 * (trial.dt + state.dt));
     }
-  for (int a = 0; a < dim; ++a) inertia[a] = sum(mesh_.comm, inertia[a]);
+  for (int a = 0; a < dim; ++a) inertia[a] = parallel::sum(mesh_.comm, inertia[a]);
   const double load = fields_.total_load().norm();
   if (load > 0) inertia_over_load_ = std::max(inertia_over_load_, inertia.norm() / load);
 }
@@ -171,7 +171,7 @@ std::vector<std::string> SolidJudge::sentences() const {
   return sentences;
 }
 
-void SolidJudge::save(CheckpointWriter& file) const {
+void SolidJudge::save(io::CheckpointWriter& file) const {
   file.write_scalar("audit-scale", energy_audit_.scale);
   file.write_scalar("largest-gradient", largest_gradient_);
   file.write_scalar("inertia-over-load", inertia_over_load_);
@@ -179,7 +179,7 @@ void SolidJudge::save(CheckpointWriter& file) const {
   file.write_scalar("largest-strain-energy", largest_strain_energy_);
 }
 
-void SolidJudge::load(CheckpointReader& file) {
+void SolidJudge::load(io::CheckpointReader& file) {
   latest_.reset();
   equilibrium_.forget();
   energy_audit_.scale = file.read_scalar("audit-scale");

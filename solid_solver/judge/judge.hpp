@@ -47,8 +47,8 @@ class SolidJudge final {
   /// For the end of the run.
   std::vector<std::string> sentences() const;
 
-  void save(CheckpointWriter& file) const;
-  void load(CheckpointReader& file);
+  void save(io::CheckpointWriter& file) const;
+  void load(io::CheckpointReader& file);
 
  private:
   void look_at_finite();
@@ -58,8 +58,8 @@ class SolidJudge final {
   const SolidBody& body_;
   const SolidStepper& stepper_;
   const SolidFields& fields_;
-  const Mesh& mesh_;
-  const Geometry& geometry_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
   double largest_gradient_ = 0, inertia_over_load_ = 0;
   double largest_kinetic_ = 0, largest_strain_energy_ = 0;  // of a dynamic run [J]
   std::optional<StrainAudit> audit_, latest_;
@@ -70,7 +70,7 @@ class SolidJudge final {
   double buckling_told_ = BucklingEstimate::low;    // a factor below this is told
   double buckling_factor_ = BucklingEstimate::low;  // lowest of the run
   double compression_seen_ = 0;                     // of the last look at buckling
-  Severity strain_told_ = Severity::note, energy_told_ = Severity::note;
+  base::Severity strain_told_ = base::Severity::note, energy_told_ = base::Severity::note;
 };
 
 }  // namespace couplet::solid

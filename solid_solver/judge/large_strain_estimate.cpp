@@ -41,12 +41,12 @@ class Forces {
   explicit Forces(const SolidBody& body) : n_(body.elastic().n_unknowns()) {
     const char* name =
         body.elastic().volume_by_cells() ? "nearly-incompressible-neo-hookean" : "saint-venant-kirchhoff";
-    std::vector<const FiniteLaw*> all;
+    std::vector<const elastic::FiniteLaw*> all;
     for (const SolidMaterial& material : materials_of(body.parameters())) {
       laws_.push_back(laws::of(name)->make(lame_constants(body.parameters(), material), {}));
       all.push_back(laws_.back().get());
     }
-    kernel_ = make_finite_kernel(body.mesh(), body.elastic(), all);
+    kernel_ = elastic::make_finite_kernel(body.mesh(), body.elastic(), all);
   }
   /// [F(s u) + sign F(-s u)] / 2.
   Values part(double s, const Displacement& u, double sign) {
@@ -64,15 +64,15 @@ class Forces {
   }
 
   std::size_t n_;
-  std::vector<std::unique_ptr<FiniteLaw>> laws_;
-  std::unique_ptr<FiniteKernel> kernel_;
+  std::vector<std::unique_ptr<elastic::FiniteLaw>> laws_;
+  std::unique_ptr<elastic::FiniteKernel> kernel_;
 };
 
 /// Solves with K of the symmetric gradient.
 class Stiffness {
  public:
   explicit Stiffness(const SolidBody& body)
-      : kernel_(body.mesh(), body.elastic(), FaceGradientScheme::symmetric),
+      : kernel_(body.mesh(), body.elastic(), elastic::FaceGradientScheme::symmetric),
         problem_{body.mesh(), body.elastic(), {}, kernel_, 0} {
     MethodParameters chosen = body.parameters().method;
     chosen.type = MethodParameters::Type::automatic;
@@ -86,7 +86,7 @@ class Stiffness {
   }
 
  private:
-  ElasticKernel kernel_;
+  elastic::ElasticKernel kernel_;
   SolidProblem problem_;
   std::unique_ptr<SolutionMethod> method_;
 };
@@ -100,13 +100,13 @@ double amplitude(double a) {
 }
 
 /// See LargeStrainEstimate.
-LargeStrainEstimate summed(const Mesh& mesh, const Geometry& geometry, const Values& u1, const Values& u2,
-                           const Values& u3) {
+LargeStrainEstimate summed(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Values& u1,
+                           const Values& u2, const Values& u3) {
   const std::size_t n = std::size_t(mesh.cells.n_owned()) * mesh.dim;
   const auto dot = [&](const auto& a, const auto& b) {
     double local = 0;
     for (std::size_t i = 0; i < n; ++i) local += geometry.volume[i / std::size_t(mesh.dim)] * a(i) * b(i);
-    return sum(mesh.comm, local);
+    return parallel::sum(mesh.comm, local);
   };
   const auto first = [&](std::size_t i) { return u1[i]; };
   const auto second = [&](std::size_t i) { return u2[i]; };
@@ -135,14 +135,14 @@ std::string LargeStrainEstimate::text() const {
 
 LargeStrainEstimate estimate_large_strain(const SolidBody& body, std::span<const double> unknowns,
                                           std::span<const double> known) {
-  const Geometry& geometry = body.geometry();
-  const Mesh& mesh = body.mesh();
+  const mesh::Geometry& geometry = body.geometry();
+  const mesh::Mesh& mesh = body.mesh();
   const Displacement u1{{unknowns.begin(), unknowns.end()}, {known.begin(), known.end()}};
   double steepest = 0;
   body.kernel().face_gradients(
       unknowns, known, [&](Index, const Tensor3& g) { steepest = std::max(steepest, g.norm()); }, 0,
       mesh.n_flux_faces());
-  steepest = max(mesh.comm, steepest);
+  steepest = parallel::max(mesh.comm, steepest);
   if (!(steepest > 0)) return {};
   const double s = probe_gradient / steepest;
   Forces forces(body);
@@ -151,7 +151,7 @@ LargeStrainEstimate estimate_large_strain(const SolidBody& body, std::span<const
   const auto dot = [&](const Values& a, const Values& b) {
     double local = 0;
     for (std::size_t i = 0; i < n; ++i) local += a[i] * b[i];
-    return sum(mesh.comm, local);
+    return parallel::sum(mesh.comm, local);
   };
   const Values even = forces.part(s, u1, 1), odd = forces.part(s, u1, -1), odd2 = forces.part(2 * s, u1, -1);
   Values q(n), c(n);

@@ -21,23 +21,25 @@ constexpr GlobalIndex cells_looked_at = 20000;  // of all ranks
 
 /// Of one cell after the other.
 struct SmoothEnergy::Patch {
-  Csr cells_of_point, faces_of_cell;
+  mesh::Csr cells_of_point, faces_of_cell;
   std::vector<Index> mark;  // per local cell: for which cell it was last gathered
   std::vector<Index> cells, points;
   std::vector<std::pair<Vec3, Vec3>> mirrors;  // normal and a place of the planes of symmetry
   double reach = 0;
 };
 
-SmoothEnergy::SmoothEnergy(const Mesh& mesh, const ElasticOperator& rows)
+SmoothEnergy::SmoothEnergy(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows)
     : mesh_(mesh), geometry_(rows.geometry()), rows_(rows), counted_(std::size_t(mesh.cells.n_owned()), 0) {}
 
-bool SmoothEnergy::is_of_use(const Mesh& mesh) {
-  const auto is_other = [](CellType t) { return t != CellType::triangle && t != CellType::tetrahedron; };
-  return !any(mesh.comm, std::ranges::any_of(mesh.cell_type, is_other));
+bool SmoothEnergy::is_of_use(const mesh::Mesh& mesh) {
+  const auto is_other = [](mesh::CellType t) {
+    return t != mesh::CellType::triangle && t != mesh::CellType::tetrahedron;
+  };
+  return !parallel::any(mesh.comm, std::ranges::any_of(mesh.cell_type, is_other));
 }
 
 void SmoothEnergy::add(Index face, const Tensor3& gradient) {
-  const auto [here, there] = pyramids(mesh_, geometry_, face);
+  const auto [here, there] = elastic::pyramids(mesh_, geometry_, face);
   const auto add_to = [&](Index cell, double volume) {
     if (cell < mesh_.cells.n_owned())
       counted_[std::size_t(cell)] += volume * contraction(rows_.stress(cell, gradient), gradient);
@@ -47,7 +49,7 @@ void SmoothEnergy::add(Index face, const Tensor3& gradient) {
 }
 
 void SmoothEnergy::gather(Index cell, Patch& patch) const {
-  const Geometry& g = geometry_;
+  const mesh::Geometry& g = geometry_;
   const Vec3 centre = g.cell_centre[cell];
   patch.cells.clear(), patch.points.clear(), patch.mirrors.clear();
   patch.reach = 0;
@@ -73,7 +75,7 @@ void SmoothEnergy::gather(Index cell, Patch& patch) const {
 
 /// Twice its energy [J]: of a strain that is linear in the cell.
 double SmoothEnergy::smooth_energy(Index cell, const Patch& patch, std::span<const double> point_u) const {
-  const Geometry& g = geometry_;
+  const mesh::Geometry& g = geometry_;
   const int dim = mesh_.dim;
   const Vec3 centre = g.cell_centre[cell];
   QuadraticFit fit;
@@ -88,7 +90,7 @@ double SmoothEnergy::smooth_energy(Index cell, const Patch& patch, std::span<con
                      weight);
     }
   };
-  for (const Index v : patch.points) add(geometry_.points[v], vector_at(point_u, v, dim));
+  for (const Index v : patch.points) add(geometry_.points[v], elastic::vector_at(point_u, v, dim));
   fit.solve();
   const auto strain_at = [&](const Vec3& place) {
     Tensor3 gradient = Tensor3::Zero();
@@ -108,7 +110,7 @@ double SmoothEnergy::smooth_energy(Index cell, const Patch& patch, std::span<con
 
 double SmoothEnergy::missed(std::span<const double> point_u) const {
   const GlobalIndex stride = 1 + mesh_.cells.n_global() / cells_looked_at;
-  Patch patch{.cells_of_point = transpose(mesh_.cell_points, 0, mesh_.points.n_local()),
+  Patch patch{.cells_of_point = mesh::transpose(mesh_.cell_points, 0, mesh_.points.n_local()),
               .faces_of_cell = boundary_faces_of_cells(mesh_),
               .mark = std::vector<Index>(std::size_t(mesh_.cells.n_local()), -1),
               .cells = {},
@@ -122,7 +124,7 @@ double SmoothEnergy::missed(std::span<const double> point_u) const {
     smooth += smooth_energy(cell, patch, point_u);
     counted += counted_[std::size_t(cell)];
   }
-  smooth = sum(mesh_.comm, smooth), counted = sum(mesh_.comm, counted);
+  smooth = parallel::sum(mesh_.comm, smooth), counted = parallel::sum(mesh_.comm, counted);
   return smooth > 0 ? std::abs(counted / smooth - 1) : 0;
 }
 

@@ -23,9 +23,9 @@ namespace couplet::solid {
 class SmoothEnergy {
  public:
   /// By reference.
-  SmoothEnergy(const Mesh& mesh, const ElasticOperator& rows);
+  SmoothEnergy(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows);
   /// Triangles or tetrahedra alone. Collective.
-  static bool is_of_use(const Mesh& mesh);
+  static bool is_of_use(const mesh::Mesh& mesh);
 
   /// Displacement gradient of a flux face; those of partition faces on both ranks.
   void add(Index face, const Tensor3& gradient);
@@ -39,9 +39,9 @@ class SmoothEnergy {
   void gather(Index cell, Patch& patch) const;
   double smooth_energy(Index cell, const Patch& patch, std::span<const double> point_u) const;
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
-  const ElasticOperator& rows_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
+  const elastic::ElasticOperator& rows_;
   std::vector<double> counted_;  // of owned cells: sum V_fP G : C : G
 };
 

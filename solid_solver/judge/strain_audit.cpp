@@ -19,15 +19,16 @@ namespace couplet::solid {
 namespace {
 
 /// From the owner to the node across.
-Vec3 line_of(const Mesh& mesh, const Geometry& geometry, Index f) {
-  const Geometry& g = geometry;
+Vec3 line_of(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f) {
+  const mesh::Geometry& g = geometry;
   const Vec3 across =
       f < mesh.n_interior ? Vec3(g.cell_centre[mesh.neighbour[f]] + mesh.shift(f)) : g.face_centre[f];
   return across - g.cell_centre[mesh.owner[f]];
 }
 
-FaceGradientScheme other_scheme(FaceGradientScheme scheme) {
-  return scheme == FaceGradientScheme::corrected ? FaceGradientScheme::thesis : FaceGradientScheme::corrected;
+elastic::FaceGradientScheme other_scheme(elastic::FaceGradientScheme scheme) {
+  return scheme == elastic::FaceGradientScheme::corrected ? elastic::FaceGradientScheme::thesis
+                                                          : elastic::FaceGradientScheme::corrected;
 }
 
 }  // namespace
@@ -80,7 +81,7 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
   std::vector<std::array<float, 6>> strains(compare ? std::size_t(n_faces - half) : 0);
   const std::vector<double> unknowns = body_.unknowns_of(state.cell_u, state.face_u);
   const std::vector<double> known = body_.known_of({state.cell_u, state.face_u, points});
-  const ElasticOperator& rows = body_.elastic();
+  const elastic::ElasticOperator& rows = body_.elastic();
   std::optional<InnerVariation> variation;  // thermal strain would count as one
   if (compare && body_.kernel().is_symmetric() && body_.effects().empty() &&
       InnerVariation::is_needed(mesh_, rows))
@@ -103,14 +104,14 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
     const Tensor3 stress = rows.stress(owner, gradient);
     energy += 0.5 * volume(f) * contraction(stress, gradient);
     Vec3 force = stress * geometry_.face_area[f];
-    const Vec3 here = vector_at(state.cell_u, owner, dim);
+    const Vec3 here = elastic::vector_at(state.cell_u, owner, dim);
     if (f < mesh_.n_interior)
-      work += 0.5 * force.dot(vector_at(state.cell_u, mesh_.neighbour[f], dim) - here);
+      work += 0.5 * force.dot(elastic::vector_at(state.cell_u, mesh_.neighbour[f], dim) - here);
     else if (rows.mirrored(f))
       work -= 0.5 * geometry_.face_area[f].dot(force) * geometry_.face_area[f].dot(here) /
               geometry_.face_area[f].squaredNorm();
     else
-      work += 0.5 * force.dot(vector_at(state.face_u, f - mesh_.n_interior, dim) - here);
+      work += 0.5 * force.dot(elastic::vector_at(state.face_u, f - mesh_.n_interior, dim) - here);
     if (!compare) return;
     const Tensor3 symmetric = 0.5 * (gradient + gradient.transpose());
     size += volume(f) * rows.lame(owner).mu * symmetric.squaredNorm();
@@ -126,22 +127,22 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
     body_.kernel().face_gradients(unknowns, known, own, 0, n_faces);
   } else {
     // Half of the faces after the other: the run needs most memory here, and half of the strains is a fiftieth of it.
-    const ElasticKernel beside(mesh_, rows, other_scheme(body_.kernel().scheme()));
+    const elastic::ElasticKernel beside(mesh_, rows, other_scheme(body_.kernel().scheme()));
     for (const Index end : {half, n_faces}) {
       body_.kernel().face_gradients(unknowns, known, own, first, end);
       beside.face_gradients(unknowns, known, other, first, end);
       first = end;
     }
-    difference = sum(mesh_.comm, difference);
-    size = sum(mesh_.comm, size);
+    difference = parallel::sum(mesh_.comm, difference);
+    size = parallel::sum(mesh_.comm, size);
   }
   if (body_.kernel().is_symmetric()) {
-    const ElasticField u{unknowns, known};
-    energy = 0.5 * body_.kernel().product(ElasticPart::stiffness, u, u);
+    const elastic::ElasticField u{unknowns, known};
+    energy = 0.5 * body_.kernel().product(elastic::ElasticPart::stiffness, u, u);
     work = energy + 0.5 * residual_work(unknowns);
   }
-  audit.strain_energy = sum(mesh_.comm, energy);
-  audit.stress_work = sum(mesh_.comm, work);
+  audit.strain_energy = parallel::sum(mesh_.comm, energy);
+  audit.stress_work = parallel::sum(mesh_.comm, work);
   if (variation) audit.inner_variation = variation->missed();
   if (smooth) audit.smooth_difference = smooth->missed(points);
   if (size > 0) audit.gradient_difference = std::sqrt(difference / size);

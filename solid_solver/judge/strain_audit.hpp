@@ -35,7 +35,9 @@ struct StrainAudit {
   /// From here on work and strain energy have nothing to do with each other.
   static constexpr double useless_mismatch = 1.0;
   bool is_doubtful() const;
-  Severity severity() const { return mismatch() < useless_mismatch ? Severity::warning : Severity::wrong; }
+  base::Severity severity() const {
+    return mismatch() < useless_mismatch ? base::Severity::warning : base::Severity::wrong;
+  }
   /// One sentence with the numbers.
   std::string text() const;
 };
@@ -56,7 +58,9 @@ struct EnergyAudit {
   bool is_doubtful() const { return !(created() <= limit()); }
   /// More energy out of nothing than was brought in.
   static constexpr double useless = 1;
-  Severity severity() const { return created() < useless ? Severity::warning : Severity::wrong; }
+  base::Severity severity() const {
+    return created() < useless ? base::Severity::warning : base::Severity::wrong;
+  }
   bool is_hopeless() const { return !(created() <= hopeless); }
   /// What is held and what was given, with the growth in per cent.
   std::string text() const;

@@ -35,8 +35,8 @@ Tensor3 unpacked(const std::array<float, 6>& e) {
   return unpack(t);
 }
 
-Strains strains(const ElasticKernel& kernel, const Mesh& mesh, std::span<const double> unknowns,
-                std::span<const double> known) {
+Strains strains(const elastic::ElasticKernel& kernel, const mesh::Mesh& mesh,
+                std::span<const double> unknowns, std::span<const double> known) {
   Strains all(std::size_t(mesh.n_flux_faces()));
   kernel.face_gradients(
       unknowns, known,
@@ -46,7 +46,7 @@ Strains strains(const ElasticKernel& kernel, const Mesh& mesh, std::span<const d
 }
 
 /// V u of the owned cells, nothing on faces.
-Values weight_of(const Mesh& mesh, const Geometry& geometry, std::span<const double> unknowns) {
+Values weight_of(const mesh::Mesh& mesh, const mesh::Geometry& geometry, std::span<const double> unknowns) {
   const std::size_t dim = std::size_t(mesh.dim), n = std::size_t(mesh.cells.n_owned()) * dim;
   Values weight(unknowns.size(), 0);
   for (std::size_t i = 0; i < n; ++i) weight[i] = geometry.volume[i / dim] * unknowns[i];
@@ -65,10 +65,10 @@ Values sensitivity(const SolidBody& body, std::span<const double> weight) {
 
 /// Both sides of a face with the volumes of their pyramids, those of this rank.
 template <class Take>
-void visit_sides(const Mesh& mesh, const Geometry& geometry, const Take& take) {
+void visit_sides(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Take& take) {
   const Index n = mesh.cells.n_owned();
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
-    const auto [here, there] = pyramids(mesh, geometry, f);
+    const auto [here, there] = elastic::pyramids(mesh, geometry, f);
     if (mesh.owner[f] < n) take(mesh.owner[f], f, here);
     if (f < mesh.n_interior && mesh.neighbour[f] < n) take(mesh.neighbour[f], f, there);
   }
@@ -103,21 +103,21 @@ double gap_of_gradients(const SolidBody& body, const std::array<const Strains*, 
 }
 
 /// With the gradient that the body's is compared with.
-ElasticKernel other_kernel(const SolidBody& body) {
+elastic::ElasticKernel other_kernel(const SolidBody& body) {
   return {body.mesh(), body.elastic(),
-          body.is_corrected() ? FaceGradientScheme::thesis : FaceGradientScheme::corrected};
+          body.is_corrected() ? elastic::FaceGradientScheme::thesis : elastic::FaceGradientScheme::corrected};
 }
 
 double energy_missed(const SolidBody& body, const Strains& used, const Strains& compared) {
-  const Geometry& geometry = body.geometry();
-  const Mesh& mesh = body.mesh();
+  const mesh::Geometry& geometry = body.geometry();
+  const mesh::Mesh& mesh = body.mesh();
   double gap = 0, size = 0;
   visit_sides(mesh, geometry, [&](Index c, Index f, double v) {
     const Tensor3 e = unpacked(used[f]);
     const double weight = v * body.elastic().lame(c).mu;
     gap += weight * (unpacked(compared[f]) - e).squaredNorm(), size += weight * e.squaredNorm();
   });
-  gap = sum(mesh.comm, gap), size = sum(mesh.comm, size);
+  gap = parallel::sum(mesh.comm, gap), size = parallel::sum(mesh.comm, size);
   const double missed = size > 0 ? gap / size : 0;
   if (!InnerVariation::is_needed(mesh, body.elastic())) return missed;
   InnerVariation variation(mesh, body.elastic());
@@ -129,12 +129,12 @@ double energy_missed(const SolidBody& body, const Strains& used, const Strains& 
 
 double weighted_mesh_error(const SolidBody& body, std::span<const double> unknowns,
                            std::span<const double> known, std::span<const double> pressure) {
-  const Geometry& geometry = body.geometry();
-  const Mesh& mesh = body.mesh();
+  const mesh::Geometry& geometry = body.geometry();
+  const mesh::Mesh& mesh = body.mesh();
   const Values weight = weight_of(mesh, geometry, unknowns);
   double size = 0;
   for (std::size_t i = 0; i < weight.size(); ++i) size += weight[i] * unknowns[i];
-  size = sum(mesh.comm, size);
+  size = parallel::sum(mesh.comm, size);
   if (!(size > 0)) return 0;
   Values z;
   try {
@@ -144,14 +144,14 @@ double weighted_mesh_error(const SolidBody& body, std::span<const double> unknow
   }
   const Strains u1 = strains(body.kernel(), mesh, unknowns, known), z1 = strains(body.kernel(), mesh, z, {});
   double missed = variation_in_cells(body, u1, z1, pressure) / 3;
-  const ElasticKernel other = other_kernel(body);
+  const elastic::ElasticKernel other = other_kernel(body);
   const Strains u2 = strains(other, mesh, unknowns, known), z2 = strains(other, mesh, z, {});
   missed += gap_of_gradients(body, {&u1, &u2}, {&z1, &z2});
-  return sum(mesh.comm, missed) / size;
+  return parallel::sum(mesh.comm, missed) / size;
 }
 
 double energy_mesh_error(const SolidBody& body, std::span<const std::span<const double>> shapes) {
-  const ElasticKernel other = other_kernel(body);
+  const elastic::ElasticKernel other = other_kernel(body);
   double most = 0;
   for (const std::span<const double> shape : shapes)
     most = std::max(most, energy_missed(body, strains(body.kernel(), body.mesh(), shape, {}),

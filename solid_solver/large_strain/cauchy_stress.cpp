@@ -26,7 +26,7 @@ std::vector<Tensor3> LargeStrain::cell_stress(const Displaced& state) {
   constexpr int size = 10;
   std::vector<double> sums(std::size_t(mesh_.cells.n_local()) * size, 0);
   visit(state.unknowns(), state.known, [&](Index f, const Tensor3& deformation, const Tensor3& p) {
-    const auto [here, there] = pyramids(mesh_, geometry_, f);
+    const auto [here, there] = elastic::pyramids(mesh_, geometry_, f);
     const Tensor3 tau = p * deformation.transpose();
     const double j = deformation.determinant();
     const auto add = [&](Index c, double volume) {

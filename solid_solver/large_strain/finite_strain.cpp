@@ -48,12 +48,13 @@ constexpr double drowned = 0.01;
 
 }  // namespace
 
-FiniteStrain::FiniteStrain(const Mesh& mesh, const ElasticOperator& rows, const SolidParameters& parameters)
+FiniteStrain::FiniteStrain(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
+                           const SolidParameters& parameters)
     : LargeStrain(mesh, rows),
       tolerance_(parameters.method.relative_tolerance),
       most_linear_(parameters.method.max_iterations) {
-  const Geometry& geometry = rows.geometry();
-  std::vector<const FiniteLaw*> all;
+  const mesh::Geometry& geometry = rows.geometry();
+  std::vector<const elastic::FiniteLaw*> all;
   for (const SolidMaterial& material : materials_of(parameters)) {
     const laws::Entry& law = *laws::of(material.law);
     laws_.push_back(law.make(lame_constants(parameters, material), material.law_coefficients));
@@ -64,7 +65,7 @@ FiniteStrain::FiniteStrain(const Mesh& mesh, const ElasticOperator& rows, const 
           "cell; use 'volume-strain: faces' or another law.",
           law.name);
   }
-  kernel_ = make_finite_kernel(mesh, rows, all);
+  kernel_ = elastic::make_finite_kernel(mesh, rows, all);
   using Preconditioner = MethodParameters::Preconditioner;
   const GlobalIndex cells = mesh.cells.n_global();
   const bool is_small = cells <= (mesh.dim == 2 ? tangent_factors_up_to_2d : tangent_factors_up_to_3d);
@@ -112,7 +113,7 @@ TangentSolver& FiniteStrain::solver_for(double mass_factor, std::span<const doub
 /// r = b - A(u) and its norm; infinite where a face is inside out.
 double FiniteStrain::residual(const Load& load, std::span<const double> u, double& ratio) {
   kernel_->linearise(u, load.known, load.mass_factor, r_);
-  ratio = min(mesh_.comm, kernel_->worst().ratio);
+  ratio = parallel::min(mesh_.comm, kernel_->worst().ratio);
   if (!(ratio > 0)) return std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < r_.size(); ++i) r_[i] = load.rows[i] - r_[i];
   double size = norm(mesh_.comm, r_);
@@ -162,7 +163,7 @@ void FiniteStrain::follow_known(const Load& load, TangentSolver& solver, std::sp
     change[i] -= load.before[i];
     size = std::max(size, std::abs(change[i]));
   }
-  if (!(max(mesh_.comm, size) > 0)) return;
+  if (!(parallel::max(mesh_.comm, size) > 0)) return;
   double ratio = 1;
   if (!std::isfinite(residual({load.rows, load.before, {}, load.mass_factor, false}, u, ratio))) return;
   solver.follow(true);
@@ -175,7 +176,7 @@ void FiniteStrain::follow_known(const Load& load, TangentSolver& solver, std::sp
 }
 
 std::string FiniteStrain::where_worst() const {
-  const FiniteKernel::Worst worst = kernel_->worst();
+  const elastic::FiniteKernel::Worst worst = kernel_->worst();
   return worst_cell(mesh_, geometry_, worst.ratio, worst.face);
 }
 
@@ -205,20 +206,20 @@ double FiniteStrain::scale_of(const Load& load, std::span<const double> u, doubl
   return std::max(inner, residual);
 }
 
-SolveStatistics FiniteStrain::solve(const Load& load, std::span<double> u) {
+linalg::SolveStatistics FiniteStrain::solve(const Load& load, std::span<double> u) {
   if (load.is_conserving) kernel_->set_start(load.accepted, load.accepted_known);
-  const SolveStatistics statistics = iterate(load, u);
+  const linalg::SolveStatistics statistics = iterate(load, u);
   kernel_->forget_start();
   return statistics;
 }
 
-SolveStatistics FiniteStrain::iterate(const Load& load, std::span<double> u) {
+linalg::SolveStatistics FiniteStrain::iterate(const Load& load, std::span<double> u) {
   TangentSolver& solver = solver_for(load.mass_factor, load.node_inertia);
   solver.forget_factors();
-  SolveStatistics statistics;
+  linalg::SolveStatistics statistics;
   iterates_.clear();
   start_pressures(load, u);
-  if (any(mesh_.comm, !load.before.empty())) follow_known(load, solver, u);
+  if (parallel::any(mesh_.comm, !load.before.empty())) follow_known(load, solver, u);
   NewtonIterate now;
   now.residual = residual(load, u, now.ratio);
   if (!std::isfinite(now.residual))
@@ -228,8 +229,8 @@ SolveStatistics FiniteStrain::iterate(const Load& load, std::span<double> u) {
   const auto floor = [&] {
     double largest = 0;
     for (const double v : u) largest = std::max(largest, std::abs(v));
-    const double noise = noise_ + noise_of_motion_ * max(mesh_.comm, largest);
-    return load.is_conserving ? 0.5 / finite::smallest_change * noise : noise;
+    const double noise = noise_ + noise_of_motion_ * parallel::max(mesh_.comm, largest);
+    return load.is_conserving ? 0.5 / elastic::finite::smallest_change * noise : noise;
   };
   double before = now.residual;
   for (;;) {
@@ -305,7 +306,7 @@ std::vector<double> FiniteStrain::forces(std::span<const double> unknowns, std::
 }
 
 void FiniteStrain::set_pressure(std::vector<double> of_faces) {
-  presses_ = any(mesh_.comm, std::ranges::any_of(of_faces, [](double p) { return p != 0; }));
+  presses_ = parallel::any(mesh_.comm, std::ranges::any_of(of_faces, [](double p) { return p != 0; }));
   kernel_->set_pressure(of_faces);
 }
 
@@ -313,7 +314,7 @@ double FiniteStrain::energy(std::span<const double> unknowns, std::span<const do
   kernel_->forget_start();
   kernel_->set_own_pressures(false);
   forces(unknowns, known);
-  return sum(mesh_.comm, kernel_->energy());
+  return parallel::sum(mesh_.comm, kernel_->energy());
 }
 
 double FiniteStrain::softness(std::span<const double> unknowns, std::span<const double> known) {
@@ -321,7 +322,7 @@ double FiniteStrain::softness(std::span<const double> unknowns, std::span<const 
   std::vector<double> inner = forces(unknowns, known);
   double work = 0;
   for (std::size_t i = 0; i < inner.size(); ++i) work += unknowns[i] * inner[i];
-  work = sum(mesh_.comm, work);
+  work = parallel::sum(mesh_.comm, work);
   const double size = norm(mesh_.comm, unknowns);
   if (!(strain > 0) || !(size > 0)) return 1;
   TangentSolver& solver = solver_for(0, {});

@@ -30,7 +30,8 @@ struct NewtonIterate {
 class FiniteStrain final : public LargeStrain {
  public:
   /// Throws Error for what finite strain cannot have. Mesh and rows by reference. Collective.
-  FiniteStrain(const Mesh& mesh, const ElasticOperator& rows, const SolidParameters& parameters);
+  FiniteStrain(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
+               const SolidParameters& parameters);
 
   bool has_tangent() const override { return true; }
   using LargeStrain::name;
@@ -39,17 +40,17 @@ class FiniteStrain final : public LargeStrain {
   /// Of the local cells; dynamic analyses.
   void set_density(std::span<const double> of_cells) override { kernel_->set_density(of_cells); }
   using Load = EquilibriumLoad;
-  SolveStatistics solve(const Load& load, std::span<double> u) override;
+  linalg::SolveStatistics solve(const Load& load, std::span<double> u) override;
   void set_pressure(std::vector<double> of_faces) override;
   std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;
   double energy(std::span<const double> unknowns, std::span<const double> known) override;
   void visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) override;
   double softness(std::span<const double> unknowns, std::span<const double> known) override;
   double lowest_stiffness(std::span<const double> unknowns, std::span<const double> known,
-                          const LinearMap& elastic, std::vector<double> start) override;
+                          const linalg::LinearMap& elastic, std::vector<double> start) override;
   Vec3 pressure_force() override { return kernel_->pressure_force(); }
-  std::vector<Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
-                                     const ElasticLoads& loads) override {
+  std::vector<elastic::Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
+                                              const elastic::ElasticLoads& loads) override {
     return kernel_->holding_forces(unknowns, known, loads);
   }
   /// Of the last solve.
@@ -64,7 +65,7 @@ class FiniteStrain final : public LargeStrain {
   bool search(const Load& load, std::span<double> u, NewtonIterate& now, double most);
   void follow_known(const Load& load, TangentSolver& solver, std::span<double> u);
   double scale_of(const Load& load, std::span<const double> u, double residual);
-  SolveStatistics iterate(const Load& load, std::span<double> u);
+  linalg::SolveStatistics iterate(const Load& load, std::span<double> u);
   /// Over the load what rounding ended the iteration with; much of it is said once, nothing is left of no load. Collective.
   double judge_rounding(const Load& load, double scale, double left);
   TangentSolver& solver_for(double mass_factor, std::span<const double> node_inertia);
@@ -78,8 +79,8 @@ class FiniteStrain final : public LargeStrain {
   double tolerance_, noise_, noise_of_motion_;
   double whole_ = 0;  // norm of the last residual with U'(J) in place of those pressures
   int most_linear_;
-  std::vector<std::unique_ptr<FiniteLaw>> laws_;
-  std::unique_ptr<FiniteKernel> kernel_;
+  std::vector<std::unique_ptr<elastic::FiniteLaw>> laws_;
+  std::unique_ptr<elastic::FiniteKernel> kernel_;
   std::vector<std::unique_ptr<TangentSolver>> solvers_;  // by size of the inertia, latest first
   std::vector<double> r_, trial_, du_;
   std::vector<NewtonIterate> iterates_;

@@ -15,14 +15,14 @@ namespace couplet::solid {
 class LargeStrain : public Equilibrium {
  public:
   /// By reference.
-  LargeStrain(const Mesh& mesh, const ElasticOperator& rows)
+  LargeStrain(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows)
       : mesh_(mesh), geometry_(rows.geometry()), rows_(rows) {}
 
   bool is_linear() const override { return false; }
   std::string name(const SolidSystem&) const override { return name(); }
   void prepare(const SolidProblem&, SolidSystem&) const override {}
   std::vector<double> force_of_known(std::span<const double>) const override { return {}; }
-  SolveStatistics find(const EquilibriumLoad& load, SolidSystem&, std::span<double> u) override {
+  linalg::SolveStatistics find(const EquilibriumLoad& load, SolidSystem&, std::span<double> u) override {
     return solve(load, u);
   }
   /// Relative already.
@@ -33,24 +33,24 @@ class LargeStrain : public Equilibrium {
 
   virtual std::string name() const = 0;
   /// `u`: the first guess on entry. Throws SolveFailure, `u` being of no use then.
-  virtual SolveStatistics solve(const EquilibriumLoad& load, std::span<double> u) = 0;
+  virtual linalg::SolveStatistics solve(const EquilibriumLoad& load, std::span<double> u) = 0;
   /// Takes (face, F, P): F(i, j) = d x_i / d X_j, P the first Piola-Kirchhoff stress [Pa], of this rank's faces.
   using Take = std::function<void(Index, const Tensor3&, const Tensor3&)>;
   virtual void visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) = 0;
 
  protected:
-  const Mesh& mesh_;
-  const Geometry& geometry_;
-  const ElasticOperator& rows_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
+  const elastic::ElasticOperator& rows_;
 };
 
 /// What rounding leaves in the rows at least [N]: some last digits of the stiffness times the area of a face.
 /// Collective.
-double rounding_of_forces(const Mesh& mesh, const ElasticOperator& rows);
+double rounding_of_forces(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows);
 /// What the last digit of a displacement makes of forces, over that displacement [N/m]: a slender body moves by many times the distance
 /// of its cells, and no equilibrium is nearer than the numbers are. Collective.
-double rounding_of_motion(const Mesh& mesh, const ElasticOperator& rows);
+double rounding_of_motion(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows);
 /// The face with the smallest det F of all ranks, in words; `face` of this rank, -1: none is below 1. Collective.
-std::string worst_cell(const Mesh& mesh, const Geometry& geometry, double ratio, Index face);
+std::string worst_cell(const mesh::Mesh& mesh, const mesh::Geometry& geometry, double ratio, Index face);
 
 }  // namespace couplet::solid

@@ -24,32 +24,32 @@ constexpr double symmetric_part = 1e-7;
 }  // namespace
 
 double FiniteStrain::lowest_stiffness(std::span<const double> unknowns, std::span<const double> known,
-                                      const LinearMap& elastic, std::vector<double> start) {
+                                      const linalg::LinearMap& elastic, std::vector<double> start) {
   kernel_->forget_start();
   kernel_->set_own_pressures(false);
   kernel_->linearise(unknowns, known, 0, trial_);
   TangentSolver& solver = solver_for(0, {});
   solver.forget_factors();
   solver.follow(true);
-  const QuotientOperators of{
+  const modes::QuotientOperators of{
       .a = [&](std::span<const double> x, std::span<double> y) { kernel_->apply_tangent(x, {}, 0, y); },
       .b = elastic,
       .precondition = [&](std::span<const double> r, std::span<double> z) { solver.precondition(r, z); }};
   std::vector<double> force = std::move(start), smooth(force.size());  // which soft motions answer to
   solver.precondition(force, smooth);
-  if (any(mesh_.comm, kernel_->has_pressure()) && !is_symmetric(force, smooth)) {
+  if (parallel::any(mesh_.comm, kernel_->has_pressure()) && !is_symmetric(force, smooth)) {
     solver.forget_factors();
     return 1;
   }
   const auto refined = [&](std::vector<double> x, int most) {
-    return lowest_quotient(mesh_.comm, of, std::move(x), most,
-                           [](const std::vector<double>&) { return false; })
+    return modes::lowest_quotient(mesh_.comm, of, std::move(x), most,
+                                  [](const std::vector<double>&) { return false; })
         .value;
   };
   double least = 1;
   for (int look = 0; look < 2; ++look) {
-    Curvature found =
-        look_for_negative_curvature(mesh_.comm, of.a, of.precondition, force, looked_for, most_looks);
+    modes::Curvature found =
+        modes::look_for_negative_curvature(mesh_.comm, of.a, of.precondition, force, looked_for, most_looks);
     if (!found.is_negative) elastic(found.x, force);
     least = refined(std::move(found.x), found.is_negative ? most_refined : 1);
     if (found.is_negative || least > nearly_lost) break;
@@ -64,7 +64,7 @@ bool FiniteStrain::is_symmetric(std::span<const double> x, std::span<const doubl
     kernel_->apply_tangent(a, {}, 0, force);
     double local = 0;
     for (std::size_t i = 0; i < b.size(); ++i) local += b[i] * force[i];
-    return sum(mesh_.comm, local);
+    return parallel::sum(mesh_.comm, local);
   };
   const double one = work(x, y), other = work(y, x);
   return std::abs(one - other) <= symmetric_part * (std::abs(one) + std::abs(other));

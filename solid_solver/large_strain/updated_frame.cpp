@@ -15,11 +15,12 @@ constexpr double loose = 1e-3;
 
 }  // namespace
 
-UpdatedFrame::UpdatedFrame(const Mesh& mesh, const ElasticOperator& rows, std::vector<Vec3> points)
+UpdatedFrame::UpdatedFrame(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
+                           std::vector<Vec3> points)
     : mesh_(mesh),
-      geometry_(compute_geometry(mesh, std::move(points))),
-      rows_(mesh, geometry_, rows.boundary(), ElasticBody{{rows.lame(0)}, {}}),
-      kernel_(mesh, rows_, FaceGradientScheme::thesis) {}
+      geometry_(mesh::compute_geometry(mesh, std::move(points))),
+      rows_(mesh, geometry_, rows.boundary(), elastic::ElasticBody{{rows.lame(0)}, {}}),
+      kernel_(mesh, rows_, elastic::FaceGradientScheme::thesis) {}
 
 ScalarSystems& UpdatedFrame::systems(double mass_factor, std::span<const double> inertia) {
   if (!systems_ || mass_factor != mass_factor_)
@@ -38,22 +39,22 @@ std::vector<double> UpdatedFrame::linear_answer(std::span<const double> change, 
 }
 
 // Four places at a time, the last ones filled up with their neighbour.
-void first_piola(const FiniteLaw& law, std::span<const Tensor3> deformation, std::span<Tensor3> stress,
-                 std::span<double> energy) {
-  using namespace finite;
+void first_piola(const elastic::FiniteLaw& law, std::span<const Tensor3> deformation,
+                 std::span<Tensor3> stress, std::span<double> energy) {
+  using namespace elastic::finite;
   const std::size_t n = deformation.size();
   for (std::size_t first = 0; first < n; first += 4) {
     const auto at = [&](int k) { return std::min(first + std::size_t(k), n - 1); };
-    State s;
+    elastic::finite::State s;
     for (int k = 0; k < 4; ++k)
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) s.f[i][j][k] = deformation[at(k)](i, j);
-    const Invariants place[1] = {invariants(s.f)};
-    Energy e[1];
+    const elastic::Invariants place[1] = {elastic::finite::invariants(s.f)};
+    elastic::Energy e[1];
     law.evaluate(place, true, e);
-    keep(e[0], s);
-    Tensor4 p;
-    finite::stress<true>(s, p);
+    elastic::finite::keep(e[0], s);
+    elastic::finite::Tensor4 p;
+    elastic::finite::stress<true>(s, p);
     for (int k = 0; k < 4; ++k) {
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) stress[at(k)](i, j) = p[i][j][k];

@@ -16,8 +16,8 @@ namespace couplet::solid {
 class UpdatedFrame {
  public:
   /// `rows`: conditions and constants, of the undeformed body. Keeps the mesh by reference. Collective.
-  UpdatedFrame(const Mesh& mesh, const ElasticOperator& rows, std::vector<Vec3> points);
-  const ElasticKernel& kernel() const { return kernel_; }
+  UpdatedFrame(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, std::vector<Vec3> points);
+  const elastic::ElasticKernel& kernel() const { return kernel_; }
   /// S_u of local faces [m^2], out of the owner.
   const std::vector<Vec3>& area() const { return geometry_.face_area; }
   /// For this inertia, made anew when the factor is another one. Collective.
@@ -26,17 +26,17 @@ class UpdatedFrame {
   std::vector<double> linear_answer(std::span<const double> change, MethodParameters method);
 
  private:
-  const Mesh& mesh_;
-  const Geometry geometry_;
-  ElasticOperator rows_;
-  ElasticKernel kernel_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry geometry_;
+  elastic::ElasticOperator rows_;
+  elastic::ElasticKernel kernel_;
   double mass_factor_ = 0;
   std::unique_ptr<ScalarSystems> systems_;
 };
 
 /// P = dW/dF [Pa] and W [J/m^3] of a law at each F.
-void first_piola(const FiniteLaw& law, std::span<const Tensor3> deformation, std::span<Tensor3> stress,
-                 std::span<double> energy);
+void first_piola(const elastic::FiniteLaw& law, std::span<const Tensor3> deformation,
+                 std::span<Tensor3> stress, std::span<double> energy);
 /// det(F) F^-T
 Tensor3 cofactors_of(const Tensor3& deformation);
 

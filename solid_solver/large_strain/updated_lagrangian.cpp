@@ -20,23 +20,23 @@ constexpr std::array unknown_conditions{"a support or springs", "'zero-normal-gr
                                         "an interface between two materials"};
 
 /// Which of these a row is, -1: none.
-int unknown_condition_of(const BoundaryRow& row) {
+int unknown_condition_of(const elastic::BoundaryRow& row) {
   if (row.fixed || row.mirrored || row.is_free()) return -1;
   return row.has_value() ? 0 : row.level ? 1 : 2;
 }
 
 }  // namespace
 
-UpdatedLagrangian::UpdatedLagrangian(const Mesh& mesh, const ElasticOperator& rows,
+UpdatedLagrangian::UpdatedLagrangian(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
                                      const SolidParameters& parameters)
     : LargeStrain(mesh, rows),
       method_(parameters.method),
       accelerator_(mesh.comm, rows.n_unknowns(), acceleration_of(parameters.method)) {
-  const Geometry& geometry = rows.geometry();
+  const mesh::Geometry& geometry = rows.geometry();
   int unknown_condition = -1;
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
     unknown_condition = std::max(unknown_condition, unknown_condition_of(rows.at(f)));
-  unknown_condition = max(mesh.comm, unknown_condition);
+  unknown_condition = parallel::max(mesh.comm, unknown_condition);
   if (unknown_condition >= 0)
     throw Error(
         "solution-method.type: segregated: at finite strain it supports 'fixed-displacement' of all "
@@ -78,7 +78,8 @@ void UpdatedLagrangian::find_change(std::span<const double> unknowns, std::span<
   const auto [u, g] = since_start(unknowns, known);
   change_.assign(mesh_.n_flux_faces(), Tensor3::Identity());
   const auto is_zero = [](double x) { return x == 0; };
-  if (!any(mesh_.comm, !std::ranges::all_of(u, is_zero) || !std::ranges::all_of(g, is_zero))) return;
+  if (!parallel::any(mesh_.comm, !std::ranges::all_of(u, is_zero) || !std::ranges::all_of(g, is_zero)))
+    return;
   frame().kernel().face_gradients(
       u, g, [this](Index f, const Tensor3& gradient) { change_[f] += gradient.transpose(); }, 0,
       mesh_.n_flux_faces());
@@ -95,7 +96,7 @@ bool UpdatedLagrangian::find_stress() {
     const double ratio = std::min(change_[f].determinant(), deformation_[f].determinant());
     if (ratio < least_ || !std::isfinite(ratio)) least_ = std::isfinite(ratio) ? ratio : -1, worst_ = f;
   }
-  if (!(min(mesh_.comm, least_) > 0)) return false;
+  if (!(parallel::min(mesh_.comm, least_) > 0)) return false;
   stress_.resize(n);
   energy_.resize(n);
   first_piola(*law_, deformation_, stress_, energy_);
@@ -163,17 +164,17 @@ std::string UpdatedLagrangian::where_worst() const { return worst_cell(mesh_, ge
 void UpdatedLagrangian::follow_known(const EquilibriumLoad& load, std::span<double> u) {
   std::vector<double> change(load.known.begin(), load.known.end());
   for (std::size_t i = 0; i < change.size(); ++i) change[i] -= load.before[i];
-  if (!any(mesh_.comm, std::ranges::any_of(change, [](double x) { return x != 0; }))) return;
+  if (!parallel::any(mesh_.comm, std::ranges::any_of(change, [](double x) { return x != 0; }))) return;
   const std::vector<double> du = frame().linear_answer(change, method_);
   for (std::size_t i = 0; i < u.size(); ++i) u[i] += du[i];
 }
 
-SolveStatistics UpdatedLagrangian::solve(const EquilibriumLoad& load, std::span<double> u) {
+linalg::SolveStatistics UpdatedLagrangian::solve(const EquilibriumLoad& load, std::span<double> u) {
   const auto start = std::chrono::steady_clock::now();
   ScalarSystems& systems = frame().systems(load.mass_factor, load.inertia);
-  SolveStatistics statistics;
+  linalg::SolveStatistics statistics;
   std::vector<double> r(u.size()), step(u.size());
-  if (any(mesh_.comm, !load.before.empty())) follow_known(load, u);
+  if (parallel::any(mesh_.comm, !load.before.empty())) follow_known(load, u);
   accelerator_.restart();
   double size = residual(load, u, r);
   if (!std::isfinite(size))

@@ -22,23 +22,25 @@ namespace couplet::solid {
 class UpdatedLagrangian final : public LargeStrain {
  public:
   /// Throws Error for conditions that it does not know. Mesh and rows by reference. Collective.
-  UpdatedLagrangian(const Mesh& mesh, const ElasticOperator& rows, const SolidParameters& parameters);
+  UpdatedLagrangian(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
+                    const SolidParameters& parameters);
   ~UpdatedLagrangian() override;
 
   using LargeStrain::name;
   std::string name() const override;
   void set_pressure(std::vector<double> of_faces) override { pressure_ = std::move(of_faces); }
-  SolveStatistics solve(const EquilibriumLoad& load, std::span<double> u) override;
+  linalg::SolveStatistics solve(const EquilibriumLoad& load, std::span<double> u) override;
   std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;
   double energy(std::span<const double> unknowns, std::span<const double> known) override;
   void visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) override;
   Vec3 pressure_force() override { return pressure_force_; }
-  std::vector<Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
-                                     const ElasticLoads& loads) override;
+  std::vector<elastic::Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
+                                              const elastic::ElasticLoads& loads) override;
   void end_step(std::span<const double> unknowns, std::span<const double> known) override;
   void accept() override;
-  void save(CheckpointWriter& file) const override;
-  void load(CheckpointReader& file, std::span<const double> unknowns, std::span<const double> known) override;
+  void save(io::CheckpointWriter& file) const override;
+  void load(io::CheckpointReader& file, std::span<const double> unknowns,
+            std::span<const double> known) override;
 
  private:
   /// Where the body stands and how it is deformed there.
@@ -66,8 +68,8 @@ class UpdatedLagrangian final : public LargeStrain {
 
   const MethodParameters method_;
   double noise_ = 0;
-  std::unique_ptr<FiniteLaw> law_;
-  Accelerator accelerator_;
+  std::unique_ptr<elastic::FiniteLaw> law_;
+  linalg::Accelerator accelerator_;
   Place now_, next_;
   std::unique_ptr<UpdatedFrame> frame_;
   std::vector<double> pressure_;  // per boundary face of owned cells; empty: none

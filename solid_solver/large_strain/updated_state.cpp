@@ -29,11 +29,11 @@ double UpdatedLagrangian::energy(std::span<const double> unknowns, std::span<con
   const Index n = mesh_.cells.n_owned();
   double here = 0;
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    const auto [behind, ahead] = pyramids(mesh_, geometry_, f);
+    const auto [behind, ahead] = elastic::pyramids(mesh_, geometry_, f);
     if (mesh_.owner[f] < n) here += behind * energy_[f];
     if (f < mesh_.n_interior && mesh_.neighbour[f] < n) here += ahead * energy_[f];
   }
-  return sum(mesh_.comm, here);
+  return parallel::sum(mesh_.comm, here);
 }
 
 /// Each face once over all ranks, where the cell of its owner lives.
@@ -45,12 +45,13 @@ void UpdatedLagrangian::visit(std::span<const double> unknowns, std::span<const 
 }
 
 /// Loads need not be taken off: faces that are held take none.
-std::vector<Wrench> UpdatedLagrangian::holding_forces(std::span<const double> unknowns,
-                                                      std::span<const double> known, const ElasticLoads&) {
+std::vector<elastic::Wrench> UpdatedLagrangian::holding_forces(std::span<const double> unknowns,
+                                                               std::span<const double> known,
+                                                               const elastic::ElasticLoads&) {
   look(unknowns, known);
-  std::vector<Wrench> forces;
-  for (const Patch& patch : mesh_.patches) {
-    Wrench force;
+  std::vector<elastic::Wrench> forces;
+  for (const mesh::Patch& patch : mesh_.patches) {
+    elastic::Wrench force;
     for (Index f = patch.first; f < patch.first + patch.count; ++f) {
       const Vec3& S = frame().area()[f];
       Vec3 centre = Vec3::Zero();
@@ -72,7 +73,8 @@ void UpdatedLagrangian::end_step(std::span<const double> unknowns, std::span<con
   frame().kernel().point_values(u, g, moved);
   mesh_.points.update_ghosts(moved, mesh_.dim);
   next_.points = now_.points;
-  for (Index v = 0; v < mesh_.points.n_local(); ++v) next_.points[v] += vector_at(moved, v, mesh_.dim);
+  for (Index v = 0; v < mesh_.points.n_local(); ++v)
+    next_.points[v] += elastic::vector_at(moved, v, mesh_.dim);
   next_.gradient = deformation_;
   next_.u.assign(unknowns.begin(), unknowns.end());
   next_.known.assign(g.size(), 0);
@@ -84,7 +86,7 @@ void UpdatedLagrangian::accept() {
   frame_.reset();
 }
 
-void UpdatedLagrangian::save(CheckpointWriter& file) const {
+void UpdatedLagrangian::save(io::CheckpointWriter& file) const {
   std::vector<double> points, gradient;
   for (const Vec3& x : now_.points) points.insert(points.end(), x.begin(), x.end());
   for (const Tensor3& F : now_.gradient)
@@ -93,7 +95,7 @@ void UpdatedLagrangian::save(CheckpointWriter& file) const {
   file.write(gradient_on_file, gradient);
 }
 
-void UpdatedLagrangian::load(CheckpointReader& file, std::span<const double> unknowns,
+void UpdatedLagrangian::load(io::CheckpointReader& file, std::span<const double> unknowns,
                              std::span<const double> known) {
   std::vector<double> points(now_.points.size() * 3), gradient(now_.gradient.size() * 9);
   file.read(points_on_file, points);

@@ -10,11 +10,11 @@ namespace couplet::laws {
 /// Functions of four places; of one number those of the standard library.
 using std::cbrt;
 using std::log;
-inline Four log(const Four& x) {
-  return Four{std::log(x[0]), std::log(x[1]), std::log(x[2]), std::log(x[3])};
+inline elastic::Four log(const elastic::Four& x) {
+  return elastic::Four{std::log(x[0]), std::log(x[1]), std::log(x[2]), std::log(x[3])};
 }
-inline Four cbrt(const Four& x) {
-  return Four{std::cbrt(x[0]), std::cbrt(x[1]), std::cbrt(x[2]), std::cbrt(x[3])};
+inline elastic::Four cbrt(const elastic::Four& x) {
+  return elastic::Four{std::cbrt(x[0]), std::cbrt(x[1]), std::cbrt(x[2]), std::cbrt(x[3])};
 }
 
 /// Invariants of the isochoric part of the deformation, i1 = J^-2/3 I1 and i2 = J^-4/3 I2, and the energy of a
@@ -30,8 +30,8 @@ struct Isochoric {
     i2 = b_ * I2;
   }
   /// `psi`: w, w1, w2, w11, w12, w22 by i1 and i2.
-  EnergyOf<T> energy(const EnergyOf<T>& psi) const {
-    EnergyOf<T> e;
+  elastic::EnergyOf<T> energy(const elastic::EnergyOf<T>& psi) const {
+    elastic::EnergyOf<T> e;
     const T r = 1.0 / J_, x = -2. / 3 * r * i1, y = -4. / 3 * r * i2;  // di1/dJ, di2/dJ
     const T xx = 10. / 9 * r * r * i1, yy = 28. / 9 * r * r * i2;
     e.w = psi.w;
@@ -53,7 +53,7 @@ struct Isochoric {
 
 /// U = K/2 (J - 1)^2.
 template <class T>
-BulkOf<T> quadratic_bulk(double K, const T& J) {
+elastic::BulkOf<T> quadratic_bulk(double K, const T& J) {
   return {0.5 * K * (J - 1.0) * (J - 1.0), K * (J - 1.0), K + 0.0 * J};
 }
 
@@ -62,20 +62,21 @@ BulkOf<T> quadratic_bulk(double K, const T& J) {
 ///   template <class T> EnergyOf<T> shape(const T& I1, const T& I2, const T& J) const;   all but the bulk part
 ///   template <class T> BulkOf<T> bulk(const T& J) const;
 template <class Law>
-class LawOf final : public FiniteLaw {
+class LawOf final : public elastic::FiniteLaw {
  public:
   explicit LawOf(const Law& law) : law_(law) {}
-  void evaluate(std::span<const Invariants> at, bool with_bulk, std::span<Energy> energy) const override {
+  void evaluate(std::span<const elastic::Invariants> at, bool with_bulk,
+                std::span<elastic::Energy> energy) const override {
     for (std::size_t i = 0; i < at.size(); ++i) {
       energy[i] = law_.shape(at[i].i1, at[i].i2, at[i].j);
       if (!with_bulk || !Law::has_bulk) continue;
-      const BulkOf<Four> bulk = law_.bulk(at[i].j);
+      const elastic::BulkOf<elastic::Four> bulk = law_.bulk(at[i].j);
       energy[i].w += bulk.u;
       energy[i].wj += bulk.pressure;
       energy[i].wjj += bulk.modulus;
     }
   }
-  BulkOf<double> bulk(double j) const override { return law_.bulk(j); }
+  elastic::BulkOf<double> bulk(double j) const override { return law_.bulk(j); }
   bool has_bulk() const override { return Law::has_bulk; }
   bool has_second_invariant() const override { return Law::has_second_invariant; }
 

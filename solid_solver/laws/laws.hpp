@@ -11,14 +11,16 @@
 namespace couplet::laws {
 
 /// `lame`: at small strain; `coefficients`: what the law wants beside them, missing ones are zero.
-using MakeLaw = std::unique_ptr<FiniteLaw> (*)(const LameConstants& lame,
-                                               std::span<const double> coefficients);
+using MakeLaw = std::unique_ptr<elastic::FiniteLaw> (*)(const elastic::LameConstants& lame,
+                                                        std::span<const double> coefficients);
 
-std::unique_ptr<FiniteLaw> saint_venant_kirchhoff(const LameConstants&, std::span<const double>);
-std::unique_ptr<FiniteLaw> neo_hookean(const LameConstants&, std::span<const double>);
-std::unique_ptr<FiniteLaw> nearly_incompressible_neo_hookean(const LameConstants&, std::span<const double>);
-std::unique_ptr<FiniteLaw> mooney_rivlin(const LameConstants&, std::span<const double>);
-std::unique_ptr<FiniteLaw> yeoh(const LameConstants&, std::span<const double>);
+std::unique_ptr<elastic::FiniteLaw> saint_venant_kirchhoff(const elastic::LameConstants&,
+                                                           std::span<const double>);
+std::unique_ptr<elastic::FiniteLaw> neo_hookean(const elastic::LameConstants&, std::span<const double>);
+std::unique_ptr<elastic::FiniteLaw> nearly_incompressible_neo_hookean(const elastic::LameConstants&,
+                                                                      std::span<const double>);
+std::unique_ptr<elastic::FiniteLaw> mooney_rivlin(const elastic::LameConstants&, std::span<const double>);
+std::unique_ptr<elastic::FiniteLaw> yeoh(const elastic::LameConstants&, std::span<const double>);
 
 /// A law as the YAML names it.
 struct Entry {

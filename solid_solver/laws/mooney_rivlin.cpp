@@ -12,26 +12,27 @@ struct MooneyRivlin {
   double c10, c01, K;
 
   template <class T>
-  EnergyOf<T> shape(const T& I1, const T& I2, const T& J) const {
+  elastic::EnergyOf<T> shape(const T& I1, const T& I2, const T& J) const {
     const Isochoric<T> iso(I1, I2, J);
-    EnergyOf<T> psi;
+    elastic::EnergyOf<T> psi;
     psi.w = c10 * (iso.i1 - 3.0) + c01 * (iso.i2 - 3.0);
     psi.w1 = c10 + 0.0 * J;
     psi.w2 = c01 + 0.0 * J;
     return iso.energy(psi);
   }
   template <class T>
-  BulkOf<T> bulk(const T& J) const {
+  elastic::BulkOf<T> bulk(const T& J) const {
     return quadratic_bulk(K, J);
   }
 };
 
 }  // namespace
 
-std::unique_ptr<FiniteLaw> mooney_rivlin(const LameConstants& lame, std::span<const double> coefficients) {
+std::unique_ptr<elastic::FiniteLaw> mooney_rivlin(const elastic::LameConstants& lame,
+                                                  std::span<const double> coefficients) {
   const double share = coefficients.empty() ? 0 : coefficients[0];
   return std::make_unique<LawOf<MooneyRivlin>>(
-      MooneyRivlin{lame.mu / 2 * (1 - share), lame.mu / 2 * share, bulk_modulus(lame)});
+      MooneyRivlin{lame.mu / 2 * (1 - share), lame.mu / 2 * share, elastic::bulk_modulus(lame)});
 }
 
 }  // namespace couplet::laws

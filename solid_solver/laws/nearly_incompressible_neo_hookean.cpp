@@ -12,24 +12,25 @@ struct NearlyIncompressible {
   double mu, K;
 
   template <class T>
-  EnergyOf<T> shape(const T& I1, const T& I2, const T& J) const {
+  elastic::EnergyOf<T> shape(const T& I1, const T& I2, const T& J) const {
     const Isochoric<T> iso(I1, I2, J);
-    EnergyOf<T> psi;
+    elastic::EnergyOf<T> psi;
     psi.w = mu / 2 * (iso.i1 - 3.0);
     psi.w1 = mu / 2 + 0.0 * J;
     return iso.energy(psi);
   }
   template <class T>
-  BulkOf<T> bulk(const T& J) const {
+  elastic::BulkOf<T> bulk(const T& J) const {
     return quadratic_bulk(K, J);
   }
 };
 
 }  // namespace
 
-std::unique_ptr<FiniteLaw> nearly_incompressible_neo_hookean(const LameConstants& lame,
-                                                             std::span<const double>) {
-  return std::make_unique<LawOf<NearlyIncompressible>>(NearlyIncompressible{lame.mu, bulk_modulus(lame)});
+std::unique_ptr<elastic::FiniteLaw> nearly_incompressible_neo_hookean(const elastic::LameConstants& lame,
+                                                                      std::span<const double>) {
+  return std::make_unique<LawOf<NearlyIncompressible>>(
+      NearlyIncompressible{lame.mu, elastic::bulk_modulus(lame)});
 }
 
 }  // namespace couplet::laws

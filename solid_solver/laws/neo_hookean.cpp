@@ -11,8 +11,8 @@ struct NeoHookean {
   double mu, lambda;
 
   template <class T>
-  EnergyOf<T> shape(const T& I1, const T&, const T& J) const {
-    EnergyOf<T> e;
+  elastic::EnergyOf<T> shape(const T& I1, const T&, const T& J) const {
+    elastic::EnergyOf<T> e;
     e.w = mu / 2 * (I1 - 3.0) - mu * log(J);
     e.w1 = mu / 2 + 0.0 * J;
     e.wj = -mu / J;
@@ -20,7 +20,7 @@ struct NeoHookean {
     return e;
   }
   template <class T>
-  BulkOf<T> bulk(const T& J) const {
+  elastic::BulkOf<T> bulk(const T& J) const {
     const T l = log(J);
     return {lambda / 2 * l * l, lambda * l / J, lambda * (1.0 - l) / (J * J)};
   }
@@ -28,7 +28,7 @@ struct NeoHookean {
 
 }  // namespace
 
-std::unique_ptr<FiniteLaw> neo_hookean(const LameConstants& lame, std::span<const double>) {
+std::unique_ptr<elastic::FiniteLaw> neo_hookean(const elastic::LameConstants& lame, std::span<const double>) {
   return std::make_unique<LawOf<NeoHookean>>(NeoHookean{lame.mu, lame.lambda});
 }
 

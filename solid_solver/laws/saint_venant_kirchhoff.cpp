@@ -12,9 +12,9 @@ struct SaintVenantKirchhoff {
   double mu, lambda;
 
   template <class T>
-  EnergyOf<T> shape(const T& I1, const T& I2, const T&) const {
+  elastic::EnergyOf<T> shape(const T& I1, const T& I2, const T&) const {
     const T twice = I1 - 3.0;  // 2 tr E; 4 E:E = I1^2 - 2 I2 - 2 I1 + 3
-    EnergyOf<T> e;
+    elastic::EnergyOf<T> e;
     e.w = lambda / 8 * twice * twice + mu / 4 * (I1 * I1 - 2.0 * I2 - 2.0 * I1 + 3.0);
     e.w1 = lambda / 4 * twice + mu / 2 * (I1 - 1.0);
     e.w2 = -mu / 2 + 0.0 * I1;
@@ -22,14 +22,15 @@ struct SaintVenantKirchhoff {
     return e;
   }
   template <class T>
-  BulkOf<T> bulk(const T&) const {
+  elastic::BulkOf<T> bulk(const T&) const {
     return {};
   }
 };
 
 }  // namespace
 
-std::unique_ptr<FiniteLaw> saint_venant_kirchhoff(const LameConstants& lame, std::span<const double>) {
+std::unique_ptr<elastic::FiniteLaw> saint_venant_kirchhoff(const elastic::LameConstants& lame,
+                                                           std::span<const double>) {
   return std::make_unique<LawOf<SaintVenantKirchhoff>>(SaintVenantKirchhoff{lame.mu, lame.lambda});
 }
 

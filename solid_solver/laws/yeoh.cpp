@@ -12,27 +12,28 @@ struct Yeoh {
   double c1, c2, c3, K;
 
   template <class T>
-  EnergyOf<T> shape(const T& I1, const T& I2, const T& J) const {
+  elastic::EnergyOf<T> shape(const T& I1, const T& I2, const T& J) const {
     const Isochoric<T> iso(I1, I2, J);
     const T x = iso.i1 - 3.0;
-    EnergyOf<T> psi;
+    elastic::EnergyOf<T> psi;
     psi.w = x * (c1 + x * (c2 + x * c3));
     psi.w1 = c1 + x * (2 * c2 + 3 * c3 * x);
     psi.w11 = 2 * c2 + 6 * c3 * x;
     return iso.energy(psi);
   }
   template <class T>
-  BulkOf<T> bulk(const T& J) const {
+  elastic::BulkOf<T> bulk(const T& J) const {
     return quadratic_bulk(K, J);
   }
 };
 
 }  // namespace
 
-std::unique_ptr<FiniteLaw> yeoh(const LameConstants& lame, std::span<const double> coefficients) {
+std::unique_ptr<elastic::FiniteLaw> yeoh(const elastic::LameConstants& lame,
+                                         std::span<const double> coefficients) {
   const auto ratio = [&](std::size_t i) { return i < coefficients.size() ? coefficients[i] : 0.0; };
   const double c1 = lame.mu / 2;
-  return std::make_unique<LawOf<Yeoh>>(Yeoh{c1, c1 * ratio(0), c1 * ratio(1), bulk_modulus(lame)});
+  return std::make_unique<LawOf<Yeoh>>(Yeoh{c1, c1 * ratio(0), c1 * ratio(1), elastic::bulk_modulus(lame)});
 }
 
 }  // namespace couplet::laws

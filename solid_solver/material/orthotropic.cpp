@@ -21,14 +21,14 @@ std::string problem_of_constants(const Orthotropic& m) {
   if (!problem_of_numbers(m.youngs_moduli, true, "").empty() || m.poissons_ratios.size() != 3 ||
       !problem_of_numbers(m.shear_moduli, true, "").empty())
     return "";  // said already
-  return is_positive(matrix_of(m))
+  return elastic::is_positive(matrix_of(m))
              ? ""
              : "these moduli violate positive strain energy: |nu_ij| must be below sqrt(E_i / E_j), and 1 - "
                "nu12 nu21 - nu23 nu32 - nu13 nu31 - 2 nu21 nu32 nu13 positive (nu_ji = nu_ij E_j / E_i)";
 }
 
 std::string problem_of_axis(const std::vector<config::ExpressionText>& axis) {
-  return axis.empty() ? std::string() : problem_of(axis, static_cast<int>(axis.size()));
+  return axis.empty() ? std::string() : fv::problem_of(axis, static_cast<int>(axis.size()));
 }
 
 }  // namespace
@@ -54,29 +54,29 @@ void declare(config::Section& s, Orthotropic& m) {
   s.check([&m] { return problem_of_axis(m.second_axis); }, "second-axis");
 }
 
-ElasticMatrix matrix_of(const Orthotropic& m) {
-  OrthotropicConstants c;
+elastic::ElasticMatrix matrix_of(const Orthotropic& m) {
+  elastic::OrthotropicConstants c;
   std::copy_n(m.youngs_moduli.begin(), 3, c.youngs_modulus.begin());
   std::copy_n(m.poissons_ratios.begin(), 3, c.poissons_ratio.begin());
   std::copy_n(m.shear_moduli.begin(), 3, c.shear_modulus.begin());
-  return orthotropic_matrix(c);
+  return elastic::orthotropic_matrix(c);
 }
 
 MaterialAxes::MaterialAxes(const Orthotropic& m, int dimension) : dimension_(dimension) {
   if (!m.first_axis.empty())
-    first_ = make_expressions(m.first_axis, dimension, "material.orthotropic.first-axis");
+    first_ = fv::make_expressions(m.first_axis, dimension, "material.orthotropic.first-axis");
   if (!m.second_axis.empty() && dimension == 2)
     throw Error(
         "material.orthotropic.second-axis: in two dimensions the second axis follows from the first "
         "(rotated by 90 degrees); remove it.");
   if (!m.second_axis.empty())
-    second_ = make_expressions(m.second_axis, dimension, "material.orthotropic.second-axis");
+    second_ = fv::make_expressions(m.second_axis, dimension, "material.orthotropic.second-axis");
   for (const auto* axis : {&first_, &second_})
-    for (const Expression& e : *axis) is_constant_ = is_constant_ && !e.uses_space();
+    for (const fv::Expression& e : *axis) is_constant_ = is_constant_ && !e.uses_space();
 }
 
 Tensor3 MaterialAxes::at(const Vec3& place) const {
-  const auto value = [&](const std::vector<Expression>& axis, Vec3 absent) {
+  const auto value = [&](const std::vector<fv::Expression>& axis, Vec3 absent) {
     for (std::size_t a = 0; a < axis.size(); ++a) absent[Index(a)] = axis[a](place, 0);
     return absent;
   };

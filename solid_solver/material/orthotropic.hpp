@@ -22,7 +22,7 @@ struct Orthotropic {
 void declare(config::Section& section, Orthotropic& material);
 
 /// In the axes of the material.
-ElasticMatrix matrix_of(const Orthotropic& material);
+elastic::ElasticMatrix matrix_of(const Orthotropic& material);
 
 /// Axes of a material at places.
 class MaterialAxes {
@@ -35,7 +35,7 @@ class MaterialAxes {
   Tensor3 at(const Vec3& place) const;
 
  private:
-  std::vector<Expression> first_, second_;
+  std::vector<fv::Expression> first_, second_;
   int dimension_;
   bool is_constant_ = true;
 };

@@ -10,16 +10,16 @@
 namespace couplet::solid {
 namespace {
 
-VertexInterpolation::ByFace stencils_of(const Mesh& mesh, const std::vector<bool>& is_symmetry) {
-  VertexInterpolation::ByFace stencils{{}, mesh.cell_material, true};
+fv::VertexInterpolation::ByFace stencils_of(const mesh::Mesh& mesh, const std::vector<bool>& is_symmetry) {
+  fv::VertexInterpolation::ByFace stencils{{}, mesh.cell_material, true};
   for (const Index p : mesh.patch_of_boundary())
-    stencils.stencil.push_back(is_symmetry[p] ? PatchStencil::symmetry : PatchStencil::open);
+    stencils.stencil.push_back(is_symmetry[p] ? fv::PatchStencil::symmetry : fv::PatchStencil::open);
   return stencils;
 }
 
 /// Tensors as `size` numbers each, by `numbers(tensor)`, with ghosts up to date.
 template <class Numbers>
-std::vector<double> with_ghosts(const IndexMap& map, std::span<const Tensor3> owned, int size,
+std::vector<double> with_ghosts(const parallel::IndexMap& map, std::span<const Tensor3> owned, int size,
                                 const Numbers& numbers) {
   std::vector<double> values(std::size_t(map.n_local()) * size, 0);
   for (std::size_t i = 0; i < owned.size(); ++i)
@@ -50,12 +50,12 @@ std::array<double, 3> principal_stresses(const Tensor3& stress) {
   return {values[2], values[1], values[0]};
 }
 
-PointTensors::PointTensors(const Mesh& mesh, const Geometry& geometry, const std::vector<bool>& is_symmetry,
-                           const VertexInterpolation& inside)
+PointTensors::PointTensors(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                           const std::vector<bool>& is_symmetry, const fv::VertexInterpolation& inside)
     : mesh_(&mesh), inside_(&inside), surface_(mesh, geometry, stencils_of(mesh, is_symmetry)) {
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
     if (!is_symmetry[p]) continue;
-    const Patch& patch = mesh.patches[p];
+    const mesh::Patch& patch = mesh.patches[p];
     Vec3 area = Vec3::Zero();
     Mirror mirror;
     const auto take = [&](Index first, Index count) {
@@ -67,7 +67,7 @@ PointTensors::PointTensors(const Mesh& mesh, const Geometry& geometry, const std
     take(patch.ghost_first, patch.ghost_count);
     std::ranges::sort(mirror.points);
     mirror.points.erase(std::ranges::unique(mirror.points).begin(), mirror.points.end());
-    for (int a = 0; a < 3; ++a) area[a] = sum(mesh.comm, area[a]);
+    for (int a = 0; a < 3; ++a) area[a] = parallel::sum(mesh.comm, area[a]);
     const Vec3 n = area.normalized();
     mirror.reflection = Tensor3::Identity() - 2 * n * n.transpose();
     mirrors_.push_back(std::move(mirror));

@@ -28,8 +28,8 @@ std::array<double, 3> principal_stresses(const Tensor3& stress);
 class PointTensors {
  public:
   /// `is_symmetry`: one a patch; `inside`: any interpolation on the mesh, kept by reference. Collective.
-  PointTensors(const Mesh& mesh, const Geometry& geometry, const std::vector<bool>& is_symmetry,
-               const VertexInterpolation& inside);
+  PointTensors(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const std::vector<bool>& is_symmetry,
+               const fv::VertexInterpolation& inside);
   /// `cells`: of owned cells; `faces`: of boundary faces of owned cells. Packed, all local points.
   /// Collective.
   std::vector<double> interpolate(std::span<const Tensor3> cells, std::span<const Tensor3> faces) const;
@@ -44,12 +44,12 @@ class PointTensors {
     Tensor3 reflection;  // I - 2 n n
     std::vector<Index> points;
   };
-  const Mesh* mesh_;
-  const VertexInterpolation& row_of(Index point) const {
+  const mesh::Mesh* mesh_;
+  const fv::VertexInterpolation& row_of(Index point) const {
     return surface_.nodes(point).empty() ? *inside_ : surface_;
   }
-  const VertexInterpolation* inside_;
-  VertexInterpolation surface_;
+  const fv::VertexInterpolation* inside_;
+  fv::VertexInterpolation surface_;
   std::vector<Mirror> mirrors_;
 };
 

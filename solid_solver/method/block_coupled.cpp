@@ -15,40 +15,42 @@ namespace {
 // bending stalls ILU, so that static problems stay with LU for longer.
 constexpr GlobalIndex direct_up_to = 60000, direct_up_to_static = 200000;
 
-LinearMethod linear_method(const SolidProblem& problem, const MethodParameters& parameters) {
+linalg::LinearMethod linear_method(const SolidProblem& problem, const MethodParameters& parameters) {
   using Choice = MethodParameters::LinearSolver;
   switch (parameters.linear_solver) {
     case Choice::direct:
-      return LinearMethod::direct;
+      return linalg::LinearMethod::direct;
     case Choice::bicgstab_ilu:
-      return LinearMethod::bicgstab_ilu;
+      return linalg::LinearMethod::bicgstab_ilu;
     case Choice::gmres_multigrid:
-      return LinearMethod::gmres_multigrid;
+      return linalg::LinearMethod::gmres_multigrid;
     case Choice::automatic:
       break;
   }
-  const GlobalIndex n = sum(problem.mesh.comm, static_cast<GlobalIndex>(problem.elastic.n_unknowns()));
-  return n <= (problem.is_static() ? direct_up_to_static : direct_up_to) ? LinearMethod::direct
-                                                                         : LinearMethod::bicgstab_ilu;
+  const GlobalIndex n =
+      parallel::sum(problem.mesh.comm, static_cast<GlobalIndex>(problem.elastic.n_unknowns()));
+  return n <= (problem.is_static() ? direct_up_to_static : direct_up_to) ? linalg::LinearMethod::direct
+                                                                         : linalg::LinearMethod::bicgstab_ilu;
 }
 
 // Of an iterative linear solve within the deferred correction: more is lost on the next correction.
 constexpr double deferred_tolerance = 1e-2;
 constexpr int deferred_history = 8;
 
-LinearOptions options_of(LinearMethod method, const MethodParameters& parameters, bool deferred) {
-  LinearOptions options;
+linalg::LinearOptions options_of(linalg::LinearMethod method, const MethodParameters& parameters,
+                                 bool deferred) {
+  linalg::LinearOptions options;
   options.method = method;
   options.relative_tolerance = deferred ? deferred_tolerance : parameters.relative_tolerance;
   options.max_iterations = parameters.max_iterations;
   return options;
 }
 
-const char* name_of(LinearMethod method) {
+const char* name_of(linalg::LinearMethod method) {
   switch (method) {
-    case LinearMethod::direct:
+    case linalg::LinearMethod::direct:
       return "block-coupled (direct)";
-    case LinearMethod::bicgstab_ilu:
+    case linalg::LinearMethod::bicgstab_ilu:
       return "block-coupled (BiCGStab, ILU)";
     default:
       return "block-coupled (GMRES, multigrid)";
@@ -67,28 +69,29 @@ BlockCoupled::BlockCoupled(const SolidProblem& problem, const MethodParameters& 
   name_ = name_of(linear_);
   if (!problem.is_corrected()) return;
   const std::size_t n = problem.elastic.n_unknowns();
-  accelerator_.emplace(problem.mesh.comm, n, Acceleration{Acceleration::Type::anderson, 1, deferred_history});
+  accelerator_.emplace(problem.mesh.comm, n,
+                       linalg::Acceleration{linalg::Acceleration::Type::anderson, 1, deferred_history});
   residual_.resize(n);
   step_.resize(n);
 }
 
-SolveStatistics BlockCoupled::solve(std::span<const double> b, std::span<double> u) {
+linalg::SolveStatistics BlockCoupled::solve(std::span<const double> b, std::span<double> u) {
   try {
     return accelerator_ ? solve_corrected(b, u) : solver_.solve(b, u);
   } catch (const SolveFailure& e) {
     // Never the method that has just failed.
-    throw SolveFailure("{} The method is {}. If the loads are correct, try 'solution-method: {}'{}.",
-                       e.what(), name(),
-                       linear_ == LinearMethod::direct ? "{type: newton-krylov}" : "{linear-solver: direct}",
-                       linear_ == LinearMethod::direct ? ""
-                                                       : ", the most robust option, at the highest "
-                                                         "memory cost");
+    throw SolveFailure(
+        "{} The method is {}. If the loads are correct, try 'solution-method: {}'{}.", e.what(), name(),
+        linear_ == linalg::LinearMethod::direct ? "{type: newton-krylov}" : "{linear-solver: direct}",
+        linear_ == linalg::LinearMethod::direct ? ""
+                                                : ", the most robust option, at the highest "
+                                                  "memory cost");
   }
 }
 
-SolveStatistics BlockCoupled::solve_corrected(std::span<const double> b, std::span<double> u) {
+linalg::SolveStatistics BlockCoupled::solve_corrected(std::span<const double> b, std::span<double> u) {
   const auto start = std::chrono::steady_clock::now();
-  SolveStatistics statistics;
+  linalg::SolveStatistics statistics;
   const double size = norm(problem_.mesh.comm, b);
   accelerator_->restart();
   while (true) {

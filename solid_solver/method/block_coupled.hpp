@@ -17,18 +17,18 @@ namespace couplet::solid {
 class BlockCoupled final : public SolutionMethod {
  public:
   BlockCoupled(const SolidProblem& problem, const MethodParameters& parameters);
-  SolveStatistics solve(std::span<const double> b, std::span<double> u) override;
+  linalg::SolveStatistics solve(std::span<const double> b, std::span<double> u) override;
 
  private:
-  SolveStatistics solve_corrected(std::span<const double> b, std::span<double> u);
+  linalg::SolveStatistics solve_corrected(std::span<const double> b, std::span<double> u);
 
   SolidProblem problem_;
-  LinearMethod linear_;
+  linalg::LinearMethod linear_;
   double tolerance_;
   int max_iterations_;
-  SparseMatrix matrix_;
-  LinearSolver solver_;
-  std::optional<Accelerator> accelerator_;  // with the corrected gradient
+  linalg::SparseMatrix matrix_;
+  linalg::LinearSolver solver_;
+  std::optional<linalg::Accelerator> accelerator_;  // with the corrected gradient
   std::vector<double> residual_, step_;
 };
 

@@ -13,12 +13,10 @@
 #include "common/linalg/linear_solver.hpp"
 #include "solid_solver/method/solution_method.hpp"
 
-namespace couplet {
-
+namespace couplet::io {
 class CheckpointReader;
 class CheckpointWriter;
-
-}  // namespace couplet
+}  // namespace couplet::io
 
 namespace couplet::solid {
 
@@ -28,7 +26,9 @@ struct SolidSystem {
   std::vector<double> inertia;             ///< per owned cell: mass factor times mass [N/m]; empty: static
   std::unique_ptr<SolutionMethod> method;  ///< null: the equilibrium has its own
   std::vector<double> node_inertia;        ///< of Newton's method: of the unknown nodes; empty: static
-  ResidualProjection* projection() const { return method ? method->projection() : nullptr; }  ///< null: none
+  linalg::ResidualProjection* projection() const {
+    return method ? method->projection() : nullptr;
+  }  ///< null: none
 };
 
 /// What must be reached: M m u + A(u) = b, and where it comes from.
@@ -77,12 +77,13 @@ class Equilibrium {
   /// What the known columns take from b; empty: find() does it.
   virtual std::vector<double> force_of_known(std::span<const double> known) const = 0;
   /// `u`: the first guess on entry. Throws SolveFailure, `u` being of no use then.
-  virtual SolveStatistics find(const EquilibriumLoad& load, SolidSystem& system, std::span<double> u) = 0;
+  virtual linalg::SolveStatistics find(const EquilibriumLoad& load, SolidSystem& system,
+                                       std::span<double> u) = 0;
   /// The end of the step under way, which accept() makes the state that the next one begins at. Throws SolveFailure.
   virtual void end_step(std::span<const double> /*unknowns*/, std::span<const double> /*known*/) {}
   virtual void accept() {}
-  virtual void save(CheckpointWriter&) const {}
-  virtual void load(CheckpointReader&, std::span<const double>, std::span<const double>) {}
+  virtual void save(io::CheckpointWriter&) const {}
+  virtual void load(io::CheckpointReader&, std::span<const double>, std::span<const double>) {}
 
   /// Inner forces A(u), those of the pressure counted with the opposite sign.
   virtual std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) = 0;
@@ -92,8 +93,9 @@ class Equilibrium {
   virtual Vec3 pressure_force() { return Vec3::Zero(); }
   /// Force on the body at each patch at a state under these loads, with its moment about the origin where the body is taken to
   /// stand; this rank's part. Empty: the gradient has no trial functions, by which that could be told.
-  virtual std::vector<Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
-                                             const ElasticLoads& loads) = 0;
+  virtual std::vector<elastic::Wrench> holding_forces(std::span<const double> unknowns,
+                                                      std::span<const double> known,
+                                                      const elastic::ElasticLoads& loads) = 0;
   /// What find() has left, its `residual`, over the size of the rows.
   virtual double share_left(double residual, double rows) const = 0;
 
@@ -113,7 +115,7 @@ class Equilibrium {
   /// equilibrium does not hold (an upper bound, hence a proof). Of pressures that follow a surface with a free rim, which
   /// have no energy, nothing can be said so: 1. `start`: forces without the symmetry of the body.
   virtual double lowest_stiffness(std::span<const double> /*unknowns*/, std::span<const double> /*known*/,
-                                  const LinearMap& /*elastic*/, std::vector<double> /*start*/) {
+                                  const linalg::LinearMap& /*elastic*/, std::vector<double> /*start*/) {
     return 1;
   }
 };

@@ -30,14 +30,14 @@ MixedForm::MixedForm(const SolidProblem& problem, const MethodParameters& parame
       with_pressures_(n_u_ + n_p_),
       forces_(n_u_ + n_p_) {
   const std::vector<double> inertia = node_inertia(problem);
-  ElasticPreconditioner::Options options;
-  options.scheme = FaceGradientScheme::symmetric;
+  elastic::ElasticPreconditioner::Options options;
+  options.scheme = elastic::FaceGradientScheme::symmetric;
   options.node_inertia = inertia;
   options.without_cells_bulk = true;
-  multigrid_ =
-      std::make_unique<ElasticPreconditioner>(problem.mesh, problem.elastic, problem.inertia, options);
+  multigrid_ = std::make_unique<elastic::ElasticPreconditioner>(problem.mesh, problem.elastic,
+                                                                problem.inertia, options);
   find_scales();
-  krylov_ = std::make_unique<KrylovSolver>(
+  krylov_ = std::make_unique<linalg::KrylovSolver>(
       "displacement and mean stress", problem.mesh.comm, n_u_ + n_p_,
       [this](std::span<const double> x, std::span<double> y) { apply(x, y); },
       [this](std::span<const double> r, std::span<double> z) { precondition(r, z); });
@@ -47,10 +47,10 @@ MixedForm::MixedForm(const SolidProblem& problem, const MethodParameters& parame
 /// mu / h, by which both kinds of unknowns and rows are of one size; larger where the tolerance leaves so much of the
 /// volumes that K_P / mu of it would be forces.
 void MixedForm::find_scales() {
-  const std::vector<double> volume = pyramid_volumes(problem_.mesh, problem_.geometry());
+  const std::vector<double> volume = elastic::pyramid_volumes(problem_.mesh, problem_.geometry());
   for (std::size_t c = 0; c < n_p_; ++c) {
-    const LameConstants lame = problem_.elastic.lame(Index(c));
-    const double bulk = bulk_of_cells(lame, problem_.elastic.volume_strain());
+    const elastic::LameConstants lame = problem_.elastic.lame(Index(c));
+    const double bulk = elastic::bulk_of_cells(lame, problem_.elastic.volume_strain());
     const double weight = std::max(1., bulk / lame.mu * options_.relative_tolerance / forces_left_);
     scale_.push_back(weight * lame.mu / std::pow(volume[c], 1.0 / problem_.mesh.dim));
     stiffness_.push_back(bulk / volume[c]);
@@ -98,13 +98,13 @@ void MixedForm::add_pressures(std::span<const double> b, std::span<double> x) {
   if (!(remainder(of_volumes) < without)) std::fill(x.begin() + std::ptrdiff_t(n_u_), x.end(), 0.0);
 }
 
-SolveStatistics MixedForm::solve(std::span<const double> b, std::span<double> u) {
+linalg::SolveStatistics MixedForm::solve(std::span<const double> b, std::span<double> u) {
   const auto start = std::chrono::steady_clock::now();
   std::vector<double> x(n_u_ + n_p_, 0), right(x.size(), 0);
   std::ranges::copy(u, x.begin());
   std::ranges::copy(b, right.begin());
   add_pressures(b, x);
-  SolveStatistics statistics;
+  linalg::SolveStatistics statistics;
   try {
     statistics = krylov_->solve(right, x, options_);
   } catch (const SolveFailure& e) {

@@ -21,7 +21,7 @@ namespace couplet::solid {
 class MixedForm final : public SolutionMethod {
  public:
   MixedForm(const SolidProblem& problem, const MethodParameters& parameters);
-  SolveStatistics solve(std::span<const double> b, std::span<double> u) override;
+  linalg::SolveStatistics solve(std::span<const double> b, std::span<double> u) override;
   /// The rows of the mixed form and their preconditioner: displacements, then mean stresses over their scale. Collective.
   void apply(std::span<const double> x, std::span<double> y);
   void precondition(std::span<const double> r, std::span<double> z);
@@ -32,15 +32,15 @@ class MixedForm final : public SolutionMethod {
   void add_pressures(std::span<const double> b, std::span<double> x);
 
   SolidProblem problem_;
-  KrylovOptions options_;
+  linalg::KrylovOptions options_;
   double forces_left_;  // by the rows of volumes, over the right-hand side
   std::size_t n_u_, n_p_;
-  std::unique_ptr<ElasticPreconditioner> multigrid_;
+  std::unique_ptr<elastic::ElasticPreconditioner> multigrid_;
   PressureSchur schur_;
   std::vector<double> scale_;      // p over its unknown, and its row [N] over a volume [Pa/m, N/m^3]
   std::vector<double> stiffness_;  // K_P / V [Pa/m^3]
   std::vector<double> with_pressures_, forces_;
-  std::unique_ptr<KrylovSolver> krylov_;
+  std::unique_ptr<linalg::KrylovSolver> krylov_;
 };
 
 }  // namespace couplet::solid

@@ -35,7 +35,7 @@ constexpr double finest_tolerance = 1e-15;
 
 }  // namespace
 
-double slenderness(const Mesh& mesh, const Geometry& geometry) {
+double slenderness(const mesh::Mesh& mesh, const mesh::Geometry& geometry) {
   double volume = 0, surface = 0;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += geometry.volume[c];
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) surface += geometry.face_area[f].norm();
@@ -46,23 +46,23 @@ double slenderness(const Mesh& mesh, const Geometry& geometry) {
       lower = std::min(lower, x[a]);
       upper = std::max(upper, x[a]);
     }
-    longest = std::max(longest, max(mesh.comm, upper) - min(mesh.comm, lower));
+    longest = std::max(longest, parallel::max(mesh.comm, upper) - parallel::min(mesh.comm, lower));
   }
-  return longest * sum(mesh.comm, surface) / (2 * sum(mesh.comm, volume));
+  return longest * parallel::sum(mesh.comm, surface) / (2 * parallel::sum(mesh.comm, volume));
 }
 
 double heaviness(const SolidProblem& problem) {
-  const Geometry& geometry = problem.geometry();
+  const mesh::Geometry& geometry = problem.geometry();
   if (problem.is_static()) return 0;
-  const Mesh& mesh = problem.mesh;
+  const mesh::Mesh& mesh = problem.mesh;
   double inertia = 0, stiffness = 0;
   for (const double m : problem.inertia) inertia += m;
   for (Index f = 0; f < mesh.n_interior; ++f) {
-    const LameConstants lame = problem.elastic.lame(mesh.owner[f]);
-    const FaceLine line = face_line(mesh, geometry, f);
+    const elastic::LameConstants lame = problem.elastic.lame(mesh.owner[f]);
+    const fv::FaceLine line = fv::face_line(mesh, geometry, f);
     stiffness += 2 * (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn;
   }
-  return sum(mesh.comm, inertia) / sum(mesh.comm, stiffness);
+  return parallel::sum(mesh.comm, inertia) / parallel::sum(mesh.comm, stiffness);
 }
 
 std::vector<double> node_inertia(const SolidProblem& problem) {
@@ -74,8 +74,8 @@ std::vector<double> node_inertia(const SolidProblem& problem) {
   return result;
 }
 
-DeformedBody at_rest(const Mesh& mesh) {
-  DeformedBody body;
+elastic::DeformedBody at_rest(const mesh::Mesh& mesh) {
+  elastic::DeformedBody body;
   body.gradient.assign(std::size_t(mesh.n_flux_faces()), Tensor3::Identity());
   body.displacement.assign(std::size_t(mesh.cells.n_local()) + std::size_t(mesh.boundary.n_local()),
                            Vec3::Zero());
@@ -97,16 +97,17 @@ NewtonKrylov::NewtonKrylov(const SolidProblem& problem, const MethodParameters& 
   else
     choose_multigrid(parameters);
   const std::size_t n = problem.elastic.n_unknowns();
-  const LinearMap apply = [this](std::span<const double> x, std::span<double> y) {
+  const linalg::LinearMap apply = [this](std::span<const double> x, std::span<double> y) {
     const log::ScopedTimer timer(log::timers(), "solid: products");
     problem_.apply(x, y);
     project(y);
   };
-  krylov_ = std::make_unique<KrylovSolver>(
+  krylov_ = std::make_unique<linalg::KrylovSolver>(
       "displacement", problem.mesh.comm, n, apply,
       [this](std::span<const double> r, std::span<double> z) { approximate_inverse(r, z); });
   if (!problem.is_static() && parameters.corrections_kept > 0)
-    projection_ = std::make_unique<ResidualProjection>(problem.mesh.comm, parameters.corrections_kept);
+    projection_ =
+        std::make_unique<linalg::ResidualProjection>(problem.mesh.comm, parameters.corrections_kept);
 }
 
 bool NewtonKrylov::approximate_inverse(std::span<const double> r, std::span<double> z) {
@@ -120,15 +121,16 @@ bool NewtonKrylov::approximate_inverse(std::span<const double> r, std::span<doub
 }
 
 void NewtonKrylov::choose_multigrid(const MethodParameters&) {
-  const Mesh& mesh = problem_.mesh;
-  const Geometry& geometry = problem_.geometry();
+  const mesh::Mesh& mesh = problem_.mesh;
+  const mesh::Geometry& geometry = problem_.geometry();
   const double heavy_here = heaviness(problem_);
-  ElasticPreconditioner::Options options;
+  elastic::ElasticPreconditioner::Options options;
   options.scheme = problem_.kernel.scheme();
   if (problem_.is_symmetric()) {
     const std::vector<double> inertia = node_inertia(problem_);
     options.node_inertia = inertia;
-    multigrid_ = std::make_unique<ElasticPreconditioner>(mesh, problem_.elastic, problem_.inertia, options);
+    multigrid_ =
+        std::make_unique<elastic::ElasticPreconditioner>(mesh, problem_.elastic, problem_.inertia, options);
     const double length = slenderness(mesh, geometry);
     const bool is_slender = length > very_slender || (length > slender && mesh.cells.n_global() > many_cells);
     if (heavy_here <= heavy && is_slender) add_rigid_motions(inertia, length);
@@ -144,14 +146,16 @@ void NewtonKrylov::choose_multigrid(const MethodParameters&) {
                                    most_aggregates, mesh.cells.n_global() / cells_of_aggregate));
   if (options.n_aggregates < fewest_aggregates) options.n_aggregates = 0;
   if (options.n_aggregates > 0) {
-    if (options.scheme == FaceGradientScheme::thesis) {
+    if (options.scheme == elastic::FaceGradientScheme::thesis) {
       options.between = &problem_.kernel;
     } else if (slenderness(mesh, geometry) > slender) {
-      between_ = std::make_unique<ElasticKernel>(mesh, problem_.elastic, FaceGradientScheme::thesis);
+      between_ = std::make_unique<elastic::ElasticKernel>(mesh, problem_.elastic,
+                                                          elastic::FaceGradientScheme::thesis);
       options.between = between_.get();
     }
   }
-  multigrid_ = std::make_unique<ElasticPreconditioner>(mesh, problem_.elastic, problem_.inertia, options);
+  multigrid_ =
+      std::make_unique<elastic::ElasticPreconditioner>(mesh, problem_.elastic, problem_.inertia, options);
   name_ =
       options.n_aggregates == 0
           ? "newton-krylov (BiCGStab, multigrid)"
@@ -163,31 +167,33 @@ void NewtonKrylov::choose_multigrid(const MethodParameters&) {
 /// iterations with them and 143 without, one of 160x16x16 89 and 169, one 100:1 of 400x4x4 cubes 515 and 1945 (to 1e-10).
 /// A plate of 4600 cells gains six of its 46 iterations and no time; one of 295 000 takes 71 for 49.
 void NewtonKrylov::add_rigid_motions(const std::vector<double>& inertia, double length) {
-  const Mesh& mesh = problem_.mesh;
+  const mesh::Mesh& mesh = problem_.mesh;
   // Half as long as thick, where the cells are fine enough for that.
   const GlobalIndex cells = mesh.cells.n_global();
   const GlobalIndex aggregates = std::min<GlobalIndex>(
       most_aggregates, std::max(cells / cells_of_slender_aggregate,
                                 std::min(static_cast<GlobalIndex>(length), cells / fewest_cells)));
   if (aggregates < fewest_aggregates) return;
-  modes_ = std::make_unique<CurrentRigidModes>(mesh, problem_.elastic, static_cast<int>(aggregates), inertia);
+  modes_ = std::make_unique<elastic::CurrentRigidModes>(mesh, problem_.elastic, static_cast<int>(aggregates),
+                                                        inertia);
   modes_->update(at_rest(mesh));
 }
 
 void NewtonKrylov::choose_factors() {
-  LinearOptions of_factors;
+  linalg::LinearOptions of_factors;
   if (problem_.is_symmetric()) {
-    matrix_ = std::make_unique<SparseMatrix>(
-        symmetric_matrix(problem_.mesh, problem_.elastic, node_inertia(problem_)));
-    of_factors.method = problem_.mesh.dim == 2 ? LinearMethod::direct_planar : LinearMethod::direct_symmetric;
-    factors_ = std::make_unique<LinearSolver>("displacement", *matrix_, of_factors);
+    matrix_ = std::make_unique<linalg::SparseMatrix>(
+        elastic::symmetric_matrix(problem_.mesh, problem_.elastic, node_inertia(problem_)));
+    of_factors.method =
+        problem_.mesh.dim == 2 ? linalg::LinearMethod::direct_planar : linalg::LinearMethod::direct_symmetric;
+    factors_ = std::make_unique<linalg::LinearSolver>("displacement", *matrix_, of_factors);
     name_ = "newton-krylov (conjugate gradients, Cholesky factors)";
     return;
   }
-  matrix_ = std::make_unique<SparseMatrix>(problem_.elastic.matrix(problem_.inertia));
-  LinearOptions options;
-  options.method = LinearMethod::direct;
-  factors_ = std::make_unique<LinearSolver>("displacement", *matrix_, options);
+  matrix_ = std::make_unique<linalg::SparseMatrix>(problem_.elastic.matrix(problem_.inertia));
+  linalg::LinearOptions options;
+  options.method = linalg::LinearMethod::direct;
+  factors_ = std::make_unique<linalg::LinearSolver>("displacement", *matrix_, options);
   name_ = "newton-krylov (BiCGStab, factors of the least-squares operator)";
 }
 
@@ -195,7 +201,7 @@ void NewtonKrylov::project(std::span<double> unknowns) const {
   if (problem_.rigid) problem_.rigid->project(unknowns);
 }
 
-SolveStatistics NewtonKrylov::solve(std::span<const double> b, std::span<double> u) {
+linalg::SolveStatistics NewtonKrylov::solve(std::span<const double> b, std::span<double> u) {
   try {
     std::vector<double> rows;
     if (problem_.rigid) {
@@ -204,7 +210,7 @@ SolveStatistics NewtonKrylov::solve(std::span<const double> b, std::span<double>
       project(u);
       b = rows;
     }
-    const SolveStatistics statistics = krylov_->solve(b, u, options_, projection_.get());
+    const linalg::SolveStatistics statistics = krylov_->solve(b, u, options_, projection_.get());
     if (problem_.inertia.empty()) krylov_->forget_vectors();  // static: what is written next needs room
     return statistics;
   } catch (const SolveFailure& e) {

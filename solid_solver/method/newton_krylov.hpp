@@ -20,7 +20,7 @@ namespace couplet::solid {
 class NewtonKrylov final : public SolutionMethod {
  public:
   NewtonKrylov(const SolidProblem& problem, const MethodParameters& parameters);
-  SolveStatistics solve(std::span<const double> b, std::span<double> u) override;
+  linalg::SolveStatistics solve(std::span<const double> b, std::span<double> u) override;
   bool approximate_inverse(std::span<const double> r, std::span<double> z) override;
 
  private:
@@ -30,20 +30,20 @@ class NewtonKrylov final : public SolutionMethod {
   void project(std::span<double> unknowns) const;
 
   SolidProblem problem_;
-  KrylovOptions options_;
-  std::unique_ptr<ElasticKernel> between_;
-  std::unique_ptr<ElasticPreconditioner> multigrid_;
-  std::unique_ptr<CurrentRigidModes> modes_;  // of slender bodies with the symmetric operator
-  std::unique_ptr<SparseMatrix> matrix_;
-  std::unique_ptr<LinearSolver> factors_;
-  std::unique_ptr<KrylovSolver> krylov_;
+  linalg::KrylovOptions options_;
+  std::unique_ptr<elastic::ElasticKernel> between_;
+  std::unique_ptr<elastic::ElasticPreconditioner> multigrid_;
+  std::unique_ptr<elastic::CurrentRigidModes> modes_;  // of slender bodies with the symmetric operator
+  std::unique_ptr<linalg::SparseMatrix> matrix_;
+  std::unique_ptr<linalg::LinearSolver> factors_;
+  std::unique_ptr<linalg::KrylovSolver> krylov_;
 };
 
 /// A body as it lies in the reference configuration.
-DeformedBody at_rest(const Mesh& mesh);
+elastic::DeformedBody at_rest(const mesh::Mesh& mesh);
 
 /// Largest extent of a body over its mean thickness 2 V / S: a beam in the plane L/h, one of square section 2 L/h, a cube 3. Collective.
-double slenderness(const Mesh& mesh, const Geometry& geometry);
+double slenderness(const mesh::Mesh& mesh, const mesh::Geometry& geometry);
 
 /// Mean of inertia over (2 mu + lambda) |S| / (d . n) summed over the faces of a cell; static: 0. On squares with the trapezoidal
 /// rule it is one over the elastic Courant number squared. Collective.

@@ -30,7 +30,7 @@ constexpr double inertia_rules = 0.1;
 double size_squared(double volume, int dim) { return std::pow(volume, 2.0 / dim); }
 
 /// Cells with one face more than dimensions.
-bool are_simplices(const Mesh& mesh) {
+bool are_simplices(const mesh::Mesh& mesh) {
   std::vector<int> faces(mesh.cells.n_owned(), 0);
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
     if (mesh.owner[f] < mesh.cells.n_owned()) ++faces[mesh.owner[f]];
@@ -49,8 +49,9 @@ class PressureSchur::Rows {
     column_.push_back(j);
     value_.push_back(value);
   }
-  std::unique_ptr<SparseMatrix> matrix(Index n) {
-    auto result = std::make_unique<SparseMatrix>(MPI_COMM_SELF, n, std::move(row_), std::move(column_));
+  std::unique_ptr<linalg::SparseMatrix> matrix(Index n) {
+    auto result =
+        std::make_unique<linalg::SparseMatrix>(MPI_COMM_SELF, n, std::move(row_), std::move(column_));
     result->fill(value_);
     return result;
   }
@@ -61,11 +62,11 @@ class PressureSchur::Rows {
 };
 
 PressureSchur::PressureSchur(const SolidProblem& problem) {
-  const Geometry& geometry = problem.geometry();
-  const Mesh& mesh = problem.mesh;
+  const mesh::Geometry& geometry = problem.geometry();
+  const mesh::Mesh& mesh = problem.mesh;
   const Index n = mesh.cells.n_owned();
   if (n == 0) return;
-  const std::vector<double> volume = pyramid_volumes(mesh, geometry);
+  const std::vector<double> volume = elastic::pyramid_volumes(mesh, geometry);
   unit_ = problem.elastic.lame(0).mu;
   double inertia = 0, stiffness = 0;
   for (Index c = 0; c < n; ++c) {
@@ -76,18 +77,18 @@ PressureSchur::PressureSchur(const SolidProblem& problem) {
     by_faces(problem, volume);
   else
     by_gradients(problem, volume);
-  LinearOptions options;
-  options.method = mesh.dim == 2 ? LinearMethod::direct_planar : LinearMethod::cg_multigrid;
+  linalg::LinearOptions options;
+  options.method = mesh.dim == 2 ? linalg::LinearMethod::direct_planar : linalg::LinearMethod::cg_multigrid;
   options.relative_tolerance = close_enough;
-  solver_ = std::make_unique<LinearSolver>("pressure", *matrix_, options);
+  solver_ = std::make_unique<linalg::LinearSolver>("pressure", *matrix_, options);
 }
 
 void PressureSchur::by_gradients(const SolidProblem& problem, std::span<const double> volume) {
-  const Geometry& geometry = problem.geometry();
-  const Mesh& mesh = problem.mesh;
-  const ElasticOperator& rows = problem.elastic;
+  const mesh::Geometry& geometry = problem.geometry();
+  const mesh::Mesh& mesh = problem.mesh;
+  const elastic::ElasticOperator& rows = problem.elastic;
   const Index n = mesh.cells.n_owned();
-  const auto bulk = [&](Index c) { return bulk_of_cells(rows.lame(c), rows.volume_strain()); };
+  const auto bulk = [&](Index c) { return elastic::bulk_of_cells(rows.lame(c), rows.volume_strain()); };
   Rows before, wide;
   std::vector<std::vector<std::pair<Index, Vec3>>> gradient(n);  // V grad p of a cell
   for (Index c = 0; c < n; ++c) {
@@ -101,11 +102,11 @@ void PressureSchur::by_gradients(const SolidProblem& problem, std::span<const do
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
     const Index p = mesh.owner[f], q = f < mesh.n_interior ? mesh.neighbour[f] : n;
     const Vec3& area = geometry.face_area[f];
-    const FaceLine line = face_line(mesh, geometry, f);
+    const fv::FaceLine line = fv::face_line(mesh, geometry, f);
     const double k = line.area * line.inverse_dn;
-    const double elastic = elastic_of_gradients(mesh.dim) * face_lame(mesh, rows, f).mu / unit_ * k;
+    const double elastic = elastic_of_gradients(mesh.dim) * elastic::face_lame(mesh, rows, f).mu / unit_ * k;
     if (p < n && q < n) {
-      const auto [here, there] = pyramids(mesh, geometry, f);
+      const auto [here, there] = elastic::pyramids(mesh, geometry, f);
       const double a = here / (here + there), softness = 2 * unit_ / (bulk(p) + bulk(q));
       gradient[p].insert(gradient[p].end(), {{p, a * area}, {q, (1 - a) * area}});
       gradient[q].insert(gradient[q].end(), {{p, -a * area}, {q, (a - 1) * area}});
@@ -130,21 +131,22 @@ void PressureSchur::by_gradients(const SolidProblem& problem, std::span<const do
 }
 
 void PressureSchur::by_faces(const SolidProblem& problem, std::span<const double> volume) {
-  const Geometry& geometry = problem.geometry();
-  const Mesh& mesh = problem.mesh;
-  const ElasticOperator& rows = problem.elastic;
+  const mesh::Geometry& geometry = problem.geometry();
+  const mesh::Mesh& mesh = problem.mesh;
+  const elastic::ElasticOperator& rows = problem.elastic;
   const Index n = mesh.cells.n_owned();
   // Of one volume a cell on average: PETSc takes pivots to be zero by their size.
   double mean = 0;
   for (const double v : volume) mean += v / double(n);
   Rows faces;
   for (Index c = 0; c < n; ++c)
-    faces.add(c, c, volume[c] / mean * unit_ / bulk_of_cells(rows.lame(c), rows.volume_strain()));
+    faces.add(c, c, volume[c] / mean * unit_ / elastic::bulk_of_cells(rows.lame(c), rows.volume_strain()));
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
     const Index p = mesh.owner[f], q = f < mesh.n_interior ? mesh.neighbour[f] : n;
-    const auto [here, there] = pyramids(mesh, geometry, f);
+    const auto [here, there] = elastic::pyramids(mesh, geometry, f);
     const double whole = here + there;
-    double weight = whole / mean * unit_ / (elastic_of_faces(mesh.dim) * face_lame(mesh, rows, f).mu);
+    double weight =
+        whole / mean * unit_ / (elastic_of_faces(mesh.dim) * elastic::face_lame(mesh, rows, f).mu);
     if (f >= mesh.n_interior && rows.at(f).is_free()) weight *= free_face;
     const std::array<std::pair<Index, double>, 2> sides{{{p, here / whole}, {q, there / whole}}};
     for (const auto& [i, a] : sides)

@@ -31,11 +31,11 @@ class PressureSchur {
   void by_gradients(const SolidProblem& problem, std::span<const double> volume);
   void by_faces(const SolidProblem& problem, std::span<const double> volume);
 
-  double unit_ = 1;                       // [Pa]: matrices without it are near 1
-  std::vector<double> inverse_volume_;    // by_gradients alone
-  std::unique_ptr<SparseMatrix> before_;  // by_gradients alone
-  std::unique_ptr<SparseMatrix> matrix_;  // that is solved with
-  std::unique_ptr<LinearSolver> solver_;
+  double unit_ = 1;                               // [Pa]: matrices without it are near 1
+  std::vector<double> inverse_volume_;            // by_gradients alone
+  std::unique_ptr<linalg::SparseMatrix> before_;  // by_gradients alone
+  std::unique_ptr<linalg::SparseMatrix> matrix_;  // that is solved with
+  std::unique_ptr<linalg::LinearSolver> solver_;
   std::vector<double> between_;
 };
 

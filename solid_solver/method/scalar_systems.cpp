@@ -11,18 +11,19 @@ namespace {
 // Of the residual of a component in one outer iteration, as in the thesis.
 constexpr double inner_tolerance = 1e-2;
 
-double stiffness(const Mesh& mesh, const ElasticOperator& rows, Index f) {
-  const Geometry& geometry = rows.geometry();
-  const LameConstants lame = rows.lame(mesh.owner[f]);
-  const FaceLine line = face_line(mesh, geometry, f);
+double stiffness(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, Index f) {
+  const mesh::Geometry& geometry = rows.geometry();
+  const elastic::LameConstants lame = rows.lame(mesh.owner[f]);
+  const fv::FaceLine line = fv::face_line(mesh, geometry, f);
   return (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn;
 }
 
 /// What a boundary face adds on the diagonal of its cell.
-double boundary_diagonal(const Mesh& mesh, const ElasticOperator& rows, Index f, int component) {
-  const Geometry& geometry = rows.geometry();
+double boundary_diagonal(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, Index f,
+                         int component) {
+  const mesh::Geometry& geometry = rows.geometry();
   const double k = stiffness(mesh, rows, f);
-  const BoundaryRow& row = rows.at(f);
+  const elastic::BoundaryRow& row = rows.at(f);
   if (row.shared) {
     const double other = stiffness(mesh, rows, mesh.n_interior + mesh.twin[f - mesh.n_interior]);
     return k * other / (k + other);
@@ -34,12 +35,12 @@ double boundary_diagonal(const Mesh& mesh, const ElasticOperator& rows, Index f,
 
 }  // namespace
 
-Acceleration acceleration_of(const MethodParameters& parameters) {
+linalg::Acceleration acceleration_of(const MethodParameters& parameters) {
   using Choice = MethodParameters::Acceleration;
   const Choice choice = parameters.acceleration;
-  return {choice == Choice::none     ? Acceleration::Type::none
-          : choice == Choice::aitken ? Acceleration::Type::aitken
-                                     : Acceleration::Type::anderson,
+  return {choice == Choice::none     ? linalg::Acceleration::Type::none
+          : choice == Choice::aitken ? linalg::Acceleration::Type::aitken
+                                     : linalg::Acceleration::Type::anderson,
           parameters.aitken_interval, parameters.anderson_history};
 }
 
@@ -54,9 +55,10 @@ std::string segregated_name(const MethodParameters& parameters) {
   }
 }
 
-ScalarSystems::ScalarSystems(const Mesh& mesh, const ElasticOperator& rows, std::span<const double> inertia)
+ScalarSystems::ScalarSystems(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
+                             std::span<const double> inertia)
     : mesh_(mesh), rows_(rows), b_(mesh.cells.n_owned()), u_(mesh.cells.n_owned()) {
-  const Geometry& geometry = rows.geometry();
+  const mesh::Geometry& geometry = rows.geometry();
   for (int c = 0; c < mesh.dim; ++c) assemble(c, inertia);
   for (const Index f : rows.unknown_faces()) {
     double own = stiffness(mesh, rows, f);
@@ -90,12 +92,12 @@ void ScalarSystems::assemble(int component, std::span<const double> inertia) {
     value.push_back(diagonal[c]);
   }
   Component here;
-  here.matrix = std::make_unique<SparseMatrix>(mesh_.comm, n, std::move(row), std::move(column));
+  here.matrix = std::make_unique<linalg::SparseMatrix>(mesh_.comm, n, std::move(row), std::move(column));
   here.matrix->fill(value);
-  LinearOptions options;
-  options.method = LinearMethod::cg_icc;
+  linalg::LinearOptions options;
+  options.method = linalg::LinearMethod::cg_icc;
   options.relative_tolerance = inner_tolerance;
-  here.solver = std::make_unique<LinearSolver>("a displacement component", *here.matrix, options);
+  here.solver = std::make_unique<linalg::LinearSolver>("a displacement component", *here.matrix, options);
   components_.push_back(std::move(here));
 }
 
@@ -110,7 +112,7 @@ int ScalarSystems::find_step(std::span<const double> residual, std::span<double>
   }
   const auto& faces = rows_.unknown_faces();
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    const BoundaryRow& row = rows_.at(faces[i]);
+    const elastic::BoundaryRow& row = rows_.at(faces[i]);
     for (std::size_t a = 0; a < dim; ++a) {
       const double cell = step[std::size_t(mesh_.owner[faces[i]]) * dim + a];
       const double follows = 1 - row.known(Index(a), Index(a));

@@ -21,20 +21,21 @@ class ScalarSystems {
  public:
   /// `inertia` per owned cell [N/m], empty: static. Mesh (whose reference geometry counts) and rows by reference.
   /// Collective.
-  ScalarSystems(const Mesh& mesh, const ElasticOperator& rows, std::span<const double> inertia);
+  ScalarSystems(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
+                std::span<const double> inertia);
   /// The correction `step` that the systems make of a residual, both packed as the rows; gives their iterations.
   /// Collective.
   int find_step(std::span<const double> residual, std::span<double> step);
 
  private:
   struct Component {
-    std::unique_ptr<SparseMatrix> matrix;
-    std::unique_ptr<LinearSolver> solver;
+    std::unique_ptr<linalg::SparseMatrix> matrix;
+    std::unique_ptr<linalg::LinearSolver> solver;
   };
   void assemble(int component, std::span<const double> inertia);
 
-  const Mesh& mesh_;
-  const ElasticOperator& rows_;
+  const mesh::Mesh& mesh_;
+  const elastic::ElasticOperator& rows_;
   std::vector<Component> components_;
   std::vector<double> own_;  // coefficient of each unknown of a face in its row
   std::vector<double> b_, u_;
@@ -43,6 +44,6 @@ class ScalarSystems {
 /// "segregated (Aitken every 5 iterations)"
 std::string segregated_name(const MethodParameters& parameters);
 /// What helps the outer iterations on.
-Acceleration acceleration_of(const MethodParameters& parameters);
+linalg::Acceleration acceleration_of(const MethodParameters& parameters);
 
 }  // namespace couplet::solid

@@ -24,9 +24,9 @@ double Segregated::find_residual(std::span<const double> b, std::span<const doub
   return norm(problem_.mesh.comm, residual_);
 }
 
-SolveStatistics Segregated::solve(std::span<const double> b, std::span<double> u) {
+linalg::SolveStatistics Segregated::solve(std::span<const double> b, std::span<double> u) {
   const auto start = std::chrono::steady_clock::now();
-  SolveStatistics statistics;
+  linalg::SolveStatistics statistics;
   const double wanted = tolerance_ * norm(problem_.mesh.comm, b);
   accelerator_.restart();
   statistics.residual = find_residual(b, u);

@@ -15,7 +15,7 @@ namespace couplet::solid {
 class Segregated final : public SolutionMethod {
  public:
   Segregated(const SolidProblem& problem, const MethodParameters& parameters);
-  SolveStatistics solve(std::span<const double> b, std::span<double> u) override;
+  linalg::SolveStatistics solve(std::span<const double> b, std::span<double> u) override;
 
  private:
   double find_residual(std::span<const double> b, std::span<const double> u);
@@ -24,7 +24,7 @@ class Segregated final : public SolutionMethod {
   double tolerance_;
   int max_iterations_;
   ScalarSystems systems_;
-  Accelerator accelerator_;
+  linalg::Accelerator accelerator_;
   std::vector<double> residual_, step_;
 };
 

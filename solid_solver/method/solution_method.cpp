@@ -39,10 +39,10 @@ bool wants_mixed_form(const SolidProblem& problem) {
   if (!problem.elastic.volume_by_cells() || problem.rigid) return false;
   double ratio = 0;
   for (Index c = 0; c < problem.mesh.cells.n_owned(); ++c) {
-    const LameConstants lame = problem.elastic.lame(c);
-    ratio = std::max(ratio, bulk_modulus(lame) / lame.mu);
+    const elastic::LameConstants lame = problem.elastic.lame(c);
+    ratio = std::max(ratio, elastic::bulk_modulus(lame) / lame.mu);
   }
-  return max(problem.mesh.comm, ratio) >= bulk_of_mixed_form;
+  return parallel::max(problem.mesh.comm, ratio) >= bulk_of_mixed_form;
 }
 
 /// The mixed form has pressures where the volume strain is that of cells.
@@ -64,7 +64,7 @@ bool is_easy(const SolidProblem& problem) {
 
 /// Of the symmetric gradient's matrix.
 bool factors_pay(const SolidProblem& problem, bool easy, bool small) {
-  if (any(problem.mesh.comm, !problem.mesh.cell_material.empty()))
+  if (parallel::any(problem.mesh.comm, !problem.mesh.cell_material.empty()))
     return small;  // stiffnesses may be far apart
   const GlobalIndex cells = problem.mesh.cells.n_global();
   if (problem.mesh.dim == 3) return cells <= wide_factors_3d;
@@ -160,27 +160,29 @@ std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem
   return method;
 }
 
-FaceGradientScheme face_gradient_scheme(const SolidParameters& parameters) {
+elastic::FaceGradientScheme face_gradient_scheme(const SolidParameters& parameters) {
   using FaceGradient = MethodParameters::FaceGradient;
-  if (is_updated_lagrangian(parameters)) return FaceGradientScheme::thesis;
-  if (has_finite_strain(parameters) || has_orthotropic(parameters)) return FaceGradientScheme::symmetric;
+  if (is_updated_lagrangian(parameters)) return elastic::FaceGradientScheme::thesis;
+  if (has_finite_strain(parameters) || has_orthotropic(parameters))
+    return elastic::FaceGradientScheme::symmetric;
   switch (parameters.method.face_gradient) {
     case FaceGradient::symmetric:
-      return FaceGradientScheme::symmetric;
+      return elastic::FaceGradientScheme::symmetric;
     case FaceGradient::corrected:
-      return FaceGradientScheme::corrected;
+      return elastic::FaceGradientScheme::corrected;
     case FaceGradient::thesis:
-      return FaceGradientScheme::thesis;
+      return elastic::FaceGradientScheme::thesis;
     default:
       break;
   }
-  return symmetric_suits(parameters) ? FaceGradientScheme::symmetric : FaceGradientScheme::thesis;
+  return symmetric_suits(parameters) ? elastic::FaceGradientScheme::symmetric
+                                     : elastic::FaceGradientScheme::thesis;
 }
 
 double norm(MPI_Comm comm, std::span<const double> values) {
   double square = 0;
   for (const double x : values) square += x * x;
-  return std::sqrt(sum(comm, square));
+  return std::sqrt(parallel::sum(comm, square));
 }
 
 }  // namespace couplet::solid

@@ -37,8 +37,9 @@ Tensor3 rotation_of(const Tensor3& f) {
 
 }  // namespace
 
-TangentSolver::TangentSolver(const Mesh& mesh, const ElasticOperator& rows, FiniteKernel& kernel,
-                             double mass_factor, std::span<const double> node_inertia, By by)
+TangentSolver::TangentSolver(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
+                             elastic::FiniteKernel& kernel, double mass_factor,
+                             std::span<const double> node_inertia, By by)
     : mesh_(mesh),
       geometry_(rows.geometry()),
       rows_(rows),
@@ -48,22 +49,23 @@ TangentSolver::TangentSolver(const Mesh& mesh, const ElasticOperator& rows, Fini
       by_(by) {
   const std::size_t n = rows.n_unknowns();
   if (by == By::frames) {
-    ElasticPreconditioner::Options options;
-    options.scheme = FaceGradientScheme::symmetric;
+    elastic::ElasticPreconditioner::Options options;
+    options.scheme = elastic::FaceGradientScheme::symmetric;
     options.node_inertia = node_inertia;
-    compact_ = std::make_unique<ElasticPreconditioner>(mesh, rows, std::span<const double>{}, options);
+    compact_ =
+        std::make_unique<elastic::ElasticPreconditioner>(mesh, rows, std::span<const double>{}, options);
     const GlobalIndex cells = mesh.cells.n_global();
     if (cells >= small_body) {
       const GlobalIndex aggregates =
           std::clamp<GlobalIndex>(cells / cells_of_tangent_aggregate, 8, most_tangent_aggregates);
-      modes_ =
-          std::make_unique<CurrentRigidModes>(mesh, rows, static_cast<int>(aggregates),
-                                              std::vector<double>(node_inertia.begin(), node_inertia.end()));
+      modes_ = std::make_unique<elastic::CurrentRigidModes>(
+          mesh, rows, static_cast<int>(aggregates),
+          std::vector<double>(node_inertia.begin(), node_inertia.end()));
     }
     turned_.resize(n);
     correction_.resize(n);
   }
-  krylov_ = std::make_unique<KrylovSolver>(
+  krylov_ = std::make_unique<linalg::KrylovSolver>(
       "displacement", mesh.comm, n,
       [this](std::span<const double> x, std::span<double> y) {
         kernel_.apply_tangent(x, {}, mass_factor_, y);
@@ -78,7 +80,7 @@ void TangentSolver::find_frames(std::span<const Tensor3> gradient) {
   std::vector<double> weight(n, 0);
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
     if (mesh_.owner[f] >= n) continue;  // another rank's, which knows its F
-    const auto [here, there] = pyramids(mesh_, geometry_, f);
+    const auto [here, there] = elastic::pyramids(mesh_, geometry_, f);
     mean[mesh_.owner[f]] += here * gradient[f];
     weight[mesh_.owner[f]] += here;
     if (f < mesh_.n_interior && mesh_.neighbour[f] < n) {
@@ -93,9 +95,9 @@ void TangentSolver::find_frames(std::span<const Tensor3> gradient) {
 }
 
 void TangentSolver::follow(bool with_modes) {
-  is_unsymmetric_ = any(mesh_.comm, kernel_.has_pressure());
+  is_unsymmetric_ = parallel::any(mesh_.comm, kernel_.has_pressure());
   if (by_ == By::factors) return make_factors();
-  DeformedBody body;
+  elastic::DeformedBody body;
   body.gradient.assign(mesh_.n_flux_faces(), Tensor3::Identity());
   kernel_.visit([&](Index f, const Tensor3& deformation, const Tensor3&) { body.gradient[f] = deformation; });
   find_frames(body.gradient);
@@ -109,11 +111,12 @@ void TangentSolver::follow(bool with_modes) {
 void TangentSolver::make_factors() {
   is_fresh_ = !(factors_ && iterations_ <= most_with_old_factors);
   if (!is_fresh_) return;
-  LinearOptions options;
-  options.method = LinearMethod::direct;
+  linalg::LinearOptions options;
+  options.method = linalg::LinearMethod::direct;
   factors_.reset();
-  matrix_ = std::make_unique<SparseMatrix>(finite_matrix(mesh_, rows_, kernel_, node_inertia_));
-  factors_ = std::make_unique<LinearSolver>("displacement", *matrix_, options);
+  matrix_ =
+      std::make_unique<linalg::SparseMatrix>(elastic::finite_matrix(mesh_, rows_, kernel_, node_inertia_));
+  factors_ = std::make_unique<linalg::LinearSolver>("displacement", *matrix_, options);
 }
 
 void TangentSolver::turn(std::span<const double> from, bool back, std::span<double> to) const {
@@ -138,13 +141,13 @@ void TangentSolver::precondition(std::span<const double> r, std::span<double> z)
   if (modes_) modes_->add_correction(r, z);
 }
 
-SolveStatistics TangentSolver::solve(std::span<const double> r, std::span<double> du,
-                                     double relative_tolerance, int max_iterations) {
+linalg::SolveStatistics TangentSolver::solve(std::span<const double> r, std::span<double> du,
+                                             double relative_tolerance, int max_iterations) {
   std::ranges::fill(du, 0.0);
-  KrylovOptions options{relative_tolerance, max_iterations, !is_unsymmetric_};
+  linalg::KrylovOptions options{relative_tolerance, max_iterations, !is_unsymmetric_};
   if (factors_ && !is_fresh_) {
     // Those of an earlier correction, for as long as they are cheap.
-    KrylovOptions few = options;
+    linalg::KrylovOptions few = options;
     few.max_iterations = std::min(max_iterations, most_before_new_factors);
     try {
       return counted(r, du, few);
@@ -172,8 +175,8 @@ SolveStatistics TangentSolver::solve(std::span<const double> r, std::span<double
 }
 
 /// Factors of this tangent alone: none is left for another, whatever comes of it.
-SolveStatistics TangentSolver::solve_by_own_factors(std::span<const double> r, std::span<double> du,
-                                                    const KrylovOptions& options) {
+linalg::SolveStatistics TangentSolver::solve_by_own_factors(std::span<const double> r, std::span<double> du,
+                                                            const linalg::KrylovOptions& options) {
   const auto forget = [this] {
     factors_.reset();
     matrix_.reset();
@@ -181,7 +184,7 @@ SolveStatistics TangentSolver::solve_by_own_factors(std::span<const double> r, s
   std::ranges::fill(du, 0.0);
   try {
     make_factors();
-    const SolveStatistics statistics = counted(r, du, options);
+    const linalg::SolveStatistics statistics = counted(r, du, options);
     forget();
     return statistics;
   } catch (...) {
@@ -190,9 +193,9 @@ SolveStatistics TangentSolver::solve_by_own_factors(std::span<const double> r, s
   }
 }
 
-SolveStatistics TangentSolver::counted(std::span<const double> r, std::span<double> du,
-                                       const KrylovOptions& options) {
-  const SolveStatistics statistics = krylov_->solve(r, du, options);
+linalg::SolveStatistics TangentSolver::counted(std::span<const double> r, std::span<double> du,
+                                               const linalg::KrylovOptions& options) {
+  const linalg::SolveStatistics statistics = krylov_->solve(r, du, options);
   iterations_ = statistics.iterations;
   return statistics;
 }

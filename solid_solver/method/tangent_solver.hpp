@@ -23,8 +23,8 @@ class TangentSolver {
   enum class By { frames, factors };
   /// `node_inertia`: mass factor times mass of the unknown nodes [N/m]; empty: static. All by reference.
   /// Collective.
-  TangentSolver(const Mesh& mesh, const ElasticOperator& rows, FiniteKernel& kernel, double mass_factor,
-                std::span<const double> node_inertia, By by);
+  TangentSolver(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, elastic::FiniteKernel& kernel,
+                double mass_factor, std::span<const double> node_inertia, By by);
 
   double mass_factor() const { return mass_factor_; }
   /// A new load or step: factors of an earlier one are not used again, so that a run that continues takes the same way.
@@ -33,36 +33,37 @@ class TangentSolver {
   /// linearise() of the kernel. Collective.
   void follow(bool with_modes);
   /// du holds the correction. Throws SolveFailure. Collective.
-  SolveStatistics solve(std::span<const double> r, std::span<double> du, double relative_tolerance,
-                        int max_iterations);
+  linalg::SolveStatistics solve(std::span<const double> r, std::span<double> du, double relative_tolerance,
+                                int max_iterations);
   /// z near K^-1 r, after follow().
   void precondition(std::span<const double> r, std::span<double> z);
 
  private:
-  SolveStatistics solve_by_own_factors(std::span<const double> r, std::span<double> du,
-                                       const KrylovOptions& options);
-  SolveStatistics counted(std::span<const double> r, std::span<double> du, const KrylovOptions& options);
+  linalg::SolveStatistics solve_by_own_factors(std::span<const double> r, std::span<double> du,
+                                               const linalg::KrylovOptions& options);
+  linalg::SolveStatistics counted(std::span<const double> r, std::span<double> du,
+                                  const linalg::KrylovOptions& options);
   void make_factors();
   void find_frames(std::span<const Tensor3> gradient);
   void turn(std::span<const double> from, bool back, std::span<double> to) const;
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
-  const ElasticOperator& rows_;
-  FiniteKernel& kernel_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
+  const elastic::ElasticOperator& rows_;
+  elastic::FiniteKernel& kernel_;
   double mass_factor_;
   std::span<const double> node_inertia_;
   By by_;
-  bool is_unsymmetric_ = false;           // a pressure follows the surface
-  std::unique_ptr<SparseMatrix> matrix_;  // of factors
-  std::unique_ptr<LinearSolver> factors_;
+  bool is_unsymmetric_ = false;                   // a pressure follows the surface
+  std::unique_ptr<linalg::SparseMatrix> matrix_;  // of factors
+  std::unique_ptr<linalg::LinearSolver> factors_;
   bool is_fresh_ = false;  // they are those of the last linearise()
   int iterations_ = 0;     // of the last solution
-  std::unique_ptr<ElasticPreconditioner> compact_;
-  std::unique_ptr<CurrentRigidModes> modes_;  // null: the body is small
-  std::vector<Tensor3> frame_;                // of the unknown nodes
+  std::unique_ptr<elastic::ElasticPreconditioner> compact_;
+  std::unique_ptr<elastic::CurrentRigidModes> modes_;  // null: the body is small
+  std::vector<Tensor3> frame_;                         // of the unknown nodes
   std::vector<double> turned_, correction_;
-  std::unique_ptr<KrylovSolver> krylov_;
+  std::unique_ptr<linalg::KrylovSolver> krylov_;
 };
 
 }  // namespace couplet::solid

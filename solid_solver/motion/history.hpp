@@ -20,7 +20,7 @@ class History {
                               : (of_faces ? start.face_u : start.cell_u)),
         v_old_(&now == &start ? (of_faces ? now.face_v_old : now.cell_v_old)
                               : (of_faces ? start.face_v : start.cell_v)) {}
-  double operator()(const Levels& l, std::size_t i, double x = 0) const {
+  double operator()(const time::Levels& l, std::size_t i, double x = 0) const {
     double value = l.x * x + l.u * u_[i] + l.v * v_[i];
     if (!a_.empty()) value += l.a * a_[i];
     if (!u_old_.empty()) value += l.u_old * u_old_[i] + l.v_old * v_old_[i];

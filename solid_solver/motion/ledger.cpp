@@ -17,7 +17,7 @@ struct Placed {
 
 /// The displacement w of a solve, from the packed unknowns. Collective.
 Placed place_unknowns(const SolidBody& body, const StageWork& work, std::span<const double> unknowns) {
-  const Mesh& mesh = body.mesh();
+  const mesh::Mesh& mesh = body.mesh();
   const int dim = mesh.dim;
   const std::size_t n_cells = std::size_t(mesh.cells.n_owned()) * dim;
   Placed placed;
@@ -59,13 +59,13 @@ double SolidLedger::stress_work(const BodyField& stressed, const BodyField& chan
     if (owner >= n_owned) continue;  // another rank's
     const Vec3& area = geometry_.face_area[f];
     Vec3 force = elastic_.stress(owner, gradients[f]) * area;
-    const Vec3 here = vector_at(change.cells, owner, dim);
+    const Vec3 here = elastic::vector_at(change.cells, owner, dim);
     if (f < mesh_.n_interior) {
-      work += force.dot(vector_at(change.cells, mesh_.neighbour[f], dim) - here);
+      work += force.dot(elastic::vector_at(change.cells, mesh_.neighbour[f], dim) - here);
     } else if (elastic_.mirrored(f)) {
       work -= area.dot(force) * area.dot(here) / area.squaredNorm();
     } else {
-      const Vec3 there = vector_at(change.faces, f - mesh_.n_interior, dim);
+      const Vec3 there = elastic::vector_at(change.faces, f - mesh_.n_interior, dim);
       work += force.dot(there - here);
       outside += force.dot(there);
     }
@@ -86,11 +86,12 @@ double SolidLedger::kinetic(const SolidState& state, std::span<const double> kno
   const int dim = mesh_.dim;
   if (body_.has_mass()) {
     const std::vector<double> rates = body_.unknowns_of(state.cell_v, state.face_v);
-    return 0.5 * kernel_.product(ElasticPart::mass, {rates, known_rate}, {rates, known_rate});
+    return 0.5 * kernel_.product(elastic::ElasticPart::mass, {rates, known_rate}, {rates, known_rate});
   }
   double energy = 0;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
-    energy += 0.5 * body_.density(c) * geometry_.volume[c] * vector_at(state.cell_v, c, dim).squaredNorm();
+    energy +=
+        0.5 * body_.density(c) * geometry_.volume[c] * elastic::vector_at(state.cell_v, c, dim).squaredNorm();
   return energy;
 }
 
@@ -138,8 +139,8 @@ void SolidLedger::add_face_work(const SolvedStage& stage) const {
   SolidEnergies& energies = after.energies;
   energies.internal_work += inside - loss;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
-    loss +=
-        damping.mass / dt * body_.density(c) * geometry_.volume[c] * vector_at(cells, c, dim).squaredNorm();
+    loss += damping.mass / dt * body_.density(c) * geometry_.volume[c] *
+            elastic::vector_at(cells, c, dim).squaredNorm();
   energies.damping_loss += loss;
   energies.external_work += outside;
   energies.kinetic = kinetic(after);
@@ -156,19 +157,19 @@ std::vector<double> SolidLedger::change_over(const SolvedStage& stage) const {
 void SolidLedger::add_symmetric_work(const SolvedStage& stage) const {
   const auto& [work, last, before, after] = stage;
   const std::vector<double> change = change_over(stage);
-  const ElasticField w{last.unknowns, work.known}, moved{change, work.known_change};
+  const elastic::ElasticField w{last.unknowns, work.known}, moved{change, work.known_change};
   const std::vector<double> loads = mean_of_ends(work, last.load_rows);
-  double outside = -kernel_.product(ElasticPart::springs, w, moved);
+  double outside = -kernel_.product(elastic::ElasticPart::springs, w, moved);
   for (std::size_t i = 0; i < change.size(); ++i) outside += loads[i] * change[i];
   if (!body_.prescribed().is_zero()) outside += known_work(stage);
   const SolidDamping damping = parameters_.damping.value_or(SolidDamping{});
   double loss = damping.stiffness > 0 ? damping.stiffness / work.stage.dt *
-                                            kernel_.product(ElasticPart::stiffness, moved, moved)
+                                            kernel_.product(elastic::ElasticPart::stiffness, moved, moved)
                                       : 0;
   SolidEnergies& energies = after.energies;
-  energies.internal_work += kernel_.product(ElasticPart::stiffness, w, moved) - loss;
+  energies.internal_work += kernel_.product(elastic::ElasticPart::stiffness, w, moved) - loss;
   if (damping.mass > 0)
-    loss += damping.mass / work.stage.dt * kernel_.product(ElasticPart::mass, moved, moved);
+    loss += damping.mass / work.stage.dt * kernel_.product(elastic::ElasticPart::mass, moved, moved);
   energies.damping_loss += loss;
   energies.external_work += outside;
   energies.kinetic = kinetic(after);
@@ -188,8 +189,9 @@ void SolidLedger::add_finite_work(const SolvedStage& stage) const {
   SolidEnergies& energies = after.energies;
   const SolidDamping damping = parameters_.damping.value_or(SolidDamping{});
   if (damping.mass > 0) {
-    const ElasticField moved{change, work.known_change};
-    energies.damping_loss += damping.mass / work.stage.dt * kernel_.product(ElasticPart::mass, moved, moved);
+    const elastic::ElasticField moved{change, work.known_change};
+    energies.damping_loss +=
+        damping.mass / work.stage.dt * kernel_.product(elastic::ElasticPart::mass, moved, moved);
   }
   energies.internal_work += inside;
   energies.external_work += outside;
@@ -201,7 +203,7 @@ void SolidLedger::add_finite_work(const SolvedStage& stage) const {
 std::vector<double> SolidLedger::mean_of_ends(const StageWork& work,
                                               const std::vector<double>& at_place) const {
   std::vector<double> rows = at_place;
-  if (parameters_.time_scheme.type == TimeScheme::trapezoidal) return rows;
+  if (parameters_.time_scheme.type == time::TimeScheme::trapezoidal) return rows;
   const auto rows_at = [&](double t) {
     std::vector<double> at_time(elastic_.n_unknowns(), 0);
     const std::vector<double> body = body_.body_forces(t);
@@ -224,9 +226,9 @@ double SolidLedger::known_work(const SolvedStage& stage) const {
   const auto& [work, last, before, trial] = stage;
   const double dt = work.stage.dt;
   const std::vector<double> still(last.unknowns.size(), 0);
-  const ElasticField w{last.unknowns, work.known}, known{still, work.known_change};
-  double sum =
-      kernel_.product(ElasticPart::stiffness, w, known) + kernel_.product(ElasticPart::springs, w, known);
+  const elastic::ElasticField w{last.unknowns, work.known}, known{still, work.known_change};
+  double sum = kernel_.product(elastic::ElasticPart::stiffness, w, known) +
+               kernel_.product(elastic::ElasticPart::springs, w, known);
   if (!body_.prescribed().uses_time()) return sum;  // not by the size: a rank may hold nothing
   // The mean over the stage, which the trapezoidal rule has at its place.
   const std::vector<double> after = body_.unknowns_of(trial.cell_v, trial.face_v);
@@ -239,9 +241,10 @@ double SolidLedger::known_work(const SolvedStage& stage) const {
   std::vector<double> way(before.known_rate.size());  // whose rate at the start of the run nobody has set
   body_.prescribed().evaluate_rate(start, dt, way);
   for (std::size_t i = 0; i < way.size(); ++i) way[i] = 0.5 * dt * (way[i] + trial.known_rate[i]);
-  sum += kernel_.product(ElasticPart::mass, {rate, body_.known_acceleration(start, dt)}, {still, way});
+  sum +=
+      kernel_.product(elastic::ElasticPart::mass, {rate, body_.known_acceleration(start, dt)}, {still, way});
   if (parameters_.damping && parameters_.damping->mass > 0)
-    sum += parameters_.damping->mass * kernel_.product(ElasticPart::mass,
+    sum += parameters_.damping->mass * kernel_.product(elastic::ElasticPart::mass,
                                                        {velocity, body_.known_velocity(start, dt)},
                                                        {still, work.known_change});
   return sum;
@@ -277,7 +280,7 @@ void SolidLedger::add_load_work(const StageWork& work, const LastSolve& last, co
 
 SolidEnergies SolidLedger::total(const SolidState& state, std::span<const double> points) const {
   SolidEnergies e = state.energies;
-  e.conserving = parameters_.time_scheme.type == TimeScheme::trapezoidal;
+  e.conserving = parameters_.time_scheme.type == time::TimeScheme::trapezoidal;
   if (kernel_.is_symmetric()) {
     e = summed(e);
     e.strain = body_.equilibrium().energy(body_.unknowns_of(state.cell_u, state.face_u), state.known);
@@ -291,7 +294,7 @@ SolidEnergies SolidLedger::total(const SolidState& state, std::span<const double
 SolidEnergies SolidLedger::summed(SolidEnergies e) const {
   for (double* part :
        {&e.kinetic, &e.initial_kinetic, &e.strain, &e.internal_work, &e.external_work, &e.damping_loss})
-    *part = sum(mesh_.comm, *part);
+    *part = parallel::sum(mesh_.comm, *part);
   return e;
 }
 

@@ -50,11 +50,11 @@ class SolidLedger final {
   SolidEnergies summed(SolidEnergies local) const;
 
   const SolidBody& body_;
-  const Mesh& mesh_;
-  const Geometry& geometry_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
   const SolidParameters& parameters_;
-  const ElasticOperator& elastic_;
-  const ElasticKernel& kernel_;
+  const elastic::ElasticOperator& elastic_;
+  const elastic::ElasticKernel& kernel_;
 };
 
 }  // namespace couplet::solid

@@ -55,8 +55,8 @@ void visit_scalars(State& s, bool controls_step, Visit visit) {
 
 }  // namespace
 
-void SolidStepper::save_state(CheckpointWriter& file) const {
-  write_numbering(file, mesh_);
+void SolidStepper::save_state(io::CheckpointWriter& file) const {
+  io::write_numbering(file, mesh_);
   visit_arrays(state_, body_.has_mass(),
                [&](const char* name, const auto& values) { file.write(name, values); });
   visit_scalars(state_, parameters_.step_control.has_value(),
@@ -71,8 +71,8 @@ void SolidStepper::save_state(CheckpointWriter& file) const {
   body_.equilibrium().save(file);
 }
 
-void SolidStepper::load_state(CheckpointReader& file) {
-  check_numbering(file, mesh_);
+void SolidStepper::load_state(io::CheckpointReader& file) {
+  io::check_numbering(file, mesh_);
   visit_arrays(state_, body_.has_mass(), [&](const char* name, auto& values) { file.read(name, values); });
   visit_scalars(state_, parameters_.step_control.has_value(), [&](const char* name, auto& value) {
     value = static_cast<std::remove_reference_t<decltype(value)>>(file.read_scalar(name));
@@ -91,10 +91,10 @@ void SolidStepper::load_state(CheckpointReader& file) {
   body_.equilibrium().load(file, body_.unknowns_of(state_.cell_u, state_.face_u), state_.known);
 }
 
-void SolidStepper::save_guesses(CheckpointWriter& file) const {
+void SolidStepper::save_guesses(io::CheckpointWriter& file) const {
   std::vector<double> factors;
   for (const auto& system : systems_) {
-    const ResidualProjection* projection = system->projection();
+    const linalg::ResidualProjection* projection = system->projection();
     if (!projection || projection->is_empty()) continue;  // made for a step that was not accepted
     file.write(fmt::format("projection-{}", factors.size()), projection->values());
     factors.push_back(system->mass_factor);
@@ -104,7 +104,7 @@ void SolidStepper::save_guesses(CheckpointWriter& file) const {
     file.write_scalar(fmt::format("projection-{}-mass-factor", i), factors[i]);
 }
 
-void SolidStepper::load_guesses(CheckpointReader& file) {
+void SolidStepper::load_guesses(io::CheckpointReader& file) {
   apply_stiffness();
   for (std::size_t i = file.read_count("projections", 1000); i-- > 0;) {
     SolidSystem& system = system_for(file.read_scalar(fmt::format("projection-{}-mass-factor", i)));
@@ -115,7 +115,7 @@ void SolidStepper::load_guesses(CheckpointReader& file) {
       problem.apply(x, y);
       if (problem.rigid) problem.rigid->project(y);  // as the solves that kept them did
     };
-    if (ResidualProjection* projection = system.projection())
+    if (linalg::ResidualProjection* projection = system.projection())
       projection->set_values(file.read(fmt::format("projection-{}", i)), apply);
   }
 }

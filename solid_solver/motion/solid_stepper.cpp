@@ -32,8 +32,9 @@ void SolidStepper::start_from_rest() {
   state_.known.assign(body_.prescribed().size() * dim, 0);
   state_.known_rate = state_.known;
   last_.unknowns.assign(elastic_.n_unknowns(), 0);
-  if (body_.is_dynamic() && uses_acceleration(parameters_.time_scheme.type)) state_.cell_a = state_.cell_u;
-  if (body_.is_dynamic() && (uses_old_level(parameters_.time_scheme.type) ||
+  if (body_.is_dynamic() && time::uses_acceleration(parameters_.time_scheme.type))
+    state_.cell_a = state_.cell_u;
+  if (body_.is_dynamic() && (time::uses_old_level(parameters_.time_scheme.type) ||
                              parameters_.method.predictor == MethodParameters::Predictor::adams))
     state_.cell_u_old = state_.cell_v_old = state_.cell_u;
   if (body_.has_mass() && !state_.cell_a.empty()) state_.face_a = state_.face_u;
@@ -43,7 +44,7 @@ void SolidStepper::start_from_rest() {
     state_.face_acceleration = state_.face_u;
   }
   if (!parameters_.initial_velocity.empty()) {
-    const auto velocity = make_expressions(parameters_.initial_velocity, dim, "initial-velocity");
+    const auto velocity = fv::make_expressions(parameters_.initial_velocity, dim, "initial-velocity");
     const std::span<const Vec3> faces(geometry_.face_centre.data() + mesh_.n_interior,
                                       mesh_.boundary.n_local());
     for (int c = 0; c < dim; ++c) {
@@ -72,7 +73,7 @@ void SolidStepper::apply_stiffness() {
   for (const auto& effect : body_.effects()) effect->stiffness_changed();
 }
 
-void SolidStepper::begin_step(const Step& step, bool has_loads) {
+void SolidStepper::begin_step(const coupling::Step& step, bool has_loads) {
   step_ = step;
   effort_ = {};
   if (!(step.dt > 0)) throw Error("The solid received a step of {} s; it must be above 0.", step.dt);
@@ -89,7 +90,7 @@ void SolidStepper::begin_step(const Step& step, bool has_loads) {
 }
 
 void SolidStepper::prepare_loads() {
-  const std::vector<Stage> stages = stages_of(step_.dt);
+  const std::vector<time::Stage> stages = stages_of(step_.dt);
   stages_.resize(stages.size());
   for (const auto& effect : body_.effects()) effect->begin_step(step_);
   apply_stiffness();
@@ -105,7 +106,9 @@ void SolidStepper::solve(std::vector<double> interface_load) {
     for (std::size_t i = 0; i < stages_.size(); ++i) solve_stage(stages_[i], i == 0);
   } catch (const SolveFailure& failure) {
     // Linear equations: a shorter step meets the same ones.
-    if (body_.is_dynamic() || !body_.equilibrium().is_linear() || step_.scheme != Scheme::standalone) throw;
+    if (body_.is_dynamic() || !body_.equilibrium().is_linear() ||
+        step_.scheme != coupling::Scheme::standalone)
+      throw;
     throw SchemeFailure("The static step failed, and a shorter step would solve the same equations: {}",
                         failure.what());
   }
@@ -137,7 +140,7 @@ void SolidStepper::update_trial_ghosts() {
 void SolidStepper::accept_step() {
   for (const auto& effect : body_.effects()) effect->accept_step();
   for (const StageWork& work : stages_)
-    if (ResidualProjection* projection = work.system->projection()) projection->accept();
+    if (linalg::ResidualProjection* projection = work.system->projection()) projection->accept();
   body_.equilibrium().accept();
   std::swap(state_, trial_);
 }

@@ -41,7 +41,7 @@ class SolidStepper final {
   double suggest_dt() const;
 
   /// A step is tried; its loads are those at hand if `has_loads`, else prepare_loads() follows before solve().
-  void begin_step(const Step& step, bool has_loads);
+  void begin_step(const coupling::Step& step, bool has_loads);
   /// Effects, systems and right-hand sides of the stages. Collective.
   void prepare_loads();
   /// `interface_load`: forces, `dim` values a boundary face of owned cells; empty: none. Throws SolveFailure.
@@ -51,17 +51,17 @@ class SolidStepper final {
   /// After it: at the end of a static run nothing is solved any more.
   void release_solver();
 
-  void save_state(CheckpointWriter& file) const;
-  void load_state(CheckpointReader& file);
+  void save_state(io::CheckpointWriter& file) const;
+  void load_state(io::CheckpointReader& file);
   /// First guesses decide what is left below the tolerance: a run that continues makes the same ones. Loading
   /// comes after that of the effects.
-  void save_guesses(CheckpointWriter& file) const;
-  void load_guesses(CheckpointReader& file);
+  void save_guesses(io::CheckpointWriter& file) const;
+  void load_guesses(io::CheckpointReader& file);
 
  private:
   void start_from_rest();
   void apply_stiffness();
-  std::vector<Stage> stages_of(double dt) const;
+  std::vector<time::Stage> stages_of(double dt) const;
   SolidSystem& system_for(double mass_factor);
   SolidProblem problem_of(const SolidSystem& system) const;
   void announce(const SolidSystem& system);
@@ -69,30 +69,30 @@ class SolidStepper final {
   void subtract_prescribed(StageWork& work);
   void add_body_forces(double t, std::span<double> rhs);
   void solve_stage(const StageWork& work, bool first);
-  SolveStatistics find_equilibrium(const StageWork& work);
+  linalg::SolveStatistics find_equilibrium(const StageWork& work);
   void add_inertia(const StageWork& work, const SolidState& now);
-  void add_kernel_inertia(const StageWork& work, const SolidState& now, const Levels& known);
+  void add_kernel_inertia(const StageWork& work, const SolidState& now, const time::Levels& known);
   void add_face_forces(const StageWork& work);
   void guess(const StageWork& work, const SolidState& now);
   void finish_cells(const StageWork& work, const SolidState& now);
   void finish_faces(const StageWork& work, const SolidState& now);
-  void finish_offsets(const Stage& stage, const SolidState& now);
+  void finish_offsets(const time::Stage& stage, const SolidState& now);
   void finish_acceleration();
   void update_trial_ghosts();
   void judge_step();
 
   SolidBody& body_;
-  const Mesh& mesh_;
-  const Geometry& geometry_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
   const SolidParameters& parameters_;
-  const ElasticOperator& elastic_;
-  const ElasticKernel& kernel_;
+  const elastic::ElasticOperator& elastic_;
+  const elastic::ElasticKernel& kernel_;
   const SolidLedger ledger_;
   std::vector<std::unique_ptr<SolidSystem>> systems_;  // those used last, latest first
   std::vector<StageWork> stages_;                      // of the step under way
   std::string method_announced_;                       // what the log said last
   SolidState state_, trial_;
-  Step step_;
+  coupling::Step step_;
   SolverEffort effort_;
   LastSolve last_;
 };

@@ -17,10 +17,11 @@ constexpr std::size_t systems_kept = 2;
 
 }  // namespace
 
-std::vector<Stage> SolidStepper::stages_of(double dt) const {
-  if (body_.is_dynamic()) return second_order_stages(parameters_.time_scheme, dt, {state_.steps, state_.dt});
+std::vector<time::Stage> SolidStepper::stages_of(double dt) const {
+  if (body_.is_dynamic())
+    return time::second_order_stages(parameters_.time_scheme, dt, {state_.steps, state_.dt});
   // No inertia, no damping; velocities are differences.
-  Stage still{.dt = dt};
+  time::Stage still{.dt = dt};
   still.end_value.x = 1;
   still.end_rate.x = 1 / dt;
   still.end_rate.u = -1 / dt;
@@ -65,7 +66,7 @@ void SolidStepper::announce(const SolidSystem& system) {
 }
 
 void SolidStepper::prepare_stage(StageWork& work) {
-  const Stage& stage = work.stage;
+  const time::Stage& stage = work.stage;
   const SolidDamping damping = parameters_.damping.value_or(SolidDamping{});
   work.start_time = step_.time + stage.start;
   work.place_time = work.start_time + stage.place * stage.dt;
@@ -130,7 +131,7 @@ void SolidStepper::solve_stage(const StageWork& work, bool first) {
   guess(work, now);
   {
     const log::ScopedTimer timer(log::timers(), "solid: linear solver");
-    const SolveStatistics statistics = find_equilibrium(work);
+    const linalg::SolveStatistics statistics = find_equilibrium(work);
     effort_ = {effort_.solves + 1, effort_.iterations + statistics.iterations,
                effort_.inner_iterations + statistics.inner_iterations, statistics.residual};
   }
@@ -154,7 +155,7 @@ void SolidStepper::solve_stage(const StageWork& work, bool first) {
 }
 
 /// A static guess stands where the known displacements were; a dynamic one has gone on with its own velocity.
-SolveStatistics SolidStepper::find_equilibrium(const StageWork& work) {
+linalg::SolveStatistics SolidStepper::find_equilibrium(const StageWork& work) {
   body_.place_pressures(work.place_time);
   EquilibriumLoad load{last_.rhs, work.known, {}, work.system->mass_factor, parameters_.energy_momentum};
   if (!body_.is_dynamic() && !work.known.empty()) load.before = state_.known;
@@ -167,9 +168,9 @@ SolveStatistics SolidStepper::find_equilibrium(const StageWork& work) {
 }
 
 void SolidStepper::add_inertia(const StageWork& work, const SolidState& now) {
-  const Stage& stage = work.stage;
+  const time::Stage& stage = work.stage;
   const SolidDamping damping = parameters_.damping.value_or(SolidDamping{});
-  Levels known =
+  time::Levels known =
       stage.acceleration + (damping.mass - work.system->mass_factor * damping.stiffness) * stage.rate;
   if (body_.has_mass()) return add_kernel_inertia(work, now, known);
   const History levels(now, state_, false);
@@ -184,7 +185,8 @@ void SolidStepper::add_inertia(const StageWork& work, const SolidState& now) {
 }
 
 /// All nodes have inertia, known ones that of their own acceleration (and mass damping of their velocity).
-void SolidStepper::add_kernel_inertia(const StageWork& work, const SolidState& now, const Levels& known) {
+void SolidStepper::add_kernel_inertia(const StageWork& work, const SolidState& now,
+                                      const time::Levels& known) {
   const History cells(now, state_, false), faces(now, state_, true);
   const int dim = mesh_.dim;
   const std::size_t n_cells = std::size_t(mesh_.cells.n_owned()) * dim;

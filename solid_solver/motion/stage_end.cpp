@@ -30,7 +30,7 @@ void SolidStepper::guess(const StageWork& work, const SolidState& now) {
 }
 
 void SolidStepper::finish_cells(const StageWork& work, const SolidState& now) {
-  const Stage& stage = work.stage;
+  const time::Stage& stage = work.stage;
   const double s = work.damping_scale, beta = parameters_.damping ? parameters_.damping->stiffness : 0;
   const History levels(now, state_, false);
   const std::size_t n = std::size_t(mesh_.cells.n_owned()) * mesh_.dim;
@@ -55,7 +55,7 @@ void SolidStepper::finish_cells(const StageWork& work, const SolidState& now) {
 
 /// As the cells, where faces have inertia. What a support knows is imposed at the end of the step.
 void SolidStepper::finish_faces(const StageWork& work, const SolidState& now) {
-  const Stage& stage = work.stage;
+  const time::Stage& stage = work.stage;
   const double s = work.damping_scale, beta = parameters_.damping ? parameters_.damping->stiffness : 0;
   const History levels(now, state_, true);
   const int dim = mesh_.dim;
@@ -77,7 +77,7 @@ void SolidStepper::finish_faces(const StageWork& work, const SolidState& now) {
 // delta = u_B - u_P at the end of the stage from the places of this solve and the last one (the trapezoidal
 // rule with equal steps: 3/2 and -1/2), its rate likewise from the difference of the ends, which lives in the
 // middle. Stiffness damping makes w of the solve lead: w_B - w_P = delta + beta d(delta)/dt.
-void SolidStepper::finish_offsets(const Stage& stage, const SolidState& now) {
+void SolidStepper::finish_offsets(const time::Stage& stage, const SolidState& now) {
   if (body_.has_mass()) return;
   const int dim = mesh_.dim;
   const std::size_t n_cells = std::size_t(mesh_.cells.n_owned()) * dim;

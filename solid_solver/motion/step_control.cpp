@@ -22,7 +22,7 @@ constexpr double share_of_a_step = 0.1;
 // accelerations of this step and the last one. A coupled step is not refused here: its iterates come before
 // the load has settled.
 void SolidStepper::judge_step() {
-  const LocalError local = local_error(parameters_.time_scheme);
+  const time::LocalError local = time::local_error(parameters_.time_scheme);
   const double dt = step_.dt, apart = 0.5 * (dt + state_.dt);
   double error = 0, volume = 0;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
@@ -36,9 +36,10 @@ void SolidStepper::judge_step() {
     }
     volume += v;
   }
-  volume = sum(mesh_.comm, volume);
-  trial_.error = local.constant * std::pow(dt, local.order + 1) * std::sqrt(sum(mesh_.comm, error) / volume);
-  if (step_.scheme != Scheme::standalone) return;
+  volume = parallel::sum(mesh_.comm, volume);
+  trial_.error =
+      local.constant * std::pow(dt, local.order + 1) * std::sqrt(parallel::sum(mesh_.comm, error) / volume);
+  if (step_.scheme != coupling::Scheme::standalone) return;
   const double tolerance = share_of_a_step * parameters_.step_control->tolerance;
   if (trial_.error > tolerance)
     throw SolveFailure("The estimated step error, {:.2g} m, exceeds a tenth of the tolerance, {:g} m.",
@@ -48,7 +49,7 @@ void SolidStepper::judge_step() {
 double SolidStepper::suggest_dt() const {
   if (!(state_.error > 0)) return std::numeric_limits<double>::infinity();
   const double room = share_of_a_step * parameters_.step_control->tolerance / state_.error;
-  return safety * state_.dt * std::pow(room, 1. / (local_error(parameters_.time_scheme).order + 1));
+  return safety * state_.dt * std::pow(room, 1. / (time::local_error(parameters_.time_scheme).order + 1));
 }
 
 }  // namespace couplet::solid

@@ -15,13 +15,13 @@ namespace couplet::solid {
 /// Fields together with the values that were made for them.
 class FieldList {
  public:
-  void add(std::string name, const char* unit, OutputField::Place place, int components,
+  void add(std::string name, const char* unit, io::OutputField::Place place, int components,
            std::vector<double> values) {
     values_.push_back(std::move(values));
     list.push_back({std::move(name), unit, place, components, values_.back()});
   }
   /// One field a component; a 2-D scene has no shear across it. `packed`: tensor after tensor.
-  void add_tensor(const std::string& name, const char* unit, OutputField::Place place, int dim,
+  void add_tensor(const std::string& name, const char* unit, io::OutputField::Place place, int dim,
                   std::span<const double> packed) {
     for (std::size_t i = 0; i < (dim == 2 ? 4 : tensor_size); ++i) {
       std::vector<double> values(packed.size() / tensor_size);
@@ -29,7 +29,7 @@ class FieldList {
       add(name + "-" + tensor_component[i], unit, place, 1, std::move(values));
     }
   }
-  std::vector<OutputField> list;
+  std::vector<io::OutputField> list;
 
  private:
   std::deque<std::vector<double>> values_;

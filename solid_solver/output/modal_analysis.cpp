@@ -23,13 +23,13 @@ constexpr double rigid_part = 1e-8;
 
 /// mu / (rho L^2) of the slowest cell, with L the diagonal of the body's box [1/s^2].
 double slowest_scale(const SolidProblem& problem, std::span<const double> cell_mass) {
-  const Geometry& geometry = problem.geometry();
-  const Mesh& mesh = problem.mesh;
+  const mesh::Geometry& geometry = problem.geometry();
+  const mesh::Mesh& mesh = problem.mesh;
   double slowest = 1e300;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
     slowest = std::min(slowest, problem.elastic.lame(c).mu * geometry.volume[c] / cell_mass[c]);
-  const double length = extent_of(mesh, geometry).diagonal();
-  return min(mesh.comm, slowest) / (length * length);
+  const double length = mesh::extent_of(mesh, geometry).diagonal();
+  return parallel::min(mesh.comm, slowest) / (length * length);
 }
 
 /// A vertex of the surface as it travels to rank 0; its shapes go beside it.
@@ -39,7 +39,7 @@ struct SurfacePoint {
 };
 
 /// Sum over this rank's rows of M x with a rigid motion along each axis.
-std::vector<double> participation(const SolidProblem& problem, const EigenModes& modes) {
+std::vector<double> participation(const SolidProblem& problem, const modes::EigenModes& modes) {
   const std::size_t dim = problem.mesh.dim, n = problem.elastic.n_unknowns(), count = modes.shape.size();
   std::vector<double> along(n), inertia(n), sums(3 * count, 0);
   for (std::size_t a = 0; a < dim; ++a) {
@@ -48,7 +48,7 @@ std::vector<double> participation(const SolidProblem& problem, const EigenModes&
     for (std::size_t m = 0; m < count; ++m) {
       double local = 0;
       for (std::size_t i = 0; i < n; ++i) local += inertia[i] * modes.shape[m][i];
-      sums[a * count + m] = sum(problem.mesh.comm, local);
+      sums[a * count + m] = parallel::sum(problem.mesh.comm, local);
     }
   }
   return sums;
@@ -60,7 +60,7 @@ constexpr GlobalIndex most_rows_2d = 2000000, most_rows_3d = 400000;
 constexpr double exact = 1e-6;
 
 /// The factors are those of this operator: nothing in the scene that the narrow matrix does not know.
-void check_factors(const SolidProblem& problem, TiedMatrix& factors, double shift) {
+void check_factors(const SolidProblem& problem, elastic::TiedMatrix& factors, double shift) {
   const std::size_t n = problem.elastic.n_unknowns();
   std::vector<double> x(n), force(n), back(n);
   for (std::size_t i = 0; i < n; ++i) x[i] = std::sin(1.0 + double(i % 1000));
@@ -74,43 +74,43 @@ void check_factors(const SolidProblem& problem, TiedMatrix& factors, double shif
 /// Whether the search goes by factors. Collective.
 bool goes_by_factors(const SolidProblem& problem, const MethodParameters& method) {
   using Preconditioner = MethodParameters::Preconditioner;
-  if (!TiedMatrix::suits(problem.mesh) || !problem.is_symmetric()) return false;
+  if (!elastic::TiedMatrix::suits(problem.mesh) || !problem.is_symmetric()) return false;
   if (method.preconditioner != Preconditioner::automatic)
     return method.preconditioner == Preconditioner::factors;
-  const Mesh& mesh = problem.mesh;
+  const mesh::Mesh& mesh = problem.mesh;
   const auto blocks = GlobalIndex(problem.elastic.n_unknowns()) / mesh.dim + 2 * mesh.points.n_owned();
-  return sum(mesh.comm, blocks) * mesh.dim <= (mesh.dim == 2 ? most_rows_2d : most_rows_3d);
+  return parallel::sum(mesh.comm, blocks) * mesh.dim <= (mesh.dim == 2 ? most_rows_2d : most_rows_3d);
 }
 
 /// The search with factors of the shifted stiffness.
-EigenModes search_by_factors(const SolidProblem& problem, std::span<const double> cell_mass, int n,
-                             double shift) {
-  const Geometry& geometry = problem.geometry();
-  const Mesh& mesh = problem.mesh;
+modes::EigenModes search_by_factors(const SolidProblem& problem, std::span<const double> cell_mass, int n,
+                                    double shift) {
+  const mesh::Geometry& geometry = problem.geometry();
+  const mesh::Mesh& mesh = problem.mesh;
   std::vector<double> density;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
     density.push_back(cell_mass[std::size_t(c)] / geometry.volume[std::size_t(c)]);
-  const SlepcEnvironment slepc;
-  TiedMatrix shifted(mesh, problem.elastic, {.mass = shift, .density = density});
+  const modes::SlepcEnvironment slepc;
+  elastic::TiedMatrix shifted(mesh, problem.elastic, {.mass = shift, .density = density});
   check_factors(problem, shifted, shift);
   shifted.factorise();
-  const ModalOperators of{
+  const modes::ModalOperators of{
       .stiffness = [&](std::span<const double> x, std::span<double> y) { problem.kernel.apply(x, {}, y); },
       .mass = [&](std::span<const double> x,
                   std::span<double> y) { problem.kernel.apply_with_mass(x, {}, 1, false, y); },
       .solve = [&](std::span<const double> x, std::span<double> y) { shifted.solve(x, y); }};
-  return lowest_modes(mesh.comm, problem.elastic.n_unknowns(), of, n, -shift);
+  return modes::lowest_modes(mesh.comm, problem.elastic.n_unknowns(), of, n, -shift);
 }
 
 /// The search with one preconditioner.
-EigenModes search(const SolidProblem& problem, const MethodParameters& method,
-                  std::span<const double> cell_mass, int n, double shift) {
+modes::EigenModes search(const SolidProblem& problem, const MethodParameters& method,
+                         std::span<const double> cell_mass, int n, double shift) {
   std::vector<double> inertia;
   for (const double m : cell_mass) inertia.push_back(shift * m);
   const auto shifted =
       make_solution_method({problem.mesh, problem.elastic, inertia, problem.kernel, shift}, method);
-  const SlepcEnvironment slepc;
-  const ModalOperators of{
+  const modes::SlepcEnvironment slepc;
+  const modes::ModalOperators of{
       .stiffness = [&](std::span<const double> x, std::span<double> y) { problem.kernel.apply(x, {}, y); },
       .mass = [&](std::span<const double> x,
                   std::span<double> y) { problem.kernel.apply_with_mass(x, {}, 1, false, y); },
@@ -119,7 +119,7 @@ EigenModes search(const SolidProblem& problem, const MethodParameters& method,
             std::ranges::fill(y, 0);
             if (norm(problem.mesh.comm, x) > 0) shifted->solve(x, y);
           }};
-  return lowest_modes(problem.mesh.comm, problem.elastic.n_unknowns(), of, n, -shift);
+  return modes::lowest_modes(problem.mesh.comm, problem.elastic.n_unknowns(), of, n, -shift);
 }
 
 }  // namespace
@@ -129,14 +129,14 @@ std::optional<SolidProblem> vibration(const SolidBody& body) {
   return SolidProblem{body.mesh(), body.elastic(), {}, body.kernel(), 0};
 }
 
-EigenModes solid_modes(const SolidProblem& problem, MethodParameters method,
-                       std::span<const double> cell_mass, int n) {
+modes::EigenModes solid_modes(const SolidProblem& problem, MethodParameters method,
+                              std::span<const double> cell_mass, int n) {
   const double scale = slowest_scale(problem, cell_mass);
   const bool chooses = method.preconditioner == MethodParameters::Preconditioner::automatic;
   method.corrections_kept = 0;  // one right-hand side says nothing about the next
   method.relative_tolerance = std::min(method.relative_tolerance, 1e-10);
   const bool by_factors = goes_by_factors(problem, method);
-  EigenModes modes;
+  modes::EigenModes modes;
   try {
     modes = by_factors ? search_by_factors(problem, cell_mass, n, shift_part * scale)
                        : search(problem, method, cell_mass, n, shift_part * scale);
@@ -152,14 +152,14 @@ EigenModes solid_modes(const SolidProblem& problem, MethodParameters method,
   return modes;
 }
 
-ModalModel modal_model(const SolidProblem& problem, const EigenModes& modes) {
-  const Geometry& geometry = problem.geometry();
-  const Mesh& mesh = problem.mesh;
+modes::ModalModel modal_model(const SolidProblem& problem, const modes::EigenModes& modes) {
+  const mesh::Geometry& geometry = problem.geometry();
+  const mesh::Mesh& mesh = problem.mesh;
   const std::size_t dim = mesh.dim, count = modes.shape.size();
   std::vector<Index> points;
   std::vector<bool> is_taken(mesh.points.n_local(), false);
   std::vector<GlobalIndex> faces;  // boundary_id, corners, their ids
-  for (const Patch& patch : mesh.patches)
+  for (const mesh::Patch& patch : mesh.patches)
     for (Index f = patch.first; f < patch.first + patch.count && !patch.bonded; ++f) {
       faces.push_back(mesh.boundary_id[f - mesh.n_interior]);
       faces.push_back(GlobalIndex(mesh.face_points[f].size()));
@@ -183,12 +183,12 @@ ModalModel modal_model(const SolidProblem& problem, const EigenModes& modes) {
       for (std::size_t a = 0; a < dim; ++a)
         shapes[(3 * i + a) * count + m] = at_points[std::size_t(points[i]) * dim + a];
   }
-  ModalModel model;
+  modes::ModalModel model;
   model.participation = participation(problem, modes);
-  const std::vector<SurfacePoint> all = gather(mesh.comm, places);
-  const std::vector<double> all_shapes = gather(mesh.comm, shapes);
-  const std::vector<GlobalIndex> all_faces = gather(mesh.comm, faces);
-  if (comm_rank(mesh.comm) != 0) return {};
+  const std::vector<SurfacePoint> all = parallel::gather(mesh.comm, places);
+  const std::vector<double> all_shapes = parallel::gather(mesh.comm, shapes);
+  const std::vector<GlobalIndex> all_faces = parallel::gather(mesh.comm, faces);
+  if (parallel::comm_rank(mesh.comm) != 0) return {};
   for (const double value : modes.eigenvalue)
     model.frequency.push_back(std::sqrt(std::max(0.0, value)) / (2 * std::numbers::pi));
   std::map<GlobalIndex, std::size_t>
@@ -209,7 +209,7 @@ ModalModel modal_model(const SolidProblem& problem, const EigenModes& modes) {
     i += 2 + n;
   }
   for (const auto& [id, face] : corners) model.faces.push_row(face);
-  if (dim == 3) average_faces(model);
+  if (dim == 3) modes::average_faces(model);
   return model;
 }
 

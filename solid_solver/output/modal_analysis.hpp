@@ -19,11 +19,11 @@ std::optional<SolidProblem> vibration(const SolidBody& body);
 /// held at rest. `problem`: static, with a kernel that has a mass (face-gradient: symmetric, dynamic analysis).
 /// `cell_mass`: per owned cell [kg]. Shapes are mass-normalised, on this rank's unknowns. Throws
 /// SolveFailure. Collective.
-EigenModes solid_modes(const SolidProblem& problem, MethodParameters method,
-                       std::span<const double> cell_mass, int n);
+modes::EigenModes solid_modes(const SolidProblem& problem, MethodParameters method,
+                              std::span<const double> cell_mass, int n);
 
 /// What the surface shows of these modes, on rank 0 (empty elsewhere): vertices by ascending point_id, faces by
 /// ascending boundary_id; of a plane body the depth is 1 m and the third component 0. Collective.
-ModalModel modal_model(const SolidProblem& problem, const EigenModes& modes);
+modes::ModalModel modal_model(const SolidProblem& problem, const modes::EigenModes& modes);
 
 }  // namespace couplet::solid

@@ -39,7 +39,7 @@ void SolidOutput::write_modes(bool estimates) {
         "symmetric}': the stiffness of the other face gradients is not symmetric.");
   const std::vector<double> mass = cell_masses(body_);
   const int n = body_.parameters().output.modes;
-  EigenModes found;
+  modes::EigenModes found;
   try {
     found = solid_modes(*problem, body_.parameters().method, mass, n);
   } catch (const SolveFailure& e) {
@@ -58,23 +58,24 @@ void SolidOutput::write_modes(bool estimates) {
 }
 
 /// `of`: of what, for the log; `errs`: what the mesh leaves.
-void SolidOutput::write_vibrations(const SolidProblem& problem, const EigenModes& found, const char* of,
-                                   const std::string& errs) {
-  const Mesh& mesh = body_.mesh();
-  ModalModel model = modal_model(problem, found);
+void SolidOutput::write_vibrations(const SolidProblem& problem, const modes::EigenModes& found,
+                                   const char* of, const std::string& errs) {
+  const mesh::Mesh& mesh = body_.mesh();
+  modes::ModalModel model = modal_model(problem, found);
   model.mass = 0;
   for (const double m : cell_masses(body_)) model.mass += m;
-  model.mass = sum(mesh.comm, model.mass);
-  if (comm_rank(mesh.comm) != 0) return;
-  Series series(context_.output_folder / "modes.csv", {"number", "frequency [Hz]", "effective mass x [kg]",
-                                                       "effective mass y [kg]", "effective mass z [kg]"});
+  model.mass = parallel::sum(mesh.comm, model.mass);
+  if (parallel::comm_rank(mesh.comm) != 0) return;
+  io::Series series(context_.output_folder / "modes.csv",
+                    {"number", "frequency [Hz]", "effective mass x [kg]", "effective mass y [kg]",
+                     "effective mass z [kg]"});
   for (std::size_t m = 0; m < model.n_modes(); ++m) {
     std::vector<double> row{double(m + 1), model.frequency[m]};
     for (std::size_t a = 0; a < 3; ++a)
       row.push_back(std::pow(model.participation[a * model.n_modes() + m], 2));
     series.row(row);
   }
-  if (mesh.dim == 3) couplet::write_modes(context_.output_folder / "modes.h5", model, "");
+  if (mesh.dim == 3) couplet::modes::write_modes(context_.output_folder / "modes.h5", model, "");
   log::info("modes: {} free vibrations{} from {:.6g} to {:.6g} Hz in modes.csv{}; max residual {:.1e}{}",
             model.n_modes(), of, model.frequency.front(), model.frequency.back(),
             mesh.dim == 3 ? ", their surface shapes in modes.h5 (plate_modal: 'modes: {file: ...}')" : "",
@@ -83,9 +84,9 @@ void SolidOutput::write_vibrations(const SolidProblem& problem, const EigenModes
 
 void SolidOutput::write_preloaded_modes() {
   if (context_.output_folder.empty()) return;
-  const Prestress prestress = prestress_of(body_, derived_, stepper_.state().time);
+  const elastic::Prestress prestress = prestress_of(body_, derived_, stepper_.state().time);
   try {
-    const EigenModes found = preloaded_modes(body_, prestress, body_.parameters().output.modes);
+    const modes::EigenModes found = preloaded_modes(body_, prestress, body_.parameters().output.modes);
     write_vibrations({body_.mesh(), body_.elastic(), {}, body_.kernel(), 0}, found,
                      " about the loaded equilibrium", "");
   } catch (const SolveFailure& e) {
@@ -95,8 +96,8 @@ void SolidOutput::write_preloaded_modes() {
 
 void SolidOutput::write_buckling() {
   if (context_.output_folder.empty()) return;
-  const Mesh& mesh = body_.mesh();
-  const Geometry& geometry = body_.geometry();
+  const mesh::Mesh& mesh = body_.mesh();
+  const mesh::Geometry& geometry = body_.geometry();
   const int asked = body_.parameters().output.buckling;
   Buckling found;
   try {
@@ -105,7 +106,7 @@ void SolidOutput::write_buckling() {
     throw Error("output.buckling: {}", e.what());
   }
   std::vector<std::vector<double>> points;
-  std::vector<OutputField> fields;
+  std::vector<io::OutputField> fields;
   for (const std::vector<double>& shape : found.shape) {
     std::vector<double>& values =
         points.emplace_back(std::size_t(mesh.points.n_local()) * std::size_t(mesh.dim));
@@ -114,13 +115,13 @@ void SolidOutput::write_buckling() {
   }
   for (std::size_t m = 0; m < points.size(); ++m)
     fields.push_back(
-        {fmt::format("buckling-{}", m + 1), "-", OutputField::Place::points, mesh.dim, points[m]});
+        {fmt::format("buckling-{}", m + 1), "-", io::OutputField::Place::points, mesh.dim, points[m]});
   if (!fields.empty())
-    FieldWriter(mesh, geometry.points, context_.output_folder, "buckling", false,
-                std::numeric_limits<double>::quiet_NaN())
+    io::FieldWriter(mesh, geometry.points, context_.output_folder, "buckling", false,
+                    std::numeric_limits<double>::quiet_NaN())
         .write(stepper_.state().time, geometry.points, fields);
-  if (comm_rank(mesh.comm) == 0) {
-    Series series(context_.output_folder / "buckling.csv", {"number", "load factor [-]"});
+  if (parallel::comm_rank(mesh.comm) == 0) {
+    io::Series series(context_.output_folder / "buckling.csv", {"number", "load factor [-]"});
     for (std::size_t m = 0; m < found.factor.size(); ++m)
       series.row(std::vector<double>{double(m + 1), found.factor[m]});
     if (found.factor.empty())

@@ -21,10 +21,10 @@
 namespace couplet::solid {
 namespace {
 
-using Place = OutputField::Place;
+using Place = io::OutputField::Place;
 
 /// Of all local cells; ghosts, which are not written, hold zeros.
-std::vector<double> packed_cells(const Mesh& mesh, std::span<const Tensor3> owned) {
+std::vector<double> packed_cells(const mesh::Mesh& mesh, std::span<const Tensor3> owned) {
   std::vector<double> values(std::size_t(mesh.cells.n_local()) * tensor_size, 0);
   for (std::size_t c = 0; c < owned.size(); ++c)
     std::ranges::copy(pack(owned[c]), values.begin() + std::ptrdiff_t(c * tensor_size));
@@ -35,7 +35,7 @@ void add_cell_stress(const SolidBody& body, const SolidFields& derived, std::spa
                      FieldList& fields) {
   const SolidOutputParameters& chosen = body.parameters().output;
   if (!chosen.stress && !chosen.principal_stress) return;
-  const Mesh& mesh = body.mesh();
+  const mesh::Mesh& mesh = body.mesh();
   const std::vector<Tensor3> tensors = derived.cell_stress(points);
   if (chosen.stress) {
     fields.add_tensor("stress", "Pa", Place::cells, mesh.dim, packed_cells(mesh, tensors));
@@ -61,8 +61,8 @@ SolidOutput::SolidOutput(const SolidFields& derived, const SolidStepper& stepper
 
 void SolidOutput::write_fields(double time, std::span<const double> points) {
   if (context_.output_folder.empty()) return;
-  const Mesh& mesh = body_.mesh();
-  const Geometry& geometry = body_.geometry();
+  const mesh::Mesh& mesh = body_.mesh();
+  const mesh::Geometry& geometry = body_.geometry();
   const SolidOutputParameters& chosen = body_.parameters().output;
   const SolidState& state = stepper_.state();
   const int dim = mesh.dim;
@@ -103,18 +103,18 @@ void SolidOutput::write_spectrum(double dt) {
   if (context_.output_folder.empty() || spectrum_written_) return;
   spectrum_written_ = true;
   const std::vector<std::complex<double>> values = eigenvalues(body_);
-  if (comm_rank(body_.mesh().comm) != 0) return;
+  if (parallel::comm_rank(body_.mesh().comm) != 0) return;
   const SolidParameters& p = body_.parameters();
   const SolidDamping chosen = p.damping.value_or(SolidDamping{});
-  const RayleighCoefficients damping{chosen.mass, chosen.stiffness};
-  Series series(context_.output_folder / "spectrum.csv",
-                {"number", "real [1/s^2]", "imaginary [1/s^2]", "frequency [Hz]", "growth rate [1/s]",
-                 "growth rate of the scheme [1/s]"});
+  const time::RayleighCoefficients damping{chosen.mass, chosen.stiffness};
+  io::Series series(context_.output_folder / "spectrum.csv",
+                    {"number", "real [1/s^2]", "imaginary [1/s^2]", "frequency [Hz]", "growth rate [1/s]",
+                     "growth rate of the scheme [1/s]"});
   double growth = 0, discrete = -std::numeric_limits<double>::infinity();
   int n_complex = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const double rate = growth_rate(values[i]),
-                 of_scheme = growth_rate(p.time_scheme, dt, values[i], damping);
+    const double rate = time::growth_rate(values[i]),
+                 of_scheme = time::growth_rate(p.time_scheme, dt, values[i], damping);
     growth = std::max(growth, rate);
     discrete = std::max(discrete, of_scheme);
     n_complex += values[i].imag() != 0;
@@ -124,12 +124,13 @@ void SolidOutput::write_spectrum(double dt) {
   log::info(
       "spectrum of M^-1 K: {} eigenvalues, {} of them in complex pairs; undamped vibration grows by up to "
       "{:.3g} 1/s; with {} and dt = {:g} s{} by up to {:.3g} 1/s",
-      values.size(), n_complex, growth, name(p.time_scheme.type), dt, p.damping ? ", damped," : "", discrete);
+      values.size(), n_complex, growth, time::name(p.time_scheme.type), dt, p.damping ? ", damped," : "",
+      discrete);
 }
 
 void SolidOutput::write_probes(double time, std::span<const double> points) {
   const std::vector<double> values = probes_.sample(points);
-  if (comm_rank(body_.mesh().comm) != 0) return;
+  if (parallel::comm_rank(body_.mesh().comm) != 0) return;
   if (!probe_series_) {
     std::vector<std::string> columns{"time [s]"};
     columns.insert(columns.end(), probes_.columns().begin(), probes_.columns().end());
@@ -142,7 +143,7 @@ void SolidOutput::write_probes(double time, std::span<const double> points) {
 
 void SolidOutput::write_energies(double time, std::span<const double> points) {
   const SolidEnergies e = stepper_.ledger().total(stepper_.state(), points);
-  if (comm_rank(body_.mesh().comm) != 0) return;
+  if (parallel::comm_rank(body_.mesh().comm) != 0) return;
   if (!energy_series_)
     energy_series_.emplace(
         context_.output_folder / "energies.csv",
@@ -157,7 +158,7 @@ void SolidOutput::write_reactions(double time, std::span<const double> points) {
   const int dim = body_.mesh().dim;
   const std::vector<PatchForce> reactions = derived_.reactions(points);
   const Vec3 load = derived_.total_load();
-  if (comm_rank(body_.mesh().comm) != 0) return;
+  if (parallel::comm_rank(body_.mesh().comm) != 0) return;
   std::vector<double> row{time};
   const SolidOutputParameters& chosen = body_.parameters().output;
   const int first = dim == 2 ? 2 : 0;  // a plane scene turns about z
@@ -170,11 +171,11 @@ void SolidOutput::write_reactions(double time, std::span<const double> points) {
   if (!reaction_series_) {
     std::vector<std::string> columns{"time [s]"};
     for (const PatchForce& r : reactions) {
-      for (int a = 0; a < dim; ++a) columns.push_back(r.patch + " " + axis_letters[a] + " [N]");
+      for (int a = 0; a < dim; ++a) columns.push_back(r.patch + " " + base::axis_letters[a] + " [N]");
       for (int a = first; chosen.moments && a < 3; ++a)
-        columns.push_back(r.patch + " moment " + axis_letters[a] + " [N m]");
+        columns.push_back(r.patch + " moment " + base::axis_letters[a] + " [N m]");
     }
-    for (int a = 0; a < dim; ++a) columns.push_back(std::string("load ") + axis_letters[a] + " [N]");
+    for (int a = 0; a < dim; ++a) columns.push_back(std::string("load ") + base::axis_letters[a] + " [N]");
     reaction_series_.emplace(context_.output_folder / "reactions.csv", columns, context_.restart_time);
   }
   reaction_series_->row(row);
@@ -182,7 +183,8 @@ void SolidOutput::write_reactions(double time, std::span<const double> points) {
 
 void SolidOutput::write_effort(double time) {
   const SolverEffort& effort = stepper_.effort();
-  if (effort.solves == 0 || comm_rank(body_.mesh().comm) != 0) return;  // at the start nothing was solved
+  if (effort.solves == 0 || parallel::comm_rank(body_.mesh().comm) != 0)
+    return;  // at the start nothing was solved
   if (!solver_series_)
     solver_series_.emplace(
         context_.output_folder / "solver.csv",

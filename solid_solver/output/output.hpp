@@ -38,7 +38,7 @@ class SolidOutput {
   void write_buckling();
 
  private:
-  void write_vibrations(const SolidProblem& problem, const EigenModes& found, const char* of,
+  void write_vibrations(const SolidProblem& problem, const modes::EigenModes& found, const char* of,
                         const std::string& errs);
   void write_probes(double time, std::span<const double> points);
   void write_reactions(double time, std::span<const double> points);
@@ -51,10 +51,10 @@ class SolidOutput {
   const SolidContext& context_;
   SolidProbes probes_;
   bool spectrum_written_ = false, modes_written_ = false;
-  std::optional<FieldWriter> fields_;
+  std::optional<io::FieldWriter> fields_;
   std::optional<SolidSurfaces> surfaces_;
   // On rank 0.
-  std::optional<Series> probe_series_, reaction_series_, solver_series_, energy_series_;
+  std::optional<io::Series> probe_series_, reaction_series_, solver_series_, energy_series_;
 };
 
 }  // namespace couplet::solid

@@ -17,11 +17,11 @@ bool is_stress(std::string_view field) {
 }
 
 /// A field that an effect keeps at points; its name and unit are the effect's.
-OutputField effect_field(const SolidBody& body, const std::string& name) {
-  std::vector<OutputField> fields;
+io::OutputField effect_field(const SolidBody& body, const std::string& name) {
+  std::vector<io::OutputField> fields;
   for (const auto& effect : body.effects()) effect->add_fields(fields);
-  for (const OutputField& field : fields)
-    if (field.name == name && field.place == OutputField::Place::points) return field;
+  for (const io::OutputField& field : fields)
+    if (field.name == name && field.place == io::OutputField::Place::points) return field;
   throw Error("probes: the field '{}' is requested, but nothing in this scene computes it.", name);
 }
 
@@ -31,15 +31,15 @@ SolidProbes::SolidProbes(const SolidBody& body, const SolidFields& derived) : bo
   std::vector<Vec3> places;
   for (const auto& [name, chosen] : body.parameters().probes) {
     places.push_back(chosen.point);
-    probes_.push_back({Probe(body.mesh(), body.geometry().points, name, chosen.point), chosen.fields});
+    probes_.push_back({io::Probe(body.mesh(), body.geometry().points, name, chosen.point), chosen.fields});
     for (const std::string& field : chosen.fields) add_columns(name, field);
   }
-  doubt_mesh_scale(body.mesh(), body.geometry().points, places);
+  io::doubt_mesh_scale(body.mesh(), body.geometry().points, places);
   if (watches_stress()) stressed_ = points_with_stress();
 }
 
 std::vector<std::uint8_t> SolidProbes::points_with_stress() const {
-  const IndexMap& points = body_.mesh().points;
+  const parallel::IndexMap& points = body_.mesh().points;
   std::vector<double> flags(std::size_t(points.n_local()), 0);
   for (const Watched& watched : probes_)
     if (std::ranges::any_of(watched.fields, is_stress))
@@ -52,7 +52,7 @@ std::vector<std::uint8_t> SolidProbes::points_with_stress() const {
 void SolidProbes::add_columns(const std::string& probe, const std::string& field) {
   const auto vector = [&](const std::string& what, const char* unit) {
     for (int a = 0; a < body_.mesh().dim; ++a)
-      columns_.push_back(probe + " " + what + axis_letters[a] + " [" + unit + "]");
+      columns_.push_back(probe + " " + what + base::axis_letters[a] + " [" + unit + "]");
   };
   const auto tensor = [&](const char* unit) {
     for (const char* component : tensor_component)

@@ -26,7 +26,7 @@ class SolidProbes {
 
  private:
   struct Watched {
-    Probe probe;
+    io::Probe probe;
     std::vector<std::string> fields;
   };
   void add_columns(const std::string& probe, const std::string& field);

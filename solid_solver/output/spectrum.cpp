@@ -13,8 +13,8 @@ namespace {
 
 /// A column by column, from unit vectors; rows rank by rank. On rank 0.
 Eigen::MatrixXd probe(MPI_Comm comm, std::size_t n_local, GlobalIndex n, const ElasticApplication& apply) {
-  const GlobalIndex first = exclusive_scan(comm, GlobalIndex(n_local));
-  const bool root = comm_rank(comm) == 0;
+  const GlobalIndex first = parallel::exclusive_scan(comm, GlobalIndex(n_local));
+  const bool root = parallel::comm_rank(comm) == 0;
   Eigen::MatrixXd a(root ? n : 0, root ? n : 0);
   std::vector<double> x(n_local, 0), y(n_local);
   for (GlobalIndex j = 0; j < n; ++j) {
@@ -22,7 +22,7 @@ Eigen::MatrixXd probe(MPI_Comm comm, std::size_t n_local, GlobalIndex n, const E
     if (mine) x[std::size_t(j - first)] = 1;
     apply(x, y);
     if (mine) x[std::size_t(j - first)] = 0;
-    const std::vector<double> column = gather(comm, y);
+    const std::vector<double> column = parallel::gather(comm, y);
     if (root) a.col(j) = Eigen::Map<const Eigen::VectorXd>(column.data(), n);
   }
   return a;
@@ -40,14 +40,14 @@ void check_size(GlobalIndex n) {
 
 }  // namespace
 
-std::vector<std::complex<double>> symmetric_spectrum(const Mesh& mesh, std::size_t n_unknowns,
+std::vector<std::complex<double>> symmetric_spectrum(const mesh::Mesh& mesh, std::size_t n_unknowns,
                                                      const ElasticApplication& stiffness,
                                                      const ElasticApplication& mass) {
-  const GlobalIndex n = sum(mesh.comm, GlobalIndex(n_unknowns));
+  const GlobalIndex n = parallel::sum(mesh.comm, GlobalIndex(n_unknowns));
   check_size(n);
   const Eigen::MatrixXd a = probe(mesh.comm, n_unknowns, n, stiffness);
   const Eigen::MatrixXd b = probe(mesh.comm, n_unknowns, n, mass);
-  if (comm_rank(mesh.comm) != 0) return {};
+  if (parallel::comm_rank(mesh.comm) != 0) return {};
   std::vector<Eigen::Index> massive, massless;
   for (Eigen::Index i = 0; i < n; ++i)
     (b(i, i) > 1e-12 * b.trace() / double(n) ? massive : massless).push_back(i);
@@ -57,37 +57,37 @@ std::vector<std::complex<double>> symmetric_spectrum(const Mesh& mesh, std::size
   m = (0.5 * (m + m.transpose())).eval();
   // An oblique support leaves a direction without mass on the diagonal blocks.
   m.diagonal().array() += 1e-13 * m.trace() / double(m.rows());
-  const std::vector<double> values = symmetric_eigenvalues(columns(k), columns(m), int(k.rows()));
+  const std::vector<double> values = linalg::symmetric_eigenvalues(columns(k), columns(m), int(k.rows()));
   return {values.begin(), values.end()};
 }
 
-std::vector<std::complex<double>> spectrum(const Mesh& mesh, std::span<const double> cell_mass,
+std::vector<std::complex<double>> spectrum(const mesh::Mesh& mesh, std::span<const double> cell_mass,
                                            std::size_t n_unknowns, const ElasticApplication& apply) {
   const std::size_t n_cells = cell_mass.size() * mesh.dim;
-  const GlobalIndex n = sum(mesh.comm, GlobalIndex(n_unknowns)),
-                    n_massive = sum(mesh.comm, GlobalIndex(n_cells));
+  const GlobalIndex n = parallel::sum(mesh.comm, GlobalIndex(n_unknowns)),
+                    n_massive = parallel::sum(mesh.comm, GlobalIndex(n_cells));
   check_size(n_massive);
   // The mass of each row, 0 for faces, in the order of the gathered rows.
   std::vector<double> local_mass(n_unknowns, 0);
   for (std::size_t i = 0; i < n_cells; ++i) local_mass[i] = cell_mass[i / mesh.dim];
-  const std::vector<double> mass = gather(mesh.comm, local_mass);
+  const std::vector<double> mass = parallel::gather(mesh.comm, local_mass);
   const Eigen::MatrixXd a = probe(mesh.comm, n_unknowns, n, apply);
-  if (comm_rank(mesh.comm) != 0) return {};
+  if (parallel::comm_rank(mesh.comm) != 0) return {};
   std::vector<Eigen::Index> massive, massless;
   for (Eigen::Index i = 0; i < n; ++i) (mass[i] > 0 ? massive : massless).push_back(i);
   Eigen::MatrixXd k = a(massive, massive);
   if (!massless.empty())
     k -= a(massive, massless) * a(massless, massless).partialPivLu().solve(a(massless, massive));
   for (Eigen::Index i = 0; i < k.rows(); ++i) k.row(i) /= mass[massive[i]];
-  std::vector<std::complex<double>> result = general_eigenvalues(columns(k), int(k.rows()));
+  std::vector<std::complex<double>> result = linalg::general_eigenvalues(columns(k), int(k.rows()));
   std::ranges::sort(result, {}, [](const std::complex<double>& z) { return std::pair(z.real(), z.imag()); });
   return result;
 }
 
 std::vector<std::complex<double>> eigenvalues(const SolidBody& body) {
-  const Geometry& geometry = body.geometry();
-  const Mesh& mesh = body.mesh();
-  const ElasticKernel& kernel = body.kernel();
+  const mesh::Geometry& geometry = body.geometry();
+  const mesh::Mesh& mesh = body.mesh();
+  const elastic::ElasticKernel& kernel = body.kernel();
   if (body.has_mass())
     return symmetric_spectrum(
         mesh, body.elastic().n_unknowns(),

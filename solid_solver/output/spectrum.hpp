@@ -20,12 +20,12 @@ constexpr GlobalIndex largest_spectrum = 4000;
 /// Eigenvalues of M^-1 K [1/s^2], smallest real part first: K is A with the massless faces eliminated, M
 /// holds `cell_mass`, one an owned cell [kg]. On rank 0, empty elsewhere. Throws Error beyond
 /// largest_spectrum. Collective.
-std::vector<std::complex<double>> spectrum(const Mesh& mesh, std::span<const double> cell_mass,
+std::vector<std::complex<double>> spectrum(const mesh::Mesh& mesh, std::span<const double> cell_mass,
                                            std::size_t n_unknowns, const ElasticApplication& apply);
 
 /// The same of a symmetric pair, M applied like A: real, smallest first. Rows without mass are eliminated.
 /// Collective.
-std::vector<std::complex<double>> symmetric_spectrum(const Mesh& mesh, std::size_t n_unknowns,
+std::vector<std::complex<double>> symmetric_spectrum(const mesh::Mesh& mesh, std::size_t n_unknowns,
                                                      const ElasticApplication& stiffness,
                                                      const ElasticApplication& mass);
 

@@ -6,7 +6,7 @@
 
 namespace couplet::solid {
 
-using Place = OutputField::Place;
+using Place = io::OutputField::Place;
 
 SolidSurfaces::SolidSurfaces(const SolidFields& derived, const SolidBody& body, const SolidContext& context)
     : derived_(derived),

@@ -24,7 +24,7 @@ class SolidSurfaces {
   const SolidFields& derived_;
   const SolidBody& body_;
   const SolidContext& context_;
-  SurfaceSeries series_;
+  io::SurfaceSeries series_;
   std::vector<std::uint8_t> wanted_;  // points with stress
   bool is_open_ = false;
 };

@@ -15,7 +15,7 @@ void declare_vector(config::Section& s, const char* key, std::vector<config::Exp
   constexpr std::pair usual_length{1e-9, 1e4}, usual_pressure{1e-9, 1e11};
   const auto [lowest, highest] = std::string_view(unit) == "m" ? usual_length : usual_pressure;
   s.value(key, texts).unit(unit).plausible(lowest, highest).doc(doc);
-  s.check([&] { return texts.empty() ? std::string() : problem_of(texts, dimension); }, key);
+  s.check([&] { return texts.empty() ? std::string() : fv::problem_of(texts, dimension); }, key);
 }
 
 std::string problem_of_components(const SolidCondition& c, int dimension) {
@@ -23,11 +23,11 @@ std::string problem_of_components(const SolidCondition& c, int dimension) {
   const bool any = given(0) || given(1) || given(2);
   if (any != c.value.empty())
     return "give either 'value' (all components) or 'components' (the prescribed ones of x, y, z)";
-  if (!c.value.empty()) return problem_of(c.value, dimension);
+  if (!c.value.empty()) return fv::problem_of(c.value, dimension);
   if (dimension == 2 && given(2)) return "a 2-dimensional scene has no component z";
   for (const auto& text : c.components)
     if (text)
-      if (std::string problem = problem_of(*text); !problem.empty()) return problem;
+      if (std::string problem = fv::problem_of(*text); !problem.empty()) return problem;
   return "";
 }
 
@@ -40,7 +40,7 @@ void declare_displacement(config::Section& s, SolidCondition& c, const int& dime
       "components",
       [&c](config::Section& v) {
         for (int i = 0; i < 3; ++i)
-          v.value(axis_letters[i], c.components[i])
+          v.value(base::axis_letters[i], c.components[i])
               .unit("m")
               .plausible(1e-9, 1e4)
               .doc("displacement along this axis, of x, y, z, t");
@@ -68,7 +68,7 @@ void declare_roller(config::Section& s, SolidCondition& c, const int& dimension)
       .unit("m")
       .plausible(1e-9, 1e4)
       .doc("displacement along this direction, of x, y, z, t");
-  s.check([&c] { return problem_of(c.along); }, "value");
+  s.check([&c] { return fv::problem_of(c.along); }, "value");
   declare_vector(s, "traction", c.traction, dimension, "Pa", "force per area across this direction");
 }
 
@@ -78,7 +78,7 @@ void declare_spring(config::Section& s, SolidCondition& c, const int& dimension)
       .plausible(1, 1e16)
       .required()
       .doc("force per area and displacement, of x, y, z (Winkler foundation)");
-  s.check([&c] { return problem_of(c.stiffness); }, "stiffness");
+  s.check([&c] { return fv::problem_of(c.stiffness); }, "stiffness");
   s.choice("direction", c.along_normal, {{"all", false}, {"normal", true}})
       .doc("displacement components that the springs resist");
   declare_vector(s, "value", c.value, dimension, "m",
@@ -94,7 +94,7 @@ void declare_condition(config::Section& s, SolidCondition& c, const int& dimensi
         .plausible(1e-9, 1e11)
         .required()
         .doc("force per area, one expression of x, y, z, t per component");
-    v.check([&] { return problem_of(c.value, dimension); }, "value");
+    v.check([&] { return fv::problem_of(c.value, dimension); }, "value");
   };
   const auto pressure = [&](config::Section& v) {
     v.value("value", c.pressure)
@@ -102,7 +102,7 @@ void declare_condition(config::Section& s, SolidCondition& c, const int& dimensi
         .plausible(1e-9, 1e11)
         .required()
         .doc("pressure acting into the solid, of x, y, z, t");
-    v.check([&] { return problem_of(c.pressure); }, "value");
+    v.check([&] { return fv::problem_of(c.pressure); }, "value");
   };
   const auto plate = [&](config::Section& v) { declare_plate(v, c, dimension); };
   const auto roller = [&](config::Section& v) { declare_roller(v, c, dimension); };
@@ -174,7 +174,7 @@ void declare(config::Section& s, SolidBoundary& b, const int& dimension) {
         p.value("where", part.where)
             .required()
             .doc("expression of x, y, z at the face centres, nonzero on the faces of this part");
-        p.check([&part] { return problem_of(part.where); }, "where");
+        p.check([&part] { return fv::problem_of(part.where); }, "where");
         declare_condition(p, part, dimension, false);
       },
       "parts of the patch, such as a line of faces, with their own condition; the first one that selects a "

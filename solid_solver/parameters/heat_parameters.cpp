@@ -16,7 +16,7 @@ struct HeatProperty {
 
 void declare_property(config::Section& s, const HeatProperty& q, Text& text, double above, const char* doc) {
   s.value(q.name, text).unit(q.unit).plausible(q.lowest, q.highest).doc(doc);
-  s.check([&text, above] { return text ? problem_of_property(*text, above) : std::string(); }, q.name);
+  s.check([&text, above] { return text ? fv::problem_of_property(*text, above) : std::string(); }, q.name);
 }
 
 void declare_boundary(config::Section& s, HeatBoundary& b) {
@@ -24,7 +24,7 @@ void declare_boundary(config::Section& s, HeatBoundary& b) {
   const auto expression = [](config::Section& v, const HeatProperty& q, config::ExpressionText& text,
                              const char* doc) {
     v.value(q.name, text).unit(q.unit).plausible(q.lowest, q.highest).required().doc(doc);
-    v.check([&text] { return problem_of(text); }, q.name);
+    v.check([&text] { return fv::problem_of(text); }, q.name);
   };
   s.variant<Type>(
       "type", b.type,
@@ -61,7 +61,7 @@ void declare(config::Section& s, HeatMaterial& m) {
                    "table of T that replaces youngs-modulus where the temperature is known");
   s.value("poissons-ratio-table", m.poissons_ratio)
       .doc("table of T that replaces poissons-ratio where the temperature is known");
-  s.check([&m] { return m.poissons_ratio ? problem_of_property(*m.poissons_ratio, -1) : std::string(); },
+  s.check([&m] { return m.poissons_ratio ? fv::problem_of_property(*m.poissons_ratio, -1) : std::string(); },
           "poissons-ratio-table");
 }
 
@@ -78,12 +78,12 @@ void declare(config::Section& s, HeatParameters& h) {
       .unit("K")
       .plausible(70, 5000)
       .doc("initial temperature, of x, y, z");
-  s.check([&h] { return problem_of(h.initial_temperature); }, "initial-temperature");
+  s.check([&h] { return fv::problem_of(h.initial_temperature); }, "initial-temperature");
   s.value("source", h.source)
       .unit("W/m^3")
       .plausible(1e-6, 1e14)
       .doc("heat source in the solid, of x, y, z, t");
-  s.check([&h] { return problem_of(h.source); }, "source");
+  s.check([&h] { return fv::problem_of(h.source); }, "source");
   s.map<HeatBoundary>(
       "boundaries", h.boundaries, [](config::Section& b, HeatBoundary& v) { declare_boundary(b, v); },
       "patch", "patches that are not adiabatic; mechanical symmetry planes are thermal ones as well");

@@ -20,7 +20,7 @@ struct FaceSurroundings {
   Eigen::Matrix3Xd gradient;
 };
 
-FaceSurroundings surroundings_of(Index face, const std::vector<Vec3>& centres, const PointTree& tree) {
+FaceSurroundings surroundings_of(Index face, const std::vector<Vec3>& centres, const base::PointTree& tree) {
   constexpr std::size_t most = 8;
   std::vector<Index> others = tree.nearest(centres[face], most + 1);
   std::erase(others, face);
@@ -44,7 +44,7 @@ FaceSurroundings surroundings_of(Index face, const std::vector<Vec3>& centres, c
 
 FaceInterpolation::FaceInterpolation(const std::vector<Vec3>& centres, std::span<const Vec3> points) {
   if (centres.empty()) return;
-  const PointTree tree(centres);
+  const base::PointTree tree(centres);
   std::vector<FaceSurroundings> surroundings(centres.size());
   std::vector<bool> made(centres.size(), false);
   first_.push_back(0);
@@ -102,9 +102,9 @@ WallImpedance wall_impedance(MPI_Comm comm, std::span<const double> densities, s
   return {sums[0] / sums[2], sums[1] / sums[2]};
 }
 
-std::vector<Interface::Datum> taken(const InterfaceData& data) {
-  using Place = Interface::Place;
-  std::vector<Interface::Datum> list;
+std::vector<coupling::Interface::Datum> taken(const InterfaceData& data) {
+  using Place = coupling::Interface::Place;
+  std::vector<coupling::Interface::Datum> list;
   if (data.load == InterfaceData::Load::pressure)
     list = {{"pressure", "Pa", Place::faces, 1}};
   else
@@ -118,11 +118,11 @@ InterfaceTemperature::InterfaceTemperature(MPI_Comm comm, const std::vector<Vec3
                                            const std::vector<std::span<const Vec3>>& places)
     : comm_(comm) {
   const auto n_here = static_cast<Index>(centres.size());
-  const std::vector<Index> counts = all_gather(comm, std::vector<Index>{n_here});
+  const std::vector<Index> counts = parallel::all_gather(comm, std::vector<Index>{n_here});
   std::vector<Index> first{0};  // of each rank's faces in the list of all, and one more
   for (const Index n : counts) first.push_back(first.back() + n);
-  const Index mine = first[comm_rank(comm)];
-  const std::vector<Vec3> all = all_gather(comm, centres);
+  const Index mine = first[parallel::comm_rank(comm)];
+  const std::vector<Vec3> all = parallel::all_gather(comm, centres);
   for (const auto& points : places) at_.emplace_back(all, points);
 
   std::vector<Index> local(all.size(), -1);
@@ -138,13 +138,13 @@ InterfaceTemperature::InterfaceTemperature(MPI_Comm comm, const std::vector<Vec3
     f = local[f];
   };
   for (FaceInterpolation& interpolation : at_) interpolation.for_each_face(number);
-  faces_ = IndexMap(comm, n_here, owner, remote);
+  faces_ = parallel::IndexMap(comm, n_here, owner, remote);
 }
 
 std::vector<double> InterfaceTemperature::with_others(const std::vector<double>& here) const {
-  if (!any(comm_, !here.empty())) return {};
+  if (!parallel::any(comm_, !here.empty())) return {};
   const Index n_owned = faces_.n_owned();
-  if (any(comm_, std::ssize(here) != n_owned))
+  if (parallel::any(comm_, std::ssize(here) != n_owned))
     throw Error(
         "Expected {1} temperatures on this rank, one per interface face, but received {0} (here or on "
         "another rank).",

@@ -41,7 +41,7 @@ WallImpedance wall_impedance(MPI_Comm comm, std::span<const double> densities, s
                              std::span<const double> volumes, std::span<const Vec3> areas);
 
 /// The data to announce at the faces of the interface.
-std::vector<Interface::Datum> taken(const InterfaceData& data);
+std::vector<coupling::Interface::Datum> taken(const InterfaceData& data);
 
 /// How points of the solid get their temperature from the faces of the interface: that of the nearest face
 /// and a gradient along the interface, held within the values of the faces that it is made from.
@@ -86,7 +86,7 @@ class InterfaceTemperature final {
 
  private:
   MPI_Comm comm_;
-  IndexMap faces_;
+  parallel::IndexMap faces_;
   std::vector<FaceInterpolation> at_;
 };
 

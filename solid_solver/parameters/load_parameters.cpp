@@ -15,8 +15,8 @@ using Texts = std::vector<config::ExpressionText>;
 
 /// Of a total, which has no place: a function of time alone.
 std::string problem_of_total(const config::ExpressionText& text) {
-  if (std::string problem = problem_of(text); !problem.empty()) return problem;
-  return Expression(text).uses_space()
+  if (std::string problem = fv::problem_of(text); !problem.empty()) return problem;
+  return fv::Expression(text).uses_space()
              ? fmt::format(
                    "'{}' depends on x, y or z, but a total load has no position; it may depend on t "
                    "only",
@@ -25,7 +25,7 @@ std::string problem_of_total(const config::ExpressionText& text) {
 }
 
 std::string problem_of_totals(const Texts& texts, int n) {
-  if (std::string problem = problem_of(texts, n); !problem.empty()) return problem;
+  if (std::string problem = fv::problem_of(texts, n); !problem.empty()) return problem;
   for (const auto& text : texts)
     if (std::string problem = problem_of_total(text); !problem.empty()) return problem;
   return "";

@@ -14,13 +14,13 @@ void declare_law(config::Section& s, SolidMaterial& m) {
   std::string doc =
       "material law at finite strain, with Young's modulus and Poisson's ratio as its "
       "small-strain values: " +
-      join(laws::names());
+      base::join(laws::names());
   s.value("law", m.law).doc(doc);
   s.check(
       [&m]() -> std::string {
         if (m.law.empty() || laws::find(m.law)) return "";
         return fmt::format("unknown law '{}'. {} The laws are {}", m.law,
-                           did_you_mean(m.law, laws::names(), "laws"), join(laws::names()));
+                           base::did_you_mean(m.law, laws::names(), "laws"), base::join(laws::names()));
       },
       "law");
   std::string wanted;

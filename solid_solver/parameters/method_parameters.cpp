@@ -91,7 +91,7 @@ void declare(config::Section& s, MethodParameters& m) {
           "initial guess of a dynamic step: the last displacement; extrapolated with the velocity (2.73); "
           "with two velocities (2.74)");
   s.value("corrections-kept", m.corrections_kept)
-      .range(0, ResidualProjection::most)
+      .range(0, linalg::ResidualProjection::most)
       .doc(
           "for newton-krylov in dynamic analyses: number of latest predictor corrections that are combined "
           "to minimise the initial residual; 0: off");

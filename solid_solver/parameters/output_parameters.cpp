@@ -17,7 +17,7 @@ const std::vector<std::string> probe_fields{"displacement", "velocity",         
 std::string unknown_field(const std::vector<std::string>& chosen) {
   for (const std::string& field : chosen)
     if (std::ranges::find(probe_fields, field) == probe_fields.end())
-      return fmt::format("unknown field '{}'; the fields are {}", field, join(probe_fields));
+      return fmt::format("unknown field '{}'; the fields are {}", field, base::join(probe_fields));
   return chosen.empty() ? "at least one field is needed" : "";
 }
 

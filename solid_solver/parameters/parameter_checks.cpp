@@ -55,7 +55,7 @@ void check_updated_lagrangian(config::Section& s, SolidParameters& p) {
 
 void check_together(config::Section& s, SolidParameters& p) {
   const auto check_components = [&](const char* key, const std::vector<config::ExpressionText>& texts) {
-    s.check([&] { return texts.empty() ? std::string() : problem_of(texts, p.dimension); }, key);
+    s.check([&] { return texts.empty() ? std::string() : fv::problem_of(texts, p.dimension); }, key);
   };
   check_components("body-force", p.body_force);
   check_components("initial-velocity", p.initial_velocity);
@@ -76,7 +76,7 @@ void check_together(config::Section& s, SolidParameters& p) {
       "damping");
   s.check(
       [&] {
-        return p.time_scheme.type != TimeScheme::trapezoidal &&
+        return p.time_scheme.type != time::TimeScheme::trapezoidal &&
                        p.analysis == SolidParameters::Analysis::static_
                    ? "a static analysis has no inertia to integrate in time; remove it"
                    : "";
@@ -146,7 +146,7 @@ void check_finite_strain(config::Section& s, SolidParameters& p) {
   s.check(
       [&p]() -> std::string {
         const bool fits = has_finite_strain(p) && p.analysis == SolidParameters::Analysis::dynamic &&
-                          p.time_scheme.type == TimeScheme::trapezoidal;
+                          p.time_scheme.type == time::TimeScheme::trapezoidal;
         return p.energy_momentum && !fits
                    ? "it requires 'kinematics: finite-strain', 'analysis: dynamic' and 'time-scheme: {type: "
                      "trapezoidal}'"

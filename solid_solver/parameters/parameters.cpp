@@ -52,7 +52,7 @@ void declare_heat(config::Section& s, SolidParameters& p) {
         },
         p.materials.empty() ? "material" : "materials");
   };
-  s.check([&] { return p.temperature ? problem_of(*p.temperature) : ""; }, "temperature");
+  s.check([&] { return p.temperature ? fv::problem_of(*p.temperature) : ""; }, "temperature");
   s.check(
       [&] {
         return takes_temperature(p) && (p.heat || p.temperature)
@@ -163,7 +163,7 @@ void declare(config::Section& s, SolidParameters& p) {
       .plausible(1e-9, 1e4)
       .doc("initial velocity, one expression of x, y, z per component");
   s.section(
-      "time-scheme", [&](config::Section& t) { declare(t, p.time_scheme); },
+      "time-scheme", [&](config::Section& t) { time::declare(t, p.time_scheme); },
       "time integration of a dynamic analysis");
   s.optional_section<SolidDamping>(
       "damping", p.damping, [](config::Section& d, SolidDamping& v) { declare(d, v); },
@@ -184,7 +184,7 @@ void declare(config::Section& s, SolidParameters& p) {
       [&](config::Section& o) {
         declare(o, p.output);
         // Patches that conduct heat alone need no entry: SurfaceSeries looks at those.
-        if (!p.heat) o.check([&] { return wrong_surfaces(p.output.surfaces, p.boundaries); }, "surfaces");
+        if (!p.heat) o.check([&] { return io::wrong_surfaces(p.output.surfaces, p.boundaries); }, "surfaces");
       },
       "fields written at the output interval");
   check_together(s, p);

@@ -38,7 +38,7 @@ struct SolidParameters {
   std::vector<config::ExpressionText> body_force;        // [N/m^3]; empty: none
   std::vector<double> gravity;                           // [m/s^2]; empty: none
   std::vector<config::ExpressionText> initial_velocity;  // [m/s]; empty: at rest
-  TimeSchemeParameters time_scheme;
+  time::TimeSchemeParameters time_scheme;
   std::optional<SolidDamping> damping;
   std::optional<HeatParameters> heat;
   std::optional<config::ExpressionText> temperature;  // prescribed [K]; none: solved for or not known
@@ -59,10 +59,10 @@ void declare(config::Section& section, SolidParameters& parameters);
 std::vector<SolidMaterial> materials_of(const SolidParameters& parameters);
 
 /// Of a body in space.
-LameConstants lame_constants(double youngs_modulus, double poissons_ratio);
+elastic::LameConstants lame_constants(double youngs_modulus, double poissons_ratio);
 /// Lame's constants of a material (of an orthotropic one an isotropic mean); in plane stress lambda is the effective one of the plane problem.
-LameConstants lame_constants(const SolidParameters& parameters, const SolidMaterial& material);
-inline LameConstants lame_constants(const SolidParameters& parameters) {
+elastic::LameConstants lame_constants(const SolidParameters& parameters, const SolidMaterial& material);
+inline elastic::LameConstants lame_constants(const SolidParameters& parameters) {
   return lame_constants(parameters, parameters.material);
 }
 
@@ -84,14 +84,16 @@ bool has_orthotropic(const SolidParameters& parameters);
 inline constexpr double nearly_incompressible = 0.4;
 double largest_poissons_ratio(const SolidParameters& parameters);
 /// Whose volume strain the symmetric gradient takes.
-VolumeStrain volume_strain_of(const SolidParameters& parameters);
+elastic::VolumeStrain volume_strain_of(const SolidParameters& parameters);
 /// The symmetric gradient can have all of the scene's boundaries and the method that is asked for.
 bool symmetric_suits(const SolidParameters& parameters);
 
 /// For ElasticOperator: the constants of the cells.
-ElasticBody elastic_body(const SolidParameters& parameters, const Mesh& mesh, const Geometry& geometry);
+elastic::ElasticBody elastic_body(const SolidParameters& parameters, const mesh::Mesh& mesh,
+                                  const mesh::Geometry& geometry);
 /// Throws Error where a symmetry plane does not mirror an orthotropic material into itself: it would be no plane of
 /// symmetry. Collective.
-void check_symmetry(const SolidParameters& parameters, const Mesh& mesh, const ElasticOperator& rows);
+void check_symmetry(const SolidParameters& parameters, const mesh::Mesh& mesh,
+                    const elastic::ElasticOperator& rows);
 
 }  // namespace couplet::solid

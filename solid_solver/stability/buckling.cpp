@@ -23,50 +23,50 @@ constexpr double loaded_shift_part = 1e-4;
 void check_buckling_of(const SolidBody& body) {
   if (!body.kernel().is_symmetric())
     throw SolveFailure("It requires 'solution-method: {face-gradient: symmetric}'.");
-  if (!TiedMatrix::suits(body.mesh())) throw SolveFailure("It does not support periodic patches.");
+  if (!elastic::TiedMatrix::suits(body.mesh())) throw SolveFailure("It does not support periodic patches.");
   if (!body.rigid().empty()) throw SolveFailure("It does not support patches that move as rigid bodies.");
 }
 
 void make_largest_one(MPI_Comm comm, std::vector<double>& shape) {
   double largest = 0;
   for (const double v : shape) largest = std::max(largest, std::abs(v));
-  largest = max(comm, largest);
+  largest = parallel::max(comm, largest);
   if (largest > 0)
     for (double& v : shape) v /= largest;
 }
 
 /// Whether exactly `n` factors lie below `s`.
-bool counts(const SolidBody& body, const Prestress& prestress, double s, std::size_t n) {
-  TiedMatrix loaded(body.mesh(), body.elastic(), {.stress = s, .prestress = &prestress});
+bool counts(const SolidBody& body, const elastic::Prestress& prestress, double s, std::size_t n) {
+  elastic::TiedMatrix loaded(body.mesh(), body.elastic(), {.stress = s, .prestress = &prestress});
   loaded.factorise();
   return loaded.negative() == GlobalIndex(n);
 }
 
-double largest_stress(const SolidBody& body, const Prestress& prestress) {
+double largest_stress(const SolidBody& body, const elastic::Prestress& prestress) {
   double largest = 0;
   for (const Tensor3& s : prestress.stress) largest = std::max(largest, s.norm());
-  return max(body.mesh().comm, largest);
+  return parallel::max(body.mesh().comm, largest);
 }
 
 /// The factor at which the stress is as large as Young's modulus: what does not buckle below buckles nowhere.
-double overload(const SolidBody& body, const Prestress& prestress) {
+double overload(const SolidBody& body, const elastic::Prestress& prestress) {
   double stiffest = 0;
   for (Index c = 0; c < body.mesh().cells.n_owned(); ++c)
     stiffest = std::max(stiffest, body.elastic().lame(c).mu);
-  return 2.5 * max(body.mesh().comm, stiffest) / largest_stress(body, prestress);
+  return 2.5 * parallel::max(body.mesh().comm, stiffest) / largest_stress(body, prestress);
 }
 
 }  // namespace
 
-Buckling find_buckling(const SolidBody& body, const Prestress& prestress, int n) {
+Buckling find_buckling(const SolidBody& body, const elastic::Prestress& prestress, int n) {
   check_buckling_of(body);
   if (!(largest_stress(body, prestress) > 0))
     throw SolveFailure("The loads cause no stress in the body; add a load or a moving support.");
-  const Mesh& mesh = body.mesh();
-  const auto stress = make_stress_stiffness(mesh, body.elastic(), prestress);
-  TiedMatrix stiffness(mesh, body.elastic(), {});
+  const mesh::Mesh& mesh = body.mesh();
+  const auto stress = elastic::make_stress_stiffness(mesh, body.elastic(), prestress);
+  elastic::TiedMatrix stiffness(mesh, body.elastic(), {});
   stiffness.factorise();
-  const RatioOperators of{
+  const modes::RatioOperators of{
       .a =
           [&](std::span<const double> x, std::span<double> y) {
             stress->apply(x, y);
@@ -74,9 +74,9 @@ Buckling find_buckling(const SolidBody& body, const Prestress& prestress, int n)
           },
       .b = [&](std::span<const double> x, std::span<double> y) { body.kernel().apply(x, {}, y); },
       .solve_b = [&](std::span<const double> x, std::span<double> y) { stiffness.solve(x, y); }};
-  const SlepcEnvironment slepc;
+  const modes::SlepcEnvironment slepc;
   for (int more = extra; more <= 8 * extra; more *= 2) {
-    Ratios found = largest_ratios(mesh.comm, body.elastic().n_unknowns(), of, n + more);
+    modes::Ratios found = modes::largest_ratios(mesh.comm, body.elastic().n_unknowns(), of, n + more);
     Buckling result;
     if (found.value.empty()) {
       if (counts(body, prestress, overload(body, prestress), 0)) return result;
@@ -104,30 +104,30 @@ Buckling find_buckling(const SolidBody& body, const Prestress& prestress, int n)
   throw SolveFailure("Cannot verify the {} lowest load factors; request fewer.", n);
 }
 
-EigenModes preloaded_modes(const SolidBody& body, const Prestress& prestress, int n) {
-  const Geometry& geometry = body.geometry();
+modes::EigenModes preloaded_modes(const SolidBody& body, const elastic::Prestress& prestress, int n) {
+  const mesh::Geometry& geometry = body.geometry();
   check_buckling_of(body);
-  const Mesh& mesh = body.mesh();
-  const ElasticKernel& kernel = body.kernel();
+  const mesh::Mesh& mesh = body.mesh();
+  const elastic::ElasticKernel& kernel = body.kernel();
   std::vector<double> density;
   double slowest = 1e300;
   for (Index c = 0; c < mesh.cells.n_local(); ++c) density.push_back(body.density(c));
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
     slowest = std::min(slowest, body.elastic().lame(c).mu / density[std::size_t(c)]);
   kernel.set_density(density);
-  const double length = extent_of(mesh, geometry).diagonal();
-  const double shift = loaded_shift_part * min(mesh.comm, slowest) / (length * length);
-  TiedMatrix loaded(mesh, body.elastic(), {.stress = 1, .prestress = &prestress});
+  const double length = mesh::extent_of(mesh, geometry).diagonal();
+  const double shift = loaded_shift_part * parallel::min(mesh.comm, slowest) / (length * length);
+  elastic::TiedMatrix loaded(mesh, body.elastic(), {.stress = 1, .prestress = &prestress});
   loaded.factorise();
   if (loaded.negative() > 0)
     throw SolveFailure("The loaded equilibrium is unstable: {} modes have negative stiffness.",
                        loaded.negative());
-  TiedMatrix shifted(mesh, body.elastic(),
-                     {.mass = shift, .density = density, .stress = 1, .prestress = &prestress});
+  elastic::TiedMatrix shifted(mesh, body.elastic(),
+                              {.mass = shift, .density = density, .stress = 1, .prestress = &prestress});
   shifted.factorise();
-  const auto stress = make_stress_stiffness(mesh, body.elastic(), prestress);
+  const auto stress = elastic::make_stress_stiffness(mesh, body.elastic(), prestress);
   std::vector<double> of_stress(body.elastic().n_unknowns());
-  const ModalOperators of{
+  const modes::ModalOperators of{
       .stiffness =
           [&](std::span<const double> x, std::span<double> y) {
             kernel.apply(x, {}, y);
@@ -137,8 +137,8 @@ EigenModes preloaded_modes(const SolidBody& body, const Prestress& prestress, in
       .mass = [&](std::span<const double> x,
                   std::span<double> y) { kernel.apply_with_mass(x, {}, 1, false, y); },
       .solve = [&](std::span<const double> x, std::span<double> y) { shifted.solve(x, y); }};
-  const SlepcEnvironment slepc;
-  return lowest_modes(mesh.comm, body.elastic().n_unknowns(), of, n, -shift);
+  const modes::SlepcEnvironment slepc;
+  return modes::lowest_modes(mesh.comm, body.elastic().n_unknowns(), of, n, -shift);
 }
 
 }  // namespace couplet::solid

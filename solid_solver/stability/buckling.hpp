@@ -16,10 +16,10 @@ struct Buckling {
 
 /// The lowest `n` (fewer if there are fewer). None is missed: the negative pivots of K + s K_sigma, s above the last, are counted.
 /// `body`: static, with the symmetric gradient. Throws SolveFailure. Collective.
-Buckling find_buckling(const SolidBody& body, const Prestress& prestress, int n);
+Buckling find_buckling(const SolidBody& body, const elastic::Prestress& prestress, int n);
 
 /// The lowest n free vibrations about the loaded equilibrium, (K + K_sigma) x = omega^2 M x. Tells the kernel its density. Throws
 /// SolveFailure, also where the equilibrium is not stable. Collective.
-EigenModes preloaded_modes(const SolidBody& body, const Prestress& prestress, int n);
+modes::EigenModes preloaded_modes(const SolidBody& body, const elastic::Prestress& prestress, int n);
 
 }  // namespace couplet::solid

@@ -49,9 +49,9 @@ void tell_buckling(MPI_Comm comm, double factor, const char* how) {
   if (!(factor < BucklingEstimate::low)) return;
   const bool holds = factor >= 1;
   log::finding(
-      comm_rank(comm),
+      parallel::comm_rank(comm),
       {.id = "buckling",
-       .severity = holds ? Severity::warning : Severity::wrong,
+       .severity = holds ? base::Severity::warning : base::Severity::wrong,
        .number = factor,
        .limit = holds ? BucklingEstimate::low : 1,
        .sentence = fmt::format("buckling: load factor {}{:.3g} (limit {:g}): {}", how, factor,
@@ -67,41 +67,41 @@ void tell_buckling(MPI_Comm comm, double factor, const char* how) {
 
 BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fields, double time,
                                    SolutionMethod& method, double& compression_seen) {
-  const Geometry& geometry = body.geometry();
-  const Mesh& mesh = body.mesh();
-  Prestress prestress = prestress_of(body, fields, time);
+  const mesh::Geometry& geometry = body.geometry();
+  const mesh::Mesh& mesh = body.mesh();
+  elastic::Prestress prestress = prestress_of(body, fields, time);
   double softest = 1e300;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
-    const LameConstants lame = body.elastic().lame(c);
+    const elastic::LameConstants lame = body.elastic().lame(c);
     softest = std::min(softest, lame.mu * (3 * lame.lambda + 2 * lame.mu) / (lame.lambda + lame.mu));
   }
   const double here = compression(mesh, prestress), ratio = slenderness(mesh, geometry);
   if (!(here > more_compression * compression_seen)) return {};
-  if (!(here / min(mesh.comm, softest) * ratio * ratio >= least_strain)) return {};
+  if (!(here / parallel::min(mesh.comm, softest) * ratio * ratio >= least_strain)) return {};
   // As forces, which soft motions answer to: what stiff ones leave would end the iteration before.
   const std::vector<double> force = any_start(body);
   std::vector<double> of_stress(force.size());
   if (!method.approximate_inverse(force, of_stress)) return {};
   compression_seen = here;
-  const auto stress = make_stress_stiffness(mesh, body.elastic(), std::move(prestress));
-  const QuotientOperators of{
+  const auto stress = elastic::make_stress_stiffness(mesh, body.elastic(), std::move(prestress));
+  const modes::QuotientOperators of{
       .a = [&](std::span<const double> x, std::span<double> y) { stress->apply(x, y); },
       .b = [&](std::span<const double> x, std::span<double> y) { body.kernel().apply(x, {}, y); },
       .precondition = [&](std::span<const double> r,
                           std::span<double> z) { method.approximate_inverse(r, z); }};
-  const LinearMap loaded = [&](std::span<const double> x, std::span<double> y) {
+  const linalg::LinearMap loaded = [&](std::span<const double> x, std::span<double> y) {
     of.b(x, y);
     of.a(x, of_stress);
     for (std::size_t i = 0; i < y.size(); ++i) y[i] += BucklingEstimate::low * of_stress[i];
   };
-  Curvature found =
-      look_for_negative_curvature(mesh.comm, loaded, of.precondition, force, shown_at, most_searches);
+  modes::Curvature found =
+      modes::look_for_negative_curvature(mesh.comm, loaded, of.precondition, force, shown_at, most_searches);
   if (!found.is_negative) return {.factor = 0, .iterations = found.iterations};
   const auto enough = [](const std::vector<double>& rho) {
     return rho.size() > settled && rho[rho.size() - 1 - settled] - rho.back() < settled_part * -rho.back();
   };
-  const LowestQuotient least =
-      lowest_quotient(mesh.comm, of, std::move(found.x), most_refinements, enough);  // -1 / lambda
+  const modes::LowestQuotient least =
+      modes::lowest_quotient(mesh.comm, of, std::move(found.x), most_refinements, enough);  // -1 / lambda
   return {-1 / least.value, found.iterations + least.iterations};
 }
 

@@ -33,9 +33,9 @@ void EquilibriumWatch::see(const SolidBody& body, const SolidStepper& stepper, c
                            then.norm() / load.norm());
   }
   log::finding(
-      comm_rank(body.mesh().comm),
+      parallel::comm_rank(body.mesh().comm),
       {.id = "unstable-equilibrium",
-       .severity = Severity::wrong,
+       .severity = base::Severity::wrong,
        .number = stiffness,
        .limit = 0,
        .sentence = fmt::format(

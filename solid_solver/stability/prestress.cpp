@@ -10,14 +10,14 @@
 
 namespace couplet::solid {
 
-Prestress prestress_of(const SolidBody& body, const SolidFields& fields, double time) {
-  const Geometry& geometry = body.geometry();
-  const Mesh& mesh = body.mesh();
+elastic::Prestress prestress_of(const SolidBody& body, const SolidFields& fields, double time) {
+  const mesh::Geometry& geometry = body.geometry();
+  const mesh::Mesh& mesh = body.mesh();
   return {fields.face_stress(0, mesh.n_flux_faces(), fields.point_displacement()),
-          pressure_stiffness(mesh, geometry, body.boundaries().pressures(time))};
+          elastic::pressure_stiffness(mesh, geometry, body.boundaries().pressures(time))};
 }
 
-double compression(const Mesh& mesh, const Prestress& prestress) {
+double compression(const mesh::Mesh& mesh, const elastic::Prestress& prestress) {
   double least = 0;
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
     Tensor3 s = prestress.stress[std::size_t(f)];
@@ -26,13 +26,13 @@ double compression(const Mesh& mesh, const Prestress& prestress) {
     solver.computeDirect(s, Eigen::EigenvaluesOnly);
     least = std::min(least, solver.eigenvalues()[0]);
   }
-  return -min(mesh.comm, least);
+  return -parallel::min(mesh.comm, least);
 }
 
 std::vector<double> any_start(const SolidBody& body) {
-  const Geometry& geometry = body.geometry();
-  const Mesh& mesh = body.mesh();
-  const Extent box = extent_of(mesh, geometry);
+  const mesh::Geometry& geometry = body.geometry();
+  const mesh::Mesh& mesh = body.mesh();
+  const mesh::Extent box = mesh::extent_of(mesh, geometry);
   const double size = box.diagonal();
   std::vector<double> start;
   const auto add = [&](const Vec3& x) {

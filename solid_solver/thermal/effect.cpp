@@ -5,7 +5,8 @@
 
 namespace couplet::solid {
 
-std::vector<std::unique_ptr<SolidEffect>> make_effects(const Mesh& mesh, const ElasticOperator& elastic,
+std::vector<std::unique_ptr<SolidEffect>> make_effects(const mesh::Mesh& mesh,
+                                                       const elastic::ElasticOperator& elastic,
                                                        const SolidParameters& parameters) {
   std::vector<std::unique_ptr<SolidEffect>> effects;
   if (parameters.heat || parameters.temperature ||

@@ -24,14 +24,14 @@ class SolidEffect {
  public:
   virtual ~SolidEffect() = default;
   /// A step from t^n is tried: an effect with equations of its own solves them here. Throws SolveFailure.
-  virtual void begin_step(const Step& /*step*/) {}
+  virtual void begin_step(const coupling::Step& /*step*/) {}
   /// Elastic constants that the operator must get for the step now tried, one a local cell; empty: its own
   /// hold. The same answer on all ranks.
-  virtual std::span<const LameConstants> stiffness() const { return {}; }
+  virtual std::span<const elastic::LameConstants> stiffness() const { return {}; }
   /// The operator has got other constants since the last call. Collective.
   virtual void stiffness_changed() {}
   /// Adds its forces [N] at time t within the step to the rows of the kernel.
-  virtual void add_loads(double t, const ElasticKernel& kernel, std::span<double> rhs) = 0;
+  virtual void add_loads(double t, const elastic::ElasticKernel& kernel, std::span<double> rhs) = 0;
   /// The stress - p I it stands for at time t, p [Pa] per local face; empty: none.
   virtual std::vector<double> pressure(double /*t*/) { return {}; }
   virtual void accept_step() {}
@@ -43,29 +43,30 @@ class SolidEffect {
   /// An effect that wants_stress() gets that of the owned cells after each accepted step [Pa].
   virtual bool wants_stress() const { return false; }
   virtual void take_stress(std::span<const Tensor3> /*stress*/) {}
-  virtual void save(CheckpointWriter& /*file*/) const {}
-  virtual void load(CheckpointReader& /*file*/) {}
+  virtual void save(io::CheckpointWriter& /*file*/) const {}
+  virtual void load(io::CheckpointReader& /*file*/) {}
   /// Adds its part of the stress of owned cells at the accepted time [Pa].
   virtual void add_cell_stress(std::span<Tensor3> /*stress*/) const {}
   /// Adds its part of the stress of the local faces first, first + 1, ... at the accepted time [Pa].
   virtual void add_face_stress(Index /*first*/, std::span<Tensor3> /*stress*/) const {}
   /// Appends fields at the accepted time; their values must live until the next call.
-  virtual void add_fields(std::vector<OutputField>& /*fields*/) {}
+  virtual void add_fields(std::vector<io::OutputField>& /*fields*/) {}
   /// Appends fields of the boundary at the accepted time: of all local points, or (place "cells") of the boundary faces of
   /// owned cells; their values must live until the next call. Collective.
-  virtual void add_surface_fields(std::vector<OutputField>& /*fields*/) {}
+  virtual void add_surface_fields(std::vector<io::OutputField>& /*fields*/) {}
   /// Adds what it has seen, for the verdicts on what was left out. Collective.
   virtual void add_evidence(SolidEvidence& /*evidence*/) const {}
   /// Before the first step, if the run is to end with an estimate of its error; else nothing is collected.
   virtual void collect_errors() {}
   /// Of what it loads the solid with, over the size of that. Collective.
-  virtual ErrorParts error_parts() const { return {}; }
+  virtual coupling::ErrorParts error_parts() const { return {}; }
   /// For Participant::finish(), beside the verdicts of the cards.
   virtual void judge(std::vector<std::string>& /*sentences*/) const {}
 };
 
 /// The effects the parameters ask for; none: an empty list.
-std::vector<std::unique_ptr<SolidEffect>> make_effects(const Mesh& mesh, const ElasticOperator& elastic,
+std::vector<std::unique_ptr<SolidEffect>> make_effects(const mesh::Mesh& mesh,
+                                                       const elastic::ElasticOperator& elastic,
                                                        const SolidParameters& parameters);
 
 }  // namespace couplet::solid

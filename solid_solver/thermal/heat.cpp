@@ -18,13 +18,13 @@ constexpr GlobalIndex direct_heat_up_to = 60000;
 // The three-point scheme is stable up to steps that grow by 1 + sqrt 2; beyond, Euler's begins anew.
 constexpr double largest_growth = 2.4;
 
-LinearOptions options_of(const HeatParameters& p, GlobalIndex n_unknowns) {
-  LinearOptions options;
+linalg::LinearOptions options_of(const HeatParameters& p, GlobalIndex n_unknowns) {
+  linalg::LinearOptions options;
   options.relative_tolerance = p.linear_tolerance;
   options.max_iterations = 2000;
-  options.method = n_unknowns <= direct_heat_up_to                  ? LinearMethod::direct
-                   : p.analysis == HeatParameters::Analysis::steady ? LinearMethod::gmres_multigrid
-                                                                    : LinearMethod::bicgstab_ilu;
+  options.method = n_unknowns <= direct_heat_up_to                  ? linalg::LinearMethod::direct
+                   : p.analysis == HeatParameters::Analysis::steady ? linalg::LinearMethod::gmres_multigrid
+                                                                    : linalg::LinearMethod::bicgstab_ilu;
   return options;
 }
 
@@ -35,7 +35,7 @@ struct Heat::Coefficients {
   double next = 0, now = 0, before = 0, theta = 1;
 };
 
-Heat::Heat(const Mesh& mesh, const Geometry& geometry, std::vector<HeatProperties> materials,
+Heat::Heat(const mesh::Mesh& mesh, const mesh::Geometry& geometry, std::vector<HeatProperties> materials,
            const HeatParameters& parameters, const std::vector<std::string>& symmetry_patches)
     : mesh_(&mesh),
       geometry_(&geometry),
@@ -51,9 +51,9 @@ Heat::Heat(const Mesh& mesh, const Geometry& geometry, std::vector<HeatPropertie
         "'type: temperature' or 'type: convection'.");
   properties_vary_ =
       std::ranges::any_of(materials_, [](const HeatProperties& m) { return !m.is_constant(); });
-  solver_ = std::make_unique<LinearSolver>(
+  solver_ = std::make_unique<linalg::LinearSolver>(
       "temperature", matrix_,
-      options_of(parameters_, sum(mesh.comm, static_cast<GlobalIndex>(conduction_.n_unknowns()))));
+      options_of(parameters_, parallel::sum(mesh.comm, static_cast<GlobalIndex>(conduction_.n_unknowns()))));
   if (!is_steady() && parameters_.scheme == HeatParameters::Scheme::trapezoidal) swing_.emplace();
   start();
 }
@@ -61,7 +61,7 @@ Heat::Heat(const Mesh& mesh, const Geometry& geometry, std::vector<HeatPropertie
 Heat::~Heat() = default;
 
 void Heat::start() {
-  const Expression initial(parameters_.initial_temperature, "heat.initial-temperature");
+  const fv::Expression initial(parameters_.initial_temperature, "heat.initial-temperature");
   const Index n_owned = mesh_->cells.n_owned();
   state_.cells.resize(mesh_->cells.n_local());
   state_.boundary.resize(mesh_->boundary.n_local());
@@ -108,8 +108,8 @@ Heat::Coefficients Heat::coefficients(double dt) const {
 // for layers along the face: k = d . n / (d_P / k_P + d_N / k_N).
 void Heat::set_conductivity(const HeatState& state, std::span<double> conductivity) const {
   const std::vector<double> at_faces = face_temperature(state);
-  const Geometry& g = *geometry_;
-  const FaceGradient& faces = conduction_.faces();
+  const mesh::Geometry& g = *geometry_;
+  const fv::FaceGradient& faces = conduction_.faces();
   for (Index f = 0; f < mesh_->n_flux_faces(); ++f) {
     const Index owner = mesh_->owner[f];
     const int zone = mesh_->cell_zone[owner];
@@ -136,7 +136,7 @@ std::vector<double> Heat::sources(double t, std::span<const double> further) con
   return source;
 }
 
-void Heat::solve(const Step& step, std::span<const double> source) {
+void Heat::solve(const coupling::Step& step, std::span<const double> source) {
   const log::ScopedTimer timer(log::timers(), "solid: heat");
   const Coefficients c = coefficients(step.dt);
   const double end = step.time + step.dt;
@@ -179,7 +179,7 @@ void Heat::assemble(const Coefficients& c, std::span<const double> source) {
       capacity_[i] = c.next * m.density * geometry_->volume[i] * m.specific_heat(trial_.cells[i]);
     }
   }
-  const ConductionOperator::Weights weights{conductivity_, transfer_, capacity_, c.theta};
+  const fv::ConductionOperator::Weights weights{conductivity_, transfer_, capacity_, c.theta};
   if (filled_for_ < 0) {
     conduction_.fill(weights, matrix_);
     solver_->matrix_changed();
@@ -228,8 +228,9 @@ double Heat::take_solution() {
   mesh_->cells.update_ghosts(trial_.cells);
   mesh_->boundary.update_ghosts(trial_.boundary);
   conduction_.join_twins(trial_.boundary);
-  const double level = max(mesh_->comm, highest), range = level - min(mesh_->comm, lowest);
-  return max(mesh_->comm, change) / std::max({range, 1e-3 * std::abs(level), 1e-300});
+  const double level = parallel::max(mesh_->comm, highest),
+               range = level - parallel::min(mesh_->comm, lowest);
+  return parallel::max(mesh_->comm, change) / std::max({range, 1e-3 * std::abs(level), 1e-300});
 }
 
 /// R(T^{n+1}), which the next step of the trapezoidal rule needs.
@@ -243,7 +244,7 @@ void Heat::set_inflow(std::span<const double> source) {
   // What is known of a flux face counts, as in the cell's row.
   const auto& faces = conduction_.flux_faces();
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    if (conduction_.condition(faces[i]) == HeatCondition::bonded) continue;
+    if (conduction_.condition(faces[i]) == fv::HeatCondition::bonded) continue;
     const double h = transfer_.empty() ? 0 : transfer_[i];
     heat[faces[i]] = face_heat_[i] - h * geometry_->face_area[faces[i]].norm() *
                                          trial_.boundary[faces[i] - mesh_->n_interior];
@@ -287,7 +288,7 @@ std::vector<double> Heat::boundary_inflow() const {
   std::vector<double> inflow(mesh_->boundary.n_owned(), 0);
   for (std::size_t b = 0; b < inflow.size(); ++b) {
     const Index f = mesh_->n_interior + Index(b);
-    if (conduction_.condition(f) != HeatCondition::symmetry)
+    if (conduction_.condition(f) != fv::HeatCondition::symmetry)
       inflow[b] = heat[f] / geometry_->face_area[f].norm();
   }
   return inflow;
@@ -296,12 +297,12 @@ std::vector<double> Heat::boundary_inflow() const {
 std::vector<PatchHeat> Heat::patch_heat() const {
   const std::vector<double> heat = face_heat();
   std::vector<PatchHeat> result;
-  for (const Patch& patch : mesh_->patches) {
+  for (const mesh::Patch& patch : mesh_->patches) {
     if (patch.bonded) continue;
     double through = 0;
     for (Index f = patch.first; f < patch.first + patch.count; ++f)
-      if (conduction_.condition(f) != HeatCondition::symmetry) through += heat[f];
-    result.push_back({patch.name, sum(mesh_->comm, through)});
+      if (conduction_.condition(f) != fv::HeatCondition::symmetry) through += heat[f];
+    result.push_back({patch.name, parallel::sum(mesh_->comm, through)});
   }
   return result;
 }
@@ -310,7 +311,7 @@ double Heat::stored_heat() const {
   double heat = 0;
   for (Index c = 0; c < mesh_->cells.n_owned(); ++c)
     heat += materials_[mesh_->cell_zone[c]].density * geometry_->volume[c] * state_.enthalpy[c];
-  return sum(mesh_->comm, heat);
+  return parallel::sum(mesh_->comm, heat);
 }
 
 // Heat needs L^2 / a to get through a solid of half thickness L = volume / surface, a = k / (rho c).
@@ -323,12 +324,12 @@ void Heat::judge(std::vector<std::string>& sentences) const {
     level += geometry_->volume[c] * state_.cells[c];
   }
   for (Index f = mesh_->n_interior; f < mesh_->n_flux_faces(); ++f)
-    if (conduction_.condition(f) != HeatCondition::symmetry &&
-        conduction_.condition(f) != HeatCondition::bonded)
+    if (conduction_.condition(f) != fv::HeatCondition::symmetry &&
+        conduction_.condition(f) != fv::HeatCondition::bonded)
       surface += geometry_->face_area[f].norm();
-  volume = sum(mesh_->comm, volume);
-  level = sum(mesh_->comm, level) / volume;
-  const double size = volume / sum(mesh_->comm, surface);
+  volume = parallel::sum(mesh_->comm, volume);
+  level = parallel::sum(mesh_->comm, level) / volume;
+  const double size = volume / parallel::sum(mesh_->comm, surface);
   const double stored = m.density * m.specific_heat(level);
   if (!(stored > 0)) {
     sentences.push_back(
@@ -345,7 +346,7 @@ void Heat::judge(std::vector<std::string>& sentences) const {
                                          "transient'"));
 }
 
-void Heat::save(CheckpointWriter& file) const {
+void Heat::save(io::CheckpointWriter& file) const {
   file.write("cell-temperature", state_.cells);
   file.write("face-temperature", state_.boundary);
   file.write("known-temperature", state_.known);
@@ -357,7 +358,7 @@ void Heat::save(CheckpointWriter& file) const {
   file.write_scalar("heat-steps", state_.steps);
 }
 
-void Heat::load(CheckpointReader& file) {
+void Heat::load(io::CheckpointReader& file) {
   file.read("cell-temperature", state_.cells);
   file.read("face-temperature", state_.boundary);
   file.read("known-temperature", state_.known);

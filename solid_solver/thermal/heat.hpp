@@ -19,9 +19,9 @@ namespace couplet::solid {
 
 /// What conduction needs to know of one material.
 struct HeatProperties {
-  double density = 0;      // [kg/m^3]
-  Property conductivity;   // [W/(m K)]
-  Property specific_heat;  // [J/(kg K)]
+  double density = 0;          // [kg/m^3]
+  fv::Property conductivity;   // [W/(m K)]
+  fv::Property specific_heat;  // [J/(kg K)]
   bool is_constant() const { return conductivity.is_constant() && specific_heat.is_constant(); }
 };
 
@@ -50,18 +50,18 @@ struct PatchHeat {
 class Heat final {
  public:
   /// `materials`: one a zone of the mesh. Collective. Throws Error.
-  Heat(const Mesh& mesh, const Geometry& geometry, std::vector<HeatProperties> materials,
+  Heat(const mesh::Mesh& mesh, const mesh::Geometry& geometry, std::vector<HeatProperties> materials,
        const HeatParameters& parameters, const std::vector<std::string>& symmetry_patches);
   ~Heat();
 
   /// Solves for the temperature at the end of the step; `source`: further heat per owned cell [W/m^3] or
   /// empty. Throws SolveFailure. Collective.
-  void solve(const Step& step, std::span<const double> source = {});
+  void solve(const coupling::Step& step, std::span<const double> source = {});
   void accept_step();
-  void save(CheckpointWriter& file) const;
-  void load(CheckpointReader& file);
+  void save(io::CheckpointWriter& file) const;
+  void load(io::CheckpointReader& file);
 
-  const ConductionOperator& conduction() const { return conduction_; }
+  const fv::ConductionOperator& conduction() const { return conduction_; }
   const HeatState& accepted() const { return state_; }
   const HeatState& trial() const { return trial_; }
   /// Of all local points. Collective.
@@ -89,19 +89,19 @@ class Heat final {
   double take_solution();
   void set_inflow(std::span<const double> source);
 
-  const Mesh* mesh_;
-  const Geometry* geometry_;
+  const mesh::Mesh* mesh_;
+  const mesh::Geometry* geometry_;
   std::vector<HeatProperties> materials_;
   HeatParameters parameters_;
   HeatBoundaries boundaries_;
-  ConductionOperator conduction_;
-  Expression source_;
+  fv::ConductionOperator conduction_;
+  fv::Expression source_;
   bool properties_vary_ = false;
 
   HeatState state_, trial_;
   std::vector<double> conductivity_, face_heat_, transfer_, capacity_, rhs_, unknowns_;
-  SparseMatrix matrix_;
-  std::unique_ptr<LinearSolver> solver_;
+  linalg::SparseMatrix matrix_;
+  std::unique_ptr<linalg::LinearSolver> solver_;
   double filled_for_ = -1;          // a_0 / dt of the matrix now there; -1: none
   std::optional<HeatSwing> swing_;  // of the one scheme that does not damp
 };

@@ -11,23 +11,24 @@ namespace {
 
 using Kind = HeatBoundary::Type;
 
-HeatCondition condition_of(Kind type) {
-  if (type == Kind::temperature) return HeatCondition::temperature;
-  return type == Kind::symmetry ? HeatCondition::symmetry : HeatCondition::flux;
+fv::HeatCondition condition_of(Kind type) {
+  if (type == Kind::temperature) return fv::HeatCondition::temperature;
+  return type == Kind::symmetry ? fv::HeatCondition::symmetry : fv::HeatCondition::flux;
 }
 
 }  // namespace
 
-HeatBoundaries::HeatBoundaries(const Mesh& mesh, const Geometry& geometry, const HeatParameters& parameters,
+HeatBoundaries::HeatBoundaries(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                               const HeatParameters& parameters,
                                const std::vector<std::string>& symmetry_patches)
     : mesh_(&mesh), geometry_(&geometry) {
   std::vector<std::string> names;
-  for (const Patch& patch : mesh.patches)
+  for (const mesh::Patch& patch : mesh.patches)
     if (!patch.bonded) names.push_back(patch.name);
   for (const auto& [name, boundary] : parameters.boundaries)
     if (!mesh.find_patch(name))
       throw Error("heat.boundaries.{}: the mesh has no patch with this name. {}", name,
-                  did_you_mean(name, names, "patches"));
+                  base::did_you_mean(name, names, "patches"));
   for (const std::string& name : names) {
     OnPatch here;
     const auto found = parameters.boundaries.find(name);
@@ -36,10 +37,10 @@ HeatBoundaries::HeatBoundaries(const Mesh& mesh, const Geometry& geometry, const
       const std::string where = "heat.boundaries." + name;
       here.type = b.type;
       if (b.type == Kind::temperature || b.type == Kind::flux)
-        here.value = Expression(b.value, where + ".value");
+        here.value = fv::Expression(b.value, where + ".value");
       if (b.type == Kind::convection) {
-        here.coefficient = Expression(b.coefficient, where + ".coefficient");
-        here.ambient = Expression(b.ambient, where + ".ambient");
+        here.coefficient = fv::Expression(b.coefficient, where + ".coefficient");
+        here.ambient = fv::Expression(b.ambient, where + ".ambient");
       }
     } else if (std::ranges::count(symmetry_patches, name) > 0) {
       here.type = Kind::symmetry;
@@ -49,12 +50,12 @@ HeatBoundaries::HeatBoundaries(const Mesh& mesh, const Geometry& geometry, const
   }
   // The patch of the faces between materials is the last one.
   if (names.size() == mesh.patches.size()) return;
-  conditions_.push_back(HeatCondition::bonded);
+  conditions_.push_back(fv::HeatCondition::bonded);
   on_patch_.emplace_back();
 }
 
 bool HeatBoundaries::fix_the_level() const {
-  return any_transfer() || std::ranges::count(conditions_, HeatCondition::temperature) > 0;
+  return any_transfer() || std::ranges::count(conditions_, fv::HeatCondition::temperature) > 0;
 }
 
 bool HeatBoundaries::any_transfer() const {
@@ -65,15 +66,16 @@ bool HeatBoundaries::transfer_uses_time() const {
   return std::ranges::any_of(on_patch_, [](const OnPatch& p) { return p.coefficient.uses_time(); });
 }
 
-void HeatBoundaries::known(const ConductionOperator& conduction, double t, std::span<double> values) const {
+void HeatBoundaries::known(const fv::ConductionOperator& conduction, double t,
+                           std::span<double> values) const {
   const auto& points = conduction.known_points();
   // A vertex on two such patches takes the value of the first one (order of the mesh file).
   std::vector<Index> column(mesh_->points.n_local(), -1);
   for (std::size_t i = 0; i < points.size(); ++i) column[points[i]] = static_cast<Index>(i);
   std::size_t next = points.size();
   for (std::size_t p = 0; p < on_patch_.size(); ++p) {
-    if (conditions_[p] != HeatCondition::temperature) continue;
-    const Patch& patch = mesh_->patches[p];
+    if (conditions_[p] != fv::HeatCondition::temperature) continue;
+    const mesh::Patch& patch = mesh_->patches[p];
     const auto take_points = [&](Index first, Index count) {
       for (Index f = first; f < first + count; ++f)
         for (const Index v : mesh_->face_points[f]) {
@@ -86,8 +88,8 @@ void HeatBoundaries::known(const ConductionOperator& conduction, double t, std::
     take_points(patch.ghost_first, patch.ghost_count);
   }
   for (std::size_t p = 0; p < on_patch_.size(); ++p) {
-    if (conditions_[p] != HeatCondition::temperature) continue;
-    const Patch& patch = mesh_->patches[p];
+    if (conditions_[p] != fv::HeatCondition::temperature) continue;
+    const mesh::Patch& patch = mesh_->patches[p];
     for (Index f = patch.first; f < patch.first + patch.count; ++f)
       values[next++] = on_patch_[p].value(geometry_->face_centre[f], t);
   }
@@ -96,9 +98,9 @@ void HeatBoundaries::known(const ConductionOperator& conduction, double t, std::
 void HeatBoundaries::fluxes(double t, std::span<double> heat, std::span<double> transfer) const {
   std::size_t next = 0;
   for (std::size_t p = 0; p < on_patch_.size(); ++p) {
-    if (conditions_[p] != HeatCondition::flux) continue;
+    if (conditions_[p] != fv::HeatCondition::flux) continue;
     const OnPatch& here = on_patch_[p];
-    const Patch& patch = mesh_->patches[p];
+    const mesh::Patch& patch = mesh_->patches[p];
     for (Index f = patch.first; f < patch.first + patch.count; ++f, ++next) {
       const Vec3& x = geometry_->face_centre[f];
       const double area = geometry_->face_area[f].norm();

@@ -15,18 +15,18 @@ namespace couplet::solid {
 class HeatBoundaries final {
  public:
   /// `symmetry_patches`: patches that are symmetry planes unless the YAML says otherwise. Throws Error.
-  HeatBoundaries(const Mesh& mesh, const Geometry& geometry, const HeatParameters& parameters,
+  HeatBoundaries(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const HeatParameters& parameters,
                  const std::vector<std::string>& symmetry_patches);
 
   /// One a patch.
-  const std::vector<HeatCondition>& conditions() const { return conditions_; }
+  const std::vector<fv::HeatCondition>& conditions() const { return conditions_; }
   /// Something fixes the level of the temperature: a steady field needs that.
   bool fix_the_level() const;
   bool any_transfer() const;
   bool transfer_uses_time() const;
 
   /// Prescribed temperatures at time t, in the order of the operator's known columns.
-  void known(const ConductionOperator& conduction, double t, std::span<double> values) const;
+  void known(const fv::ConductionOperator& conduction, double t, std::span<double> values) const;
   /// Per entry of conduction.flux_faces(): heat that does not depend on the face's temperature,
   /// |S| (q + h T_inf) [W], and h [W/(m^2 K)]; `transfer` may be empty when there is no convection.
   void fluxes(double t, std::span<double> heat, std::span<double> transfer) const;
@@ -34,12 +34,12 @@ class HeatBoundaries final {
  private:
   struct OnPatch {
     HeatBoundary::Type type = HeatBoundary::Type::adiabatic;
-    Expression value, coefficient, ambient;
+    fv::Expression value, coefficient, ambient;
   };
-  const Mesh* mesh_;
-  const Geometry* geometry_;
+  const mesh::Mesh* mesh_;
+  const mesh::Geometry* geometry_;
   std::vector<OnPatch> on_patch_;
-  std::vector<HeatCondition> conditions_;
+  std::vector<fv::HeatCondition> conditions_;
 };
 
 }  // namespace couplet::solid

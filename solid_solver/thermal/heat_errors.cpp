@@ -11,11 +11,11 @@
 namespace couplet::solid {
 namespace {
 
-TimeSchemeParameters scheme_of(HeatParameters::Scheme scheme) {
-  TimeSchemeParameters p;
-  p.type = scheme == HeatParameters::Scheme::euler         ? TimeScheme::euler
-           : scheme == HeatParameters::Scheme::three_point ? TimeScheme::three_point
-                                                           : TimeScheme::trapezoidal;
+time::TimeSchemeParameters scheme_of(HeatParameters::Scheme scheme) {
+  time::TimeSchemeParameters p;
+  p.type = scheme == HeatParameters::Scheme::euler         ? time::TimeScheme::euler
+           : scheme == HeatParameters::Scheme::three_point ? time::TimeScheme::three_point
+                                                           : time::TimeScheme::trapezoidal;
   return p;
 }
 
@@ -35,25 +35,26 @@ struct Fit {
 
 }  // namespace
 
-HeatErrors::HeatErrors(const Mesh& mesh, const Geometry& geometry, const HeatParameters& parameters)
+HeatErrors::HeatErrors(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                       const HeatParameters& parameters)
     : mesh_(mesh),
       geometry_(geometry),
       steady_(parameters.analysis == HeatParameters::Analysis::steady),
       steps_(scheme_of(parameters.scheme)) {
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume_ += geometry.volume[c];
-  volume_ = sum(mesh.comm, volume_);
+  volume_ = parallel::sum(mesh.comm, volume_);
 }
 
 double HeatErrors::root_mean_square(std::span<const double> cells) const {
   double squares = 0;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) squares += geometry_.volume[c] * cells[c] * cells[c];
-  return std::sqrt(sum(mesh_.comm, squares) / volume_);
+  return std::sqrt(parallel::sum(mesh_.comm, squares) / volume_);
 }
 
 double HeatErrors::mean(std::span<const double> cells) const {
   double whole = 0;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) whole += geometry_.volume[c] * cells[c];
-  return sum(mesh_.comm, whole) / volume_;
+  return parallel::sum(mesh_.comm, whole) / volume_;
 }
 
 double HeatErrors::size(std::span<const double> temperature, double level) const {
@@ -82,7 +83,7 @@ void HeatErrors::see_step(const HeatState& before, const HeatState& now) {
 std::vector<double> HeatErrors::gaps(const Heat& heat) const {
   const HeatState& now = heat.accepted();
   const std::vector<double> faces = heat.face_temperature(now);  // also where nothing is solved for
-  const Geometry& at = geometry_;
+  const mesh::Geometry& at = geometry_;
   std::vector<Fit> fits(std::size_t(mesh_.cells.n_local()));
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
     const Index owner = mesh_.owner[f];
@@ -100,9 +101,9 @@ std::vector<double> HeatErrors::gaps(const Heat& heat) const {
   return gap;
 }
 
-ErrorParts HeatErrors::parts(const Heat& heat, std::optional<double> reference) const {
+coupling::ErrorParts HeatErrors::parts(const Heat& heat, std::optional<double> reference) const {
   const HeatState& now = heat.accepted();
-  ErrorParts parts;
+  coupling::ErrorParts parts;
   if (now.steps == 0) return parts;
   const double level = steady_ || !begun_ ? mean(now.cells) : level_;
   const double varies = size(now.cells, level);
@@ -123,7 +124,7 @@ std::vector<double> HeatErrors::state() const {
 
 void HeatErrors::restore(std::span<const double> state) {
   if (state.empty()) return;
-  SavedNumbers saved(state, "step errors");
+  base::SavedNumbers saved(state, "step errors");
   begun_ = saved.real() != 0, level_ = saved.real(), dt_ = saved.real();
   const std::span<const double> rate = saved.next(saved.count_of(1));
   rate_.assign(rate.begin(), rate.end());

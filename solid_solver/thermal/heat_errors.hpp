@@ -20,11 +20,11 @@ namespace couplet::solid {
 class HeatErrors {
  public:
   /// `mesh` by reference.
-  HeatErrors(const Mesh& mesh, const Geometry& geometry, const HeatParameters& parameters);
+  HeatErrors(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const HeatParameters& parameters);
   /// Between solve and acceptance of a transient.
   void see_step(const HeatState& before, const HeatState& now);
   /// Of what was accepted; with `reference` [K] over the distance from that.
-  ErrorParts parts(const Heat& heat, std::optional<double> reference = {}) const;
+  coupling::ErrorParts parts(const Heat& heat, std::optional<double> reference = {}) const;
   /// For checkpoints; empty: of a run that collected nothing.
   std::vector<double> state() const;
   void restore(std::span<const double> state);
@@ -35,14 +35,14 @@ class HeatErrors {
   double size(std::span<const double> temperature, double level) const;
   std::vector<double> gaps(const Heat& heat) const;
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
   bool steady_;
   double volume_ = 0, level_ = 0;  // of the body [m^3], before the first step [K]
   bool begun_ = false;
   std::vector<double> rate_;  // of the step before [K/s]; empty: not yet
   double dt_ = 0;             // of the step before; 0: not yet
-  VelocityErrors steps_;
+  time::VelocityErrors steps_;
 };
 
 }  // namespace couplet::solid

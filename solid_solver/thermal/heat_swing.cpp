@@ -18,8 +18,8 @@ constexpr double noticeable = 1e-3;      // root mean square of a step's change 
 
 }  // namespace
 
-void HeatSwing::accepted(const Mesh& mesh, const Geometry& geometry, const std::vector<double>& before,
-                         const std::vector<double>& after, double time) {
+void HeatSwing::accepted(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                         const std::vector<double>& before, const std::vector<double>& after, double time) {
   if (told_) return;
   const bool first = !begun_;  // the same on all ranks, also on one without cells
   begun_ = true;
@@ -47,7 +47,7 @@ void HeatSwing::accepted(const Mesh& mesh, const Geometry& geometry, const std::
   if (turns_ < patience) return;
   told_ = true;
   log::finding(
-      comm_rank(mesh.comm),
+      parallel::comm_rank(mesh.comm),
       {.id = "heat-swing",
        .number = size / (highest_ - lowest_),
        .limit = noticeable,

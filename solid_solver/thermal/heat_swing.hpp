@@ -13,7 +13,7 @@ namespace couplet::solid {
 class HeatSwing {
  public:
   /// Of an accepted step that ends at `time` [s], temperatures of local cells [K]. Collective.
-  void accepted(const Mesh& mesh, const Geometry& geometry, const std::vector<double>& before,
+  void accepted(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const std::vector<double>& before,
                 const std::vector<double>& after, double time);
 
  private:

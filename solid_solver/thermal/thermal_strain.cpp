@@ -19,15 +19,15 @@ std::vector<std::string> symmetry_patches(const SolidParameters& parameters) {
   return names;
 }
 
-Property property(const std::optional<config::ExpressionText>& text, const std::string& key,
-                  const char* needed_by) {
+fv::Property property(const std::optional<config::ExpressionText>& text, const std::string& key,
+                      const char* needed_by) {
   if (!text) throw Error("material.{}: this key is missing; {} requires it.", key, needed_by);
-  return Property(*text, "material." + key);
+  return fv::Property(*text, "material." + key);
 }
 
 }  // namespace
 
-std::unique_ptr<Heat> make_heat(const Mesh& mesh, const Geometry& geometry,
+std::unique_ptr<Heat> make_heat(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                                 const SolidParameters& parameters) {
   const auto properties = [&](const SolidMaterial& material) {
     const HeatMaterial& m = material.heat;
@@ -48,7 +48,7 @@ std::unique_ptr<Heat> make_heat(const Mesh& mesh, const Geometry& geometry,
                                 symmetry_patches(parameters));
 }
 
-ThermalStrain::ThermalStrain(const Mesh& mesh, const ElasticOperator& elastic,
+ThermalStrain::ThermalStrain(const mesh::Mesh& mesh, const elastic::ElasticOperator& elastic,
                              const SolidParameters& parameters)
     : mesh_(&mesh),
       geometry_(&elastic.geometry()),
@@ -56,7 +56,7 @@ ThermalStrain::ThermalStrain(const Mesh& mesh, const ElasticOperator& elastic,
       parameters_(parameters),
       materials_(materials_of(parameters)),
       coupled_(parameters.thermoelastic_coupling) {
-  const Geometry& geometry = elastic.geometry();
+  const mesh::Geometry& geometry = elastic.geometry();
   if (parameters.heat) heat_ = make_heat(mesh, geometry, parameters);
   given_ = parameters.interface_data && parameters.interface_data->temperature;
   if (parameters.temperature) prescribed_.emplace(*parameters.temperature, "temperature");
@@ -83,7 +83,7 @@ ThermalStrain::ThermalStrain(const Mesh& mesh, const ElasticOperator& elastic,
 }
 
 double ThermalStrain::modulus(Index cell) const {
-  const LameConstants& lame = elastic_->lame(cell);
+  const elastic::LameConstants& lame = elastic_->lame(cell);
   return (plane_stress_ ? 2 : 3) * lame.lambda + 2 * lame.mu;
 }
 
@@ -94,7 +94,7 @@ double ThermalStrain::face_modulus(Index face) const {
 }
 
 double ThermalStrain::three_bulk(Index cell) const {
-  LameConstants lame = elastic_->lame(cell);
+  elastic::LameConstants lame = elastic_->lame(cell);
   if (plane_stress_) lame.lambda = 2 * lame.lambda * lame.mu / (2 * lame.mu - lame.lambda);  // the true one
   return 3 * lame.lambda + 2 * lame.mu;
 }
@@ -108,8 +108,8 @@ std::vector<double> ThermalStrain::cell_temperature(double t, bool trial) const 
   return values;
 }
 
-std::vector<LameConstants> ThermalStrain::lame_at(std::span<const double> temperature) const {
-  std::vector<LameConstants> result;
+std::vector<elastic::LameConstants> ThermalStrain::lame_at(std::span<const double> temperature) const {
+  std::vector<elastic::LameConstants> result;
   for (Index c = 0; c < mesh_->cells.n_local(); ++c) {
     const int i = mesh_->material_of(c);
     SolidMaterial m = materials_[i];
@@ -129,19 +129,19 @@ void ThermalStrain::choose_stiffness(double t) {
     change = std::max({change, 2 * std::abs(lame_trial_[c].mu - lame_[c].mu) / size,
                        std::abs(lame_trial_[c].lambda - lame_[c].lambda) / size});
   }
-  if (max(mesh_->comm, change) <= parameters_.stiffness_tolerance) lame_trial_ = lame_;
+  if (parallel::max(mesh_->comm, change) <= parameters_.stiffness_tolerance) lame_trial_ = lame_;
 }
 
 // All ranks answer alike: new matrices are made together.
-std::span<const LameConstants> ThermalStrain::stiffness() const {
+std::span<const elastic::LameConstants> ThermalStrain::stiffness() const {
   if (!varies_) return {};
   bool differs = false;
   for (std::size_t c = 0; c < lame_trial_.size(); ++c) {
-    const LameConstants now = elastic_->lame(static_cast<Index>(c));
+    const elastic::LameConstants now = elastic_->lame(static_cast<Index>(c));
     differs = differs || now.mu != lame_trial_[c].mu || now.lambda != lame_trial_[c].lambda;
   }
-  return any(mesh_->comm, differs) ? std::span<const LameConstants>(lame_trial_)
-                                   : std::span<const LameConstants>();
+  return parallel::any(mesh_->comm, differs) ? std::span<const elastic::LameConstants>(lame_trial_)
+                                             : std::span<const elastic::LameConstants>();
 }
 
 std::vector<double> ThermalStrain::face_temperature(double t, bool trial) const {
@@ -198,7 +198,9 @@ std::vector<double> ThermalStrain::stress_of(const std::vector<double>& strain) 
   if (!by_cells()) return stress;
   std::vector<double> of_cells = pyramid_means(strain);
   of_cells.resize(std::size_t(mesh_->cells.n_local()));
-  const auto bulk = [&](Index c) { return 3 * bulk_of_cells(elastic_->lame(c), elastic_->volume_strain()); };
+  const auto bulk = [&](Index c) {
+    return 3 * elastic::bulk_of_cells(elastic_->lame(c), elastic_->volume_strain());
+  };
   for (Index c = 0; c < mesh_->cells.n_owned(); ++c) of_cells[c] *= bulk(c);
   mesh_->cells.update_ghosts(of_cells);
   for (Index f = 0; f < std::ssize(stress); ++f) {
@@ -208,14 +210,14 @@ std::vector<double> ThermalStrain::stress_of(const std::vector<double>& strain) 
       continue;
     }
     const Index neighbour = mesh_->neighbour[f];
-    const auto [here, there] = pyramids(*mesh_, *geometry_, f);
+    const auto [here, there] = elastic::pyramids(*mesh_, *geometry_, f);
     stress[f] += (here * of_cells[owner] + there * of_cells[neighbour]) / (here + there) -
                  0.5 * (bulk(owner) + bulk(neighbour)) * strain[f];
   }
   return stress;
 }
 
-void ThermalStrain::begin_step(const Step& step) {
+void ThermalStrain::begin_step(const coupling::Step& step) {
   step_ = step;
   if (heat_) {
     std::vector<double> source(dilation_rate_.size());
@@ -231,7 +233,7 @@ void ThermalStrain::begin_step(const Step& step) {
   if (varies_) choose_stiffness(step.time + step.dt);
 }
 
-void ThermalStrain::add_loads(double t, const ElasticKernel& kernel, std::span<double> rhs) {
+void ThermalStrain::add_loads(double t, const elastic::ElasticKernel& kernel, std::span<double> rhs) {
   if (expands()) kernel.add_pressure(pressure(t), rhs);
 }
 
@@ -284,7 +286,7 @@ std::vector<double> ThermalStrain::pyramid_means(const std::vector<double>& of_f
       total[c] += pyramid * of_faces[f];
       weight[c] += pyramid;
     };
-    const auto [here, there] = pyramids(*mesh_, *geometry_, f);
+    const auto [here, there] = elastic::pyramids(*mesh_, *geometry_, f);
     add(mesh_->owner[f], here);
     if (f < mesh_->n_interior) add(mesh_->neighbour[f], there);
   }
@@ -319,7 +321,7 @@ void ThermalStrain::take_stress(std::span<const Tensor3> stress) {
 /// material where it is most.
 double ThermalStrain::coupling_number() const {
   double most = 0;
-  const double temperature = max(mesh_->comm, highest_);
+  const double temperature = parallel::max(mesh_->comm, highest_);
   for (std::size_t i = 0; heat_ && expands() && i < materials_.size(); ++i) {
     const SolidMaterial& m = materials_[i];
     if (!m.heat.specific_heat) continue;
@@ -327,7 +329,7 @@ double ThermalStrain::coupling_number() const {
     const double beta = e / (1 - 2 * nu) * expansion_[i](temperature);
     const double stiff = e * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
     const double capacity =
-        m.density * Property(*m.heat.specific_heat, "material.specific-heat")(temperature);
+        m.density * fv::Property(*m.heat.specific_heat, "material.specific-heat")(temperature);
     most = std::max(most, beta * beta * temperature / (stiff * capacity));
   }
   return most;
@@ -341,7 +343,7 @@ std::vector<double> ThermalStrain::point_temperature() const {
   return values;
 }
 
-void ThermalStrain::add_fields(std::vector<OutputField>& fields) {
+void ThermalStrain::add_fields(std::vector<io::OutputField>& fields) {
   points_ = point_temperature();
   if (heat_) {
     cells_ = heat_->accepted().cells;
@@ -351,19 +353,19 @@ void ThermalStrain::add_fields(std::vector<OutputField>& fields) {
     cells_.resize(mesh_->cells.n_local());
     prescribed_->evaluate(geometry_->cell_centre, time_, cells_);
   }
-  fields.push_back({"temperature", "K", OutputField::Place::points, 1, points_});
-  fields.push_back({"cell-temperature", "K", OutputField::Place::cells, 1, cells_});
+  fields.push_back({"temperature", "K", io::OutputField::Place::points, 1, points_});
+  fields.push_back({"cell-temperature", "K", io::OutputField::Place::cells, 1, cells_});
 }
 
-void ThermalStrain::add_surface_fields(std::vector<OutputField>& fields) {
+void ThermalStrain::add_surface_fields(std::vector<io::OutputField>& fields) {
   points_ = point_temperature();
-  fields.push_back({"temperature", "K", OutputField::Place::points, 1, points_});
+  fields.push_back({"temperature", "K", io::OutputField::Place::points, 1, points_});
   if (!heat_) return;
   inflow_ = heat_->boundary_inflow();
-  fields.push_back({"heat-flux", "W/m^2", OutputField::Place::cells, 1, inflow_});
+  fields.push_back({"heat-flux", "W/m^2", io::OutputField::Place::cells, 1, inflow_});
 }
 
-void ThermalStrain::save(CheckpointWriter& file) const {
+void ThermalStrain::save(io::CheckpointWriter& file) const {
   if (heat_)
     heat_->save(file), file.write("temperature-errors", errors_ ? errors_->state() : std::vector<double>{});
   if (given_) file.write("interface-temperature", given_accepted_);
@@ -372,14 +374,14 @@ void ThermalStrain::save(CheckpointWriter& file) const {
     file.write("dilation-rate", dilation_rate_);
   }
   std::vector<double> constants;
-  for (const LameConstants& lame : lame_) constants.insert(constants.end(), {lame.mu, lame.lambda});
+  for (const elastic::LameConstants& lame : lame_) constants.insert(constants.end(), {lame.mu, lame.lambda});
   if (varies_) file.write("elastic-constants", constants);
   file.write_scalar("temperature-time", time_);
-  file.write_scalar("lowest-temperature", min(mesh_->comm, lowest_));
-  file.write_scalar("highest-temperature", max(mesh_->comm, highest_));
+  file.write_scalar("lowest-temperature", parallel::min(mesh_->comm, lowest_));
+  file.write_scalar("highest-temperature", parallel::max(mesh_->comm, highest_));
 }
 
-void ThermalStrain::load(CheckpointReader& file) {
+void ThermalStrain::load(io::CheckpointReader& file) {
   if (heat_) {
     heat_->load(file);
     const std::vector<double> errors = file.read("temperature-errors");
@@ -409,8 +411,8 @@ void ThermalStrain::collect_errors() {
   if (heat_ && expands()) errors_.emplace(*mesh_, *geometry_, parameters_.heat.value());
 }
 
-ErrorParts ThermalStrain::error_parts() const {
-  return errors_ ? errors_->parts(*heat_, reference_) : ErrorParts{};
+coupling::ErrorParts ThermalStrain::error_parts() const {
+  return errors_ ? errors_->parts(*heat_, reference_) : coupling::ErrorParts{};
 }
 
 void ThermalStrain::judge(std::vector<std::string>& sentences) const {
@@ -419,7 +421,7 @@ void ThermalStrain::judge(std::vector<std::string>& sentences) const {
 
 void ThermalStrain::add_evidence(SolidEvidence& evidence) const {
   if (const double number = coupling_number(); number > 0) evidence.coupling_number = number;
-  const double high = max(mesh_->comm, highest_), low = min(mesh_->comm, lowest_),
+  const double high = parallel::max(mesh_->comm, highest_), low = parallel::min(mesh_->comm, lowest_),
                reference = parameters_.expansion.value_or(ThermalExpansion{}).reference_temperature;
   evidence.temperature_range = high - low;
   evidence.temperature_change = std::max(std::abs(high - reference), std::abs(low - reference));

@@ -16,7 +16,7 @@
 namespace couplet::solid {
 
 /// Conduction for this mesh and these parameters (`parameters.heat` must be there). Collective.
-std::unique_ptr<Heat> make_heat(const Mesh& mesh, const Geometry& geometry,
+std::unique_ptr<Heat> make_heat(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                                 const SolidParameters& parameters);
 
 /// Temperature in the solid, solved for or prescribed, and the stress it makes, thesis (2.21), (2.60):
@@ -29,12 +29,13 @@ std::unique_ptr<Heat> make_heat(const Mesh& mesh, const Geometry& geometry,
 /// (2.27).
 class ThermalStrain final : public SolidEffect {
  public:
-  ThermalStrain(const Mesh& mesh, const ElasticOperator& elastic, const SolidParameters& parameters);
+  ThermalStrain(const mesh::Mesh& mesh, const elastic::ElasticOperator& elastic,
+                const SolidParameters& parameters);
 
-  void begin_step(const Step& step) override;
-  std::span<const LameConstants> stiffness() const override;
+  void begin_step(const coupling::Step& step) override;
+  std::span<const elastic::LameConstants> stiffness() const override;
   void stiffness_changed() override;
-  void add_loads(double t, const ElasticKernel& kernel, std::span<double> rhs) override;
+  void add_loads(double t, const elastic::ElasticKernel& kernel, std::span<double> rhs) override;
   std::vector<double> pressure(double t) override;
   void accept_step() override;
   bool wants_temperature() const override { return given_; }
@@ -42,17 +43,17 @@ class ThermalStrain final : public SolidEffect {
   void take_temperature(const std::vector<double>& faces) override;
   bool wants_stress() const override { return coupled_; }
   void take_stress(std::span<const Tensor3> stress) override;
-  void save(CheckpointWriter& file) const override;
-  void load(CheckpointReader& file) override;
+  void save(io::CheckpointWriter& file) const override;
+  void load(io::CheckpointReader& file) override;
   void add_cell_stress(std::span<Tensor3> stress) const override;
   void add_face_stress(Index first, std::span<Tensor3> stress) const override;
-  void add_fields(std::vector<OutputField>& fields) override;
-  void add_surface_fields(std::vector<OutputField>& fields) override;
+  void add_fields(std::vector<io::OutputField>& fields) override;
+  void add_surface_fields(std::vector<io::OutputField>& fields) override;
   void add_evidence(SolidEvidence& evidence) const override;
   void judge(std::vector<std::string>& sentences) const override;
   void collect_errors() override;
   /// Of the temperature that is solved for, over its distance from the reference: the strain errs by as much.
-  ErrorParts error_parts() const override;
+  coupling::ErrorParts error_parts() const override;
 
   /// None: the temperature is prescribed.
   const Heat* heat() const { return heat_.get(); }
@@ -81,31 +82,31 @@ class ThermalStrain final : public SolidEffect {
   double coupling_number() const;
   void set_accepted();
   std::vector<double> cell_temperature(double t, bool trial) const;  // of all local cells
-  std::vector<LameConstants> lame_at(std::span<const double> temperature) const;
+  std::vector<elastic::LameConstants> lame_at(std::span<const double> temperature) const;
   void choose_stiffness(double t);
 
-  const Mesh* mesh_;
-  const Geometry* geometry_;
-  const ElasticOperator* elastic_;
+  const mesh::Mesh* mesh_;
+  const mesh::Geometry* geometry_;
+  const elastic::ElasticOperator* elastic_;
   std::unique_ptr<Heat> heat_;        // none: prescribed
   std::optional<HeatErrors> errors_;  // none: not wanted
-  std::optional<Expression> prescribed_;
+  std::optional<fv::Expression> prescribed_;
   bool given_ = false;                                // at the interface
   std::optional<InterfaceTemperature> interface_;     // once it is known where that is
   std::vector<double> given_accepted_, given_trial_;  // at its faces that are needed here [K]
-  std::vector<Property> expansion_;                   // one a material; none: no thermal strain
+  std::vector<fv::Property> expansion_;               // one a material; none: no thermal strain
   double reference_ = 0;                              // [K]
   bool plane_stress_ = false;
   SolidParameters parameters_;
-  std::vector<std::optional<Property>> youngs_modulus_, poissons_ratio_;  // one a material
-  bool varies_ = false;                                                   // some of them
-  std::vector<LameConstants> lame_,
+  std::vector<std::optional<fv::Property>> youngs_modulus_, poissons_ratio_;  // one a material
+  bool varies_ = false;                                                       // some of them
+  std::vector<elastic::LameConstants> lame_,
       lame_trial_;  // per local cell, of the accepted and the trial step; if varies_
   std::vector<SolidMaterial> materials_;
   bool coupled_ = false;
   std::vector<double> dilation_, dilation_rate_;  // tr(eps) and its rate, per owned cell; when coupled
 
-  Step step_;
+  coupling::Step step_;
   double time_ = 0;                              // of the accepted state
   std::vector<double> start_, end_;              // face temperatures at both ends of the step
   std::vector<double> accepted_strain_;          // per flux face of the mesh, at the accepted time

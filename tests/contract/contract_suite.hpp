@@ -39,16 +39,18 @@ namespace couplet::contract {
 /// One mesh for all participants of a factory on one communicator: a second partitioning within a process may
 /// differ from the first, and a checkpoint belongs to its partition.
 template <class Factory>
-const LoadedMesh& mesh_of(MPI_Comm comm) {
-  static std::map<bool, LoadedMesh> meshes;
+const mesh::LoadedMesh& mesh_of(MPI_Comm comm) {
+  static std::map<bool, mesh::LoadedMesh> meshes;
   const auto [place, is_new] = meshes.try_emplace(comm == MPI_COMM_SELF);
-  if (is_new) place->second = distribute(comm, comm_rank(comm) == 0 ? Factory::raw_mesh() : RawMesh{});
+  if (is_new)
+    place->second =
+        mesh::distribute(comm, parallel::comm_rank(comm) == 0 ? Factory::raw_mesh() : mesh::RawMesh{});
   return place->second;
 }
 
 /// Largest difference over the largest value of this rank; empty vectors (a rank without places) do not
 /// differ.
-inline double difference(const Exchange& a, const Exchange& b) {
+inline double difference(const coupling::Exchange& a, const coupling::Exchange& b) {
   double worst = 0;
   for (const auto& [name, values] : a) {
     const auto found = b.find(name);
@@ -68,10 +70,11 @@ inline double difference(const Exchange& a, const Exchange& b) {
 }
 
 /// Of values at the places of `whole` those at the places of `part`, by their numbers.
-inline Exchange part_of(const Exchange& values, const Interface& whole, const Interface& part) {
-  Exchange result;
+inline coupling::Exchange part_of(const coupling::Exchange& values, const coupling::Interface& whole,
+                                  const coupling::Interface& part) {
+  coupling::Exchange result;
   for (const auto& datum : whole.gives) {
-    const bool at_vertices = datum.place == Interface::Place::vertices;
+    const bool at_vertices = datum.place == coupling::Interface::Place::vertices;
     const auto &ids = at_vertices ? whole.vertex_ids : whole.face_ids,
                &wanted = at_vertices ? part.vertex_ids : part.face_ids;
     const std::size_t entries = at_vertices ? part.vertices.size() : part.face_centres.size();
@@ -95,8 +98,8 @@ template <class Factory>
 class ParticipantContract : public ::testing::Test {
  protected:
   struct Subject {
-    std::unique_ptr<Participant> participant;
-    Interface interface;
+    std::unique_ptr<coupling::Participant> participant;
+    coupling::Interface interface;
     int steps = 0;
 
     explicit Subject(MPI_Comm comm)
@@ -104,10 +107,10 @@ class ParticipantContract : public ::testing::Test {
     void begin(double dt = Factory::dt) {
       participant->begin_step({steps * Factory::dt, dt, Factory::scheme, steps});
     }
-    Exchange solve(double factor) { return participant->solve(Factory::input(interface, factor)); }
-    Exchange step(double factor) {
+    coupling::Exchange solve(double factor) { return participant->solve(Factory::input(interface, factor)); }
+    coupling::Exchange step(double factor) {
       begin();
-      const Exchange out = solve(factor);
+      const coupling::Exchange out = solve(factor);
       participant->accept_step();
       ++steps;
       return out;
@@ -119,13 +122,14 @@ TYPED_TEST_SUITE_P(ParticipantContract);
 
 TYPED_TEST_P(ParticipantContract, output_is_what_the_interface_announced) {
   typename TestFixture::Subject subject(MPI_COMM_WORLD);
-  const Exchange out = subject.step(1);
-  ASSERT_TRUE(any(MPI_COMM_WORLD, !subject.interface.empty()));
+  const coupling::Exchange out = subject.step(1);
+  ASSERT_TRUE(parallel::any(MPI_COMM_WORLD, !subject.interface.empty()));
   if (subject.interface.empty()) return;
   EXPECT_EQ(subject.interface.face_areas.size(), subject.interface.face_centres.size());
   for (const auto& datum : subject.interface.gives) {
-    const auto entries = datum.place == Interface::Place::vertices ? subject.interface.vertices.size()
-                                                                   : subject.interface.face_centres.size();
+    const auto entries = datum.place == coupling::Interface::Place::vertices
+                             ? subject.interface.vertices.size()
+                             : subject.interface.face_centres.size();
     ASSERT_TRUE(out.contains(datum.name)) << datum.name;
     EXPECT_EQ(out.at(datum.name).size(), entries * datum.size(subject.interface.dim)) << datum.name;
     double largest = 0;
@@ -137,15 +141,15 @@ TYPED_TEST_P(ParticipantContract, output_is_what_the_interface_announced) {
 TYPED_TEST_P(ParticipantContract, input_matters) {
   typename TestFixture::Subject subject(MPI_COMM_WORLD);
   subject.begin();
-  const Exchange one = subject.solve(1), other = subject.solve(-2);
-  EXPECT_GT(max(MPI_COMM_WORLD, difference(one, other)), 1e-3);
+  const coupling::Exchange one = subject.solve(1), other = subject.solve(-2);
+  EXPECT_GT(parallel::max(MPI_COMM_WORLD, difference(one, other)), 1e-3);
 }
 
 TYPED_TEST_P(ParticipantContract, equal_input_gives_equal_output_within_a_step) {
   typename TestFixture::Subject subject(MPI_COMM_WORLD);
   subject.step(1);
   subject.begin();
-  const Exchange first = subject.solve(1);
+  const coupling::Exchange first = subject.solve(1);
   subject.solve(-2);
   EXPECT_LE(difference(first, subject.solve(1)), TypeParam::repeat_tolerance);
 }
@@ -181,32 +185,32 @@ TYPED_TEST_P(ParticipantContract, a_checkpoint_continues_bit_for_bit) {
   typename TestFixture::Subject subject(MPI_COMM_WORLD), other(MPI_COMM_WORLD);
   for (int i = 0; i < 3; ++i) subject.step(1 + i);
   {
-    CheckpointWriter writer(MPI_COMM_WORLD, file);
+    io::CheckpointWriter writer(MPI_COMM_WORLD, file);
     subject.participant->save(writer);
     writer.close();
-    CheckpointReader reader(MPI_COMM_WORLD, file);
+    io::CheckpointReader reader(MPI_COMM_WORLD, file);
     other.participant->load(reader);
     other.steps = subject.steps;
   }
-  const double allowed = comm_size(MPI_COMM_WORLD) == 1 ? 0 : TypeParam::restart_tolerance;
+  const double allowed = parallel::comm_size(MPI_COMM_WORLD) == 1 ? 0 : TypeParam::restart_tolerance;
   for (int i = 0; i < 3; ++i)
     EXPECT_LE(difference(subject.step(2 - i), other.step(2 - i)), allowed) << "step " << i;
-  if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove(file);
+  if (parallel::comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove(file);
 }
 
 /// Whether and how often a run is saved is nothing to it: what a solver learnt from earlier steps (guesses, a
 /// preconditioner that lags behind its matrix) survives.
 TYPED_TEST_P(ParticipantContract, checkpoints_leave_a_run_as_it_is) {
   typename TestFixture::Subject never(MPI_COMM_WORLD), once(MPI_COMM_WORLD), always(MPI_COMM_WORLD);
-  const auto save = [](const Participant& participant) {
-    StateInMemory memory;
-    CheckpointWriter writer(memory);
+  const auto save = [](const coupling::Participant& participant) {
+    io::StateInMemory memory;
+    io::CheckpointWriter writer(memory);
     participant.save(writer);
     writer.close();
   };
-  const double allowed = comm_size(MPI_COMM_WORLD) == 1 ? 0 : TypeParam::restart_tolerance;
+  const double allowed = parallel::comm_size(MPI_COMM_WORLD) == 1 ? 0 : TypeParam::restart_tolerance;
   for (int i = 0; i < 6; ++i) {
-    const Exchange expected = never.step(1 + i);
+    const coupling::Exchange expected = never.step(1 + i);
     EXPECT_LE(difference(expected, once.step(1 + i)), allowed) << "saved once, step " << i;
     EXPECT_LE(difference(expected, always.step(1 + i)), allowed) << "saved always, step " << i;
     if (i == 2) save(*once.participant);
@@ -217,7 +221,7 @@ TYPED_TEST_P(ParticipantContract, checkpoints_leave_a_run_as_it_is) {
 TYPED_TEST_P(ParticipantContract, all_ranks_together_give_what_one_rank_gives) {
   typename TestFixture::Subject together(MPI_COMM_WORLD), alone(MPI_COMM_SELF);
   for (int i = 0; i < 3; ++i) {
-    const Exchange out = together.step(1 + i), expected = alone.step(1 + i);
+    const coupling::Exchange out = together.step(1 + i), expected = alone.step(1 + i);
     EXPECT_LE(difference(part_of(expected, alone.interface, together.interface), out),
               TypeParam::rank_tolerance)
         << "step " << i;
@@ -226,19 +230,19 @@ TYPED_TEST_P(ParticipantContract, all_ranks_together_give_what_one_rank_gives) {
 
 /// As a job that gives up writes it: the state before the step, to the bit.
 TYPED_TEST_P(ParticipantContract, a_step_that_fails_leaves_state_n_bit_for_bit) {
-  if constexpr (requires { TypeParam::hopeless(Interface{}); }) {
+  if constexpr (requires { TypeParam::hopeless(coupling::Interface{}); }) {
     typename TestFixture::Subject subject(MPI_COMM_WORLD);
     const auto saved = [&] {
       int id = ::getpid();
       MPI_Bcast(&id, 1, MPI_INT, 0, MPI_COMM_WORLD);
       const auto file =
           std::filesystem::temp_directory_path() / ("couplet-failing-" + std::to_string(id) + ".h5");
-      CheckpointWriter writer(MPI_COMM_WORLD, file);
+      io::CheckpointWriter writer(MPI_COMM_WORLD, file);
       subject.participant->save(writer);
       writer.close();
       const Contents all = contents(file);
       MPI_Barrier(MPI_COMM_WORLD);
-      if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove(file);
+      if (parallel::comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove(file);
       MPI_Barrier(MPI_COMM_WORLD);
       return all;
     };

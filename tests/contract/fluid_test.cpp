@@ -5,6 +5,8 @@
 #include "tests/contract/standalone_suite.hpp"
 
 namespace couplet::contract {
+using namespace coupling;
+using namespace mesh;
 namespace {
 
 /// Moves the mesh up by an amount that falls from the lower wall to the top, as the last input asked for.
@@ -165,7 +167,7 @@ TEST(SemiImplicitFluid, renews_its_prediction_where_friction_would_say_something
     return out;
   };
   const auto renewed = passes({1, 50, 50, 50}), told = passes({50}), kept = passes({50, 50.001, 50, 50});
-  if (comm_rank(MPI_COMM_WORLD) != 0) return;
+  if (parallel::comm_rank(MPI_COMM_WORLD) != 0) return;
   EXPECT_GT(difference(renewed[1], told[0]), 1e-5) << "friction does not matter here: the case shows nothing";
   EXPECT_LT(difference(renewed[3], told[0]), 1e-8);
   EXPECT_LT(difference(kept[3], told[0]), 1e-8);

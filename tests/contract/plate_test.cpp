@@ -3,6 +3,7 @@
 #include "tests/contract/contract_suite.hpp"
 
 namespace couplet::contract {
+using namespace coupling;
 namespace {
 
 /// A clamped plate, wetted on both sides and its free rims; with a seat that it presses on.
@@ -21,9 +22,10 @@ struct PlateFactory {
       p.contact->height.text = "-0.0501";
       p.contact->stiffness = 1e5;
     } else {
-      p.time_scheme.type = TimeScheme::bathe;
+      p.time_scheme.type = time::TimeScheme::bathe;
     }
-    static const RawMesh raw = make_box(BoxCells::quadrilaterals, {4, 5, 1}, Vec3::Zero(), Vec3(1, 1, 0));
+    static const mesh::RawMesh raw =
+        mesh::make_box(mesh::BoxCells::quadrilaterals, {4, 5, 1}, Vec3::Zero(), Vec3(1, 1, 0));
     plate::PlateContext context;
     context.comm = comm;
     return std::make_unique<plate::Structure>(p, context, &raw);

@@ -4,6 +4,7 @@
 #include "tests/contract/standalone_suite.hpp"
 
 namespace couplet::contract {
+using namespace coupling;
 
 using namespace solid;
 namespace {
@@ -13,8 +14,8 @@ using Kinematics = SolidParameters::Kinematics;
 /// A clamped column, wetted on three sides.
 template <Kinematics kinematics, int nu_by_ten_thousand = 3000>
 struct SolidFactory {
-  static RawMesh raw_mesh() {
-    return make_box(BoxCells::quadrilaterals, {3, 12, 1}, Vec3::Zero(), Vec3(0.1, 1, 0));
+  static mesh::RawMesh raw_mesh() {
+    return mesh::make_box(mesh::BoxCells::quadrilaterals, {3, 12, 1}, Vec3::Zero(), Vec3(0.1, 1, 0));
   }
   static std::unique_ptr<Participant> make(MPI_Comm comm) {
     SolidParameters p;
@@ -47,7 +48,7 @@ struct SolidFactory {
 /// The column on its own, pushed by a traction.
 template <Kinematics kinematics, int nu_by_ten_thousand = 3000>
 struct SolidAlone {
-  static RawMesh raw_mesh() { return SolidFactory<kinematics>::raw_mesh(); }
+  static mesh::RawMesh raw_mesh() { return SolidFactory<kinematics>::raw_mesh(); }
   static std::unique_ptr<Participant> make(MPI_Comm comm) {
     SolidParameters p;
     p.mesh = "box";

@@ -18,12 +18,12 @@ template <class Factory>
 class StandaloneContract : public ::testing::Test {
  protected:
   struct Subject {
-    std::unique_ptr<Participant> participant = Factory::make(MPI_COMM_WORLD);
+    std::unique_ptr<coupling::Participant> participant = Factory::make(MPI_COMM_WORLD);
     int steps = 0;
 
     Subject() { EXPECT_TRUE(participant->initialise().empty()); }
     void solve(double dt = Factory::dt) {
-      participant->begin_step({steps * Factory::dt, dt, Scheme::standalone, steps});
+      participant->begin_step({steps * Factory::dt, dt, coupling::Scheme::standalone, steps});
       participant->solve({});
     }
     void step() {
@@ -37,21 +37,23 @@ class StandaloneContract : public ::testing::Test {
     MPI_Bcast(&id, 1, MPI_INT, 0, MPI_COMM_WORLD);
     return std::filesystem::temp_directory_path() / ("couplet-alone-" + std::to_string(id) + name);
   }
-  static void save(const Participant& participant, const std::filesystem::path& to) {
-    CheckpointWriter writer(MPI_COMM_WORLD, to);
+  static void save(const coupling::Participant& participant, const std::filesystem::path& to) {
+    io::CheckpointWriter writer(MPI_COMM_WORLD, to);
     participant.save(writer);
     writer.close();
   }
-  static Contents saved(const Participant& participant) {
+  static Contents saved(const coupling::Participant& participant) {
     const auto to = file("-saved.h5");
     save(participant, to);
     const Contents all = contents(to);
     MPI_Barrier(MPI_COMM_WORLD);
-    if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove(to);
+    if (parallel::comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove(to);
     MPI_Barrier(MPI_COMM_WORLD);
     return all;
   }
-  static double allowed() { return comm_size(MPI_COMM_WORLD) == 1 ? 0 : Factory::restart_tolerance; }
+  static double allowed() {
+    return parallel::comm_size(MPI_COMM_WORLD) == 1 ? 0 : Factory::restart_tolerance;
+  }
 };
 
 TYPED_TEST_SUITE_P(StandaloneContract);
@@ -62,7 +64,7 @@ TYPED_TEST_P(StandaloneContract, a_checkpoint_continues_bit_for_bit) {
   const auto file = TestFixture::file(".h5");
   TestFixture::save(*subject.participant, file);
   {
-    CheckpointReader reader(MPI_COMM_WORLD, file);
+    io::CheckpointReader reader(MPI_COMM_WORLD, file);
     other.participant->load(reader);
   }
   other.steps = subject.steps;
@@ -70,7 +72,7 @@ TYPED_TEST_P(StandaloneContract, a_checkpoint_continues_bit_for_bit) {
   EXPECT_LE(apart(TestFixture::saved(*subject.participant), TestFixture::saved(*other.participant)),
             TestFixture::allowed());
   MPI_Barrier(MPI_COMM_WORLD);
-  if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove(file);
+  if (parallel::comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove(file);
 }
 
 /// As in contract_suite.hpp: what is saved in the end is the same.

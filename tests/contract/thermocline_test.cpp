@@ -5,6 +5,7 @@
 #include "thermocline/judge/elsewhere.hpp"
 
 namespace couplet::contract {
+using namespace coupling;
 namespace {
 
 thermocline::ElementParameters element(thermocline::ElementParameters::Type type) {
@@ -22,7 +23,7 @@ thermocline::ElementParameters element(thermocline::ElementParameters::Type type
 template <thermocline::ElementParameters::Type type>
 struct ElementFactory {
   static std::unique_ptr<Participant> make(MPI_Comm comm) {
-    ParticipantContext context;
+    app::ParticipantContext context;
     context.comm = comm;
     context.coupled = true;
     return thermocline::make_element(element(type), context);

@@ -4,6 +4,7 @@
 #include "tests/coupling/toy/spring.hpp"
 
 namespace couplet::contract {
+using namespace coupling;
 namespace {
 
 struct SpringFactory {
@@ -24,7 +25,7 @@ struct SpringFactory {
 
 struct PistonFactory {
   static std::unique_ptr<Participant> make(MPI_Comm comm) {
-    ParticipantContext context;
+    app::ParticipantContext context;
     context.comm = comm;
     toy::PistonParameters parameters;
     parameters.vertices = 7;

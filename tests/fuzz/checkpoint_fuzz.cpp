@@ -28,22 +28,22 @@ struct State {
 
 /// A run of four steps that keeps three checkpoints.
 void write_sets(const fs::path& folder, const std::string& keys, double offset) {
-  SimulationParameters simulation;
+  app::SimulationParameters simulation;
   simulation.end_time = 4;
   simulation.time_step = 1;
   simulation.checkpoint_interval = 1;
   simulation.checkpoints_kept = 3;
   simulation.keys = keys;
-  StepLoop loop(MPI_COMM_SELF, simulation, Scheme::standalone, folder);
+  app::StepLoop loop(MPI_COMM_SELF, simulation, coupling::Scheme::standalone, folder);
   double time = 0;
-  StepActions actions;
-  actions.attempt = [](const Step&) { return std::nullopt; };
+  app::StepActions actions;
+  actions.attempt = [](const coupling::Step&) { return std::nullopt; };
   actions.accept = [&](double t, int) { time = t; };
   actions.write_start = [](int) {};
-  actions.report = [](const Step&, double) {};
+  actions.report = [](const coupling::Step&, double) {};
   actions.save = [&](const fs::path& place) {
     for (std::size_t p = 0; p < participants.size(); ++p) {
-      CheckpointWriter file(MPI_COMM_SELF, place / (participants[p] + ".h5"));
+      io::CheckpointWriter file(MPI_COMM_SELF, place / (participants[p] + ".h5"));
       std::vector<double> values(50);
       for (std::size_t i = 0; i < values.size(); ++i)
         values[i] = offset + 100 * time + 10 * double(p) + 0.01 * double(i);
@@ -57,14 +57,14 @@ void write_sets(const fs::path& folder, const std::string& keys, double offset) 
 
 /// As the programs do: the folder is chosen, then each reads its own file.
 State read_state(const fs::path& folder) {
-  const fs::path set = find_checkpoint(folder);
+  const fs::path set = app::find_checkpoint(folder);
   State state;
-  state.time = read_run_state(set).time;
-  if (const std::string problem = problem_in_set(set / "keys.txt"); !problem.empty())
+  state.time = app::read_run_state(set).time;
+  if (const std::string problem = io::problem_in_set(set / "keys.txt"); !problem.empty())
     throw Error("{}", problem);
   state.keys = read_file(set / "keys.txt");
   for (const std::string& name : participants) {
-    CheckpointReader file(MPI_COMM_SELF, set / (name + ".h5"));
+    io::CheckpointReader file(MPI_COMM_SELF, set / (name + ".h5"));
     state.values.push_back(file.read("u"));
     state.values.back().push_back(file.read_scalar("dt"));
   }

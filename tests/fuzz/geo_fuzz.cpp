@@ -15,6 +15,7 @@
 #include "tests/fuzz/crafted_geo.hpp"
 
 namespace couplet::fuzz {
+using namespace mesh;
 namespace {
 
 namespace fs = std::filesystem;

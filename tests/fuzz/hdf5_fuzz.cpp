@@ -20,6 +20,8 @@
 #include "tests/fuzz/craft_hdf5.hpp"
 
 namespace couplet::fuzz {
+using namespace io;
+using namespace modes;
 namespace {
 
 namespace fs = std::filesystem;

@@ -12,6 +12,7 @@
 #include "tests/fuzz/mutate.hpp"
 
 namespace couplet::fuzz {
+using namespace mesh;
 namespace {
 
 namespace fs = std::filesystem;

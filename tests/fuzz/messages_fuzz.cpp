@@ -16,6 +16,7 @@
 #include "tests/fuzz/mutate.hpp"
 
 namespace couplet::fuzz {
+using namespace coupling;
 namespace {
 
 std::string text_of(const std::vector<char>& bytes) { return {bytes.begin(), bytes.end()}; }
@@ -121,7 +122,7 @@ void read_places(const std::string& bytes) {
 }
 
 void read_introduction(const std::string& bytes) {
-  const Attendant a = introduced(bytes, 3);
+  const app::Attendant a = app::introduced(bytes, 3);
   ASSERT_EQ(a.world_rank, 3);
   expect_name(a.participant);
 }
@@ -129,7 +130,7 @@ void read_introduction(const std::string& bytes) {
 void read_hands(const std::string& bytes) {
   std::vector<std::int64_t> all(4 * (bytes.size() / 32));
   std::memcpy(all.data(), bytes.data(), all.size() * 8);
-  check_hands(all);
+  app::check_hands(all);
 }
 
 /// What the client library says of a command, as Error.
@@ -200,9 +201,9 @@ TEST(GuestsBytes, another_version_names_both) {
        {protocol_version - 1, protocol_version + 1, std::int64_t(0), std::int64_t(-7)}) {
     const std::vector<std::int64_t> hands{mark, version, 1, 0, mark, protocol_version, 0, 0};
     try {
-      check_hands(hands);
+      app::check_hands(hands);
       FAIL() << "accepted";
-    } catch (const HandshakeFailure& failure) {
+    } catch (const app::HandshakeFailure& failure) {
       const std::string text = failure.what();
       EXPECT_NE(
           text.find(fmt::format("Process 0 of the job (an external program) uses version {} ", version)),

@@ -62,7 +62,7 @@ std::string mutate_bytes(std::string text, Dice& dice) {
 }
 
 std::string mutate_lines(const std::string& text, const std::vector<std::string>& values, Dice& dice) {
-  std::vector<std::string> lines = split(text, '\n');
+  std::vector<std::string> lines = base::split(text, '\n');
   for (std::size_t n = 1 + dice.below(3); n > 0 && !lines.empty(); --n) {
     const std::size_t at = dice.below(lines.size());
     std::string& line = lines[at];
@@ -91,7 +91,7 @@ std::string mutate_lines(const std::string& text, const std::vector<std::string>
       }
     }
   }
-  return join(lines, "\n");
+  return base::join(lines, "\n");
 }
 
 double peak_memory() {

@@ -6,7 +6,7 @@ namespace couplet::fuzz {
 
 std::string ProgramUnderTest::name() const { return "coupler"; }
 
-ProgramKind ProgramUnderTest::fresh() const {
+app::ProgramKind ProgramUnderTest::fresh() const {
   return {name(), "", true,
           with_fresh<coupler::CouplingParameters>(
               [](config::Section& s, coupler::CouplingParameters& p) { coupler::declare(s, p); })};

@@ -6,7 +6,7 @@ namespace couplet::fuzz {
 
 std::string ProgramUnderTest::name() const { return "fluid_solver"; }
 
-ProgramKind ProgramUnderTest::fresh() const {
+app::ProgramKind ProgramUnderTest::fresh() const {
   return {name(), "", false,
           with_fresh<fluid::FluidParameters>(
               [](config::Section& s, fluid::FluidParameters& p) { declare(s, p); })};

@@ -6,7 +6,7 @@ namespace couplet::fuzz {
 
 std::string ProgramUnderTest::name() const { return "mesh_mover"; }
 
-ProgramKind ProgramUnderTest::fresh() const {
+app::ProgramKind ProgramUnderTest::fresh() const {
   return {name(), "", false,
           with_fresh<mesh_mover::Parameters>(
               [](config::Section& s, mesh_mover::Parameters& p) { declare(s, p); })};

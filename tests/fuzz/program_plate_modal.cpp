@@ -6,7 +6,7 @@ namespace couplet::fuzz {
 
 std::string ProgramUnderTest::name() const { return "plate_modal"; }
 
-ProgramKind ProgramUnderTest::fresh() const {
+app::ProgramKind ProgramUnderTest::fresh() const {
   return {name(), "", false,
           with_fresh<plate::Parameters>([](config::Section& s, plate::Parameters& p) { declare(s, p); })};
 }

@@ -8,7 +8,7 @@ using namespace solid;
 
 std::string ProgramUnderTest::name() const { return "solid_solver"; }
 
-ProgramKind ProgramUnderTest::fresh() const {
+app::ProgramKind ProgramUnderTest::fresh() const {
   return {name(), "", false,
           with_fresh<SolidParameters>([](config::Section& s, SolidParameters& p) { declare(s, p); })};
 }

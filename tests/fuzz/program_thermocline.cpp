@@ -6,7 +6,7 @@ namespace couplet::fuzz {
 
 std::string ProgramUnderTest::name() const { return "thermocline"; }
 
-ProgramKind ProgramUnderTest::fresh() const {
+app::ProgramKind ProgramUnderTest::fresh() const {
   return {name(), "", false,
           with_fresh<thermocline::ElementParameters>(
               [](config::Section& s, thermocline::ElementParameters& p) { declare(s, p); })};

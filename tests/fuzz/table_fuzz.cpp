@@ -19,6 +19,7 @@
 #include "thermocline/weather/weather_hours.hpp"
 
 namespace couplet::fuzz {
+using namespace fv;
 namespace {
 
 namespace fs = std::filesystem;
@@ -39,7 +40,7 @@ const std::vector<Reader>& readers() {
       {"flows", [](const fs::path& f) { thermocline::read_flow_file(f); }},
       {"weather", [](const fs::path& f) { thermocline::read_weather(f); }},
       {"series", [](const fs::path& f) {
-         Series(f, {"time [s]", "p [Pa]"}, 1.5);
+         io::Series(f, {"time [s]", "p [Pa]"}, 1.5);
        }}};
   return all;
 }

@@ -163,7 +163,7 @@ std::vector<std::string> odd_files() {
 }
 
 std::string mutate_cells(const std::string& text, Dice& dice) {
-  std::vector<std::string> lines = split(text, '\n');
+  std::vector<std::string> lines = base::split(text, '\n');
   const std::string separators = ",;\t ";
   for (std::size_t n = dice.below(4); n > 0; --n) {
     std::string& line = lines[dice.below(lines.size())];
@@ -187,7 +187,7 @@ std::string mutate_cells(const std::string& text, Dice& dice) {
         if (at < line.size()) line.replace(at + 1, end - at - 1, dice.of(odd_cells()));
     }
   }
-  std::string result = join(lines, dice.one_in(8) ? "\r\n" : dice.one_in(20) ? "\r" : "\n");
+  std::string result = base::join(lines, dice.one_in(8) ? "\r\n" : dice.one_in(20) ? "\r" : "\n");
   if (dice.one_in(10)) std::ranges::replace(result, ',', dice.one_in(2) ? ';' : '\t');
   if (dice.one_in(10)) std::ranges::replace(result, '.', ',');
   if (dice.one_in(20)) result.insert(0, "\xEF\xBB\xBF");

@@ -165,7 +165,7 @@ TEST(Yaml, broken_cases_are_refused_with_a_place_in_time_and_memory) {
                 fs::copy_options::overwrite_existing);
   const Corpus corpus(name);
   ASSERT_FALSE(corpus.texts.empty());
-  CommandLine command_line;
+  app::CommandLine command_line;
   command_line.case_file = folder / "case.yaml";
   Dice dice(seed());
   std::size_t refused = 0, tried = 0, unplaced = 0;
@@ -173,10 +173,10 @@ TEST(Yaml, broken_cases_are_refused_with_a_place_in_time_and_memory) {
   const auto attempt = [&](const std::string& text) {
     write_file(command_line.case_file, text);
     const auto start = std::chrono::steady_clock::now();
-    const ProgramKind kind = program.fresh();
-    CaseFile file = read_case(command_line, kind);
+    const app::ProgramKind kind = program.fresh();
+    app::CaseFile file = app::read_case(command_line, kind);
     if (file.errors.empty() && !kind.is_coupler)
-      file.errors = problems_of_files(*file.document, file.participant, folder);
+      file.errors = app::problems_of_files(*file.document, file.participant, folder);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     slowest = std::max(slowest, seconds);
     EXPECT_LT(seconds, longest()) << command_line.case_file;

@@ -6,8 +6,8 @@
 namespace couplet::testing {
 
 /// 2 or 3: where the cells of a box lie.
-inline int dimension_of(BoxCells cells) {
-  return cells == BoxCells::quadrilaterals || cells == BoxCells::triangles ? 2 : 3;
+inline int dimension_of(mesh::BoxCells cells) {
+  return cells == mesh::BoxCells::quadrilaterals || cells == mesh::BoxCells::triangles ? 2 : 3;
 }
 
 }  // namespace couplet::testing

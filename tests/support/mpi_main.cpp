@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
   MPI_Init(&argc, &argv);
   int result = 0;
   {
-    couplet::PetscEnvironment petsc(MPI_COMM_WORLD);
+    couplet::linalg::PetscEnvironment petsc(MPI_COMM_WORLD);
     int rank = 0;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     auto& listeners = ::testing::UnitTest::GetInstance()->listeners();

@@ -16,11 +16,11 @@ namespace couplet::support {
 inline const std::filesystem::path& own_folder() {
   struct Folder {
     std::filesystem::path path;
-    bool made_it = comm_rank(MPI_COMM_WORLD) == 0;
+    bool made_it = parallel::comm_rank(MPI_COMM_WORLD) == 0;
     Folder() {
       std::string name =
           std::filesystem::temp_directory_path() / ("couplet-test-" + std::to_string(::getpid()));
-      broadcast(MPI_COMM_WORLD, name);
+      parallel::broadcast(MPI_COMM_WORLD, name);
       path = name;
       if (made_it) std::filesystem::create_directories(path);
       MPI_Barrier(MPI_COMM_WORLD);

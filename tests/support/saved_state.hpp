@@ -16,7 +16,7 @@ class SavedState {
  public:
   template <class Run>
   explicit SavedState(const Run& run) : file_(name()) {
-    CheckpointWriter writer(MPI_COMM_WORLD, file_);
+    io::CheckpointWriter writer(MPI_COMM_WORLD, file_);
     run.save(writer);
     writer.close();
   }
@@ -30,7 +30,7 @@ class SavedState {
   SavedState(const SavedState&) = delete;
   template <class Run>
   void load_into(Run& run) const {
-    CheckpointReader reader(MPI_COMM_WORLD, file_);
+    io::CheckpointReader reader(MPI_COMM_WORLD, file_);
     run.load(reader);
   }
 

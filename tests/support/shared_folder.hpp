@@ -15,15 +15,15 @@ namespace couplet::testing {
 class SharedFolder {
  public:
   SharedFolder() {
-    const bool root = comm_rank(MPI_COMM_WORLD) == 0;
-    const GlobalIndex process = sum(MPI_COMM_WORLD, GlobalIndex(root ? ::getpid() : 0));
+    const bool root = parallel::comm_rank(MPI_COMM_WORLD) == 0;
+    const GlobalIndex process = parallel::sum(MPI_COMM_WORLD, GlobalIndex(root ? ::getpid() : 0));
     path_ = std::filesystem::temp_directory_path() / ("couplet-shared-" + std::to_string(process));
     if (root) std::filesystem::create_directories(path_);
     MPI_Barrier(MPI_COMM_WORLD);
   }
   ~SharedFolder() {
     MPI_Barrier(MPI_COMM_WORLD);
-    if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove_all(path_);
+    if (parallel::comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove_all(path_);
     MPI_Barrier(MPI_COMM_WORLD);
   }
   SharedFolder(const SharedFolder&) = delete;

@@ -91,7 +91,7 @@ class SurfaceFile {
   }
 
  private:
-  hdf5::Reader file_;
+  io::hdf5::Reader file_;
   std::uint64_t n_, n_points_, corners_;
   std::string step_ = "steps/000000/";
 };

@@ -120,7 +120,7 @@ class DayReport final : public TankObserver {
   int days_seen_ = 0, days_counted_ = 0;
   double storable_ = 0, bed_height_ = 0, last_thickness_ = 0, last_time_ = 0;
   double largest_pump_ = 0;  // of the run [W]
-  std::unique_ptr<Series> days_, series_, profiles_;
+  std::unique_ptr<io::Series> days_, series_, profiles_;
 };
 
 }  // namespace couplet::thermocline

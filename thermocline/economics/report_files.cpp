@@ -24,15 +24,15 @@ DayReport::DayReport(const ReportParameters& parameters, const Plant& plant, con
   std::vector<std::string> columns{"time [s]"};
   for (const ReportLine& line : lines_of({}, 1))
     columns.push_back(fmt::format("{} [{}]", line.quantity, line.unit));
-  days_ = std::make_unique<Series>(folder_ / "days.csv", columns, restart_time);
-  series_ = std::make_unique<Series>(
+  days_ = std::make_unique<io::Series>(folder_ / "days.csv", columns, restart_time);
+  series_ = std::make_unique<io::Series>(
       folder_ / "plant.csv",
       std::vector<std::string>{"time [s]", "solar field [W]", "power block [W]", "demand [W]",
                                "tank flow [kg/s]", "top [degC]", "bottom [degC]", "thermocline thickness [m]",
                                "losses [W]", "irradiance [W/m^2]", "air [degC]", "wind [m/s]"},
       restart_time);
   if (p_.profile_day)
-    profiles_ = std::make_unique<Series>(
+    profiles_ = std::make_unique<io::Series>(
         folder_ / "profiles.csv",
         std::vector<std::string>{"time [s]", "z [m]", "fluid [degC]", "filler [degC]", "wall [degC]",
                                  "share of yield strength [-]"},
@@ -79,12 +79,12 @@ void DayReport::finish() {
     results_.add(day_);
   }
   if (folder_.empty()) return;
-  std::ofstream summary(own_file(folder_ / "summary.csv"));
+  std::ofstream summary(base::own_file(folder_ / "summary.csv"));
   summary << "quantity,unit,value\n";
   for (const ReportLine& line : lines())
     summary << fmt::format("{},{},{}\n", line.quantity, line.unit, line.value);
   if (!stress_.empty()) {
-    std::ofstream stress(own_file(folder_ / "stress.csv"));
+    std::ofstream stress(base::own_file(folder_ / "stress.csv"));
     stress << "z [m],mean daily lowest share [-],mean daily highest share [-],highest share [-]\n";
     const std::vector<double> low = stress_.mean_lowest(), high = stress_.mean_highest();
     for (std::size_t i = 0; i < low.size(); ++i)

@@ -18,12 +18,12 @@ std::string when(const P& p, bool on, const char* reason) {
 }
 
 using E = Evidence;
-using V = std::optional<EffectVerdict>;
+using V = std::optional<effects::EffectVerdict>;
 
 // One temperature a grain takes a parabola inside it (linear driving force): 1/h becomes (1 + Bi/5)/h. Behind a
 // front the fluid was measured (docs/stability.md) within 0.1 % of 20 shells at Bi 10, within 1.2 % at Bi 100.
 V judge_grains(const P&, const E& e) {
-  return verdict(
+  return effects::verdict(
       e.largest_biot, 20,
       fmt::format("Biot number of the grains = {:.2g}: their inside has {:.2g} of the film resistance",
                   e.largest_biot, e.largest_biot / 5),
@@ -31,16 +31,17 @@ V judge_grains(const P&, const E& e) {
 }
 
 V judge_yield(const P&, const E& e) {
-  return verdict(e.share_of_yield, 1,
-                 fmt::format("max equivalent stress / yield strength of the wall = {:.2g}", e.share_of_yield),
-                 "the wall would yield: its stress and that of the grains are those of an elastic wall",
-                 std::max(0., e.share_of_yield - 1));
+  return effects::verdict(
+      e.share_of_yield, 1,
+      fmt::format("max equivalent stress / yield strength of the wall = {:.2g}", e.share_of_yield),
+      "the wall would yield: its stress and that of the grains are those of an elastic wall",
+      std::max(0., e.share_of_yield - 1));
 }
 
 // As a share of the strength, so that a wall that carries next to nothing is no reason for a word. Both shares grow only.
 V judge_bending(const P&, const E& e) {
   if (std::isnan(e.share_with_bending)) return {};
-  return EffectVerdict{
+  return effects::EffectVerdict{
       "", e.share_with_bending - e.share_as_rings, 0.1,
       fmt::format("max equivalent stress / yield strength of the wall: {:.3g} as rings, {:.3g} as a shell",
                   e.share_as_rings, e.share_with_bending),
@@ -48,7 +49,7 @@ V judge_bending(const P&, const E& e) {
 }
 
 V judge_sound(const P&, const E& e) {
-  return verdict(
+  return effects::verdict(
       e.largest_mach, 0.3,
       fmt::format("gas speed between the grains / speed of sound = {:.2g} at the largest flow",
                   e.largest_mach),
@@ -58,7 +59,7 @@ V judge_sound(const P&, const E& e) {
 }
 
 V judge_capacity(const P&, const E& e) {
-  return verdict(
+  return effects::verdict(
       e.capacity_error, 0.05,
       fmt::format(
           "from the coldest to the hottest fluid of the run, air has {:.0f} J/(kg K), a difference of "
@@ -68,7 +69,7 @@ V judge_capacity(const P&, const E& e) {
 }
 
 V judge_pressure(const P&, const E& e) {
-  return verdict(
+  return effects::verdict(
       e.pumping_share, 0.02,
       fmt::format("pressure loss of {:.3g} kPa at the largest flow: {:.2g} of the transported heat",
                   1e-3 * e.pressure_loss, e.pumping_share),
@@ -79,7 +80,7 @@ V judge_pressure(const P&, const E& e) {
 // is half of all that is sold.
 V judge_driving(const P&, const E& e) {
   if (std::isnan(e.driving_power)) return {};
-  return EffectVerdict{
+  return effects::EffectVerdict{
       "", e.driving_power / e.carried_heat, 0.1,
       fmt::format("pump or fan {:.3g} MW / transported heat {:.3g} MW = {:.2g} at the largest flow",
                   1e-6 * e.driving_power, 1e-6 * e.carried_heat, e.driving_power / e.carried_heat),
@@ -90,7 +91,7 @@ V judge_driving(const P&, const E& e) {
 // hundred steps a crossing are 0.05 (and within 0.1 % of Schumann's gas bed, docs/validation/tank-tables.md).
 V judge_implicit(const P&, const E& e) {
   if (std::isnan(e.implicit_spread)) return {};
-  return EffectVerdict{
+  return effects::EffectVerdict{
       "", e.implicit_spread, 0.05,
       fmt::format("implicit advection with this step smears a front that crosses the bed over {:.2g} of its "
                   "height (standard deviation)",

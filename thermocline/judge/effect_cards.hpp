@@ -28,7 +28,7 @@ struct Evidence {
   /// The same with what bending would add at the wall's faces; both as looked at every two hours.
   double share_as_rings = unknown, share_with_bending = unknown;
 };
-using Card = EffectCard<ElementParameters, Evidence>;
+using Card = effects::EffectCard<ElementParameters, Evidence>;
 std::span<const Card> effect_cards();
 
 }  // namespace couplet::thermocline

@@ -27,7 +27,7 @@ std::string books_of(const char* element, double taken, double passed, double st
 }
 
 /// A value of each place, or nothing if nobody has given it yet.
-const std::vector<double>* find(const Exchange& in, const char* name) {
+const std::vector<double>* find(const coupling::Exchange& in, const char* name) {
   const auto found = in.find(name);
   return found == in.end() ? nullptr : &found->second;
 }
@@ -47,21 +47,21 @@ class GroundModel {
     column_.set_steady(p.initial_temperature, deep_);
     start_ = column_.energy(deep_);
   }
-  Interface describe() const {
-    Interface i;
+  coupling::Interface describe() const {
+    coupling::Interface i;
     i.face_centres = {{0, 0, 0}};
     i.face_areas = {{0, 0, column_.area()}};
-    i.takes = {{"bottom-temperature", "K", Interface::Place::faces, 1},
-               {"bottom-coefficient", "W/(m^2 K)", Interface::Place::faces, 1},
-               {"tank-diameter", "m", Interface::Place::faces, 1}};
-    i.gives = {{"bottom-heat", "W", Interface::Place::faces, 1}};
+    i.takes = {{"bottom-temperature", "K", coupling::Interface::Place::faces, 1},
+               {"bottom-coefficient", "W/(m^2 K)", coupling::Interface::Place::faces, 1},
+               {"tank-diameter", "m", coupling::Interface::Place::faces, 1}};
+    i.gives = {{"bottom-heat", "W", coupling::Interface::Place::faces, 1}};
     return i;
   }
   /// What the tank says against the geometry here: a sentence, or empty.
-  std::string contradiction(const Exchange& in) const {
+  std::string contradiction(const coupling::Exchange& in) const {
     return other_length(find(in, "tank-diameter"), "diameter", p_.diameter, 1e-3, " (inside)");
   }
-  Exchange advance(const Step& step, const Exchange& in, const Weather&) {
+  coupling::Exchange advance(const coupling::Step& step, const coupling::Exchange& in, const Weather&) {
     const auto *temperature = find(in, "bottom-temperature"), *coefficient = find(in, "bottom-coefficient");
     const Film plate{coefficient ? coefficient->front() : 0,
                      temperature ? temperature->front() : p_.initial_temperature};
@@ -81,7 +81,7 @@ class GroundModel {
     return all;
   }
   void restore(const std::vector<double>& state) {
-    SavedNumbers saved(state, "temperatures of the ground");
+    base::SavedNumbers saved(state, "temperatures of the ground");
     taken_ = saved.real(), passed_ = saved.real(), start_ = saved.real();
     saved.fill(column_.temperature());
     if (saved.left() > 0) saved.damaged();
@@ -108,27 +108,28 @@ class BlanketModel {
     blanket_.set_steady(wall_, air_);
     start_ = blanket_.energy(air_);
   }
-  Interface describe() const {
-    Interface i;
+  coupling::Interface describe() const {
+    coupling::Interface i;
     const double area = std::numbers::pi * p_.diameter * dz_[0];
     for (int k = 0; k < p_.sections; ++k) {
       i.face_centres.emplace_back(p_.diameter / 2, 0, (k + 0.5) * dz_[0]);
       i.face_areas.emplace_back(-area, 0, 0);
     }
-    i.takes = {{"wall-temperature", "K", Interface::Place::faces, 1},
-               {"wall-diameter", "m", Interface::Place::faces, 1},
-               {"wall-height", "m", Interface::Place::faces, 1}};
-    i.gives = {{"wall-heat", "W", Interface::Place::faces, 1}};
+    i.takes = {{"wall-temperature", "K", coupling::Interface::Place::faces, 1},
+               {"wall-diameter", "m", coupling::Interface::Place::faces, 1},
+               {"wall-height", "m", coupling::Interface::Place::faces, 1}};
+    i.gives = {{"wall-heat", "W", coupling::Interface::Place::faces, 1}};
     return i;
   }
-  std::string contradiction(const Exchange& in) const {
+  std::string contradiction(const coupling::Exchange& in) const {
     std::string problem = other_length(find(in, "wall-diameter"), "diameter", p_.diameter, 0.02,
                                        " (outside of the lowest plate)");
     return problem.empty() ? other_length(find(in, "wall-height"), "height", p_.height, 1e-3,
                                           " of wall (its rings, bed and ullage)")
                            : problem;
   }
-  Exchange advance(const Step& step, const Exchange& in, const Weather& weather) {
+  coupling::Exchange advance(const coupling::Step& step, const coupling::Exchange& in,
+                             const Weather& weather) {
     if (const auto* wall = find(in, "wall-temperature")) wall_ = *wall;
     const Ambient air = weather.at(step.time + step.dt / 2);
     const double outer = p_.diameter + 2 * p_.insulation.thickness;
@@ -145,7 +146,7 @@ class BlanketModel {
     return all;
   }
   void restore(const std::vector<double>& state) {
-    SavedNumbers saved(state, "temperatures of the insulation");
+    base::SavedNumbers saved(state, "temperatures of the insulation");
     taken_ = saved.real(), passed_ = saved.real(), start_ = saved.real(), air_ = saved.real();
     saved.fill(wall_);
     saved.fill(blanket_.temperature());
@@ -164,10 +165,10 @@ class BlanketModel {
 
 /// What both have in common: a state that only accepted steps change. Rank 0 has the data and computes.
 template <class Model>
-class ElementParticipant final : public Participant {
+class ElementParticipant final : public coupling::Participant {
  public:
   template <class Parameters>
-  ElementParticipant(const Parameters& p, const ParticipantContext& context)
+  ElementParticipant(const Parameters& p, const app::ParticipantContext& context)
       : weather_(make_weather(p.ambient, context.case_folder)),
         accepted_(p, *weather_),
         next_(accepted_),
@@ -179,24 +180,26 @@ class ElementParticipant final : public Participant {
           "coupler and a thermocline that has 'elsewhere'.",
           context.name);
     for (const std::string& sentence : weather_->doubts())
-      log::finding(comm_rank(comm_),
+      log::finding(parallel::comm_rank(comm_),
                    {.id = "weather-data", .sentence = fmt::format("{}: {}", context.name, sentence)});
   }
-  Interface initialise() override { return comm_rank(comm_) == 0 ? accepted_.describe() : Interface{}; }
-  void begin_step(const Step& step) override { step_ = step; }
-  Exchange solve(const Exchange& in) override {
-    next_ = accepted_;
-    std::string problem = comm_rank(comm_) == 0 ? accepted_.contradiction(in) : "";
-    broadcast(comm_, problem);
-    if (!problem.empty()) throw Error("participants.{}.{}.", name_, problem);
-    return comm_rank(comm_) == 0 ? next_.advance(step_, in, *weather_) : Exchange{};
+  coupling::Interface initialise() override {
+    return parallel::comm_rank(comm_) == 0 ? accepted_.describe() : coupling::Interface{};
   }
-  StepReport accept_step() override {
+  void begin_step(const coupling::Step& step) override { step_ = step; }
+  coupling::Exchange solve(const coupling::Exchange& in) override {
+    next_ = accepted_;
+    std::string problem = parallel::comm_rank(comm_) == 0 ? accepted_.contradiction(in) : "";
+    parallel::broadcast(comm_, problem);
+    if (!problem.empty()) throw Error("participants.{}.{}.", name_, problem);
+    return parallel::comm_rank(comm_) == 0 ? next_.advance(step_, in, *weather_) : coupling::Exchange{};
+  }
+  coupling::StepReport accept_step() override {
     std::swap(accepted_, next_);
     return {.dt = step_.dt};
   }
-  void save(CheckpointWriter& file) const override { file.write("element", accepted_.state()); }
-  void load(CheckpointReader& file) override { accepted_.restore(file.read("element")); }
+  void save(io::CheckpointWriter& file) const override { file.write("element", accepted_.state()); }
+  void load(io::CheckpointReader& file) override { accepted_.restore(file.read("element")); }
   void write_output(double, int) override {}
   void write_monitors(double) override {}
   std::vector<std::string> finish() override { return {accepted_.books()}; }
@@ -204,7 +207,7 @@ class ElementParticipant final : public Participant {
  private:
   std::unique_ptr<Weather> weather_;
   Model accepted_, next_;
-  Step step_;
+  coupling::Step step_;
   MPI_Comm comm_;
   std::string name_;
 };
@@ -259,7 +262,8 @@ void declare(config::Section& section, ElementParameters& p) {
       "a tank, or one element of a tank that another thermocline computes (elsewhere)");
 }
 
-std::unique_ptr<Participant> make_element(const ElementParameters& p, const ParticipantContext& context) {
+std::unique_ptr<coupling::Participant> make_element(const ElementParameters& p,
+                                                    const app::ParticipantContext& context) {
   if (p.type == ElementParameters::Type::ground)
     return std::make_unique<ElementParticipant<GroundModel>>(p.ground, context);
   if (p.type == ElementParameters::Type::insulation)

@@ -45,7 +45,7 @@ struct ElementParameters {
   BlanketElementParameters blanket;
 };
 void declare(config::Section& section, ElementParameters& parameters);
-std::unique_ptr<Participant> make_element(const ElementParameters& parameters,
-                                          const ParticipantContext& context);
+std::unique_ptr<coupling::Participant> make_element(const ElementParameters& parameters,
+                                                    const app::ParticipantContext& context);
 
 }  // namespace couplet::thermocline

@@ -9,7 +9,7 @@ namespace couplet::thermocline {
 namespace {
 
 void look_at_weather(const WeatherParameters& ambient, const std::optional<InsulationParameters>& blanket,
-                     const std::filesystem::path& folder, std::vector<ProblemOfKey>& all) {
+                     const std::filesystem::path& folder, std::vector<app::ProblemOfKey>& all) {
   const char* const key = ambient.kind == WeatherKind::file                                   ? "ambient.file"
                           : ambient.kind == WeatherKind::smooth_days && !ambient.file.empty() ? "ambient.air"
                                                                                               : "ambient";
@@ -42,8 +42,9 @@ TankParameters with_files(TankParameters p, const std::filesystem::path& folder)
   return p;
 }
 
-std::vector<ProblemOfKey> problems_of_files(const ElementParameters& p, const std::filesystem::path& folder) {
-  std::vector<ProblemOfKey> all;
+std::vector<app::ProblemOfKey> problems_of_files(const ElementParameters& p,
+                                                 const std::filesystem::path& folder) {
+  std::vector<app::ProblemOfKey> all;
   switch (p.type) {
     case ElementParameters::Type::tank:
       look_at_weather(p.tank.ambient, p.tank.insulation, folder, all);

@@ -15,7 +15,7 @@ TankParameters with_files(TankParameters parameters, const std::filesystem::path
 
 /// Weather and rows of flows that are missing or broken, a sun that nobody can place: what a run would end with before its
 /// first step.
-std::vector<ProblemOfKey> problems_of_files(const ElementParameters& parameters,
-                                            const std::filesystem::path& case_folder);
+std::vector<app::ProblemOfKey> problems_of_files(const ElementParameters& parameters,
+                                                 const std::filesystem::path& case_folder);
 
 }  // namespace couplet::thermocline

@@ -163,15 +163,16 @@ std::vector<std::string> Tank::finish() {
   for (const auto& observer : observers_) {
     observer->finish();
     for (const std::string& doubt : observer->doubts())
-      log::finding(comm_rank(comm_), {.id = "day-report", .sentence = fmt::format("{}: {}", name_, doubt)});
+      log::finding(parallel::comm_rank(comm_),
+                   {.id = "day-report", .sentence = fmt::format("{}: {}", name_, doubt)});
   }
   Lines lines;
   const TankModel& m = accepted_;
   for (const std::string& sentence : control_->doubts())
-    log::finding(comm_rank(comm_),
+    log::finding(parallel::comm_rank(comm_),
                  {.id = "flow-schedule", .sentence = fmt::format("{}: {}", name_, sentence)});
   for (const std::string& sentence : never_melted(m))
-    log::finding(comm_rank(comm_),
+    log::finding(parallel::comm_rank(comm_),
                  {.id = "never-melted", .sentence = fmt::format("{}: {}", name_, sentence)});
   const double t = step_.time + step_.dt;
   energy(m, t, lines);

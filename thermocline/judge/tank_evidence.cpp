@@ -92,7 +92,7 @@ double crossing_mass(const TankModel& m) {
 
 }  // namespace
 
-ErrorParts Tank::error_parts() const {
+coupling::ErrorParts Tank::error_parts() const {
   std::vector<double> t;
   accepted_.bed().filler_temperature(t);
   const std::size_t n = t.size();
@@ -108,12 +108,12 @@ ErrorParts Tank::error_parts() const {
   const Advection scheme = accepted_.setup().parameters.bed.advection;
   const double crossing = crossing_mass(accepted_);
   const double way = double(n) * std::min(1., peak_flow_ * (step_.time + step_.dt) / crossing);  // in cells
-  ErrorParts parts{.mesh = scheme == Advection::tvd ? one_cell : std::max(1., way) * one_cell};
+  coupling::ErrorParts parts{.mesh = scheme == Advection::tvd ? one_cell : std::max(1., way) * one_cell};
   if (scheme == Advection::implicit) parts.step = peak_advance_ / crossing * double(n) * way * one_cell;
   return parts;
 }
 
-std::vector<EffectVerdict> Tank::audit() const {
+std::vector<effects::EffectVerdict> Tank::audit() const {
   const TankModel& m = accepted_;
   Evidence evidence;
   if (m.setup().fluid.is_gas() && peak_flow_ > 0) evidence.largest_mach = largest_mach(m, peak_flow_);
@@ -146,7 +146,7 @@ std::vector<EffectVerdict> Tank::audit() const {
   ElementParameters scene;
   scene.type = ElementParameters::Type::tank;
   scene.tank = m.setup().parameters;
-  return couplet::audit(effect_cards(), scene, evidence);
+  return couplet::effects::audit(effect_cards(), scene, evidence);
 }
 
 }  // namespace couplet::thermocline

@@ -26,14 +26,14 @@ TankOutputFiles::TankOutputFiles(const TankModel& model, const std::filesystem::
       bed_(folder / "bed.csv", {"time [s]", "z [m]", "fluid [degC]", "filler [degC]"}, restart_time),
       interval_(model.setup().parameters.output.monitor_interval) {
   if (model.shell())
-    wall_ = std::make_unique<Series>(
+    wall_ = std::make_unique<io::Series>(
         folder / "wall.csv",
         std::vector<std::string>{"time [s]", "z [m]", "wall [degC]", "hoop stress [Pa]",
                                  "equivalent stress [Pa]", "yield strength [Pa]", "filler pressure [Pa]",
                                  "contact [0 active; 1 rigid; 2 passive]"},
         restart_time);
   if (model.ground())
-    ground_ = std::make_unique<Series>(
+    ground_ = std::make_unique<io::Series>(
         folder / "ground.csv", std::vector<std::string>{"time [s]", "depth [m]", "temperature [degC]"},
         restart_time);
   // A run that goes on writes where the one before would have.

@@ -22,8 +22,8 @@ class TankOutputFiles {
   /// When the next row is due behind one at this time [s].
   double after(double time) const;
 
-  Series tank_, bed_;
-  std::unique_ptr<Series> wall_, ground_;
+  io::Series tank_, bed_;
+  std::unique_ptr<io::Series> wall_, ground_;
   double interval_, next_ = 0;
 };
 

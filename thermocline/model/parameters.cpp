@@ -241,7 +241,7 @@ void declare(config::Section& section, GroundParameters& p) {
   section.list<GroundLayer>(
       "layers", p.layers,
       [](config::Section& s, GroundLayer& l) {
-        s.value("material", l.material).required().doc(join(foundation_materials()));
+        s.value("material", l.material).required().doc(base::join(foundation_materials()));
         s.value("thickness", l.thickness)
             .unit("m")
             .plausible(1e-4, 30)
@@ -253,7 +253,7 @@ void declare(config::Section& section, GroundParameters& p) {
               const auto known = foundation_materials();
               return std::find(known.begin(), known.end(), l.material) != known.end()
                          ? std::string()
-                         : "'" + l.material + "' is not one of: " + join(known);
+                         : "'" + l.material + "' is not one of: " + base::join(known);
             },
             "material");
       },

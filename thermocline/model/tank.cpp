@@ -49,7 +49,7 @@ FlowParameters dated(FlowParameters flow, const Weather& weather) {
 
 }  // namespace
 
-Tank::Tank(const TankParameters& p, const ParticipantContext& context)
+Tank::Tank(const TankParameters& p, const app::ParticipantContext& context)
     : name_(context.name),
       weather_(make_weather(p.ambient, context.case_folder)),
       control_(make_flow_control(dated(p.flow, *weather_), make_fluid(p.fluid).specific_heat)),
@@ -67,13 +67,13 @@ Tank::Tank(const TankParameters& p, const ParticipantContext& context)
     wall_.emplace(*p.external_wall, *accepted_.setup().rings);
   else if (p.elsewhere && p.elsewhere->insulation)
     wall_.emplace(ExternalWallParameters{accepted_.setup().rings->size(), 0.01}, *accepted_.setup().rings);
-  if (comm_rank(context.comm) == 0)
+  if (parallel::comm_rank(context.comm) == 0)
     files_ = std::make_unique<TankOutputFiles>(accepted_, context.output_folder, context.restart_time);
   if (p.insulation)
     require_sun(p.insulation->outside.solar_absorptance, *weather_,
                 fmt::format("participants.{}.insulation.solar-absorptance", context.name));
   for (const std::string& sentence : weather_->doubts())
-    log::finding(comm_rank(comm_),
+    log::finding(parallel::comm_rank(comm_),
                  {.id = "weather-data", .sentence = fmt::format("{}: {}", name_, sentence)});
   if (files_) {
     for (const std::string& sentence : weather_->warnings()) log::warn("{}", sentence);
@@ -82,7 +82,8 @@ Tank::Tank(const TankParameters& p, const ParticipantContext& context)
   }
   const PlantParameters plant = dated(p.flow, *weather_).plant;
   for (const std::string& sentence : Calendar(plant.calendar, plant.start).doubts())
-    log::finding(comm_rank(comm_), {.id = "calendar", .sentence = fmt::format("{}: {}", name_, sentence)});
+    log::finding(parallel::comm_rank(comm_),
+                 {.id = "calendar", .sentence = fmt::format("{}: {}", name_, sentence)});
   if (p.report) {
     auto report = std::make_unique<DayReport>(
         *p.report, Plant(plant, make_fluid(p.fluid).specific_heat), *weather_,
@@ -92,16 +93,17 @@ Tank::Tank(const TankParameters& p, const ParticipantContext& context)
     if (p.report->economics)
       for (const std::string& sentence :
            prices_for_nothing(*p.report->economics, inventory, p.pump.has_value()))
-        log::finding(comm_rank(comm_), {.id = "prices", .sentence = fmt::format("{}: {}", name_, sentence)});
+        log::finding(parallel::comm_rank(comm_),
+                     {.id = "prices", .sentence = fmt::format("{}: {}", name_, sentence)});
     add_observer(std::move(report));
   }
 }
 
-Interface Tank::initialise() {
+coupling::Interface Tank::initialise() {
   const TankParameters& p = accepted_.setup().parameters;
-  if (comm_rank(comm_) != 0 || (!p.external_wall && !p.elsewhere)) return {};
-  constexpr auto faces = Interface::Place::faces;
-  Interface interface;
+  if (parallel::comm_rank(comm_) != 0 || (!p.external_wall && !p.elsewhere)) return {};
+  constexpr auto faces = coupling::Interface::Place::faces;
+  coupling::Interface interface;
   if (wall_) {
     interface = wall_->describe();
   } else {
@@ -109,7 +111,7 @@ Interface Tank::initialise() {
     interface.face_areas = {{0, 0, -accepted_.bed().area()}};
   }
   if (p.external_wall) {
-    interface.takes = {{"displacement", "m", Interface::Place::vertices}};
+    interface.takes = {{"displacement", "m", coupling::Interface::Place::vertices}};
     interface.gives = {{"temperature", "K", faces, 1}, {"pressure", "Pa", faces, 1}};
   }
   if (p.elsewhere && p.elsewhere->insulation) {
@@ -133,10 +135,10 @@ double Tank::suggest_dt() {
 }
 
 /// What others take, at the end of the step, on rank 0.
-Exchange Tank::given() const {
+coupling::Exchange Tank::given() const {
   const TankParameters& p = accepted_.setup().parameters;
-  Exchange out;
-  if (comm_rank(comm_) != 0) return out;
+  coupling::Exchange out;
+  if (parallel::comm_rank(comm_) != 0) return out;
   if (p.external_wall) {
     out["temperature"] = wall_->to_sections(next_.shell()->temperature());
     out["pressure"] = wall_->to_sections(next_.contact()->pressure());
@@ -158,7 +160,7 @@ Exchange Tank::given() const {
 }
 
 /// Every rank computes the tank, so every rank needs what rank 0 got.
-std::vector<double> Tank::received(const Exchange& in, const char* name) const {
+std::vector<double> Tank::received(const coupling::Exchange& in, const char* name) const {
   std::vector<double> values;
   if (const auto found = in.find(name); found != in.end()) values = found->second;
   int n = int(values.size());
@@ -168,7 +170,7 @@ std::vector<double> Tank::received(const Exchange& in, const char* name) const {
   return values;
 }
 
-Exchange Tank::solve(const Exchange& in) {
+coupling::Exchange Tank::solve(const coupling::Exchange& in) {
   const TankParameters& p = accepted_.setup().parameters;
   next_ = accepted_;
   if (p.elsewhere) {
@@ -189,7 +191,7 @@ Exchange Tank::solve(const Exchange& in) {
   return given();
 }
 
-StepReport Tank::accept_step() {
+coupling::StepReport Tank::accept_step() {
   const Ledger &before = accepted_.ledger(), &now = next_.ledger();
   stored_ = now.bed - before.bed;
   side_ = now.side - before.side, roof_ = now.roof - before.roof, ground_ = now.ground - before.ground;
@@ -201,7 +203,8 @@ StepReport Tank::accept_step() {
     peak_advance_ = std::max(peak_advance_, std::abs(s.flow.mass_flow) * s.dt);
   }
   for (const std::string& sentence : accepted_.take_warnings())
-    log::finding(comm_rank(comm_), {.id = "tank-state", .sentence = fmt::format("{}: {}", name_, sentence)});
+    log::finding(parallel::comm_rank(comm_),
+                 {.id = "tank-state", .sentence = fmt::format("{}: {}", name_, sentence)});
   if (!observers_.empty()) {
     accepted_.bed().filler_temperature(filler_);
     const TankRecord r = record();
@@ -257,14 +260,14 @@ TankRecord Tank::record() const {
   return r;
 }
 
-void Tank::save(CheckpointWriter& file) const {
+void Tank::save(io::CheckpointWriter& file) const {
   for (const auto& [name, values] : accepted_.state()) file.write(name, values);
   file.write("flow-control", control_state_);
   for (std::size_t i = 0; i < observers_.size(); ++i)
     file.write("observer-" + std::to_string(i), observers_[i]->state());
 }
 
-void Tank::load(CheckpointReader& file) {
+void Tank::load(io::CheckpointReader& file) {
   accepted_.restore([&](const std::string& name) { return file.read(name); });
   control_state_ = file.read("flow-control");
   control_->restore(control_state_);

@@ -23,28 +23,28 @@ struct BendingSeen {
 
 /// The tank as a participant: runs the elements that the YAML asks for. A tank is small, so every rank
 /// computes all of it; rank 0 writes.
-class Tank final : public Participant, public EstimatesError {
+class Tank final : public coupling::Participant, public coupling::EstimatesError {
  public:
-  Tank(const TankParameters& parameters, const ParticipantContext& context);
+  Tank(const TankParameters& parameters, const app::ParticipantContext& context);
 
-  Interface initialise() override;
+  coupling::Interface initialise() override;
   /// A flux of the ground elsewhere is held for a step: no longer than the lowest cell allows.
   double suggest_dt() override;
-  void begin_step(const Step& step) override { step_ = step; }
-  Exchange solve(const Exchange& in) override;
-  StepReport accept_step() override;
-  void save(CheckpointWriter& file) const override;
-  void load(CheckpointReader& file) override;
+  void begin_step(const coupling::Step& step) override { step_ = step; }
+  coupling::Exchange solve(const coupling::Exchange& in) override;
+  coupling::StepReport accept_step() override;
+  void save(io::CheckpointWriter& file) const override;
+  void load(io::CheckpointReader& file) override;
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
-  std::vector<EffectVerdict> audit() const override;
+  std::vector<effects::EffectVerdict> audit() const override;
   std::vector<std::string> finish() override;
   void collect_errors() override {}  // the last profile and the largest flow, which are known, are enough
   /// Upwind advection spreads a front as a diffusion v dz / 2 does, implicit steps as v^2 dt / 2: over the way w by
   /// s^2 = dz w and v dt w, which changes the profile by s^2 / 2 of its second derivative; w is what the largest flow
   /// can have gone since time 0, at most the height. The limited scheme is taken to spread by a cell. Over the
   /// profile's distance from its mean, sums over the height.
-  ErrorParts error_parts() const override;
+  coupling::ErrorParts error_parts() const override;
 
   const TankModel& model() const { return accepted_; }
   const Speed& speed() const { return speed_; }
@@ -54,8 +54,8 @@ class Tank final : public Participant, public EstimatesError {
  private:
   TankRecord record() const;
   void look_at_bending();
-  Exchange given() const;
-  std::vector<double> received(const Exchange& in, const char* name) const;
+  coupling::Exchange given() const;
+  std::vector<double> received(const coupling::Exchange& in, const char* name) const;
 
   std::string name_;
   std::unique_ptr<Weather> weather_;
@@ -65,7 +65,7 @@ class Tank final : public Participant, public EstimatesError {
   std::vector<double> control_state_;  // that of accepted_
   MPI_Comm comm_;
   std::vector<BedStep> steps_;  // of next_
-  Step step_;
+  coupling::Step step_;
   Speed speed_;
   double peak_advance_ = 0;                 // largest |m| dt of a step of the bed in this run [kg]
   double peak_flow_ = 0;                    // largest |m| of this run [kg/s]

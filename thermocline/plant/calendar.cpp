@@ -35,7 +35,7 @@ std::string problem_of_days(const std::vector<std::string>& days) {
   std::vector<std::string> known(weekday_names.begin(), weekday_names.end());
   known.insert(known.end(), {"weekdays", "weekend"});
   for (const std::string& day : days)
-    if (bits_of(day) == 0) return fmt::format("'{}' is not one of: {}", day, join(known));
+    if (bits_of(day) == 0) return fmt::format("'{}' is not one of: {}", day, base::join(known));
   return "";
 }
 

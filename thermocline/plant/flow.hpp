@@ -49,7 +49,7 @@ class Schedule final : public FlowControl {
   Flow decide(double t, double t_top, double t_bottom, const Ambient& ambient) override;
   std::vector<double> state() const override { return {current_, double(stopped_)}; }
   void restore(std::span<const double> state) override {
-    SavedNumbers saved(state, "rows of the flow");
+    base::SavedNumbers saved(state, "rows of the flow");
     current_ = saved.real(), stopped_ = saved.real() != 0;
   }
   /// Rows that were stopped each time before they began.

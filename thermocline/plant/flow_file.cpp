@@ -35,7 +35,7 @@ class FlowColumns {
       const auto found = std::find(names.begin(), names.end(), heading.name);
       if (found == names.end())
         throw Error("{}: unknown column '{}'. {}", place, head[i].substr(0, 80),
-                    did_you_mean(heading.name, names, "columns"));
+                    base::did_you_mean(heading.name, names, "columns"));
       const auto c = std::size_t(found - names.begin());
       if (at_[c]) throw Error("{}: the column '{}' appears twice.", place, heading.name);
       at_[c] = i;
@@ -44,7 +44,7 @@ class FlowColumns {
     for (std::size_t c = 0; c < known.size(); ++c)
       if (known[c].required && !at_[c])
         throw Error("{}: the column '{}' is missing. A flow file has the columns {}.", place, known[c].name,
-                    join(names));
+                    base::join(names));
   }
 
   /// Value [SI] of a column in a row; nothing where it is empty.
@@ -55,13 +55,13 @@ class FlowColumns {
 
  private:
   /// Heads without a unit would leave open whether 290 is in K or degC.
-  static Unit unit_of(const FlowColumn& column, const std::string& text, const std::string& place) {
+  static base::Unit unit_of(const FlowColumn& column, const std::string& text, const std::string& place) {
     if (text.empty())
       throw Error("{}: the unit of the column '{}' is missing; write for example '{} [{}]'.", place,
                   column.name, column.name, column.example);
-    const auto wanted = parse_unit(column.unit);
+    const auto wanted = base::parse_unit(column.unit);
     try {
-      const Unit unit = parse_unit(text);
+      const base::Unit unit = base::parse_unit(text);
       if (unit.dimension == wanted.dimension) return unit;
     } catch (const Error& error) {
       throw Error("{}: column '{}': {}", place, column.name, error.what());
@@ -71,7 +71,7 @@ class FlowColumns {
   }
 
   std::array<std::optional<std::size_t>, known.size()> at_;
-  std::array<Unit, known.size()> unit_;
+  std::array<base::Unit, known.size()> unit_;
 };
 
 ScheduleRow row_of(const FlowColumns& columns, const csv::CsvReader& row) {

@@ -15,7 +15,7 @@ class PlantControl final : public FlowControl {
   Flow decide(double t, double t_top, double t_bottom, const Ambient& ambient) override;
   std::vector<double> state() const override { return {double(mode_)}; }
   void restore(std::span<const double> state) override {
-    mode_ = PlantMode(SavedNumbers(state, "mode of the plant").count(2));
+    mode_ = PlantMode(base::SavedNumbers(state, "mode of the plant").count(2));
   }
 
   const Plant& plant() const { return plant_; }

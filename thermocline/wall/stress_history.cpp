@@ -77,7 +77,7 @@ std::vector<double> StressHistory::state() const {
 }
 
 void StressHistory::restore(std::span<const double>& state) {
-  SavedNumbers saved(state, "sums of stresses");
+  base::SavedNumbers saved(state, "sums of stresses");
   const std::size_t n = saved.count(double(state.size()));
   days_ = static_cast<int>(saved.count(1e9));
   day_begun_ = saved.real() != 0;

@@ -28,8 +28,8 @@ WallInterface::WallInterface(const ExternalWallParameters& p, const Rings& rings
       ring_z_(rings.z),
       ring_dz_(rings.dz) {}
 
-Interface WallInterface::describe() const {
-  Interface interface;
+coupling::Interface WallInterface::describe() const {
+  coupling::Interface interface;
   interface.dim = 3;
   const double dz = height_ / sections_, half = angle_ / 2, width = 2 * radius_ * std::sin(half);
   for (int k = 0; k <= sections_; ++k)

@@ -26,7 +26,7 @@ class WallInterface {
  public:
   WallInterface(const ExternalWallParameters& parameters, const Rings& rings);
   int sections() const { return sections_; }
-  Interface describe() const;  ///< places only
+  coupling::Interface describe() const;  ///< places only
 
   /// Mean of a ring quantity over each section.
   std::vector<double> to_sections(std::span<const double> rings) const;

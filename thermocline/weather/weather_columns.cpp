@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t temperature = 1, humidity = 3, pressure = 4;
 
 std::string lower(std::string_view text) {
-  std::string result(trim(text));
+  std::string result(base::trim(text));
   std::transform(result.begin(), result.end(), result.begin(),
                  [](unsigned char c) { return char(std::tolower(c)); });
   return result;
@@ -47,7 +47,7 @@ WeatherColumns::WeatherColumns(const std::vector<std::string>& head, const Names
   const auto once = [&](std::optional<std::size_t> column) {
     for (std::size_t i = 0; column && i < head.size(); ++i)
       if (i != *column && lower(head[i]) == lower(head[*column]))
-        throw Error("{}: the column '{}' appears twice.", place, trim(head[i]));
+        throw Error("{}: the column '{}' appears twice.", place, base::trim(head[i]));
   };
   dew_point_ = find(names.dew_point);
   once(dew_point_);
@@ -58,7 +58,7 @@ WeatherColumns::WeatherColumns(const std::vector<std::string>& head, const Names
     std::vector<std::string> known(names.of[q].begin(), names.of[q].end());
     if (q == humidity) known.insert(known.end(), names.dew_point.begin(), names.dew_point.end());
     throw Error("{}: the column for the {} is missing; it may be named {}.", place,
-                weather_quantities[q].name, join(known));
+                weather_quantities[q].name, base::join(known));
   }
 }
 

@@ -25,11 +25,11 @@ std::vector<std::size_t> read_head(const std::string& head, const std::string& p
           "numbers.",
           place, other == ';' ? ";" : "a tab");
   for (const std::string& field : csv::fields(head)) {
-    const std::string name(trim(field));
+    const std::string name(base::trim(field));
     const auto found = std::find(known.begin(), known.end(), name);
     if (found == known.end())
       throw Error("{}: unknown column '{}'. {}", place, name.substr(0, 80),
-                  did_you_mean(name, known, "columns"));
+                  base::did_you_mean(name, known, "columns"));
     const auto column = static_cast<std::size_t>(found - known.begin());
     if (std::find(columns.begin(), columns.end(), column) != columns.end())
       throw Error("{}: the column '{}' appears twice.", place, name);
@@ -38,7 +38,7 @@ std::vector<std::size_t> read_head(const std::string& head, const std::string& p
   for (std::size_t i = 0; i < known.size(); ++i)
     if (std::find(columns.begin(), columns.end(), i) == columns.end())
       throw Error("{}: the column '{}' is missing. A weather file has the columns {}.", place, known[i],
-                  join(known));
+                  base::join(known));
   return columns;
 }
 
@@ -50,7 +50,7 @@ WeatherHours read_weather_csv(const std::filesystem::path& file) {
   std::vector<std::size_t> columns;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const int line = static_cast<int>(i) + 1;
-    const std::string_view text = trim(lines[i]);
+    const std::string_view text = base::trim(lines[i]);
     if (text.empty() || text.starts_with('#')) continue;
     const std::string place = hours.place(line);
     if (columns.empty()) {

@@ -37,7 +37,7 @@ std::size_t end_of_records(const std::vector<std::string>& lines, std::size_t fi
            std::all_of(line.begin(), line.begin() + 8, [](unsigned char c) { return std::isdigit(c); });
   };
   std::size_t end = first;
-  while (end < lines.size() && !trim(lines[end]).empty()) ++end;
+  while (end < lines.size() && !base::trim(lines[end]).empty()) ++end;
   for (std::size_t i = end; i < lines.size(); ++i)
     if (is_record(lines[i]))
       throw Error("{}: a record after the empty line {}, which ends the records of a PVGIS file.",
@@ -49,7 +49,7 @@ std::size_t end_of_records(const std::vector<std::string>& lines, std::size_t fi
 double number_behind(const std::vector<std::string>& lines, std::size_t end, std::string_view word,
                      const HourCollector& hours, std::optional<double> without = {}) {
   for (std::size_t i = 0; i < end; ++i)
-    if (trim(lines[i]).starts_with(word)) {
+    if (base::trim(lines[i]).starts_with(word)) {
       const auto colon = lines[i].find(':');
       if (colon != std::string::npos)
         return number_in(lines[i].substr(colon + 1), word, hours.place(int(i) + 1));
@@ -120,7 +120,7 @@ WeatherHours read_weather(const std::filesystem::path& file) {
   const std::vector<std::string> first = csv::fields(lines.empty() ? "" : lines[0]),
                                  second = csv::fields(lines.size() > 1 ? lines[1] : "");
   if (!lines.empty() && lines[0].starts_with("LOCATION,")) return read_weather_epw(file);
-  if (!lines.empty() && trim(lines[0]).starts_with("Latitude (")) return read_weather_pvgis(file);
+  if (!lines.empty() && base::trim(lines[0]).starts_with("Latitude (")) return read_weather_pvgis(file);
   if (column_of(second, "Date (MM/DD/YYYY)")) return read_weather_tmy3(file);
   if (column_of(first, "Time Zone") || (column_of(first, "Month") && column_of(first, "Hour")))
     return read_weather_sam(file);

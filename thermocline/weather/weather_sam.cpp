@@ -34,7 +34,7 @@ void check_units(const std::vector<std::string>& head, const std::vector<std::st
   for (const auto& [name, units] : known) {
     const auto column = column_of(head, name);
     if (!column || *column >= values.size()) continue;
-    const std::string_view unit = trim(values[*column]);
+    const std::string_view unit = base::trim(values[*column]);
     if (!unit.empty() && std::find(units.begin(), units.end(), unit) == units.end())
       throw Error("{}: '{}' is '{}'; only {} is supported.", place, name, unit, units.front());
   }

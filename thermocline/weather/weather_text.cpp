@@ -26,7 +26,7 @@ std::vector<std::string> read_lines(const std::filesystem::path& file) {
 }
 
 double number_in(const std::string& field, std::string_view name, const std::string& place) {
-  const std::string_view text = trim(field);
+  const std::string_view text = base::trim(field);
   if (text.empty() || text == "nan" || text == "NaN" || text == "NA") return missing;
   if (const auto value = csv::number_of(text)) return *value;
   throw Error("{}: {}; expected {} here.", place, csv::why_no_number(text), name);
@@ -34,7 +34,7 @@ double number_in(const std::string& field, std::string_view name, const std::str
 
 void check_width(std::span<const std::string> fields, std::size_t most, const std::string& place) {
   for (std::size_t i = most; i < fields.size(); ++i)
-    if (!trim(fields[i]).empty())
+    if (!base::trim(fields[i]).empty())
       throw Error(
           "{}: {} values, but the file has {} columns. If commas are decimal commas, use decimal points.",
           place, fields.size(), most);

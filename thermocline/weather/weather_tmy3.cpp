@@ -45,7 +45,8 @@ WeatherHours read_weather_tmy3(const std::filesystem::path& file) {
     const std::vector<std::string> fields = csv::fields(lines[i]);
     if (fields.size() < head.size())
       throw Error("{}: {} values, but the file has {} columns.", place, fields.size(), head.size());
-    const std::vector<std::string> day = split(fields[*date], '/'), clock = split(fields[*time], ':');
+    const std::vector<std::string> day = base::split(fields[*date], '/'),
+                                   clock = base::split(fields[*time], ':');
     if (day.size() != 3 || clock.size() != 2)
       throw Error("{}: '{},{}' is not a date MM/DD/YYYY and time HH:MM.", place, fields[*date],
                   fields[*time]);

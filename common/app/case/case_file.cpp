@@ -11,7 +11,7 @@
 #include "common/fv/expression.hpp"
 #include "common/fv/table.hpp"
 
-namespace couplet {
+namespace couplet::app {
 namespace {
 
 constexpr std::size_t most_errors = 30, most_participants = 100, longest_participant_name = 50;
@@ -38,7 +38,7 @@ void check_top_level(const config::Document& document, CaseFile& result) {
   for (const std::string& key : config::keys_of(document, ""))
     if (std::find(known.begin(), known.end(), key) == known.end() && result.errors.size() < most_errors)
       result.errors.push_back(fmt::format("{}: unknown section. {}", config::where(document, key),
-                                          did_you_mean(key, known, "sections")));
+                                          base::did_you_mean(key, known, "sections")));
 }
 
 void list_expected(const config::Document& document, CaseFile& result) {
@@ -85,7 +85,7 @@ std::string find_participant(const CommandLine& command_line, const ProgramKind&
   if (!wanted.empty()) {
     if (std::find(names.begin(), names.end(), wanted) == names.end())
       throw Error("--participant {}: {} has no participant with this name. {}", wanted, source,
-                  did_you_mean(wanted, names, "participants"));
+                  base::did_you_mean(wanted, names, "participants"));
     if (std::find(mine.begin(), mine.end(), wanted) == mine.end())
       throw Error(
           "--participant {}: this participant is run by the program '{}', but '{}' was started for "
@@ -99,25 +99,25 @@ std::string find_participant(const CommandLine& command_line, const ProgramKind&
     for (const Expected& e : file.expected)
       if (e.participant != coupler_name) pairs.push_back(fmt::format("'{}' ({})", e.participant, e.program));
     throw Error("{}: no participant is run by the program '{}': {}.",
-                config::where(*file.document, "participants"), kind.name, join(pairs));
+                config::where(*file.document, "participants"), kind.name, base::join(pairs));
   }
   if (mine.size() > 1)
     throw Error("{}: {} participants are run by the program '{}' ({}): select one with --participant.",
-                config::where(*file.document, "participants"), mine.size(), kind.name, join(mine));
+                config::where(*file.document, "participants"), mine.size(), kind.name, base::join(mine));
   return mine.front();
 }
 
 /// Of an expression in x, y, z, t or of a property, which is a number or a table of the temperature T.
 std::string problem_of_expression(const config::ExpressionText& text) {
-  std::string problem = problem_of(text);
+  std::string problem = fv::problem_of(text);
   if (problem.find("unknown name 'T'") != std::string::npos)
-    return problem_of_property(text, -std::numeric_limits<double>::infinity());
+    return fv::problem_of_property(text, -std::numeric_limits<double>::infinity());
   return problem;
 }
 
 /// `effects: auto`: what the case leaves open is set in the document as if it stood there; what stands there wins.
 void choose(const CommandLine& command_line, const ProgramKind& kind, CaseFile& result) {
-  ChoiceScene scene;
+  effects::ChoiceScene scene;
   scene.folder = command_line.case_file.parent_path();
   scene.end_time = result.simulation.end_time;
   scene.time_step = result.simulation.time_step;
@@ -127,7 +127,7 @@ void choose(const CommandLine& command_line, const ProgramKind& kind, CaseFile& 
   result.choices = kind.choose(scene);
   const std::string section = "participants." + result.participant;
   const std::vector<std::string> there = config::keys_of(*result.document, section);
-  for (EffectChoice& choice : result.choices) {
+  for (effects::EffectChoice& choice : result.choices) {
     choice.given = !choice.key.empty() && std::ranges::find(there, choice.key) != there.end();
     if (!choice.given && !choice.value.empty())
       result.document->set(fmt::format("{}.{}={}", section, choice.key, choice.value));
@@ -182,4 +182,4 @@ CaseFile read_case(const CommandLine& command_line, const ProgramKind& kind) {
   return result;
 }
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -16,7 +16,7 @@
 #include "common/effects/choice.hpp"
 #include "common/effects/expected.hpp"
 
-namespace couplet {
+namespace couplet::app {
 
 /// One of the programs of a job, as far as the YAML is concerned.
 struct ProgramKind {
@@ -25,11 +25,11 @@ struct ProgramKind {
   bool is_coupler = false;           ///< reads `coupling` instead of a participant's section
   config::Section::Declare declare;  ///< its keys, without `program`
   /// What it can simulate, with the parameters that were read; empty: not told.
-  std::function<std::vector<Effect>(const EffectScene&)> effects = {};
+  std::function<std::vector<effects::Effect>(const effects::EffectScene&)> effects = {};
   /// What `simulation.effects: auto` decides, with the parameters that were read; empty: nothing.
-  std::function<std::vector<EffectChoice>(const ChoiceScene&)> choose = {};
+  std::function<std::vector<effects::EffectChoice>(const effects::ChoiceScene&)> choose = {};
   /// Memory and time of a step to be expected, for --explain; empty: not told.
-  std::function<ExpectedCost(const ChoiceScene&)> expected = {};
+  std::function<effects::ExpectedCost(const effects::ChoiceScene&)> expected = {};
   /// For --check, with the parameters that were read: what is wrong with the files they name.
   std::function<std::vector<ProblemOfKey>(const std::filesystem::path& case_folder)> problems_of_files = {};
 };
@@ -41,8 +41,8 @@ struct CaseFile {
   SimulationParameters simulation;
   std::vector<Expected> expected;  ///< the coupler first, if there is a `coupling` section
   bool coupled = false;
-  std::size_t hash = 0;               ///< of the file with the overrides, as all programs see it
-  std::vector<EffectChoice> choices;  ///< of `effects: auto`
+  std::size_t hash = 0;                        ///< of the file with the overrides, as all programs see it
+  std::vector<effects::EffectChoice> choices;  ///< of `effects: auto`
   std::vector<std::string> errors;
   std::vector<std::string> doubts;  ///< what is possible but implausible
 };
@@ -54,4 +54,4 @@ CaseFile read_case(const CommandLine& command_line, const ProgramKind& kind);
 /// The declaration of the section that this program reads: its own keys and, for a participant, `program`.
 config::Section::Declare section_of(const ProgramKind& kind);
 
-}  // namespace couplet
+}  // namespace couplet::app

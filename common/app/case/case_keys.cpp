@@ -13,7 +13,7 @@
 #include "common/io/checkpoint_set.hpp"
 #include "common/log/log.hpp"
 
-namespace couplet {
+namespace couplet::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -34,7 +34,7 @@ std::string escaped(const std::string& text) {
 std::vector<std::string> names_in(const std::string& value) {
   if (value.find('"') == std::string::npos) return {value};
   std::vector<std::string> names;
-  const std::vector<std::string> parts = split(value, '"');
+  const std::vector<std::string> parts = base::split(value, '"');
   for (std::size_t i = 1; i < parts.size(); i += 2) names.push_back(parts[i]);
   return names;
 }
@@ -53,7 +53,7 @@ std::map<std::string, std::string> lines_of(const std::string& text) {
 bool is_harmless(const std::string& path) {
   if (path.starts_with("simulation.") || path.starts_with("study") || path.starts_with("plot")) return true;
   if (!path.starts_with("participants.")) return false;
-  const std::vector<std::string> parts = split(path, '.');
+  const std::vector<std::string> parts = base::split(path, '.');
   static constexpr std::array<std::string_view, 3> sections{"output", "probes", "statistics"};
   return parts.size() > 2 && std::any_of(sections.begin(), sections.end(), [&](std::string_view s) {
            return parts[2] == s || parts[2].starts_with(std::string(s) + "[");
@@ -71,8 +71,8 @@ std::string case_keys(const config::Document& document, const fs::path& case_fol
       if (name.empty() || name.size() > 1000 || name.find('\0') != std::string::npos) continue;
       const fs::path file = case_folder / name;
       if (fs::is_regular_file(file, ignored))
-        text +=
-            fmt::format("{}: content of {}{}{:016x}\n", path, escaped(name), separator, digest_of_file(file));
+        text += fmt::format("{}: content of {}{}{:016x}\n", path, escaped(name), separator,
+                            io::digest_of_file(file));
     }
   }
   return text;
@@ -102,7 +102,7 @@ KeyChanges changes_between(const std::string& then, const std::string& now) {
 
 void judge_changes(const fs::path& checkpoint, const std::string& now, bool consent) {
   const fs::path file = checkpoint / "keys.txt";
-  if (const std::string problem = problem_in_set(file); !problem.empty()) throw Error("{}", problem);
+  if (const std::string problem = io::problem_in_set(file); !problem.empty()) throw Error("{}", problem);
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream then;
   then << stream.rdbuf();
@@ -114,8 +114,8 @@ void judge_changes(const fs::path& checkpoint, const std::string& now, bool cons
         "The case differs from the one that {} was written with:\n"
         "  {}\n"
         "If this is intended, start all programs with --restart-with-changes as well.",
-        checkpoint.string(), join(changes.physics, "\n  "));
+        checkpoint.string(), base::join(changes.physics, "\n  "));
   for (const std::string& change : changes.physics) log::warn("since the checkpoint: {}", change);
 }
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -7,7 +7,7 @@
 
 #include "common/config/load.hpp"
 
-namespace couplet {
+namespace couplet::app {
 
 /// The case as it stands in `keys.txt` of a checkpoint: "path = value" a line, and "path: content = digest" for each
 /// file that a value names.
@@ -24,4 +24,4 @@ KeyChanges changes_between(const std::string& then, const std::string& now);
 /// solved unless there is `consent` (--restart-with-changes).
 void judge_changes(const std::filesystem::path& checkpoint, const std::string& now, bool consent);
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -8,7 +8,7 @@
 #include "common/base/text.hpp"
 #include "common/coupling/roles.hpp"
 
-namespace couplet {
+namespace couplet::app {
 namespace {
 
 class Cast {
@@ -20,7 +20,7 @@ class Cast {
   }
 
   std::vector<std::string> problems() {
-    for (const RoleContract& contract : role_contracts()) look_at_role(contract);
+    for (const coupling::RoleContract& contract : coupling::role_contracts()) look_at_role(contract);
     look_at_exchange();
     look_at_moved_walls();
     for (const Expected& e : players_) {
@@ -47,20 +47,20 @@ class Cast {
   }
   void unknown(const std::string& key, const std::string& name) {
     problems_.push_back(fmt::format("{}: there is no participant '{}'. {}", config::where(document_, key),
-                                    name, did_you_mean(name, names_, "participants")));
+                                    name, base::did_you_mean(name, names_, "participants")));
   }
 
   /// "; 'solid' (solid_solver) can": those of the case that could play it.
-  std::string others(const RoleContract& contract) const {
+  std::string others(const coupling::RoleContract& contract) const {
     std::vector<std::string> able;
     for (const Expected& e : players_)
-      if (const Player* player = player_of(e.program);
-          player && problem_of_role(contract, *player, has_mover_).empty())
+      if (const coupling::Player* player = coupling::player_of(e.program);
+          player && coupling::problem_of_role(contract, *player, has_mover_).empty())
         able.push_back(fmt::format("'{}' ({})", e.participant, e.program));
-    return able.empty() ? "" : fmt::format(". In this case {} can", join(able));
+    return able.empty() ? "" : fmt::format(". In this case {} can", base::join(able));
   }
 
-  void look_at_role(const RoleContract& contract) {
+  void look_at_role(const coupling::RoleContract& contract) {
     const std::string key = "coupling." + contract.role + ".participant";
     const auto name = config::text_of(document_, key);
     if (!name) return;
@@ -68,11 +68,11 @@ class Cast {
     const Expected* who = find(*name);
     if (who == nullptr) return unknown(key, *name);
     if (who->program == "?") return;  // told elsewhere
-    const Player* player = player_of(who->program);
+    const coupling::Player* player = coupling::player_of(who->program);
     // Strangers show at the start what they take and give, but the link of the mesh is the project's own.
     std::string problem;
     if (player)
-      problem = problem_of_role(contract, *player, has_mover_);
+      problem = coupling::problem_of_role(contract, *player, has_mover_);
     else if (contract.gives_nothing)
       problem = "only mesh_mover can move the mesh of a fluid";
     else if (contract.role == "fluid" && has_mover_)
@@ -93,7 +93,7 @@ class Cast {
       if (who == nullptr) unknown(key, *here);
       if (std::find(exchanging.begin(), here, *here) != here)
         problems_.push_back(fmt::format("{}: '{}' is listed twice.", config::where(document_, key), *here));
-      const Player* player = who ? player_of(who->program) : nullptr;
+      const coupling::Player* player = who ? coupling::player_of(who->program) : nullptr;
       if (player && player->moves_mesh)
         say(key,
             fmt::format(
@@ -146,4 +146,4 @@ std::vector<std::string> problems_of_roles(const config::Document& document,
   return Cast(document, expected).problems();
 }
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -7,7 +7,7 @@
 #include "common/app/case/roll_call.hpp"
 #include "common/config/load.hpp"
 
-namespace couplet {
+namespace couplet::app {
 
 /// What is wrong with the roles that a coupled case gives to its participants: roles of nobody, participants
 /// without a role, programs that cannot play theirs (see roles.hpp). Every program of a job finds the same, at its
@@ -15,4 +15,4 @@ namespace couplet {
 std::vector<std::string> problems_of_roles(const config::Document& document,
                                            const std::vector<Expected>& expected);
 
-}  // namespace couplet
+}  // namespace couplet::app

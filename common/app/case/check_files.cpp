@@ -11,7 +11,7 @@
 #include "common/mesh/gmsh/meshio.hpp"
 #include "common/mesh/load.hpp"
 
-namespace couplet {
+namespace couplet::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -44,13 +44,13 @@ class FileCheck {
     }
     try {
       if (file.extension() == ".msh") {
-        check_patches(read_msh(file).patches);
+        check_patches(mesh::read_msh(file).patches);
       } else if (file.extension() == ".inp") {
-        check_patches(read_inp(file).patches);
+        check_patches(mesh::read_inp(file).patches);
       } else if (file.extension() == ".geo") {
-        check_geo(read_geo(file));
+        check_geo(mesh::read_geo(file));
       } else if (const std::string kind = file.extension().string();
-                 kind != ".unv" && kind != ".cgns" && !is_read_by_meshio(kind)) {
+                 kind != ".unv" && kind != ".cgns" && !mesh::is_read_by_meshio(kind)) {
         report("mesh", fmt::format("'{}' is not a .msh, .geo, .inp, .unv, .med, .exo or .cgns file.", name));
       }
     } catch (const Error& error) {
@@ -58,11 +58,11 @@ class FileCheck {
     }
   }
 
-  void check_geo(const GeoScript& script) {
+  void check_geo(const mesh::GeoScript& script) {
     for (const std::string& name : config::keys_of(document_, section_ + ".mesh-parameters"))
       if (std::find(script.constants.begin(), script.constants.end(), name) == script.constants.end())
         report("mesh-parameters." + name, fmt::format("the .geo defines no such name with DefineConstant. {}",
-                                                      did_you_mean(name, script.constants, "names")));
+                                                      base::did_you_mean(name, script.constants, "names")));
     if (!script.danger.empty()) report("mesh", script.refusal());
     const auto dimension = config::text_of(document_, section_ + ".dimension");
     if (dimension != "2" && dimension != "3") return;
@@ -78,7 +78,7 @@ class FileCheck {
     for (const std::string& entry : entries)
       if (!has(patches, entry))
         report("boundaries." + entry, fmt::format("the mesh has no patch with this name. {}",
-                                                  did_you_mean(entry, patches, "patches")));
+                                                  base::did_you_mean(entry, patches, "patches")));
     for (const std::string& patch : patches)
       if (!has(entries, patch))
         report("boundaries", fmt::format("the patch '{}' of the mesh has no entry here.", patch));
@@ -107,4 +107,4 @@ std::vector<std::string> problems_of_files(const config::Document& document, con
   return FileCheck(document, "participants." + participant, case_folder).run();
 }
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -7,7 +7,7 @@
 
 #include "common/config/load.hpp"
 
-namespace couplet {
+namespace couplet::app {
 
 /// What --check can tell about the files of a participant without running it: a mesh that is missing or broken,
 /// patches that the mesh or `boundaries` has and the other has not, names of `mesh-parameters` that the .geo does not
@@ -16,4 +16,4 @@ namespace couplet {
 std::vector<std::string> problems_of_files(const config::Document& document, const std::string& participant,
                                            const std::filesystem::path& case_folder);
 
-}  // namespace couplet
+}  // namespace couplet::app

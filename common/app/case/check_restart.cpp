@@ -8,21 +8,21 @@
 #include "common/io/checkpoint.hpp"
 #include "common/io/checkpoint_set.hpp"
 
-namespace couplet {
+namespace couplet::app {
 
 std::string problem_of_restart(const CommandLine& command_line, const CaseFile& file, bool is_coupler) {
   if (command_line.restart_folder.empty()) return "";
   const std::string own = (is_coupler ? std::string(coupler_name) : file.participant) + ".h5";
   try {
     const std::filesystem::path folder = find_checkpoint(command_line.restart_folder);
-    const auto set = read_checkpoint_set(folder);
+    const auto set = io::read_checkpoint_set(folder);
     bool has_own = false;
-    for (const CheckpointSet::File& part : set->files) {
-      if (const std::string problem = problem_in_set(folder / part.name); !problem.empty())
+    for (const io::CheckpointSet::File& part : set->files) {
+      if (const std::string problem = io::problem_in_set(folder / part.name); !problem.empty())
         return fmt::format("--restart {}: {}", folder.string(), problem);
       has_own = has_own || part.name == own;
       if (part.name == own || part.name == run_file)
-        if (const std::string problem = problem_of_checkpoint(folder / part.name); !problem.empty())
+        if (const std::string problem = io::problem_of_checkpoint(folder / part.name); !problem.empty())
           return fmt::format("--restart {}: {}", folder.string(), problem);
     }
     if (!has_own)
@@ -38,4 +38,4 @@ std::string problem_of_restart(const CommandLine& command_line, const CaseFile& 
   return "";
 }
 
-}  // namespace couplet
+}  // namespace couplet::app

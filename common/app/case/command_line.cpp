@@ -11,7 +11,7 @@
 #include "common/config/description.hpp"
 #include "common/log/finding.hpp"
 
-namespace couplet {
+namespace couplet::app {
 namespace {
 
 // Equal to the project's version in CMakeLists.txt; a test compares them.
@@ -56,7 +56,7 @@ std::string explain_extra(const CLI::App& app, const std::string& word) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options())
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  const auto meant = word.starts_with('-') ? closest(word, names) : std::nullopt;
+  const auto meant = word.starts_with('-') ? base::closest(word, names) : std::nullopt;
   return fmt::format("Unknown option or argument '{}'.{}", word,
                      meant ? fmt::format(" Did you mean '{}'?", *meant) : "");
 }
@@ -150,4 +150,4 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv, const Pr
   return result;
 }
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -9,7 +9,7 @@
 #include "common/config/section.hpp"
 #include "common/log/log.hpp"
 
-namespace couplet {
+namespace couplet::app {
 
 /// What a program was asked to do; the same for all programs.
 struct CommandLine {
@@ -46,4 +46,4 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv, const Pr
 /// "couplet 1.0.0".
 std::string version_text();
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace couplet {
+namespace couplet::app {
 
 /// What is wrong with the file that a key of a participant names.
 struct ProblemOfKey {
@@ -11,4 +11,4 @@ struct ProblemOfKey {
   std::string what;  ///< a sentence, with file:line where it can be said
 };
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -10,7 +10,7 @@
 #include "common/app/case/check_restart.hpp"
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::app {
 namespace {
 
 /// What is missing or broken among the files of a participant: what every program's --check sees, then its own.
@@ -63,10 +63,10 @@ namespace {
 
 /// Without its mesh nothing can be expected; what is wrong with it a run will say.
 void print_expected(const CommandLine& command_line, const ProgramKind& kind) {
-  ChoiceScene scene;
+  effects::ChoiceScene scene;
   scene.folder = command_line.case_file.parent_path();
   try {
-    fmt::print("expected:         {}\n", text(kind.expected(scene)));
+    fmt::print("expected:         {}\n", effects::text(kind.expected(scene)));
   } catch (const Error& error) {
     fmt::print("expected:         unknown: {}\n", error.what());
   }
@@ -82,9 +82,9 @@ int explain(const CommandLine& command_line, const ProgramKind& kind) {
   const bool has_mover = config::text_of(*file.document, "coupling.mesh.participant").has_value();
   fmt::print("{} as '{}' of {}:\n", kind.name, kind.is_coupler ? "coupler" : file.participant,
              command_line.case_file.string());
-  for (const EffectChoice& choice : file.choices) fmt::print("  {}\n", text(choice));
+  for (const effects::EffectChoice& choice : file.choices) fmt::print("  {}\n", effects::text(choice));
   if (kind.effects)
-    fmt::print("{}", explanation(
+    fmt::print("{}", effects::explanation(
                          kind.effects({file.coupled, file.coupled && has_mover, file.simulation.time_step})));
   if (kind.expected) print_expected(command_line, kind);
   std::string job;
@@ -119,7 +119,7 @@ int answer(const CommandLine& command_line, const ProgramKind& kind) {
     case Task::explain:
       return explain(command_line, kind);
     case Task::effects:
-      if (kind.effects) fmt::print("{}", markdown(kind.name, kind.effects({})));
+      if (kind.effects) fmt::print("{}", effects::markdown(kind.name, kind.effects({})));
       return 0;
     case Task::run:
       break;
@@ -127,4 +127,4 @@ int answer(const CommandLine& command_line, const ProgramKind& kind) {
   return 0;
 }
 
-}  // namespace couplet
+}  // namespace couplet::app

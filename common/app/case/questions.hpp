@@ -4,9 +4,9 @@
 #include "common/app/case/case_file.hpp"
 #include "common/app/case/command_line.hpp"
 
-namespace couplet {
+namespace couplet::app {
 
 /// --check, --docs, --schema and --print-config: answered without MPI. Returns the exit code.
 int answer(const CommandLine& command_line, const ProgramKind& kind);
 
-}  // namespace couplet
+}  // namespace couplet::app

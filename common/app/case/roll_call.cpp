@@ -15,7 +15,7 @@
 #include "common/coupling/wait.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::app {
 namespace {
 
 // One text a process: fields parted by unit separators, which no name, path or message holds.
@@ -80,7 +80,7 @@ std::string configuration_errors(const std::vector<Attendant>& attendants) {
     const auto& who = senders[error];
     text += who.size() == everyone.size() && who.size() > 1
                 ? fmt::format("\n  {}", error)
-                : fmt::format("\n  [{}] {}", join({who.begin(), who.end()}), error);
+                : fmt::format("\n  [{}] {}", base::join({who.begin(), who.end()}), error);
   }
   return text;
 }
@@ -126,7 +126,7 @@ std::string attendance(const std::vector<Attendant>& attendants, const std::vect
           "\n"
           "  {} programs were started as participant '{}' ({}); each participant runs once. Give each "
           "program its own --participant.",
-          std::max(numbers.size(), run_by.size()), participant, join({run_by.begin(), run_by.end()}));
+          std::max(numbers.size(), run_by.size()), participant, base::join({run_by.begin(), run_by.end()}));
     const bool known =
         std::any_of(expected.begin(), expected.end(),
                     [&name = participant](const Expected& e) { return e.participant == name; });
@@ -169,7 +169,7 @@ Attendant introduced(const std::string& text, int process) {
 void check_hands(std::span<const std::int64_t> all) {
   const std::size_t n = all.size() / 4;
   const auto is_ours = [&](std::size_t r) {
-    return all[4 * r] == hello_mark && all[4 * r + 1] == protocol_version && all[4 * r + 2] == 0;
+    return all[4 * r] == hello_mark && all[4 * r + 1] == coupling::protocol_version && all[4 * r + 2] == 0;
   };
   std::size_t speaker = 0;
   while (speaker < n && !is_ours(speaker)) ++speaker;
@@ -181,11 +181,12 @@ void check_hands(std::span<const std::int64_t> all) {
           "Process {} of the job is not a Couplet program: its handshake begins with {}. docs/protocol.md "
           "describes how your own program can join.",
           r, mark));
-    if (version != protocol_version)
+    if (version != coupling::protocol_version)
       fail(fmt::format(
           "Process {} of the job ({}) uses version {} of the protocol; the Couplet programs here use "
           "version {}. Use programs and the client library from one version of Couplet.",
-          r, kind == 0 ? "a program of Couplet" : "an external program", version, protocol_version));
+          r, kind == 0 ? "a program of Couplet" : "an external program", version,
+          coupling::protocol_version));
     if (kind != 0 && kind != 1)
       fail(fmt::format(
           "Process {} of the job reports kind {}; expected 0 (a Couplet program) or 1 (an external program).",
@@ -194,14 +195,14 @@ void check_hands(std::span<const std::int64_t> all) {
 }
 
 MPI_Comm shake_hands(MPI_Comm world) {
-  const std::array<std::int64_t, 4> mine{hello_mark, protocol_version, 0, 0};
-  std::vector<std::int64_t> all(4 * std::size_t(comm_size(world)));
+  const std::array<std::int64_t, 4> mine{hello_mark, coupling::protocol_version, 0, 0};
+  std::vector<std::int64_t> all(4 * std::size_t(parallel::comm_size(world)));
   MPI_Request request;
   MPI_Iallgather(mine.data(), 4, MPI_INT64_T, all.data(), 4, MPI_INT64_T, world, &request);
-  wait_politely(request, "every process of the job to join (docs/protocol.md, handshake)");
+  coupling::wait_politely(request, "every process of the job to join (docs/protocol.md, handshake)");
   check_hands(all);
   MPI_Comm natives;
-  MPI_Comm_split(world, 0, comm_rank(world), &natives);
+  MPI_Comm_split(world, 0, parallel::comm_rank(world), &natives);
   return natives;
 }
 
@@ -213,16 +214,16 @@ bool all_agree_to_start(MPI_Comm world, bool problem) {
 
 std::vector<Attendant> roll_call(MPI_Comm world, const Attendant& self) {
   const std::string text = encode(self);
-  const std::vector<char> all = all_gather(world, std::vector<char>(text.begin(), text.end()));
+  const std::vector<char> all = parallel::all_gather(world, std::vector<char>(text.begin(), text.end()));
   std::vector<Attendant> attendants;
   std::istringstream in(std::string(all.begin(), all.end()));
   for (std::string one; std::getline(in, one, text_end);)
     attendants.push_back(introduced(one, int(attendants.size())));
-  if (attendants.size() != std::size_t(comm_size(world)))
+  if (attendants.size() != std::size_t(parallel::comm_size(world)))
     throw Error(
         "{} processes introduce themselves, but the job has {}: the handshake of an external program must "
         "contain exactly one end-of-text character (0x1e).",
-        attendants.size(), comm_size(world));
+        attendants.size(), parallel::comm_size(world));
   return attendants;
 }
 
@@ -272,4 +273,4 @@ std::vector<Member> members(const std::vector<Attendant>& attendants) {
   return list;
 }
 
-}  // namespace couplet
+}  // namespace couplet::app

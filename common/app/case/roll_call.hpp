@@ -11,7 +11,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::app {
 
 /// What one process says of itself at the roll call.
 struct Attendant {
@@ -77,4 +77,4 @@ bool all_agree_to_start(MPI_Comm world, bool problem);
 /// In order of first world rank.
 std::vector<Member> members(const std::vector<Attendant>& attendants);
 
-}  // namespace couplet
+}  // namespace couplet::app

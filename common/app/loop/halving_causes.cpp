@@ -3,7 +3,7 @@
 
 #include <cctype>
 
-namespace couplet {
+namespace couplet::app {
 
 void HalvingCauses::accepted(double dt) {
   for (auto& [cause, count] : counts_) count.good_steps += dt >= (1 - 1e-9) * count.dt;
@@ -41,4 +41,4 @@ std::string HalvingCauses::without_numbers(const std::string& reason) {
   return text;
 }
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-namespace couplet {
+namespace couplet::app {
 
 /// Why steps were halved. A cause that comes back again and again is not one that shorter steps cure: they only feed a run
 /// whose answer is lost.
@@ -29,4 +29,4 @@ class HalvingCauses {
   std::map<std::string, Count> counts_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -6,7 +6,7 @@
 #include "common/coupling/step_plan.hpp"
 #include "common/log/finding.hpp"
 
-namespace couplet {
+namespace couplet::app {
 
 void declare(config::Section& section, SimulationParameters& p) {
   section.value("name", p.name).doc("name of the case, shown at the start of a run");
@@ -77,11 +77,11 @@ void declare(config::Section& section, SimulationParameters& p) {
       [&]() -> std::string {
         if (p.time_step > p.end_time) return "the time step must not be longer than the run ('end-time')";
         const double steps = p.end_time / p.time_step;
-        if (steps <= StepPlan::most_steps) return "";
+        if (steps <= coupling::StepPlan::most_steps) return "";
         return fmt::format("the run would take {:g} steps; at most {:g} are allowed", steps,
-                           StepPlan::most_steps);
+                           coupling::StepPlan::most_steps);
       },
       "time-step");
 }
 
-}  // namespace couplet
+}  // namespace couplet::app

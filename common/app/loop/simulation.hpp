@@ -6,7 +6,7 @@
 
 #include "common/config/section.hpp"
 
-namespace couplet {
+namespace couplet::app {
 
 /// What `simulation:` in the YAML says to every program.
 struct SimulationParameters {
@@ -26,4 +26,4 @@ struct SimulationParameters {
 };
 void declare(config::Section& section, SimulationParameters& parameters);
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -17,7 +17,7 @@
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -33,22 +33,22 @@ std::string make_run_id() {
 /// What rank 0 does alone: its Error is thrown on every rank. Collective.
 void on_first_rank(MPI_Comm comm, const std::function<void()>& action) {
   std::string problem;
-  if (comm_rank(comm) == 0) {
+  if (parallel::comm_rank(comm) == 0) {
     try {
       action();
     } catch (const std::exception& error) {
       problem = error.what();
     }
   }
-  broadcast(comm, problem);
+  parallel::broadcast(comm, problem);
   if (!problem.empty()) throw Error("{}", problem);
 }
 
 }  // namespace
 
 void write_run_state(MPI_Comm comm, const fs::path& folder, const RunState& state) {
-  if (comm_rank(comm) == 0) {
-    CheckpointWriter file(MPI_COMM_SELF, folder / run_file);
+  if (parallel::comm_rank(comm) == 0) {
+    io::CheckpointWriter file(MPI_COMM_SELF, folder / run_file);
     file.write_scalar("time", state.time);
     file.write_scalar("outputs", state.outputs);
     file.write("plan", state.plan);
@@ -58,7 +58,7 @@ void write_run_state(MPI_Comm comm, const fs::path& folder, const RunState& stat
 }
 
 RunState read_run_state(const fs::path& folder) {
-  CheckpointReader file(MPI_COMM_SELF, folder / run_file);
+  io::CheckpointReader file(MPI_COMM_SELF, folder / run_file);
   RunState state;
   state.time = file.read_scalar("time");
   state.outputs = int(file.read_count("outputs", std::numeric_limits<int>::max()));
@@ -67,16 +67,16 @@ RunState read_run_state(const fs::path& folder) {
 }
 
 fs::path find_checkpoint(const fs::path& folder, bool tell) {
-  if (read_checkpoint_set(folder)) return folder;
-  const std::vector<FoundSet> found = checkpoint_sets(folder);
+  if (io::read_checkpoint_set(folder)) return folder;
+  const std::vector<io::FoundSet> found = io::checkpoint_sets(folder);
   if (found.empty())
     throw Error(
         "--restart {}: no complete checkpoint found. Give a checkpoint folder of an earlier run, such as "
         "out/checkpoints/step-00000100, or its parent folder for the latest one.",
         folder.string());
-  const FoundSet& furthest = found.back();
+  const io::FoundSet& furthest = found.back();
   const auto youngest =
-      std::max_element(found.begin(), found.end(), [](const FoundSet& a, const FoundSet& b) {
+      std::max_element(found.begin(), found.end(), [](const io::FoundSet& a, const io::FoundSet& b) {
         return std::tie(a.stamp.run, a.stamp.time) < std::tie(b.stamp.run, b.stamp.time);
       });
   if (tell && youngest->stamp.run > furthest.stamp.run)
@@ -88,12 +88,13 @@ fs::path find_checkpoint(const fs::path& folder, bool tell) {
   return furthest.folder;
 }
 
-StepLoop::StepLoop(MPI_Comm comm, const SimulationParameters& simulation, Scheme scheme, fs::path checkpoints)
+StepLoop::StepLoop(MPI_Comm comm, const SimulationParameters& simulation, coupling::Scheme scheme,
+                   fs::path checkpoints)
     : comm_(comm),
       simulation_(simulation),
       scheme_(scheme),
       checkpoints_(std::move(checkpoints)),
-      run_id_(comm_rank(comm) == 0 ? make_run_id() : ""),
+      run_id_(parallel::comm_rank(comm) == 0 ? make_run_id() : ""),
       plan_(simulation.end_time, simulation.time_step, simulation.max_step_halvings) {}
 
 void StepLoop::restart(const RunState& state) {
@@ -115,10 +116,10 @@ bool StepLoop::due(double interval) const {
 
 fs::path StepLoop::checkpoint(const StepActions& actions) {
   if (!actions.stateless.empty()) return {};
-  const CheckpointStamp stamp{run_id_, plan_.steps_accepted(), plan_.time()};
+  const io::CheckpointStamp stamp{run_id_, plan_.steps_accepted(), plan_.time()};
   std::string name;
-  on_first_rank(comm_, [&] { name = begin_checkpoint_set(checkpoints_, stamp).string(); });
-  broadcast(comm_, name);
+  on_first_rank(comm_, [&] { name = io::begin_checkpoint_set(checkpoints_, stamp).string(); });
+  parallel::broadcast(comm_, name);
   const fs::path folder = name;
   actions.save(folder);
   write_run_state(comm_, folder, {plan_.time(), outputs_, plan_.state()});
@@ -127,13 +128,13 @@ fs::path StepLoop::checkpoint(const StepActions& actions) {
     keys << simulation_.keys;
     keys.close();
     if (!keys) throw Error("Cannot write the checkpoint in {}. Is the disk full?", folder.string());
-    finish_checkpoint_set(folder, stamp);
+    io::finish_checkpoint_set(folder, stamp);
     log::debug("checkpoint {} at t = {:g} s", folder.string(), plan_.time());
     // Only what this run wrote goes: sets of other runs are theirs.
-    std::vector<FoundSet> own = checkpoint_sets(checkpoints_);
-    std::erase_if(own, [&](const FoundSet& set) { return set.stamp.run != run_id_; });
+    std::vector<io::FoundSet> own = io::checkpoint_sets(checkpoints_);
+    std::erase_if(own, [&](const io::FoundSet& set) { return set.stamp.run != run_id_; });
     for (std::size_t i = 0; i + simulation_.checkpoints_kept < own.size(); ++i)
-      remove_checkpoint_set(own[i].folder);
+      io::remove_checkpoint_set(own[i].folder);
   });
   return folder;
 }
@@ -143,7 +144,7 @@ std::string StepLoop::stop(const StepActions& actions) {
   if (folder.empty())
     return fmt::format("Stopped at t = {:g} s by a signal.{}", plan_.time(), what_is_kept(actions));
   Watch::stopped();
-  if (comm_rank(comm_) == 0)
+  if (parallel::comm_rank(comm_) == 0)
     log::info("stopped at t = {:g} s by a signal; the state is saved: continue with --restart {}",
               plan_.time(), folder.string());
   return "";
@@ -154,7 +155,8 @@ std::string StepLoop::what_is_kept(const StepActions& actions) const {
   return fmt::format(" The state at t = {:g} s was saved in {}.", plan_.time(), checkpoints_.string());
 }
 
-std::string StepLoop::give_up(const StepActions& actions, const Step& step, const StepFailure& failure) {
+std::string StepLoop::give_up(const StepActions& actions, const coupling::Step& step,
+                              const StepFailure& failure) {
   checkpoint(actions);
   if (!failure.halving_helps)
     return fmt::format("The run ends at t = {:g} s: {}{}", step.time, failure.reason, what_is_kept(actions));
@@ -165,8 +167,8 @@ std::string StepLoop::give_up(const StepActions& actions, const Step& step, cons
 /// The failure itself, or, where the same cause has halved steps too often, why the run ends. Collective: ranks may word a
 /// cause otherwise.
 StepFailure StepLoop::seen_again(const StepFailure& failure, double dt) {
-  const GlobalIndex mine = comm_rank(comm_) == 0 ? causes_.halved(failure.reason, dt) : 0,
-                    times = sum(comm_, mine);
+  const GlobalIndex mine = parallel::comm_rank(comm_) == 0 ? causes_.halved(failure.reason, dt) : 0,
+                    times = parallel::sum(comm_, mine);
   if (times < HalvingCauses::most) return failure;
   return {fmt::format("{} halvings of the step for one cause did not help: {}", times, failure.reason),
           false};
@@ -174,18 +176,18 @@ StepFailure StepLoop::seen_again(const StepFailure& failure, double dt) {
 
 std::string StepLoop::run(const StepActions& actions) {
   on_first_rank(comm_, [&] {
-    for (const fs::path& folder : clear_incomplete_sets(checkpoints_))
+    for (const fs::path& folder : io::clear_incomplete_sets(checkpoints_))
       log::info("removed the incomplete checkpoint {} of an earlier run", folder.string());
   });
   if (!restarted_) actions.write_start(outputs_++);
   while (!plan_.finished()) {
-    if (any(comm_, Watch::stop_requested())) return stop(actions);
+    if (parallel::any(comm_, Watch::stop_requested())) return stop(actions);
     plan_.limit(actions.advised_dt());
-    const Step step{.time = plan_.time(),
-                    .dt = plan_.dt(),
-                    .scheme = scheme_,
-                    .number = plan_.steps_accepted(),
-                    .is_last = plan_.is_last()};
+    const coupling::Step step{.time = plan_.time(),
+                              .dt = plan_.dt(),
+                              .scheme = scheme_,
+                              .number = plan_.steps_accepted(),
+                              .is_last = plan_.is_last()};
     if (const auto failure = actions.attempt(step)) {
       log::warn("t = {:g} s: step {} with dt = {:g} s failed: {}", step.time, step.number + 1, step.dt,
                 failure->reason);
@@ -206,4 +208,4 @@ std::string StepLoop::run(const StepActions& actions) {
   return "";
 }
 
-}  // namespace couplet
+}  // namespace couplet::app

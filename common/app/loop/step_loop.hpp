@@ -15,7 +15,7 @@
 #include "common/coupling/participant.hpp"
 #include "common/coupling/step_plan.hpp"
 
-namespace couplet {
+namespace couplet::app {
 
 /// Where a run stands at an accepted time; kept beside the participants' files in a checkpoint folder as
 /// run.h5.
@@ -46,7 +46,7 @@ struct StepFailure {
 /// What a run does with a step: all calls collective over its communicator.
 struct StepActions {
   /// Begins and solves the step; the reason if that failed, nothing if it was solved. State n stays as it is.
-  std::function<std::optional<StepFailure>(const Step&)> attempt;
+  std::function<std::optional<StepFailure>(const coupling::Step&)> attempt;
   /// The step becomes state n. `time`: its end; `output`: number of the output that is due, -1 for none.
   std::function<void(double time, int output)> accept;
   std::function<void(int output)> write_start;
@@ -54,7 +54,7 @@ struct StepActions {
   /// Why no checkpoint could be continued from; empty: checkpoints are written.
   std::string stateless;
   /// After each accepted step: for the console.
-  std::function<void(const Step&, double time)> report;
+  std::function<void(const coupling::Step&, double time)> report;
   /// Largest step that is advised now [s].
   std::function<double()> advised_dt = [] { return std::numeric_limits<double>::infinity(); };
 };
@@ -63,7 +63,7 @@ struct StepActions {
 /// checkpoints at nominal times. The same loop drives a participant alone and the coupled job.
 class StepLoop {
  public:
-  StepLoop(MPI_Comm comm, const SimulationParameters& simulation, Scheme scheme,
+  StepLoop(MPI_Comm comm, const SimulationParameters& simulation, coupling::Scheme scheme,
            std::filesystem::path checkpoints);
   /// Continues from this state instead of from the start.
   void restart(const RunState& state);
@@ -83,17 +83,17 @@ class StepLoop {
   std::filesystem::path checkpoint(const StepActions& actions);
   std::string stop(const StepActions& actions);
   std::string what_is_kept(const StepActions& actions) const;
-  std::string give_up(const StepActions& actions, const Step& step, const StepFailure& failure);
+  std::string give_up(const StepActions& actions, const coupling::Step& step, const StepFailure& failure);
 
   MPI_Comm comm_;
   SimulationParameters simulation_;
-  Scheme scheme_;
+  coupling::Scheme scheme_;
   std::filesystem::path checkpoints_;
   std::string run_id_;  // on rank 0
-  StepPlan plan_;
+  coupling::StepPlan plan_;
   HalvingCauses causes_;
   int outputs_ = 0, halvings_ = 0;
   bool restarted_ = false;
 };
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -11,7 +11,7 @@
 #include "common/coupling/wait.hpp"
 #include "common/log/life.hpp"
 
-namespace couplet {
+namespace couplet::app {
 
 FaultInjection::FaultInjection(std::string_view participant, int rank) {
   const char* text = std::getenv("COUPLET_FAULT");
@@ -33,7 +33,7 @@ void FaultInjection::at(std::string_view phase) {
   if (fate_ == "kill") std::raise(SIGKILL);
   if (fate_ == "stop") std::raise(SIGSTOP);
   while (fate_ == "hang") std::this_thread::sleep_for(1s);
-  PoliteWait wait("a message that is never sent");
+  coupling::PoliteWait wait("a message that is never sent");
   while (fate_ == "wait") wait.pause();
   for (int i = 0; fate_ == "work" && i < 140; ++i) {
     std::this_thread::sleep_for(50ms);
@@ -41,4 +41,4 @@ void FaultInjection::at(std::string_view phase) {
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace couplet {
+namespace couplet::app {
 
 /// A test aid: COUPLET_FAULT="solid:solve:2" kills rank 0 of participant 'solid' with SIGKILL when it enters
 /// its second solve; "solid:solve:2:1" kills rank 1. A fifth part names another fate: hang (for ever, without a sign of
@@ -21,4 +21,4 @@ class FaultInjection {
   int remaining_ = 0;
 };
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -14,7 +14,7 @@
 
 #include "common/app/watch/watch_board.hpp"
 
-namespace couplet {
+namespace couplet::app {
 namespace {
 
 /// "fluid_solver (pid 7)", of the launcher's other children that are stopped, if any.
@@ -55,4 +55,4 @@ StartGuard::StartGuard(double seconds, std::string label) {
   });
 }
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -4,7 +4,7 @@
 #include <string>
 #include <thread>
 
-namespace couplet {
+namespace couplet::app {
 
 /// Until the processes of a job know each other, a Watch cannot see that one of them hangs: the others wait in
 /// MPI_Init for ever. This ends the process, and by that the job, where the start takes longer than the hang timeout.
@@ -18,4 +18,4 @@ class StartGuard {
   std::jthread guard_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::app

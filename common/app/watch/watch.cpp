@@ -20,7 +20,7 @@
 #include "common/log/life.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::app {
 
 using namespace watching;
 
@@ -28,10 +28,10 @@ namespace {
 
 /// Whether somebody wants the job to end although all of it is well and making steps: nobody is gone, nobody ends.
 bool is_a_wish() {
-  if (board.slots[board.mine].phase <= int(Phase::initialise)) return false;
-  for (int i = 0; i < board.count; ++i) {
-    const Slot& slot = board.slots[i];
-    if (slot.ending || slot.terminating || (!slot.finished && gone(slot.pid))) return false;
+  if (app::watching::board.slots[app::watching::board.mine].phase <= int(Phase::initialise)) return false;
+  for (int i = 0; i < app::watching::board.count; ++i) {
+    const app::watching::Slot& slot = app::watching::board.slots[i];
+    if (slot.ending || slot.terminating || (!slot.finished && app::watching::gone(slot.pid))) return false;
   }
   return true;
 }
@@ -39,30 +39,31 @@ bool is_a_wish() {
 void report_the_dead() {
   // The launcher may end the survivors one by one: those that have come here are no culprits, even if they
   // are gone.
-  board.slots[board.mine].terminating = 1;
+  app::watching::board.slots[app::watching::board.mine].terminating = 1;
   const char* separator = "couplet: ";
-  Line line;
+  app::watching::Line line;
   bool any = false;
-  for (int i = 0; i < board.count; ++i) {
-    const Slot& slot = board.slots[i];
+  for (int i = 0; i < app::watching::board.count; ++i) {
+    const app::watching::Slot& slot = app::watching::board.slots[i];
     if (slot.ending) return;
-    if (i == board.mine || slot.finished || slot.terminating || !gone(slot.pid)) continue;
+    if (i == app::watching::board.mine || slot.finished || slot.terminating || !app::watching::gone(slot.pid))
+      continue;
     any = true;
     line << separator;
-    describe(line, slot, "was killed or has ended unexpectedly");
+    app::watching::describe(line, slot, "was killed or has ended unexpectedly");
     separator = "; ";
   }
-  if (!any && !board.whole_job) return;
+  if (!any && !app::watching::board.whole_job) return;
   if (!any) line << "couplet: the job was stopped from outside (signal SIGTERM)";
   line << ". All programs of the job end.\n";
   // One line for all: that of the first survivor to come here.
-  if (board.slots[0].spoke_for_all.exchange(1) == 0) line.write_to(STDERR_FILENO);
+  if (app::watching::board.slots[0].spoke_for_all.exchange(1) == 0) line.write_to(STDERR_FILENO);
 }
 
 extern "C" void on_terminate(int) {
   const int error = errno;
   if (is_a_wish()) {
-    board.slots[0].stop_requested = 1;
+    app::watching::board.slots[0].stop_requested = 1;
     errno = error;
     return;
   }
@@ -73,10 +74,10 @@ extern "C" void on_terminate(int) {
   ::_exit(128 + SIGTERM);
 }
 
-Slot* share_page(MPI_Comm machine, int rank, int size) {
-  const std::size_t bytes = sizeof(Slot) * std::size_t(size);
+app::watching::Slot* share_page(MPI_Comm machine, int rank, int size) {
+  const std::size_t bytes = sizeof(app::watching::Slot) * std::size_t(size);
   std::string path = fmt::format("/couplet-{}", ::getpid());
-  broadcast(machine, path);
+  parallel::broadcast(machine, path);
   int file = -1;
   if (rank == 0) {
     file = ::shm_open(path.c_str(), O_CREAT | O_EXCL | O_RDWR, 0600);
@@ -89,8 +90,8 @@ Slot* share_page(MPI_Comm machine, int rank, int size) {
   MPI_Barrier(machine);
   if (rank == 0) ::shm_unlink(path.c_str());
   // Without shared memory the job runs all the same; only the line about the dead is lost.
-  if (any(machine, page == MAP_FAILED)) return nullptr;
-  return static_cast<Slot*>(page);
+  if (parallel::any(machine, page == MAP_FAILED)) return nullptr;
+  return static_cast<app::watching::Slot*>(page);
 }
 
 }  // namespace
@@ -123,59 +124,61 @@ const char* name(Phase phase) {
 
 Watch::Watch(MPI_Comm world, const std::string& participant) {
   MPI_Comm machine;
-  MPI_Comm_split_type(world, MPI_COMM_TYPE_SHARED, comm_rank(world), MPI_INFO_NULL, &machine);
-  board.count = comm_size(machine);
-  board.mine = comm_rank(machine);
-  board.whole_job = board.count == comm_size(world);
-  board.has_guests = comm_size(world) < comm_size(MPI_COMM_WORLD);
-  Slot* slots = share_page(machine, board.mine, board.count);
+  MPI_Comm_split_type(world, MPI_COMM_TYPE_SHARED, parallel::comm_rank(world), MPI_INFO_NULL, &machine);
+  app::watching::board.count = parallel::comm_size(machine);
+  app::watching::board.mine = parallel::comm_rank(machine);
+  app::watching::board.whole_job = app::watching::board.count == parallel::comm_size(world);
+  app::watching::board.has_guests = parallel::comm_size(world) < parallel::comm_size(MPI_COMM_WORLD);
+  app::watching::Slot* slots = share_page(machine, app::watching::board.mine, app::watching::board.count);
   if (slots != nullptr) {
-    Slot& slot = slots[board.mine];
+    app::watching::Slot& slot = slots[app::watching::board.mine];
     std::strncpy(slot.participant, participant.c_str(), sizeof slot.participant - 1);
     slot.rank = -1;
     slot.time = -1;
     slot.phase = int(Phase::roll_call);
-    slot.alive = now();
+    slot.alive = app::watching::now();
     slot.pid = ::getpid();
   }
   MPI_Barrier(machine);
   MPI_Comm_free(&machine);
-  board.slots = slots;
-  if (slots) log::listen_for_life({&slots[board.mine].alive, &slots[board.mine].long_work});
-  watch_waits();
+  app::watching::board.slots = slots;
+  if (slots)
+    log::listen_for_life(
+        {&slots[app::watching::board.mine].alive, &slots[app::watching::board.mine].long_work});
+  app::watching::watch_waits();
   install();
 }
 
 void Watch::install() {
-  if (board.slots == nullptr) return;
+  if (app::watching::board.slots == nullptr) return;
   struct sigaction action {};
   action.sa_handler = on_terminate;
   sigaction(SIGTERM, &action, nullptr);
 }
 
 void Watch::set_rank(int rank) {
-  if (board.slots) board.slots[board.mine].rank = rank;
+  if (app::watching::board.slots) app::watching::board.slots[app::watching::board.mine].rank = rank;
 }
 
 void Watch::enter(Phase phase) {
   phase_ = phase;
-  if (!board.slots) return;
-  board.slots[board.mine].phase = int(phase);
-  board.slots[board.mine].alive = now();
+  if (!app::watching::board.slots) return;
+  app::watching::board.slots[app::watching::board.mine].phase = int(phase);
+  app::watching::board.slots[app::watching::board.mine].alive = app::watching::now();
 }
 
 void Watch::set_time(double time) {
-  if (board.slots) board.slots[board.mine].time = time;
+  if (app::watching::board.slots) app::watching::board.slots[app::watching::board.mine].time = time;
 }
 
 void Watch::limit_silence(double seconds) {
-  if (!board.slots || seconds <= 0 || board.count < 2) return;
+  if (!app::watching::board.slots || seconds <= 0 || app::watching::board.count < 2) return;
   guard_ = std::jthread([seconds](const std::stop_token& stop) {
     // Signals are for the main thread.
     sigset_t all;
     sigfillset(&all);
     pthread_sigmask(SIG_BLOCK, &all, nullptr);
-    Listener listener(seconds);
+    app::watching::Listener listener(seconds);
     std::mutex mutex;
     std::condition_variable_any bell;
     std::unique_lock lock(mutex);
@@ -184,30 +187,33 @@ void Watch::limit_silence(double seconds) {
   });
 }
 
-bool Watch::stop_requested() { return board.slots && board.slots[0].stop_requested; }
-
-void Watch::stopped() {
-  if (board.slots) board.slots[0].stopped = 1;
+bool Watch::stop_requested() {
+  return app::watching::board.slots && app::watching::board.slots[0].stop_requested;
 }
 
-bool Watch::has_stopped() { return board.slots && board.slots[0].stopped; }
+void Watch::stopped() {
+  if (app::watching::board.slots) app::watching::board.slots[0].stopped = 1;
+}
+
+bool Watch::has_stopped() { return app::watching::board.slots && app::watching::board.slots[0].stopped; }
 
 bool Watch::claim_report() {
-  if (!board.slots) return true;
-  for (int i = 0; i < board.count; ++i)
-    if (std::strcmp(board.slots[i].participant, board.slots[board.mine].participant) == 0)
-      return board.slots[i].reported.exchange(1) == 0;
+  if (!app::watching::board.slots) return true;
+  for (int i = 0; i < app::watching::board.count; ++i)
+    if (std::strcmp(app::watching::board.slots[i].participant,
+                    app::watching::board.slots[app::watching::board.mine].participant) == 0)
+      return app::watching::board.slots[i].reported.exchange(1) == 0;
   return true;
 }
 
 void Watch::ending() {
-  if (board.slots) board.slots[board.mine].ending = 1;
+  if (app::watching::board.slots) app::watching::board.slots[app::watching::board.mine].ending = 1;
 }
 
 void Watch::finished() {
-  if (board.slots) board.slots[board.mine].finished = 1;
+  if (app::watching::board.slots) app::watching::board.slots[app::watching::board.mine].finished = 1;
   // A launcher that clears up after another process's exit code must not spoil this one's.
   std::signal(SIGTERM, SIG_IGN);
 }
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -6,7 +6,7 @@
 #include <string>
 #include <thread>
 
-namespace couplet {
+namespace couplet::app {
 
 /// What a process is doing, for the others to see when it is gone.
 enum class Phase : int {
@@ -64,4 +64,4 @@ class Watch {
   std::jthread guard_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::app

@@ -11,7 +11,7 @@
 #include <sstream>
 #include <string>
 
-namespace couplet::watching {
+namespace couplet::app::watching {
 
 Board board;  // NOLINT: see above
 
@@ -88,4 +88,4 @@ void end_job_with(const Line& line) {
   ::_exit(1);
 }
 
-}  // namespace couplet::watching
+}  // namespace couplet::app::watching

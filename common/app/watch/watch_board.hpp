@@ -9,7 +9,7 @@
 #include "common/app/watch/watch.hpp"
 
 /// The page of shared memory by which the processes of a job on one machine watch over each other (see watch.hpp).
-namespace couplet::watching {
+namespace couplet::app::watching {
 
 struct Slot {
   char participant[64];
@@ -87,4 +87,4 @@ void describe(Line& line, const Slot& slot, std::string_view fate);
 /// The first to come writes the line for all and ends its process, and by that the job.
 [[noreturn]] void end_job_with(const Line& line);
 
-}  // namespace couplet::watching
+}  // namespace couplet::app::watching

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace couplet::watching {
+namespace couplet::app::watching {
 namespace {
 
 /// Of the time since the last sign a busy process spends at least this share on a processor.
@@ -103,4 +103,4 @@ bool Listener::is_silent(int i) const {
          last_look_ - heard > patience_;
 }
 
-}  // namespace couplet::watching
+}  // namespace couplet::app::watching

@@ -5,7 +5,7 @@
 
 #include "common/app/watch/watch_board.hpp"
 
-namespace couplet::watching {
+namespace couplet::app::watching {
 
 /// What one process notices of the others' silence, look by look.
 class Listener {
@@ -33,4 +33,4 @@ class Listener {
   std::vector<Work> work_;
 };
 
-}  // namespace couplet::watching
+}  // namespace couplet::app::watching

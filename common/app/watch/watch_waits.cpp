@@ -7,7 +7,7 @@
 #include "common/app/watch/watch_board.hpp"
 #include "common/coupling/wait.hpp"
 
-namespace couplet::watching {
+namespace couplet::app::watching {
 namespace {
 
 constexpr double patience = 4;   // [s] that nothing changes while all wait, each for more than a second
@@ -69,7 +69,7 @@ void over() { board.slots[board.mine].waits_since = 0; }
 }  // namespace
 
 void watch_waits() {
-  if (board.slots) observe_waits({lasts, over});
+  if (board.slots) coupling::observe_waits({lasts, over});
 }
 
-}  // namespace couplet::watching
+}  // namespace couplet::app::watching

@@ -10,7 +10,7 @@
 ///   S* = 2 W'(C) + 2 [W(C_1) - W(C_0) - W'(C):D] D / (D:D),   P* = F S*,
 /// S* symmetric, so that neither linear nor angular momentum changes. A pressure of the volume ratio (one a cell) goes
 /// with the same difference quotient of J.
-namespace couplet::finite {
+namespace couplet::elastic::finite {
 
 /// Where such a step began: F and W.
 struct alignas(32) Start {
@@ -88,4 +88,4 @@ inline void conserving_stress(const FiniteLaw& law, const Tensor4& middle, const
       p[i][j] = middle[i][0] * s[0][j] + middle[i][1] * s[1][j] + middle[i][2] * s[2][j];
 }
 
-}  // namespace couplet::finite
+}  // namespace couplet::elastic::finite

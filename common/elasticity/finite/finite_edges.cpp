@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace couplet {
+namespace couplet::elastic {
 namespace {
 
 /// Four edges' tensors as components.
@@ -25,7 +25,7 @@ void scatter(const Four (&t)[3][3], const std::array<Index, 4>& at, double* valu
 
 }  // namespace
 
-FiniteEdges::FiniteEdges(const Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
+FiniteEdges::FiniteEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
                          std::span<const double> volume, std::span<const FiniteLaw* const> laws)
     : edges_(mesh, rows, faces, volume),
       value_(edges_.n_edges() * SharedEdges::gradient_stride, 0),
@@ -111,4 +111,4 @@ void FiniteEdges::to_tangent() {
     }
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -8,7 +8,7 @@
 #include "common/elasticity/finite/discrete_gradient.hpp"
 #include "common/elasticity/symmetric/shared_edges.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// The edges of SharedEdges at large strain: the mean over the faces round an edge is one of displacement
 /// gradients, not of strains (they differ by rotations there), and the edge has the law's energy at that mean.
@@ -25,7 +25,7 @@ class FiniteEdges {
 
   /// `faces`: the three-cornered flux faces, this rank's first; `volume`: V_f of this rank's, 0 of the others;
   /// `laws`: one a material or one of all. Collective.
-  FiniteEdges(const Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
+  FiniteEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
               std::span<const double> volume, std::span<const FiniteLaw* const> laws);
 
   const std::array<Index, 3>& edges_of(std::size_t face) const { return edges_.edges_of(face); }
@@ -53,4 +53,4 @@ class FiniteEdges {
   std::vector<Group> groups_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::elastic

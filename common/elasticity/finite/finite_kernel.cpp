@@ -9,7 +9,7 @@
 #include "common/elasticity/processor_clones.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 namespace {
 
 // Blocks that a law evaluates in one call: their numbers stay in the first cache.
@@ -50,9 +50,9 @@ finite::FiniteBlock<D>& place(std::vector<finite::FiniteBlock<D>>& blocks, std::
 }
 
 template <int D>
-void add_face(const Mesh& mesh, const ElasticOperator& rows, Index f, std::size_t k, bool is_filling,
+void add_face(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f, std::size_t k, bool is_filling,
               finite::FiniteBlock<D>& block) {
-  const Geometry& geometry = rows.geometry();
+  const mesh::Geometry& geometry = rows.geometry();
   const SymmetricFace<D> face = symmetric_face<D>(mesh, rows, f);
   set_geometry<D>(mesh, face, f, k, is_filling, block);
   const auto [here, there] = pyramids(mesh, geometry, f);
@@ -67,10 +67,10 @@ void add_face(const Mesh& mesh, const ElasticOperator& rows, Index f, std::size_
 }  // namespace
 
 template <int D>
-FiniteKernelOf<D>::FiniteKernelOf(const Mesh& mesh, const ElasticOperator& rows,
+FiniteKernelOf<D>::FiniteKernelOf(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                   std::vector<const FiniteLaw*> laws)
     : mesh_(mesh), rows_(rows), space_(mesh, rows), laws_(std::move(laws)) {
-  const Geometry& geometry = rows.geometry();
+  const mesh::Geometry& geometry = rows.geometry();
   std::vector<Index> edge_index;
   make_edges(edge_index);
   for (std::size_t m = 0; m < laws_.size(); ++m) {
@@ -131,7 +131,7 @@ void FiniteKernelOf<D>::make_edges(std::vector<Index>& edge_index) {
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f)
     if (mesh_.face_points[f].size() == 3)
       (mesh_.owner[f] < mesh_.cells.n_owned() ? faces : elsewhere).push_back(f);
-  if (!any(mesh_.comm, !faces.empty())) return;
+  if (!parallel::any(mesh_.comm, !faces.empty())) return;
   const std::size_t n_mine = faces.size();
   faces.insert(faces.end(), elsewhere.begin(), elsewhere.end());
   std::vector<double> volume(faces.size(), 0);
@@ -231,7 +231,7 @@ void FiniteKernelOf<D>::conserving_forces() {
     const double least = finite::least_end_ratio<D>(group);
     if (!(least >= worst_.ratio)) worst_.ratio = least;
   }
-  const bool is_sound = min(mesh_.comm, worst_.ratio) > 0;
+  const bool is_sound = parallel::min(mesh_.comm, worst_.ratio) > 0;
   if (!is_sound) {
     worst_.ratio = std::min(worst_.ratio, 0.0);
     return;
@@ -329,10 +329,10 @@ std::vector<Wrench> FiniteKernelOf<D>::holding_forces(std::span<const double> un
 template class FiniteKernelOf<2>;
 template class FiniteKernelOf<3>;
 
-std::unique_ptr<FiniteKernel> make_finite_kernel(const Mesh& mesh, const ElasticOperator& rows,
+std::unique_ptr<FiniteKernel> make_finite_kernel(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                                  std::vector<const FiniteLaw*> of_materials) {
   if (mesh.dim == 2) return std::make_unique<FiniteKernelOf<2>>(mesh, rows, std::move(of_materials));
   return std::make_unique<FiniteKernelOf<3>>(mesh, rows, std::move(of_materials));
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

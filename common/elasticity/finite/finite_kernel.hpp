@@ -9,7 +9,7 @@
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/elasticity/finite/finite_law.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// The symmetric face gradient at large strain, total Lagrangian: with F_f = I + G_f(u),
 ///   E(u) = sum_f V_f W(F_f),   inner forces dE/du,   tangent d2E/du2 = sum_f V_f B_f^T (dP/dF) B_f,
@@ -86,7 +86,7 @@ class FiniteKernel {
 
 /// `of_materials`: one law a material of the mesh (one: of all); kept by reference like mesh and rows.
 /// Collective.
-std::unique_ptr<FiniteKernel> make_finite_kernel(const Mesh& mesh, const ElasticOperator& rows,
+std::unique_ptr<FiniteKernel> make_finite_kernel(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                                  std::vector<const FiniteLaw*> of_materials);
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -10,14 +10,14 @@
 #include "common/elasticity/finite/follower_pressure.hpp"
 #include "common/elasticity/symmetric/symmetric_space.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// FiniteKernel in D dimensions: finite_kernel.cpp (forces, tangent), finite_pressures.cpp (one volume ratio a cell, its
 /// pressures), finite_tangents.cpp (dP/dF of faces).
 template <int D>
 class FiniteKernelOf final : public FiniteKernel {
  public:
-  FiniteKernelOf(const Mesh& mesh, const ElasticOperator& rows, std::vector<const FiniteLaw*> laws);
+  FiniteKernelOf(const mesh::Mesh& mesh, const ElasticOperator& rows, std::vector<const FiniteLaw*> laws);
 
   void set_start(std::span<const double> unknowns, std::span<const double> known) override;
   void forget_start() override { has_start_ = false; }
@@ -66,7 +66,7 @@ class FiniteKernelOf final : public FiniteKernel {
     return *laws_[laws_.size() == 1 ? 0 : std::size_t(mesh_.material_of(cell))];
   }
 
-  const Mesh& mesh_;
+  const mesh::Mesh& mesh_;
   const ElasticOperator& rows_;
   SymmetricSpace<D> space_;
   std::vector<const FiniteLaw*> laws_;
@@ -87,4 +87,4 @@ class FiniteKernelOf final : public FiniteKernel {
   double fraction_ = 0;
 };
 
-}  // namespace couplet
+}  // namespace couplet::elastic

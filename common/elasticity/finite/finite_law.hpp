@@ -6,7 +6,7 @@
 #include "common/elasticity/elasticity.hpp"
 #include "common/elasticity/lanes.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// Four places side by side.
 using Four = lanes::Lane<3>;
@@ -45,4 +45,4 @@ class FiniteLaw {
   virtual bool has_second_invariant() const = 0;
 };
 
-}  // namespace couplet
+}  // namespace couplet::elastic

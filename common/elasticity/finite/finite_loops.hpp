@@ -11,7 +11,7 @@
 #include "common/elasticity/symmetric/symmetric_blocks.hpp"
 
 /// Loops of FiniteKernel over faces of one material, four side by side.
-namespace couplet::finite {
+namespace couplet::elastic::finite {
 
 template <int D>
 struct FiniteBlock : BlockGeometry<D> {
@@ -223,4 +223,4 @@ void conserving_loop(const Group<D>& group, const Values<D>& at) {
   }
 }
 
-}  // namespace couplet::finite
+}  // namespace couplet::elastic::finite

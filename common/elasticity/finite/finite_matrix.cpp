@@ -4,14 +4,14 @@
 #include "common/elasticity/symmetric/node_assembly.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 namespace {
 
 /// V B_i^T (dP/dF) B_j, and what the nodes change of the cells' volumes.
 template <int D>
-void add_face(const Mesh& mesh, const ElasticOperator& rows, const FiniteKernel::FaceTangent& tangent,
+void add_face(const mesh::Mesh& mesh, const ElasticOperator& rows, const FiniteKernel::FaceTangent& tangent,
               NodeAssembly& to) {
-  const Geometry& geometry = rows.geometry();
+  const mesh::Geometry& geometry = rows.geometry();
   const Index f = tangent.face;
   const SymmetricFace<D> face = symmetric_face<D>(mesh, rows, f);
   const std::vector<FaceStencil::Term>& terms = to.stencil().of<D>(face, f);
@@ -40,8 +40,8 @@ void add_face(const Mesh& mesh, const ElasticOperator& rows, const FiniteKernel:
 
 }  // namespace
 
-SparseMatrix finite_matrix(const Mesh& mesh, const ElasticOperator& rows, FiniteKernel& kernel,
-                           std::span<const double> of_nodes) {
+linalg::SparseMatrix finite_matrix(const mesh::Mesh& mesh, const ElasticOperator& rows, FiniteKernel& kernel,
+                                   std::span<const double> of_nodes) {
   NodeAssembly assembly(mesh, rows);
   kernel.visit_tangents([&](const FiniteKernel::FaceTangent& tangent) {
     if (mesh.dim == 2)
@@ -55,4 +55,4 @@ SparseMatrix finite_matrix(const Mesh& mesh, const ElasticOperator& rows, Finite
   return assembly.matrix();
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -6,12 +6,12 @@
 #include "common/elasticity/finite/finite_kernel.hpp"
 #include "common/linalg/matrix.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// The tangent of a deformed body at the last linearise() of its kernel, assembled: for factors of small bodies. As
 /// symmetric_matrix(): three-cornered faces as if they shared nothing with their edges, and without the tangent of a
 /// pressure that follows the surface. `of_nodes`: on the diagonals of the unknown nodes; empty: none. Collective.
-SparseMatrix finite_matrix(const Mesh& mesh, const ElasticOperator& rows, FiniteKernel& kernel,
-                           std::span<const double> of_nodes);
+linalg::SparseMatrix finite_matrix(const mesh::Mesh& mesh, const ElasticOperator& rows, FiniteKernel& kernel,
+                                   std::span<const double> of_nodes);
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -6,7 +6,7 @@
 #include "common/elasticity/finite/finite_kernel_of.hpp"
 #include "common/elasticity/processor_clones.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 namespace {
 
 COUPLET_PROCESSOR_CLONES void volume_pass(const finite::Group<3>& group, const finite::Values<3>& at) {
@@ -115,4 +115,4 @@ template void FiniteKernelOf<3>::accept_pressures();
 template void FiniteKernelOf<3>::add_pressure_defect(std::span<double>);
 template void FiniteKernelOf<3>::conserving_pressures();
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -8,7 +8,7 @@
 ///   P  = 2 W1 F + 2 W2 B + WJ H,   B = I1 F - F C,   H = dJ/dF (the cofactors of F)
 ///   dP = 2 W1 dF + 2 dW1 F + 2 W2 dB + 2 dW2 B + WJ dH + dWJ H
 /// with dW1 = W11 dI1 + W12 dI2 + W1J dJ and so on, dI1 = 2 F:dF, dI2 = 2 B:dF, dJ = H:dF.
-namespace couplet::finite {
+namespace couplet::elastic::finite {
 
 using Tensor4 = Four[3][3];
 
@@ -129,4 +129,4 @@ template <bool HasSecond>
   s.w11 = e.w11, s.w12 = e.w12, s.w1j = e.w1j, s.w22 = e.w22, s.w2j = e.w2j, s.wjj = e.wjj;
 }
 
-}  // namespace couplet::finite
+}  // namespace couplet::elastic::finite

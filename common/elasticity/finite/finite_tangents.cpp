@@ -2,7 +2,7 @@
 // dP/dF of the faces, for an assembled tangent.
 #include "common/elasticity/finite/finite_kernel_of.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// By nine changes of F. What the edges see of a pressure they see through their own F: the face takes it whole here.
 template <int D>
@@ -45,4 +45,4 @@ template void FiniteKernelOf<2>::visit_tangents(const std::function<void(const F
 
 template void FiniteKernelOf<3>::visit_tangents(const std::function<void(const FaceTangent&)>&);
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-namespace couplet {
+namespace couplet::elastic {
 namespace {
 
 /// Area vector of the piece from corner i on: half the cross product, in 2-D the line turned by a right angle.
@@ -29,7 +29,8 @@ std::array<int, 3> corners_of(int piece, std::size_t corners) {
 }  // namespace
 
 template <int D>
-void FollowerPressure<D>::set(const Mesh& mesh, const Geometry& geometry, std::span<const double> pressure) {
+void FollowerPressure<D>::set(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                              std::span<const double> pressure) {
   faces_.clear();
   for (std::size_t i = 0; i < pressure.size(); ++i) {
     if (pressure[i] == 0) continue;
@@ -57,8 +58,8 @@ void FollowerPressure<D>::gather(const SymmetricSpace<D>& space, const Loaded& l
     for (int a = 0; a < D; ++a) v[a] += at[a];
     return v;
   };
-  const Mesh& mesh = space.mesh();
-  const Geometry& geometry = space.rows().geometry();
+  const mesh::Mesh& mesh = space.mesh();
+  const mesh::Geometry& geometry = space.rows().geometry();
   to[0] = read(space.nodes() + std::size_t(space.node_of_face(loaded.face)) * stride,
                geometry.face_centre[loaded.face]);
   const auto points = mesh.face_points[loaded.face];
@@ -130,4 +131,4 @@ void FollowerPressure<D>::add_tangent(SymmetricSpace<D>& space, double sign) con
 template class FollowerPressure<2>;
 template class FollowerPressure<3>;
 
-}  // namespace couplet
+}  // namespace couplet::elastic

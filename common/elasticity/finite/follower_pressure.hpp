@@ -7,7 +7,7 @@
 
 #include "common/elasticity/symmetric/symmetric_space.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// A pressure that follows the surface: on a deformed face, the triangles (2-D: lines) between its node b and its
 /// edges, -p a with the present area a (Nanson's formula, exactly), shared evenly by the corners of each. Its
@@ -16,7 +16,7 @@ template <int D>
 class FollowerPressure {
  public:
   /// `pressure` [Pa]: one a boundary face of owned cells; takes those that are not zero.
-  void set(const Mesh& mesh, const Geometry& geometry, std::span<const double> pressure);
+  void set(const mesh::Mesh& mesh, const mesh::Geometry& geometry, std::span<const double> pressure);
   bool empty() const { return faces_.empty(); }
   /// Adds -`sign` times the forces [N] at the present displacements, and keeps the places. Gives their sum, this
   /// rank's.
@@ -37,4 +37,4 @@ class FollowerPressure {
   std::vector<Loaded> faces_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::elastic

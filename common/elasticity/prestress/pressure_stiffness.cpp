@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <array>
 
-namespace couplet {
+namespace couplet::elastic {
 namespace {
 
 Tensor3 cross(const Vec3& e) {
@@ -25,7 +25,7 @@ void add_triangle(const Places& at, const std::array<Vec3, 3>& x, double p, std:
 
 }  // namespace
 
-std::vector<PlaceBlock> pressure_stiffness(const Mesh& mesh, const Geometry& geometry,
+std::vector<PlaceBlock> pressure_stiffness(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                                            std::span<const double> pressure) {
   std::vector<PlaceBlock> blocks;
   const Index n_nodes = mesh.cells.n_local() + mesh.boundary.n_local();
@@ -58,4 +58,4 @@ std::vector<PlaceBlock> pressure_stiffness(const Mesh& mesh, const Geometry& geo
   return blocks;
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -6,7 +6,7 @@
 
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// A block between two places: local nodes (cells, then boundary faces), then local vertices.
 struct PlaceBlock {
@@ -19,7 +19,7 @@ struct PlaceBlock {
 ///   K_rs = p / 6 [e_s]x,   e_s the side opposite to corner s;   in the plane K_rs = p / 2 da/du_s.
 /// The symmetric part: all of it where the loaded surface is closed or its rim is held. `pressure` [Pa]: one a boundary
 /// face of owned cells.
-std::vector<PlaceBlock> pressure_stiffness(const Mesh& mesh, const Geometry& geometry,
+std::vector<PlaceBlock> pressure_stiffness(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                                            std::span<const double> pressure);
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -9,7 +9,7 @@
 #include "common/elasticity/symmetric/symmetric_space.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 namespace {
 
 template <int D>
@@ -19,7 +19,7 @@ class StressStiffnessOf final : public StressStiffness {
   using Matrix = Eigen::Matrix<double, D, D>;
 
  public:
-  StressStiffnessOf(const Mesh& mesh, const ElasticOperator& rows, Prestress of)
+  StressStiffnessOf(const mesh::Mesh& mesh, const ElasticOperator& rows, Prestress of)
       : mesh_(mesh), space_(mesh, rows), pressure_(std::move(of.pressure)) {
     for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
       if (mesh.owner[f] >= mesh.cells.n_owned()) continue;
@@ -59,7 +59,7 @@ class StressStiffnessOf final : public StressStiffness {
 
   void make_edges(const ElasticOperator& rows, const std::vector<Tensor3>& stress) {
     const SharedFaces shared = shared_faces(mesh_, rows);
-    if (!any(mesh_.comm, shared.n_mine > 0)) return;
+    if (!parallel::any(mesh_.comm, shared.n_mine > 0)) return;
     edges_ = std::make_unique<SharedEdges>(mesh_, rows, shared.faces, shared.volume);
     find_edge_stresses(shared, stress, *edges_);
     for (Index e = 0; e < Index(edges_->n_edges()); ++e)
@@ -132,7 +132,7 @@ class StressStiffnessOf final : public StressStiffness {
     }
   }
 
-  const Mesh& mesh_;
+  const mesh::Mesh& mesh_;
   SymmetricSpace<D> space_;
   std::vector<Face> faces_;
   std::unique_ptr<SharedEdges> edges_;
@@ -143,10 +143,10 @@ class StressStiffnessOf final : public StressStiffness {
 
 }  // namespace
 
-std::unique_ptr<StressStiffness> make_stress_stiffness(const Mesh& mesh, const ElasticOperator& rows,
+std::unique_ptr<StressStiffness> make_stress_stiffness(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                                        Prestress of) {
   if (mesh.dim == 2) return std::make_unique<StressStiffnessOf<2>>(mesh, rows, std::move(of));
   return std::make_unique<StressStiffnessOf<3>>(mesh, rows, std::move(of));
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

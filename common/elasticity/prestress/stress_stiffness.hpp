@@ -8,7 +8,7 @@
 #include "common/elasticity/elasticity.hpp"
 #include "common/elasticity/prestress/pressure_stiffness.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// What acts in a body before it moves on.
 struct Prestress {
@@ -26,7 +26,7 @@ class StressStiffness {
 };
 
 /// All by reference but what is kept of `of`. Collective.
-std::unique_ptr<StressStiffness> make_stress_stiffness(const Mesh& mesh, const ElasticOperator& rows,
+std::unique_ptr<StressStiffness> make_stress_stiffness(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                                        Prestress of);
 
-}  // namespace couplet
+}  // namespace couplet::elastic

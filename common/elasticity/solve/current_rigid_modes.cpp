@@ -11,7 +11,7 @@
 #include "common/fv/nodes.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 namespace {
 
 using Block = Eigen::Matrix<double, 6, 6>;
@@ -32,23 +32,23 @@ void sum_over_ranks(MPI_Comm comm, std::span<double> values) {
 
 }  // namespace
 
-CurrentRigidModes::CurrentRigidModes(const Mesh& mesh, const ElasticOperator& rows, int n_aggregates,
+CurrentRigidModes::CurrentRigidModes(const mesh::Mesh& mesh, const ElasticOperator& rows, int n_aggregates,
                                      std::vector<double> node_inertia)
     : mesh_(mesh),
       geometry_(rows.geometry()),
       rows_(rows),
       modes_(mesh.dim == 2 ? 3 : 6),
       inertia_(std::move(node_inertia)),
-      number_(number_nodes(mesh, rows.unknown_faces())) {
-  const Geometry& geometry = rows.geometry();
+      number_(fv::number_nodes(mesh, rows.unknown_faces())) {
+  const mesh::Geometry& geometry = rows.geometry();
   const double share = double(mesh.cells.n_owned()) / double(mesh.cells.n_global());
   const int n_here = std::max(1, int(share * n_aggregates + 0.5));
   const std::span<const Vec3> places(geometry.cell_centre.data(), std::size_t(mesh.cells.n_owned()));
   const std::vector<Index> local = bisect(places, n_here);
-  const std::vector<int> all = all_gather(mesh.comm, std::vector<int>{n_here});
+  const std::vector<int> all = parallel::all_gather(mesh.comm, std::vector<int>{n_here});
   int before = 0, total = 0;
   for (std::size_t r = 0; r < all.size(); ++r) {
-    if (int(r) < comm_rank(mesh.comm)) before += all[r];
+    if (int(r) < parallel::comm_rank(mesh.comm)) before += all[r];
     total += all[r];
   }
   std::vector<double> number(std::size_t(mesh.cells.n_local()), 0);
@@ -232,4 +232,4 @@ void CurrentRigidModes::add_correction(std::span<const double> r, std::span<doub
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -9,7 +9,7 @@
 #include "common/elasticity/elasticity.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// What a coarse space of a deformed body must know of the present state. `gradient`: F of each flux face;
 /// `displacement`: of each local node (cells, then boundary faces).
@@ -27,7 +27,7 @@ class CurrentRigidModes {
  public:
   /// About `n_aggregates` over all ranks. `node_inertia`: of the unknown nodes [N/m]; empty: none.
   /// Mesh and rows by reference. Collective.
-  CurrentRigidModes(const Mesh& mesh, const ElasticOperator& rows, int n_aggregates,
+  CurrentRigidModes(const mesh::Mesh& mesh, const ElasticOperator& rows, int n_aggregates,
                     std::vector<double> node_inertia);
   /// Collective.
   void update(const DeformedBody& body);
@@ -47,8 +47,8 @@ class CurrentRigidModes {
   Vec3 free_part(std::size_t i, const Vec3& v) const;
   void find_arms(const DeformedBody& body);
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
   const ElasticOperator& rows_;
   int modes_;
   std::vector<double> inertia_;
@@ -59,4 +59,4 @@ class CurrentRigidModes {
   std::unique_ptr<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factors_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::elastic

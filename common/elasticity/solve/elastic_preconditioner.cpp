@@ -8,10 +8,10 @@
 #include "common/elasticity/elastic_nodes.hpp"
 #include "common/elasticity/symmetric/symmetric_diagonal.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 namespace {
 
-using Lanes = ComponentMultigrid::Lanes;
+using Lanes = linalg::ComponentMultigrid::Lanes;
 
 // Of the symmetric operator. Smooth motions are softer in an elastic body than component by component, the more so the
 // smoother: a factor of the coarse correction, level by level (any positive one leaves the preconditioner positive), and
@@ -23,14 +23,15 @@ constexpr double of_cells = 0.8, of_faces = 0.85;
 /// Two-point rows of the owned cells; boundary faces, and bonds to other ranks, stand on the diagonal only.
 class CompactRows {
  public:
-  CompactRows(const Mesh& mesh, const ElasticOperator& rows, double boundary_factor, VolumeStrain left_out)
+  CompactRows(const mesh::Mesh& mesh, const ElasticOperator& rows, double boundary_factor,
+              VolumeStrain left_out)
       : mesh_(mesh),
         geometry_(rows.geometry()),
         rows_(rows),
         boundary_factor_(boundary_factor),
         left_out_(left_out) {}
 
-  ComponentMultigrid::Rows make(std::span<const double> inertia);
+  linalg::ComponentMultigrid::Rows make(std::span<const double> inertia);
 
  private:
   bool owned(Index c) const { return c < mesh_.cells.n_owned(); }
@@ -43,8 +44,8 @@ class CompactRows {
   template <class Take>
   void visit_couplings(const Take& take) const;
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
   const ElasticOperator& rows_;
   double boundary_factor_;
   VolumeStrain left_out_;
@@ -52,7 +53,7 @@ class CompactRows {
 
 Lanes CompactRows::coefficient(Index f) const {
   const LameConstants lame = part_of_faces(face_lame(mesh_, rows_, f), left_out_);
-  const FaceLine line = face_line(mesh_, geometry_, f);
+  const fv::FaceLine line = fv::face_line(mesh_, geometry_, f);
   const double scale = line.area * line.inverse_dn;
   Lanes k{};
   for (int c = 0; c < mesh_.dim; ++c) {
@@ -72,7 +73,7 @@ Lanes CompactRows::bond(Index f) const {
 
 Lanes CompactRows::boundary_diagonal(Index f) const {
   Lanes k = coefficient(f);
-  const FaceLine line = face_line(mesh_, geometry_, f);
+  const fv::FaceLine line = fv::face_line(mesh_, geometry_, f);
   const BoundaryRow& row = rows_.at(f);
   if (row.shared) return bond(f);
   for (int c = 0; c < mesh_.dim; ++c) {
@@ -95,9 +96,9 @@ void CompactRows::visit_couplings(const Take& take) const {
   }
 }
 
-ComponentMultigrid::Rows CompactRows::make(std::span<const double> inertia) {
+linalg::ComponentMultigrid::Rows CompactRows::make(std::span<const double> inertia) {
   const Index n = mesh_.cells.n_owned();
-  ComponentMultigrid::Rows result;
+  linalg::ComponentMultigrid::Rows result;
   result.offset.assign(n + 1, 0);
   visit_couplings([&](Index a, Index b, Index) {
     if (owned(a)) ++result.offset[a + 1];
@@ -116,7 +117,7 @@ ComponentMultigrid::Rows CompactRows::make(std::span<const double> inertia) {
     }
   });
   Lanes unused{};
-  for (int c = mesh_.dim; c < ComponentMultigrid::lanes; ++c) unused[c] = 1;
+  for (int c = mesh_.dim; c < linalg::ComponentMultigrid::lanes; ++c) unused[c] = 1;
   result.diagonal.assign(n, unused);
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
     const Lanes k = f < mesh_.n_interior ? coefficient(f) : boundary_diagonal(f);
@@ -128,8 +129,9 @@ ComponentMultigrid::Rows CompactRows::make(std::span<const double> inertia) {
   return result;
 }
 
-ComponentCycle multigrid_cycle(ComponentMultigrid::Rows rows, const ComponentMultigrid::Options& options) {
-  return [multigrid = std::make_shared<ComponentMultigrid>(std::move(rows), options)](
+ComponentCycle multigrid_cycle(linalg::ComponentMultigrid::Rows rows,
+                               const linalg::ComponentMultigrid::Options& options) {
+  return [multigrid = std::make_shared<linalg::ComponentMultigrid>(std::move(rows), options)](
              std::span<const double> b, std::span<double> x, int components) {
     multigrid->apply(b, x, components);
   };
@@ -142,13 +144,13 @@ Tensor3 supported(const Tensor3& own, const BoundaryRow& s, double area, double 
 }
 
 /// Of a two-point flux along the normal, which stands for what is known of a face [N/m].
-double stiffness_across(const LameConstants& lame, const FaceLine& line) {
+double stiffness_across(const LameConstants& lame, const fv::FaceLine& line) {
   return (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn;
 }
 
 }  // namespace
 
-ElasticPreconditioner::ElasticPreconditioner(const Mesh& mesh, const ElasticOperator& rows,
+ElasticPreconditioner::ElasticPreconditioner(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                              std::span<const double> inertia, const Options& options)
     : mesh_(&mesh),
       geometry_(&rows.geometry()),
@@ -159,11 +161,11 @@ ElasticPreconditioner::ElasticPreconditioner(const Mesh& mesh, const ElasticOper
       left_out_(options.without_cells_bulk ? rows.volume_strain() : VolumeStrain::faces) {
   // The corrected gradient has 2 (u_B - u_P) on the boundary.
   const double boundary_factor = options.scheme == FaceGradientScheme::corrected ? 2 : 1;
-  ComponentMultigrid::Rows compact =
+  linalg::ComponentMultigrid::Rows compact =
       CompactRows(mesh, rows, boundary_factor, left_out_)
           .make(options.node_inertia.empty() ? inertia
                                              : options.node_inertia.first(std::size_t(mesh.cells.n_owned())));
-  const ComponentMultigrid::Options of_cycle{is_symmetric_ ? of_smooth : 1, &mesh.cells, mesh.comm};
+  const linalg::ComponentMultigrid::Options of_cycle{is_symmetric_ ? of_smooth : 1, &mesh.cells, mesh.comm};
   cycle_ = options.cycle ? options.cycle(std::move(compact), of_cycle)
                          : multigrid_cycle(std::move(compact), of_cycle);
   find_face_rows(boundary_factor, options.node_inertia);
@@ -175,18 +177,18 @@ ElasticPreconditioner::ElasticPreconditioner(const Mesh& mesh, const ElasticOper
 }
 
 void ElasticPreconditioner::find_face_rows(double boundary_factor, std::span<const double> node_inertia) {
-  const Mesh& mesh = *mesh_;
-  const Geometry& geometry = *geometry_;
+  const mesh::Mesh& mesh = *mesh_;
+  const mesh::Geometry& geometry = *geometry_;
   const auto stiffness = [&](Index f) {
     const LameConstants lame = part_of_faces(rows_->lame(mesh.owner[f]), left_out_);
-    const FaceLine line = face_line(mesh, geometry, f);
+    const fv::FaceLine line = fv::face_line(mesh, geometry, f);
     const Vec3& n = line.normal;
     const double scale = boundary_factor * line.area * line.inverse_dn;
     return Tensor3(scale * (lame.mu * Tensor3::Identity() + (lame.mu + lame.lambda) * n * n.transpose()));
   };
   for (const Index f : rows_->unknown_faces()) {
     const LameConstants lame = rows_->lame(mesh.owner[f]);
-    const FaceLine line = face_line(mesh, geometry, f);
+    const fv::FaceLine line = fv::face_line(mesh, geometry, f);
     const double whole = stiffness_across(lame, line);
     Tensor3 own = stiffness(f), cell = own;
     FaceRow row{Tensor3::Zero(), Tensor3::Zero(), Tensor3::Zero(), mesh.owner[f], -1};
@@ -224,8 +226,8 @@ void ElasticPreconditioner::find_face_rows(double boundary_factor, std::span<con
 /// High frequencies see the diagonal of K itself, a third of the compact operator's inside hexahedra, but up to 1.6 times
 /// as much at cells and faces that many vertices lean on.
 void ElasticPreconditioner::add_true_diagonal(std::span<const double> node_inertia) {
-  const Mesh& mesh = *mesh_;
-  const Geometry& geometry = *geometry_;
+  const mesh::Mesh& mesh = *mesh_;
+  const mesh::Geometry& geometry = *geometry_;
   const SymmetricDiagonal diagonal = symmetric_diagonal(mesh, *rows_, left_out_);
   const std::size_t dim = mesh.dim, n_cells = std::size_t(mesh.cells.n_owned());
   gathered_.resize(n_cells * dim);
@@ -236,7 +238,7 @@ void ElasticPreconditioner::add_true_diagonal(std::span<const double> node_inert
     const Index f = rows_->unknown_faces()[i];
     Tensor3 own = diagonal.faces[i] + inertia(n_cells + i) * Tensor3::Identity();
     if (rows_->at(f).has_value()) {
-      const FaceLine line = face_line(mesh, geometry, f);
+      const fv::FaceLine line = fv::face_line(mesh, geometry, f);
       own = supported(own, rows_->at(f), line.area, stiffness_across(rows_->lame(mesh.owner[f]), line));
     }
     face_rows_[i].inverse = of_faces * own.inverse();
@@ -308,4 +310,4 @@ void ElasticPreconditioner::apply(std::span<const double> r, std::span<double> z
   for (std::size_t i = 0; i < smooth_.size(); ++i) z[i] += smooth_[i];
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -10,7 +10,7 @@
 #include "common/elasticity/solve/rigid_coarse_space.hpp"
 #include "common/linalg/component_multigrid.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// x = V(b), `components` values a cell. Collective.
 using ComponentCycle = std::function<void(std::span<const double> b, std::span<double> x, int components)>;
@@ -32,10 +32,12 @@ class ElasticPreconditioner {
     /// Of what is left of the symmetric operator without the bulk modulus of cells: of the mixed form.
     bool without_cells_bulk = false;
     /// What makes another cycle than ComponentMultigrid's, to compare them (benchmarks/linalg); empty: none.
-    std::function<ComponentCycle(ComponentMultigrid::Rows, const ComponentMultigrid::Options&)> cycle = {};
+    std::function<ComponentCycle(linalg::ComponentMultigrid::Rows,
+                                 const linalg::ComponentMultigrid::Options&)>
+        cycle = {};
   };
   /// Collective.
-  ElasticPreconditioner(const Mesh& mesh, const ElasticOperator& rows, std::span<const double> inertia,
+  ElasticPreconditioner(const mesh::Mesh& mesh, const ElasticOperator& rows, std::span<const double> inertia,
                         const Options& options);
 
   /// z = M^-1 r. Collective.
@@ -53,8 +55,8 @@ class ElasticPreconditioner {
   void smooth(std::span<const double> r, std::span<double> z);
   void smooth_symmetric(std::span<const double> r, std::span<double> z);
 
-  const Mesh* mesh_;
-  const Geometry* geometry_;
+  const mesh::Mesh* mesh_;
+  const mesh::Geometry* geometry_;
   const ElasticOperator* rows_;
   std::vector<double> inertia_;
   const ElasticKernel* between_;
@@ -68,4 +70,4 @@ class ElasticPreconditioner {
   std::vector<double> left_, smooth_;  // of the multiplicative form
 };
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -10,7 +10,7 @@
 #include "common/elasticity/elastic_nodes.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 namespace {
 
 using Modes = Eigen::Matrix<double, 3, 6>;
@@ -72,15 +72,15 @@ struct RigidCoarseSpace::Assembly {
     Vec3 arm;
   };
   const RigidCoarseSpace& space;
-  const Mesh& mesh;
-  const Geometry& geometry;
+  const mesh::Mesh& mesh;
+  const mesh::Geometry& geometry;
   const ElasticOperator& rows;
   std::vector<std::int64_t> offset{0};
   std::vector<Share> shares;                                 // of each vertex
   std::vector<std::vector<std::pair<Index, Block>>> blocks;  // of the aggregates of this rank: column, value
   Index first_row;
 
-  Assembly(const RigidCoarseSpace& s, const Mesh& m, const ElasticOperator& r, Index first, int n_here)
+  Assembly(const RigidCoarseSpace& s, const mesh::Mesh& m, const ElasticOperator& r, Index first, int n_here)
       : space(s), mesh(m), geometry(r.geometry()), rows(r), blocks(n_here), first_row(first) {
     for (Index v = 0; v < mesh.points.n_local(); ++v) {
       add_vertex(v);
@@ -121,9 +121,9 @@ struct RigidCoarseSpace::Assembly {
   /// cells.
   void add_face(Index f) {
     const bool on_boundary = f >= mesh.n_interior;
-    const FaceLine line = face_line(mesh, geometry, f);
+    const fv::FaceLine line = fv::face_line(mesh, geometry, f);
     std::array<Vec3, 4> weights;
-    tangential_weights(mesh, geometry.points, f, line, weights.data());
+    fv::tangential_weights(mesh, geometry.points, f, line, weights.data());
     const auto [mu, lambda] = face_lame(mesh, rows, f);
     const Vec3& n = line.normal;
     const Tensor3 nn = n * n.transpose(), identity = Tensor3::Identity();
@@ -204,15 +204,15 @@ struct RigidCoarseSpace::Assembly {
   std::vector<std::pair<Index, Modes>> found_;
 };
 
-RigidCoarseSpace::RigidCoarseSpace(const Mesh& mesh, const ElasticOperator& rows,
+RigidCoarseSpace::RigidCoarseSpace(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                    std::span<const double> inertia, int n_aggregates)
     : mesh_(&mesh), geometry_(&rows.geometry()), rows_(&rows), modes_(mesh.dim == 2 ? 3 : 6) {
-  const Geometry& geometry = rows.geometry();
+  const mesh::Geometry& geometry = rows.geometry();
   const Index n_owned = mesh.cells.n_owned();
   const double share = double(n_aggregates) * n_owned / static_cast<double>(mesh.cells.n_global());
   const int n_here = n_owned == 0 ? 0 : std::clamp<int>(static_cast<int>(std::lround(share)), 1, n_owned);
   number_aggregates(bisect({geometry.cell_centre.data(), std::size_t(n_owned)}, n_here), n_here);
-  const auto first = static_cast<Index>(exclusive_scan(mesh.comm, n_here));
+  const auto first = static_cast<Index>(parallel::exclusive_scan(mesh.comm, n_here));
 
   Assembly assembly(*this, mesh, rows, first, n_here);
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
@@ -229,7 +229,7 @@ RigidCoarseSpace::RigidCoarseSpace(const Mesh& mesh, const ElasticOperator& rows
       for (int i = 0; i < modes_; ++i)
         for (int j = 0; j < modes_; ++j)
           entries.push_back({(first + a) * modes_ + i, column * modes_ + j, block(mode[i], mode[j])});
-  entries = all_gather(mesh.comm, entries);
+  entries = parallel::all_gather(mesh.comm, entries);
   double largest = 0;
   for (const Entry& e : entries)
     if (e.row == e.column) largest = std::max(largest, std::abs(e.value));
@@ -248,7 +248,7 @@ RigidCoarseSpace::RigidCoarseSpace(const Mesh& mesh, const ElasticOperator& rows
 RigidCoarseSpace::~RigidCoarseSpace() = default;
 
 void RigidCoarseSpace::number_aggregates(std::span<const Index> local, int n_here) {
-  const auto first = static_cast<Index>(exclusive_scan(mesh_->comm, n_here));
+  const auto first = static_cast<Index>(parallel::exclusive_scan(mesh_->comm, n_here));
   std::vector<Vec3> sum(n_here, Vec3::Zero());
   std::vector<double> count(n_here, 0);
   std::vector<GlobalIndex> global(mesh_->cells.n_local(), 0);
@@ -258,7 +258,7 @@ void RigidCoarseSpace::number_aggregates(std::span<const Index> local, int n_her
     global[c] = first + local[c];
   }
   for (int a = 0; a < n_here; ++a) sum[a] /= count[a];
-  centre_ = all_gather(mesh_->comm, sum);
+  centre_ = parallel::all_gather(mesh_->comm, sum);
   mesh_->cells.update_ghosts(std::span<GlobalIndex>(global));
   aggregate_.assign(global.begin(), global.end());
 }
@@ -302,4 +302,4 @@ void RigidCoarseSpace::add_correction(std::span<const double> r, std::span<doubl
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -9,7 +9,7 @@
 #include "common/elasticity/elasticity.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// A mode that moves no cell (the spin of a single row of cells) has an empty row; this part of the largest diagonal
 /// keeps it solvable, its amplitude is nothing.
@@ -25,7 +25,7 @@ inline constexpr double floor_of_diagonal = 1e-10;
 class RigidCoarseSpace {
  public:
   /// About `n_aggregates` over all ranks. Collective.
-  RigidCoarseSpace(const Mesh& mesh, const ElasticOperator& rows, std::span<const double> inertia,
+  RigidCoarseSpace(const mesh::Mesh& mesh, const ElasticOperator& rows, std::span<const double> inertia,
                    int n_aggregates);
   ~RigidCoarseSpace();
 
@@ -38,8 +38,8 @@ class RigidCoarseSpace {
   void number_aggregates(std::span<const Index> local, int n_here);
   Vec3 arm(Index cell) const { return geometry_->cell_centre[cell] - centre_[aggregate_[cell]]; }
 
-  const Mesh* mesh_;
-  const Geometry* geometry_;
+  const mesh::Mesh* mesh_;
+  const mesh::Geometry* geometry_;
   const ElasticOperator* rows_;
   int modes_;
   std::vector<Index> aggregate_;  // of each local cell, over all ranks
@@ -50,4 +50,4 @@ class RigidCoarseSpace {
 /// Parts 0 .. n - 1 of nearly equal size by halving along the longest side again and again.
 std::vector<Index> bisect(std::span<const Vec3> places, int n_parts);
 
-}  // namespace couplet
+}  // namespace couplet::elastic

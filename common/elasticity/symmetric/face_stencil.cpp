@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/elasticity/symmetric/face_stencil.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 void FaceStencil::take(Index node, const Vec3& b, const Tensor3& turn) {
   if (number_[node] < 0) return;  // known
@@ -73,4 +73,4 @@ template const std::vector<FaceStencil::Term>& FaceStencil::of_mean<3>(Index);
 template const std::vector<FaceStencil::Term>& FaceStencil::of<2>(const SymmetricFace<2>&, Index);
 template const std::vector<FaceStencil::Term>& FaceStencil::of<3>(const SymmetricFace<3>&, Index);
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -6,7 +6,7 @@
 #include "common/elasticity/elasticity.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// The nodes of a symmetric face gradient, vertices resolved: G = sum_i (T_i u_i) b_i^T, entry (k, j) =
 /// d u_k / d x_j. Nodes whose value is known are left out.
@@ -19,7 +19,7 @@ class FaceStencil {
   };
 
   /// `number`: of each local node as unknown, negative: known. All by reference.
-  FaceStencil(const Mesh& mesh, const ElasticOperator& rows, const std::vector<GlobalIndex>& number)
+  FaceStencil(const mesh::Mesh& mesh, const ElasticOperator& rows, const std::vector<GlobalIndex>& number)
       : mesh_(mesh), geometry_(rows.geometry()), rows_(rows), number_(number) {}
 
   /// Of a flux face; valid until the next call.
@@ -35,11 +35,11 @@ class FaceStencil {
   void take_boundary(Index f, const Vec3& b);
   void take_point(Index v, const Vec3& b);
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
   const ElasticOperator& rows_;
   const std::vector<GlobalIndex>& number_;
   std::vector<Term> terms_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -6,13 +6,13 @@
 #include "common/elasticity/elastic_nodes.hpp"
 #include "common/fv/nodes.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
-NodeAssembly::NodeAssembly(const Mesh& mesh, const ElasticOperator& rows)
+NodeAssembly::NodeAssembly(const mesh::Mesh& mesh, const ElasticOperator& rows)
     : mesh_(mesh),
       geometry_(rows.geometry()),
       rows_(rows),
-      number_(number_nodes(mesh, rows.unknown_faces())),
+      number_(fv::number_nodes(mesh, rows.unknown_faces())),
       stencil_(mesh, rows, number_) {}
 
 void NodeAssembly::finish_volumes(const std::function<double(Index)>& modulus) {
@@ -25,7 +25,7 @@ void NodeAssembly::add_supports() {
     const BoundaryRow& s = rows_.at(f);
     if (s.fixed) continue;
     const LameConstants lame = rows_.lame(mesh_.owner[f]);
-    const FaceLine line = face_line(mesh_, geometry_, f);
+    const fv::FaceLine line = fv::face_line(mesh_, geometry_, f);
     const Tensor3 open = Tensor3::Identity() - s.known;
     add_block(node_of(f), node_of(f),
               (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn * s.known +
@@ -41,9 +41,9 @@ void NodeAssembly::add_diagonals(std::span<const double> of_nodes) {
     add_diagonal(node_of(rows_.unknown_faces()[i]), of_nodes[std::size_t(n_cells) + i]);
 }
 
-SparseMatrix NodeAssembly::matrix() const {
+linalg::SparseMatrix NodeAssembly::matrix() const {
   return pairs_.matrix(mesh_.comm, static_cast<GlobalIndex>(rows_.n_unknowns()), mesh_.dim,
                        [this](Index node) { return number_[node]; });
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -10,13 +10,13 @@
 #include "common/elasticity/block_pairs.hpp"
 #include "common/elasticity/symmetric/face_stencil.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// Blocks between the nodes of a body, added up pair by pair and made a matrix with the rows of ElasticOperator.
 class NodeAssembly {
  public:
   /// Both by reference.
-  NodeAssembly(const Mesh& mesh, const ElasticOperator& rows);
+  NodeAssembly(const mesh::Mesh& mesh, const ElasticOperator& rows);
 
   FaceStencil& stencil() { return stencil_; }
   void add_block(Index i, Index j, const Tensor3& block) { pairs_.add(i, j, block); }
@@ -31,14 +31,14 @@ class NodeAssembly {
   /// On the diagonals, one value an unknown node; empty: none.
   void add_diagonals(std::span<const double> of_nodes);
   /// Collective.
-  SparseMatrix matrix() const;
+  linalg::SparseMatrix matrix() const;
 
  private:
   Index node_of(Index f) const { return mesh_.cells.n_local() + f - mesh_.n_interior; }
   void add_diagonal(Index node, double value) { add_block(node, node, value * Tensor3::Identity()); }
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
   const ElasticOperator& rows_;
   std::vector<GlobalIndex> number_;
   FaceStencil stencil_;
@@ -46,4 +46,4 @@ class NodeAssembly {
   std::map<Index, std::vector<std::pair<Index, Vec3>>> volume_of_;  // of cells, by nodes
 };
 
-}  // namespace couplet
+}  // namespace couplet::elastic

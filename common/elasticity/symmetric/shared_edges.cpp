@@ -9,7 +9,7 @@
 #include "common/mesh/periodic_points.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// What an edge is told by on every rank, and who has it.
 struct SharedEdges::Key {
@@ -22,9 +22,9 @@ struct SharedEdges::Key {
 namespace {
 
 /// What a point is told by in the edges' names: on periodic patches by the point that all copies are.
-std::vector<GlobalIndex> names_of_points(const Mesh& mesh, const Geometry& geometry) {
+std::vector<GlobalIndex> names_of_points(const mesh::Mesh& mesh, const mesh::Geometry& geometry) {
   std::vector<GlobalIndex> names = mesh.point_id;
-  const PeriodicPoints periodic(mesh, geometry);
+  const mesh::PeriodicPoints periodic(mesh, geometry);
   for (std::size_t i = 0; i < periodic.points().size(); ++i)
     names[periodic.points()[i]] = -1 - GlobalIndex(periodic.group(i));
   return names;
@@ -32,10 +32,10 @@ std::vector<GlobalIndex> names_of_points(const Mesh& mesh, const Geometry& geome
 
 }  // namespace
 
-SharedEdges::SharedEdges(const Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
+SharedEdges::SharedEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
                          std::span<const double> volume)
     : edges_of_(faces.size()),
-      parallel_(comm_size(mesh.comm) > 1),
+      parallel_(parallel::comm_size(mesh.comm) > 1),
       names_(names_of_points(mesh, rows.geometry())) {
   number(mesh, faces);
   const std::size_t n = end_points_.size();
@@ -68,8 +68,8 @@ SharedEdges::SharedEdges(const Mesh& mesh, const ElasticOperator& rows, std::spa
 }
 
 /// Means of the faces' by volume.
-void SharedEdges::find_matrices(const Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
-                                std::span<const double> volume) {
+void SharedEdges::find_matrices(const mesh::Mesh& mesh, const ElasticOperator& rows,
+                                std::span<const Index> faces, std::span<const double> volume) {
   constexpr int entries = 36;
   std::vector<double> sums(inverse_volume_.size() * entries, 0);
   for (std::size_t i = 0; i < faces.size(); ++i) {
@@ -87,14 +87,14 @@ void SharedEdges::find_matrices(const Mesh& mesh, const ElasticOperator& rows, s
 }
 
 /// Local numbers, the owned edges first; the owner is the smallest rank that has an edge.
-void SharedEdges::number(const Mesh& mesh, std::span<const Index> faces) {
+void SharedEdges::number(const mesh::Mesh& mesh, std::span<const Index> faces) {
   std::vector<std::uint8_t> is_near(mesh.points.n_local(), 0);  // may be known elsewhere
   for (Index c = mesh.cells.n_owned(); c < mesh.cells.n_local(); ++c)
     for (const Index v : mesh.cell_points[c]) is_near[v] = 1;
   for (std::size_t v = 0; v < names_.size(); ++v)
     if (names_[v] < 0) is_near[v] = 1;
   std::map<std::tuple<GlobalIndex, GlobalIndex, GlobalIndex>, Index> found;
-  const int rank = comm_rank(mesh.comm);
+  const int rank = parallel::comm_rank(mesh.comm);
   const auto key_of = [&](Index f, std::size_t i) {
     const auto p = mesh.face_points[f];
     const GlobalIndex a = names_[p[i]], b = names_[p[(i + 1) % 3]];
@@ -110,7 +110,7 @@ void SharedEdges::number(const Mesh& mesh, std::span<const Index> faces) {
     }
   std::map<std::tuple<GlobalIndex, GlobalIndex, GlobalIndex>, int> owner;
   if (parallel_) {
-    for (const Key& k : all_gather(mesh.comm, mine)) {
+    for (const Key& k : parallel::all_gather(mesh.comm, mine)) {
       const auto [at, is_new] = owner.emplace(k.same(), k.rank);
       if (!is_new) at->second = std::min(at->second, k.rank);
     }
@@ -134,7 +134,7 @@ void SharedEdges::number(const Mesh& mesh, std::span<const Index> faces) {
   std::erase_if(mine, [&](const Key& k) { return owner_of(k.same()) != rank; });
   for (Key& k : mine) k.local = found.at(k.same());
   std::map<std::tuple<GlobalIndex, GlobalIndex, GlobalIndex>, Index> remote;
-  for (const Key& k : all_gather(mesh.comm, mine)) remote[k.same()] = k.local;
+  for (const Key& k : parallel::all_gather(mesh.comm, mine)) remote[k.same()] = k.local;
   std::vector<int> ghost_owner(next - n_owned);
   std::vector<Index> ghost_remote(next - n_owned);
   for (const auto& [key, local] : found) {
@@ -142,11 +142,11 @@ void SharedEdges::number(const Mesh& mesh, std::span<const Index> faces) {
     ghost_owner[local - n_owned] = owner.at(key);
     ghost_remote[local - n_owned] = remote.at(key);
   }
-  map_ = IndexMap(mesh.comm, n_owned, ghost_owner, ghost_remote);
+  map_ = parallel::IndexMap(mesh.comm, n_owned, ghost_owner, ghost_remote);
 }
 
-void SharedEdges::find_mirrors(const Mesh& mesh, const ElasticOperator& rows) {
-  const Geometry& geometry = rows.geometry();
+void SharedEdges::find_mirrors(const mesh::Mesh& mesh, const ElasticOperator& rows) {
+  const mesh::Geometry& geometry = rows.geometry();
   // Symmetry faces of ghosts count: an edge of the plane may have its faces here elsewhere.
   std::map<std::array<GlobalIndex, 2>, std::vector<Index>> by_ends;
   for (std::size_t e = 0; e < end_points_.size(); ++e)
@@ -221,4 +221,4 @@ void SharedEdges::to_stress() {
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -9,7 +9,7 @@
 #include "common/elasticity/elasticity.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// The edges with which three-cornered faces share their strain. The tangential part of a face's gradient is
 /// the constant strain of its three vertices, which locks in bending; the mean over the faces round an edge
@@ -27,7 +27,7 @@ class SharedEdges {
 
   /// `faces`: the three-cornered ones of this rank, each face on one rank alone; `volume`: V_f of each.
   /// Collective.
-  SharedEdges(const Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
+  SharedEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
               std::span<const double> volume);
 
   std::size_t n_faces() const { return edges_of_.size(); }
@@ -58,13 +58,13 @@ class SharedEdges {
 
  private:
   struct Key;
-  void number(const Mesh& mesh, std::span<const Index> faces);
-  void find_matrices(const Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
+  void number(const mesh::Mesh& mesh, std::span<const Index> faces);
+  void find_matrices(const mesh::Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
                      std::span<const double> volume);
-  void find_mirrors(const Mesh& mesh, const ElasticOperator& rows);
+  void find_mirrors(const mesh::Mesh& mesh, const ElasticOperator& rows);
 
   std::vector<std::array<Index, 3>> edges_of_;
-  IndexMap map_;
+  parallel::IndexMap map_;
   bool parallel_ = false;
   std::vector<double> value_, inverse_volume_;
   std::vector<LameConstants> lame_;                     // one a material's edge, or one in all
@@ -74,4 +74,4 @@ class SharedEdges {
   std::vector<GlobalIndex> names_;                      // of the local points, while it is made
 };
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -3,9 +3,9 @@
 
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
-SharedFaces shared_faces(const Mesh& mesh, const ElasticOperator& rows) {
+SharedFaces shared_faces(const mesh::Mesh& mesh, const ElasticOperator& rows) {
   SharedFaces result;
   if (mesh.dim == 2) return result;
   std::vector<Index> elsewhere;
@@ -43,4 +43,4 @@ Tensor3 edge_tensor(SharedEdges& edges, Index e) {
   return s;
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

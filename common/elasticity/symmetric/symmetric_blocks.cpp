@@ -3,11 +3,11 @@
 
 #include "common/elasticity/elastic_nodes.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 template <int D>
-void set_geometry(const Mesh& mesh, const SymmetricFace<D>& face, Index f, std::size_t k, bool is_filling,
-                  BlockGeometry<D>& block) {
+void set_geometry(const mesh::Mesh& mesh, const SymmetricFace<D>& face, Index f, std::size_t k,
+                  bool is_filling, BlockGeometry<D>& block) {
   block.from[k] = mesh.owner[f];
   block.to[k] = f < mesh.n_interior ? mesh.neighbour[f] : mesh.cells.n_local() + f - mesh.n_interior;
   for (int a = 0; a < D; ++a) {
@@ -20,13 +20,13 @@ void set_geometry(const Mesh& mesh, const SymmetricFace<D>& face, Index f, std::
   }
 }
 
-template void set_geometry<2>(const Mesh&, const SymmetricFace<2>&, Index, std::size_t, bool,
+template void set_geometry<2>(const mesh::Mesh&, const SymmetricFace<2>&, Index, std::size_t, bool,
                               BlockGeometry<2>&);
-template void set_geometry<3>(const Mesh&, const SymmetricFace<3>&, Index, std::size_t, bool,
+template void set_geometry<3>(const mesh::Mesh&, const SymmetricFace<3>&, Index, std::size_t, bool,
                               BlockGeometry<3>&);
 
 template <int D>
-std::vector<FaceBlock<D>> make_blocks(const Mesh& mesh, const ElasticOperator& rows,
+std::vector<FaceBlock<D>> make_blocks(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                       std::span<const Index> faces) {
   constexpr int width = BlockGeometry<D>::width;
   std::vector<FaceBlock<D>> result((faces.size() + width - 1) / width);
@@ -47,7 +47,7 @@ std::vector<FaceBlock<D>> make_blocks(const Mesh& mesh, const ElasticOperator& r
 }
 
 template <int D>
-std::vector<ElasticBlock<D>> make_elastic_blocks(const Mesh& mesh, const ElasticOperator& rows,
+std::vector<ElasticBlock<D>> make_elastic_blocks(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                                  std::span<const Index> faces) {
   if (!rows.is_anisotropic()) return {};
   constexpr int entry[2][6] = {{0, 1, 3, 0, 0, 0},
@@ -67,13 +67,13 @@ std::vector<ElasticBlock<D>> make_elastic_blocks(const Mesh& mesh, const Elastic
   return result;
 }
 
-template std::vector<ElasticBlock<2>> make_elastic_blocks<2>(const Mesh&, const ElasticOperator&,
+template std::vector<ElasticBlock<2>> make_elastic_blocks<2>(const mesh::Mesh&, const ElasticOperator&,
                                                              std::span<const Index>);
-template std::vector<ElasticBlock<3>> make_elastic_blocks<3>(const Mesh&, const ElasticOperator&,
+template std::vector<ElasticBlock<3>> make_elastic_blocks<3>(const mesh::Mesh&, const ElasticOperator&,
                                                              std::span<const Index>);
-template std::vector<FaceBlock<2>> make_blocks<2>(const Mesh&, const ElasticOperator&,
+template std::vector<FaceBlock<2>> make_blocks<2>(const mesh::Mesh&, const ElasticOperator&,
                                                   std::span<const Index>);
-template std::vector<FaceBlock<3>> make_blocks<3>(const Mesh&, const ElasticOperator&,
+template std::vector<FaceBlock<3>> make_blocks<3>(const mesh::Mesh&, const ElasticOperator&,
                                                   std::span<const Index>);
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -8,7 +8,7 @@
 #include "common/elasticity/lanes.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// Four faces side by side: the kernels' arithmetic is on one number of each at a time.
 template <int D>
@@ -178,17 +178,17 @@ template <int D>
 /// The blocks of these faces in their order; the last one is filled up with faces without area between the
 /// first node and itself. `n_cells`: nodes before those of the boundary.
 template <int D>
-std::vector<FaceBlock<D>> make_blocks(const Mesh& mesh, const ElasticOperator& rows,
+std::vector<FaceBlock<D>> make_blocks(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                       std::span<const Index> faces);
 
 /// Their elastic matrices; none where the body has none.
 template <int D>
-std::vector<ElasticBlock<D>> make_elastic_blocks(const Mesh& mesh, const ElasticOperator& rows,
+std::vector<ElasticBlock<D>> make_elastic_blocks(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                                  std::span<const Index> faces);
 
 /// Puts face f into place k of a block, or, as filling, without area.
 template <int D>
-void set_geometry(const Mesh& mesh, const SymmetricFace<D>& face, Index f, std::size_t k, bool is_filling,
-                  BlockGeometry<D>& block);
+void set_geometry(const mesh::Mesh& mesh, const SymmetricFace<D>& face, Index f, std::size_t k,
+                  bool is_filling, BlockGeometry<D>& block);
 
-}  // namespace couplet
+}  // namespace couplet::elastic

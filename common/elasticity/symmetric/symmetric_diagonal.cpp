@@ -4,7 +4,7 @@
 #include "common/elasticity/elastic_nodes.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 namespace {
 
 // Of a block: xx, yy, zz, then xy, yz, xz.
@@ -12,7 +12,7 @@ constexpr int block_size = 6, diagonal_size = 3;
 
 class Sum {
  public:
-  Sum(const Mesh& mesh, const ElasticOperator& rows, VolumeStrain without)
+  Sum(const mesh::Mesh& mesh, const ElasticOperator& rows, VolumeStrain without)
       : mesh_(mesh),
         rows_(rows),
         without_(without),
@@ -42,7 +42,7 @@ class Sum {
       cells_[std::size_t(cell) * diagonal_size + a] += 4 * volume * (lame.lambda + 2 * lame.mu) * s[a] * s[a];
   }
 
-  const Mesh& mesh_;
+  const mesh::Mesh& mesh_;
   const ElasticOperator& rows_;
   VolumeStrain without_;
   std::vector<Vec3> gradient_;  // of each local node: G = sum u b^T on the face at hand
@@ -114,7 +114,8 @@ SymmetricDiagonal Sum::finish() {
 
 }  // namespace
 
-SymmetricDiagonal symmetric_diagonal(const Mesh& mesh, const ElasticOperator& rows, VolumeStrain without) {
+SymmetricDiagonal symmetric_diagonal(const mesh::Mesh& mesh, const ElasticOperator& rows,
+                                     VolumeStrain without) {
   Sum sum(mesh, rows, without);
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
     if (mesh.owner[f] >= mesh.cells.n_owned()) continue;  // its owner's rank adds it
@@ -126,4 +127,4 @@ SymmetricDiagonal symmetric_diagonal(const Mesh& mesh, const ElasticOperator& ro
   return sum.finish();
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -5,7 +5,7 @@
 
 #include "common/elasticity/elasticity.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// What stands on the diagonal of the symmetric operator K = sum_f V_f B_f^T C B_f [N/m], for preconditioners: the
 /// vertices' parts with it, which are most of it, and which two-point fluxes know nothing of.
@@ -19,6 +19,7 @@ struct SymmetricDiagonal {
 };
 
 /// `without`: whose bulk modulus the operator lacks (VolumeStrain::faces: none). Collective.
-SymmetricDiagonal symmetric_diagonal(const Mesh& mesh, const ElasticOperator& rows, VolumeStrain without);
+SymmetricDiagonal symmetric_diagonal(const mesh::Mesh& mesh, const ElasticOperator& rows,
+                                     VolumeStrain without);
 
-}  // namespace couplet
+}  // namespace couplet::elastic

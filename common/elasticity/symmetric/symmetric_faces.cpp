@@ -4,11 +4,11 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-namespace couplet {
+namespace couplet::elastic {
 namespace {
 
 /// From the owner to the node across; the mirror image of the owner at a symmetry plane.
-Vec3 line_across(const Mesh& mesh, const Geometry& geometry, Index f, bool mirrored) {
+Vec3 line_across(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f, bool mirrored) {
   const Vec3& here = geometry.cell_centre[mesh.owner[f]];
   if (f < mesh.n_interior) return geometry.cell_centre[mesh.neighbour[f]] + mesh.shift(f) - here;
   if (!mirrored) return geometry.face_centre[f] - here;
@@ -19,8 +19,8 @@ Vec3 line_across(const Mesh& mesh, const Geometry& geometry, Index f, bool mirro
 }  // namespace
 
 template <int D>
-SymmetricFace<D> symmetric_face(const Mesh& mesh, const ElasticOperator& rows, Index f) {
-  const Geometry& geometry = rows.geometry();
+SymmetricFace<D> symmetric_face(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f) {
+  const mesh::Geometry& geometry = rows.geometry();
   const bool mirrored = rows.mirrored(f);
   const Vec3 d = line_across(mesh, geometry, f, mirrored);
   const auto point = mesh.face_points[f];
@@ -53,10 +53,10 @@ SymmetricFace<D> symmetric_face(const Mesh& mesh, const ElasticOperator& rows, I
   return face;
 }
 
-template SymmetricFace<2> symmetric_face<2>(const Mesh&, const ElasticOperator&, Index);
-template SymmetricFace<3> symmetric_face<3>(const Mesh&, const ElasticOperator&, Index);
+template SymmetricFace<2> symmetric_face<2>(const mesh::Mesh&, const ElasticOperator&, Index);
+template SymmetricFace<3> symmetric_face<3>(const mesh::Mesh&, const ElasticOperator&, Index);
 
-std::array<double, 4> point_shares(const Mesh& mesh, const Geometry& geometry, Index f) {
+std::array<double, 4> point_shares(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f) {
   std::array<double, 4> shares{};
   const auto point = mesh.face_points[f];
   if (mesh.dim == 2) return {0.5, 0.5};
@@ -73,7 +73,7 @@ std::array<double, 4> point_shares(const Mesh& mesh, const Geometry& geometry, I
   return shares;
 }
 
-std::array<double, 2> pyramids(const Mesh& mesh, const Geometry& geometry, Index f) {
+std::array<double, 2> pyramids(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f) {
   const Vec3& s = geometry.face_area[f];
   const double here = s.dot(geometry.face_centre[f] - geometry.cell_centre[mesh.owner[f]]) / mesh.dim;
   if (f >= mesh.n_interior) return {here, 0};
@@ -81,4 +81,4 @@ std::array<double, 2> pyramids(const Mesh& mesh, const Geometry& geometry, Index
   return {here, s.dot(there - geometry.face_centre[f]) / mesh.dim};
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

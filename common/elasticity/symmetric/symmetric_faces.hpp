@@ -8,7 +8,7 @@
 #include "common/elasticity/elasticity.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// The face gradient of the symmetric operator, from the two nodes beside a face and its vertices, exact for
 /// linear fields on any face (Green-Gauss over the double pyramid of the two nodes and the face; equal to
@@ -29,14 +29,14 @@ struct SymmetricFace {
 };
 
 template <int D>
-SymmetricFace<D> symmetric_face(const Mesh& mesh, const ElasticOperator& rows, Index f);
+SymmetricFace<D> symmetric_face(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f);
 
 /// Shares with which the points around a face, in their order, take what acts on it evenly: they add up to 1
 /// and their mean place is the face centre. By the triangles between the centre and the edges.
-std::array<double, 4> point_shares(const Mesh& mesh, const Geometry& geometry, Index f);
+std::array<double, 4> point_shares(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f);
 
 /// V_fP of the two sides [m^3]: pyramids from the cell's centre over the face; the second is 0 on the
 /// boundary.
-std::array<double, 2> pyramids(const Mesh& mesh, const Geometry& geometry, Index f);
+std::array<double, 2> pyramids(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f);
 
-}  // namespace couplet
+}  // namespace couplet::elastic

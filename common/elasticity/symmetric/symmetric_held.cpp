@@ -5,7 +5,7 @@
 
 #include "common/elasticity/symmetric/symmetric_space.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// Of an entry of point_force_ or of force_; the face's node at a symmetry plane is the mirror image of the cell's centre.
 template <int D>
@@ -98,4 +98,4 @@ std::vector<Wrench> SymmetricSpace<D>::held(std::span<const double> known, bool 
 template std::vector<Wrench> SymmetricSpace<2>::held(std::span<const double>, bool);
 template std::vector<Wrench> SymmetricSpace<3>::held(std::span<const double>, bool);
 
-}  // namespace couplet
+}  // namespace couplet::elastic

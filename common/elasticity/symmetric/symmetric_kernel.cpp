@@ -6,10 +6,10 @@
 #include "common/elasticity/processor_clones.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 template <int D>
-SymmetricKernel<D>::SymmetricKernel(const Mesh& mesh, const ElasticOperator& rows)
+SymmetricKernel<D>::SymmetricKernel(const mesh::Mesh& mesh, const ElasticOperator& rows)
     : mesh_(mesh), geometry_(rows.geometry()), rows_(rows), space_(mesh, rows) {
   make_faces();
   if (!rows.volume_by_cells()) return;
@@ -51,7 +51,7 @@ void SymmetricKernel<D>::make_faces() {
   if (!mine_.empty()) blocks_ = make_blocks<D>(mesh_, rows_, mine_);
   elastic_ = make_elastic_blocks<D>(mesh_, rows_, mine_);
   shared_elastic_ = make_elastic_blocks<D>(mesh_, rows_, shared_mine_);
-  const bool shares = D == 3 && any(mesh_.comm, !shared_mine_.empty());
+  const bool shares = D == 3 && parallel::any(mesh_.comm, !shared_mine_.empty());
   if (!shares) return;
   if (!shared_mine_.empty()) shared_blocks_ = make_blocks<D>(mesh_, rows_, shared_mine_);
   std::vector<Index> all = shared_mine_;
@@ -312,10 +312,10 @@ void SymmetricKernel<D>::point_values(std::span<const double> unknowns, std::spa
 template class SymmetricKernel<2>;
 template class SymmetricKernel<3>;
 
-std::unique_ptr<ElasticKernel::Implementation> make_symmetric_kernel(const Mesh& mesh,
+std::unique_ptr<ElasticKernel::Implementation> make_symmetric_kernel(const mesh::Mesh& mesh,
                                                                      const ElasticOperator& rows) {
   if (mesh.dim == 2) return std::make_unique<SymmetricKernel<2>>(mesh, rows);
   return std::make_unique<SymmetricKernel<3>>(mesh, rows);
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

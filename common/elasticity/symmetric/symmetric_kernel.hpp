@@ -11,7 +11,7 @@
 #include "common/elasticity/symmetric/symmetric_blocks.hpp"
 #include "common/elasticity/symmetric/symmetric_space.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// K = B^T C V B: the thesis's face gradient kept, its forces taken as its transpose, so that the operator is
 /// the second derivative of the energy E = sum_f V_f W(G_f), W = mu |sym G|^2 + lambda/2 (tr G)^2: symmetric,
@@ -27,7 +27,7 @@ namespace couplet {
 template <int D>
 class SymmetricKernel final : public ElasticKernel::Implementation {
  public:
-  SymmetricKernel(const Mesh& mesh, const ElasticOperator& rows);
+  SymmetricKernel(const mesh::Mesh& mesh, const ElasticOperator& rows);
 
   void apply(std::span<const double> unknowns, std::span<const double> known,
              std::span<double> result) override;
@@ -77,8 +77,8 @@ class SymmetricKernel final : public ElasticKernel::Implementation {
   void find_pressures();
   void spread_pressure(std::span<const double> pressure);
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
   const ElasticOperator& rows_;
   SymmetricSpace<D> space_;
   std::vector<Index> mine_;          // faces that this rank computes, in the order of the blocks
@@ -92,4 +92,4 @@ class SymmetricKernel final : public ElasticKernel::Implementation {
   std::vector<double> pressure_, bulk_;                    // of nodes; K / V of owned cells [Pa/m^3]
 };
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -3,7 +3,7 @@
 // strain (SymmetricSpace).
 #include "common/elasticity/symmetric/symmetric_kernel.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 template <int D>
 void SymmetricKernel<D>::spread_pressure(std::span<const double> pressure) {
@@ -135,4 +135,4 @@ template double SymmetricKernel<3>::product(ElasticPart, const ElasticField&, co
 template std::vector<Wrench> SymmetricKernel<3>::holding_forces(std::span<const double>,
                                                                 std::span<const double>, const ElasticLoads&);
 
-}  // namespace couplet
+}  // namespace couplet::elastic

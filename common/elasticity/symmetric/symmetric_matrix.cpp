@@ -6,7 +6,7 @@
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/elasticity/symmetric/symmetric_space.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 namespace {
 
 /// V B_i^T C B_j, B_i making a strain of the displacement of a node.
@@ -28,8 +28,8 @@ void add_anisotropic(NodeAssembly& to, const std::vector<FaceStencil::Term>& ter
 
 // V [lambda b_i b_j^T + mu (b_i . b_j I + b_j b_i^T)] between each two nodes.
 template <int D>
-void add_face(const Mesh& mesh, const ElasticOperator& rows, Index f, NodeAssembly& to) {
-  const Geometry& geometry = rows.geometry();
+void add_face(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f, NodeAssembly& to) {
+  const mesh::Geometry& geometry = rows.geometry();
   const SymmetricFace<D> face = symmetric_face<D>(mesh, rows, f);
   const Tensor3 identity = Tensor3::Identity();
   const std::vector<FaceStencil::Term>& terms = to.stencil().of<D>(face, f);
@@ -55,9 +55,9 @@ void add_face(const Mesh& mesh, const ElasticOperator& rows, Index f, NodeAssemb
 
 }  // namespace
 
-SparseMatrix symmetric_matrix(const Mesh& mesh, const ElasticOperator& rows,
-                              std::span<const double> of_nodes) {
-  const Geometry& geometry = rows.geometry();
+linalg::SparseMatrix symmetric_matrix(const mesh::Mesh& mesh, const ElasticOperator& rows,
+                                      std::span<const double> of_nodes) {
+  const mesh::Geometry& geometry = rows.geometry();
   NodeAssembly assembly(mesh, rows);
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
     if (mesh.owner[f] >= mesh.cells.n_owned() && !rows.volume_by_cells()) continue;
@@ -74,4 +74,4 @@ SparseMatrix symmetric_matrix(const Mesh& mesh, const ElasticOperator& rows,
   return assembly.matrix();
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -4,7 +4,7 @@
 
 #include "common/elasticity/symmetric/symmetric_kernel.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 template <int D>
 void SymmetricKernel<D>::apply_mixed(std::span<const double> unknowns, std::span<const double> pressure,
@@ -30,4 +30,4 @@ template void SymmetricKernel<2>::apply_mixed(std::span<const double>, std::span
 template void SymmetricKernel<3>::apply_mixed(std::span<const double>, std::span<const double>, double,
                                               std::span<double>, std::span<double>);
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -7,9 +7,9 @@
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
-std::vector<double> pyramid_volumes(const Mesh& mesh, const Geometry& geometry) {
+std::vector<double> pyramid_volumes(const mesh::Mesh& mesh, const mesh::Geometry& geometry) {
   std::vector<double> volume(mesh.cells.n_owned(), 0);
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
     const auto [here, there] = pyramids(mesh, geometry, f);
@@ -20,7 +20,7 @@ std::vector<double> pyramid_volumes(const Mesh& mesh, const Geometry& geometry) 
 }
 
 template <int D>
-SymmetricSpace<D>::SymmetricSpace(const Mesh& mesh, const ElasticOperator& rows)
+SymmetricSpace<D>::SymmetricSpace(const mesh::Mesh& mesh, const ElasticOperator& rows)
     : mesh_(mesh),
       geometry_(rows.geometry()),
       rows_(rows),
@@ -30,10 +30,10 @@ SymmetricSpace<D>::SymmetricSpace(const Mesh& mesh, const ElasticOperator& rows)
       force_(std::size_t(mesh.cells.n_local() + mesh.boundary.n_local()) * stride, 0.0),
       point_force_(points_.size(), 0.0),
       volume_(pyramid_volumes(mesh, rows.geometry())) {
-  const Geometry& geometry = rows.geometry();
+  const mesh::Geometry& geometry = rows.geometry();
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
     if (rows.mirrored(f)) symmetry_.emplace_back(f, geometry.face_area[f].normalized());
-  if (!any(mesh.comm, !mesh.neighbour_shift.empty())) return;
+  if (!parallel::any(mesh.comm, !mesh.neighbour_shift.empty())) return;
   joined_ = std::make_unique<JoinedVertices>(mesh, rows);
   std::erase_if(vertices_.free, [&](Index v) { return joined_->has(v); });
 }
@@ -53,7 +53,7 @@ inline void SymmetricSpace<D>::interpolate_free() {
   for (const Index v : vertices_.free) {
     const auto index = rows_.vertices().nodes(v);
     const auto weight = rows_.vertices().weights(v);
-    Lane<D> sum = {};
+    elastic::lanes::Lane<D> sum = {};
     for (std::size_t i = 0; i < index.size(); ++i)
       sum += weight[i] * lanes::load<D>(nodes + std::size_t(index[i]) * stride);
     lanes::store<D>(points + std::size_t(v) * stride, sum);
@@ -68,7 +68,7 @@ inline void SymmetricSpace<D>::to_nodes_loop() {
   for (const Index v : vertices_.free) {
     const auto index = rows_.vertices().nodes(v);
     const auto weight = rows_.vertices().weights(v);
-    const Lane<D> here = lanes::load<D>(point_force_.data() + std::size_t(v) * stride);
+    const elastic::lanes::Lane<D> here = lanes::load<D>(point_force_.data() + std::size_t(v) * stride);
     for (std::size_t i = 0; i < index.size(); ++i)
       lanes::add<D>(force + std::size_t(index[i]) * stride, weight[i] * here);
   }
@@ -165,7 +165,7 @@ void SymmetricSpace<D>::take_rows(std::span<const double> unknowns, std::span<co
           jump[a] =
               unknowns[row + a] - (known.empty() ? 0 : known[std::size_t(rows_.known_of_face(f)) * D + a]);
         const LameConstants lame = rows_.lame(mesh_.owner[f]);
-        const FaceLine line = face_line(mesh_, geometry_, f);
+        const fv::FaceLine line = fv::face_line(mesh_, geometry_, f);
         own += (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn * (boundary.known * jump);
       }
     }
@@ -276,4 +276,4 @@ double SymmetricSpace<D>::work() const {
 template class SymmetricSpace<2>;
 template class SymmetricSpace<3>;
 
-}  // namespace couplet
+}  // namespace couplet::elastic

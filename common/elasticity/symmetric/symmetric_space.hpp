@@ -12,7 +12,7 @@
 #include "common/elasticity/joined_vertices.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// The trial functions of the symmetric face gradient: displacements of nodes (cells, boundary faces) and of
 /// points, and forces on them, taken back to the rows of ElasticOperator by the transposed weights,
@@ -28,9 +28,9 @@ class SymmetricSpace {
   static constexpr int stride = lanes::width<D>;
 
   /// Keeps both by reference.
-  SymmetricSpace(const Mesh& mesh, const ElasticOperator& rows);
+  SymmetricSpace(const mesh::Mesh& mesh, const ElasticOperator& rows);
 
-  const Mesh& mesh() const { return mesh_; }
+  const mesh::Mesh& mesh() const { return mesh_; }
   const ElasticOperator& rows() const { return rows_; }
   /// Displacements at all nodes and points. At symmetry planes the face's node is the mirror image of its cell.
   /// Collective.
@@ -99,8 +99,8 @@ class SymmetricSpace {
     for (int a = 0; a < D; ++a) at[a] += value[a];
   }
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
   const ElasticOperator& rows_;
   ElasticNodes<D> nodes_;
   ElasticVertices vertices_;
@@ -112,7 +112,7 @@ class SymmetricSpace {
 };
 
 /// Sum of the pyramids of each owned cell: warped faces fill it only nearly.
-std::vector<double> pyramid_volumes(const Mesh& mesh, const Geometry& geometry);
+std::vector<double> pyramid_volumes(const mesh::Mesh& mesh, const mesh::Geometry& geometry);
 
 template <int D>
 template <class Take>
@@ -134,4 +134,4 @@ void SymmetricSpace<D>::visit_spring(Index f, std::span<const double> known, con
     take(point_force(points[i]), (1 - 1.0 / D) * shares[i] * pull);
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -7,7 +7,7 @@
 #include "common/elasticity/elastic_nodes.hpp"
 #include "common/elasticity/lanes.hpp"
 
-namespace couplet::corrected {
+namespace couplet::elastic::corrected {
 
 using lanes::Lane;
 using lanes::load;
@@ -24,22 +24,22 @@ struct CorrectedFace {
 
 // The gradients of a pyramid, or of two cells of different kind, err too differently for their difference to
 // tell the second derivative.
-inline bool alike(const Mesh& mesh, Index f) {
-  const CellType here = mesh.cell_type[mesh.owner[f]];
-  return here == mesh.cell_type[mesh.neighbour[f]] && here != CellType::pyramid;
+inline bool alike(const mesh::Mesh& mesh, Index f) {
+  const mesh::CellType here = mesh.cell_type[mesh.owner[f]];
+  return here == mesh.cell_type[mesh.neighbour[f]] && here != mesh::CellType::pyramid;
 }
 
 // Far off the cells' line the correction outweighs the difference that it corrects, and the operator loses
 // its positive eigenvalues (on tetrahedra of an isosurface). Lines of cells that stretch stay below one half.
-inline bool near_line(const Mesh& mesh, const Geometry& geometry, Index f) {
+inline bool near_line(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f) {
   constexpr double farthest = 0.5;
   const Vec3 &from = geometry.cell_centre[mesh.owner[f]], &to = geometry.cell_centre[mesh.neighbour[f]];
   const double across = (to - from).dot(geometry.face_area[f].normalized());
   return (geometry.face_centre[f] - 0.5 * (from + to)).norm() <= farthest * across;
 }
 
-inline CorrectedFace make_face(const Mesh& mesh, const Geometry& geometry, Index f) {
-  const FaceLine line = face_line(mesh, geometry, f);
+inline CorrectedFace make_face(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f) {
+  const fv::FaceLine line = fv::face_line(mesh, geometry, f);
   return {line.inverse_dn, 1 / line.area, 0,
           f < mesh.n_interior && alike(mesh, f) && near_line(mesh, geometry, f)};
 }
@@ -47,12 +47,12 @@ inline CorrectedFace make_face(const Mesh& mesh, const Geometry& geometry, Index
 /// Rows i of a gradient: d u / d x_i.
 template <int D>
 struct Rows {
-  Lane<D> row[D] = {};
+  elastic::lanes::Lane<D> row[D] = {};
 };
 
 template <int D>
-[[gnu::always_inline]] inline Lane<D> contract(const Vec3& v, const double* rows) {
-  Lane<D> sum = v[0] * load<D>(rows);
+[[gnu::always_inline]] inline elastic::lanes::Lane<D> contract(const Vec3& v, const double* rows) {
+  elastic::lanes::Lane<D> sum = v[0] * load<D>(rows);
   for (int i = 1; i < D; ++i) sum += v[i] * load<D>(rows + i * D);
   return sum;
 }
@@ -67,11 +67,12 @@ constexpr std::size_t record_space(std::size_t n) {
   return n * record<D> + lanes::width<D> - D;
 }
 template <int D>
-[[gnu::always_inline]] inline Lane<D> row_of(const double* record, int i) {
+[[gnu::always_inline]] inline elastic::lanes::Lane<D> row_of(const double* record, int i) {
   return load<D>(record + (i + 1) * D);
 }
 template <int D>
-[[gnu::always_inline]] inline void store_record(double* to, const Lane<D>& u, const Rows<D>& gradient) {
+[[gnu::always_inline]] inline void store_record(double* to, const elastic::lanes::Lane<D>& u,
+                                                const Rows<D>& gradient) {
   store<D>(to, u);
   for (int i = 0; i + 1 < D; ++i) store<D>(to + (i + 1) * D, gradient.row[i]);
   lanes::store_components<D>(to + D * D, gradient.row[D - 1]);
@@ -81,19 +82,19 @@ template <int D>
 template <int D>
 struct Surface {
   Rows<D> grad;
-  Lane<D> n = {};  // out of the owner
+  elastic::lanes::Lane<D> n = {};  // out of the owner
   double area;
 };
 
 template <int D>
-[[gnu::always_inline]] inline Lane<D> between(const Vec3& from, const Vec3& to) {
-  Lane<D> d = {};
+[[gnu::always_inline]] inline elastic::lanes::Lane<D> between(const Vec3& from, const Vec3& to) {
+  elastic::lanes::Lane<D> d = {};
   for (int a = 0; a < D; ++a) d[a] = to[a] - from[a];
   return d;
 }
 
 /// T x n / |S| of the rows T_i = sum_e L_e,i w_e: the surface Gauss theorem with the edges' L_e.
-[[gnu::always_inline]] inline Rows<3> turn(const Rows<3>& t, const Lane<3>& n) {
+[[gnu::always_inline]] inline Rows<3> turn(const Rows<3>& t, const elastic::lanes::Lane<3>& n) {
   Rows<3> result;
   result.row[0] = n[2] * t.row[1] - n[1] * t.row[2];
   result.row[1] = n[0] * t.row[2] - n[2] * t.row[0];
@@ -109,23 +110,23 @@ template <int D, class Value>
                                                  const Vec3* x, const Value& value) {
   Surface<D> result;
   if constexpr (D == 2) {
-    const Lane<2> tangent = between<2>(x[corners[0]], x[corners[1]]) * face.inverse_area;
-    const Lane<2> along = (value(1, tangent) - value(0, tangent)) * face.inverse_area;
+    const elastic::lanes::Lane<2> tangent = between<2>(x[corners[0]], x[corners[1]]) * face.inverse_area;
+    const elastic::lanes::Lane<2> along = (value(1, tangent) - value(0, tangent)) * face.inverse_area;
     for (int i = 0; i < 2; ++i) result.grad.row[i] = tangent[i] * along;
-    result.n = Lane<2>{tangent[1], -tangent[0]};
+    result.n = elastic::lanes::Lane<2>{tangent[1], -tangent[0]};
     result.area = 1 / face.inverse_area;
   } else {
     const bool is_triangle = corners.size() == 3;
-    Lane<3> edge[4];
+    elastic::lanes::Lane<3> edge[4];
     for (int e = 0; e < 3; ++e)
       edge[e] = between<3>(x[corners[e]], x[corners[e == 2 && is_triangle ? 0 : e + 1]]);
     edge[3] = -(edge[0] + edge[1] + edge[2]);
     // Half the product of the diagonals; of a triangle, of two sides.
-    const Lane<3> vector = 0.5 * lanes::cross(edge[0] + edge[1], edge[1] + edge[2]);
-    const Lane<3> last = is_triangle ? value(2, edge[2]) : value(3, edge[3]);
+    const elastic::lanes::Lane<3> vector = 0.5 * lanes::cross(edge[0] + edge[1], edge[1] + edge[2]);
+    const elastic::lanes::Lane<3> last = is_triangle ? value(2, edge[2]) : value(3, edge[3]);
     Rows<3> t;
     for (int e = 0; e < 3; ++e) {
-      const Lane<3> w = value(e, edge[e]) - last;
+      const elastic::lanes::Lane<3> w = value(e, edge[e]) - last;
       for (int i = 0; i < 3; ++i) t.row[i] += edge[e][i] * w;
     }
     result.n = vector * face.inverse_area;
@@ -138,19 +139,22 @@ template <int D, class Value>
 /// n . grad u from `along` = d . grad u at the face centre: with k = n - d / (d . n) and grad_t across n,
 /// g = along / (d . n) + k . grad_t u = (along - d . grad_t u) / (d . n).
 template <int D>
-[[gnu::always_inline]] inline Lane<D> normal_derivative(const CorrectedFace& face, const Vec3& d,
-                                                        const Lane<D>& along, const Rows<D>& grad) {
-  Lane<D> rest = along;
+[[gnu::always_inline]] inline elastic::lanes::Lane<D> normal_derivative(const CorrectedFace& face,
+                                                                        const Vec3& d,
+                                                                        const elastic::lanes::Lane<D>& along,
+                                                                        const Rows<D>& grad) {
+  elastic::lanes::Lane<D> rest = along;
   for (int i = 0; i < D; ++i) rest -= d[i] * grad.row[i];
   return rest * face.inverse_dn;
 }
 
 /// sigma . S for grad u = n g + grad_t u, as in the thesis's kernel.
 template <int D>
-[[gnu::always_inline]] inline Lane<D> force_on(const LameConstants& lame, const Lane<D>& g,
-                                               const Surface<D>& surface) {
-  const Lane<D>& n = surface.n;
-  Lane<D> turned = {};
+[[gnu::always_inline]] inline elastic::lanes::Lane<D> force_on(const LameConstants& lame,
+                                                               const elastic::lanes::Lane<D>& g,
+                                                               const Surface<D>& surface) {
+  const elastic::lanes::Lane<D>& n = surface.n;
+  elastic::lanes::Lane<D> turned = {};
   double trace = 0;
   for (int i = 0; i < D; ++i) {
     turned[i] = lanes::dot<D>(n, surface.grad.row[i]);
@@ -160,4 +164,4 @@ template <int D>
   return surface.area * (lame.mu * (g + normal * n + turned) + (lame.lambda * (normal + trace)) * n);
 }
 
-}  // namespace couplet::corrected
+}  // namespace couplet::elastic::corrected

@@ -9,7 +9,7 @@
 #include "common/elasticity/elastic_nodes.hpp"
 #include "common/fv/nodes.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 namespace {
 
 // Normals of a symmetry patch closer than about 2 degrees are one plane.
@@ -19,9 +19,9 @@ constexpr double most_magnified = 10;
 
 }  // namespace
 
-CellGradients::CellGradients(const Mesh& mesh, const ElasticOperator& rows) {
-  const Geometry& geometry = rows.geometry();
-  const Csr faces = flux_faces_of_cells(mesh);
+CellGradients::CellGradients(const mesh::Mesh& mesh, const ElasticOperator& rows) {
+  const mesh::Geometry& geometry = rows.geometry();
+  const mesh::Csr faces = fv::flux_faces_of_cells(mesh);
   offset.reserve(faces.offset.size());
   node.reserve(faces.index.size());
   weight.reserve(faces.index.size());
@@ -67,7 +67,7 @@ CellGradients::CellGradients(const Mesh& mesh, const ElasticOperator& rows) {
   }
 }
 
-std::vector<std::uint32_t> edge_kinds(const Mesh& mesh, const ElasticOperator& rows) {
+std::vector<std::uint32_t> edge_kinds(const mesh::Mesh& mesh, const ElasticOperator& rows) {
   // Known vertices have no gradient, those between materials several.
   std::vector<std::uint8_t> uncorrected(mesh.points.n_local(), 0);
   for (Index v = 0; v < mesh.points.n_local(); ++v) uncorrected[v] = rows.constraints().is_fixed(v);
@@ -86,18 +86,19 @@ std::vector<std::uint32_t> edge_kinds(const Mesh& mesh, const ElasticOperator& r
   return kinds;
 }
 
-std::vector<Index> plain_points(const Mesh& mesh, const ElasticOperator& rows,
+std::vector<Index> plain_points(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                 const std::vector<Index>& points) {
   std::vector<Index> result;
   for (const Index v : points)
-    if (mesh.is_wide(v) || VertexInterpolation::magnification(rows.vertices().weights(v)) > most_magnified)
+    if (mesh.is_wide(v) ||
+        fv::VertexInterpolation::magnification(rows.vertices().weights(v)) > most_magnified)
       result.push_back(v);
   return result;
 }
 
-std::vector<MirrorVertex> mirror_vertices(const Mesh& mesh, const ElasticOperator& rows,
+std::vector<MirrorVertex> mirror_vertices(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                           const std::vector<Index>& points) {
-  const Geometry& geometry = rows.geometry();
+  const mesh::Geometry& geometry = rows.geometry();
   std::vector<Index> place(mesh.points.n_local(), -1);
   std::vector<MirrorVertex> result;
   for (const Index v : points) {
@@ -118,4 +119,4 @@ std::vector<MirrorVertex> mirror_vertices(const Mesh& mesh, const ElasticOperato
   return result;
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -7,7 +7,7 @@
 
 #include "common/elasticity/elasticity.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// Least-squares gradients of the owned cells over the nodes across the cell's faces,
 ///   G_P = M^-1 sum_i w_i d_i (u_i - u_P),   M = sum_i w_i d_i d_i^T,   w_i = 1 / |d_i|^3;
@@ -22,7 +22,7 @@ struct CellGradients {
   };
   std::vector<Mirror> mirrors;
 
-  CellGradients(const Mesh& mesh, const ElasticOperator& rows);
+  CellGradients(const mesh::Mesh& mesh, const ElasticOperator& rows);
 };
 
 /// What is asked of an edge of a face (3-D): its middle value on a quadrilateral; its mean on a triangle (for
@@ -30,12 +30,12 @@ struct CellGradients {
 /// known or stands between materials.
 enum class EdgeKind : std::uint8_t { plain, middle, mean };
 /// Of the faces that carry a force, two bits an edge; edge i joins points i and i + 1.
-std::vector<std::uint32_t> edge_kinds(const Mesh& mesh, const ElasticOperator& rows);
+std::vector<std::uint32_t> edge_kinds(const mesh::Mesh& mesh, const ElasticOperator& rows);
 
 /// Of these points those that the nodes around reach from too far for gradients to be carried over: the
 /// weights that extrapolate magnify what the gradients err by, and the operator loses its positive
 /// eigenvalues.
-std::vector<Index> plain_points(const Mesh& mesh, const ElasticOperator& rows,
+std::vector<Index> plain_points(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                 const std::vector<Index>& points);
 
 /// Of these points those on symmetry planes, with the normals that differ.
@@ -43,7 +43,7 @@ struct MirrorVertex {
   Index point;
   std::vector<Vec3> normals;
 };
-std::vector<MirrorVertex> mirror_vertices(const Mesh& mesh, const ElasticOperator& rows,
+std::vector<MirrorVertex> mirror_vertices(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                           const std::vector<Index>& points);
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -13,7 +13,7 @@
 #include "common/elasticity/thesis/elastic_corrections.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 namespace {
 
 using namespace corrected;
@@ -21,7 +21,7 @@ using namespace corrected;
 template <int D>
 class CorrectedKernel final : public ElasticKernel::Implementation {
  public:
-  CorrectedKernel(const Mesh& mesh, const ElasticOperator& rows);
+  CorrectedKernel(const mesh::Mesh& mesh, const ElasticOperator& rows);
 
   void apply(std::span<const double> unknowns, std::span<const double> known,
              std::span<double> result) override;
@@ -39,17 +39,20 @@ class CorrectedKernel final : public ElasticKernel::Implementation {
   void prepare(std::span<const double> unknowns, std::span<const double> known);
   void plain_vertices();
   void mirror_vertex_gradients();
-  double* cell(Index node) { return records_.data() + std::size_t(node) * record<D>; }
-  double* vertex(Index point) { return points_.data() + std::size_t(point) * record<D>; }
-  [[gnu::always_inline]] inline Surface<D> around(Index f);
-  [[gnu::always_inline]] inline Lane<D> inner(Index f, const Rows<D>& grad);
-  [[gnu::always_inline]] inline Lane<D> outer(Index f, const Rows<D>& grad);
-  [[gnu::always_inline]] inline Lane<D> at_symmetry(Index f, const Rows<D>& grad);
+  double* cell(Index node) { return records_.data() + std::size_t(node) * elastic::corrected::record<D>; }
+  double* vertex(Index point) { return points_.data() + std::size_t(point) * elastic::corrected::record<D>; }
+  [[gnu::always_inline]] inline elastic::corrected::Surface<D> around(Index f);
+  [[gnu::always_inline]] inline elastic::lanes::Lane<D> inner(Index f,
+                                                              const elastic::corrected::Rows<D>& grad);
+  [[gnu::always_inline]] inline elastic::lanes::Lane<D> outer(Index f,
+                                                              const elastic::corrected::Rows<D>& grad);
+  [[gnu::always_inline]] inline elastic::lanes::Lane<D> at_symmetry(Index f,
+                                                                    const elastic::corrected::Rows<D>& grad);
   template <class Take>
   [[gnu::always_inline]] inline void set_record(Index node, const Vec3& place, const Take& row);
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
   const ElasticOperator& rows_;
   ElasticNodes<D> nodes_;
   ElasticRows boundary_;
@@ -59,7 +62,7 @@ class CorrectedKernel final : public ElasticKernel::Implementation {
   std::vector<Index> plain_points_;              // whose value takes nothing from the gradients
   std::vector<MirrorVertex> mirrors_;
   FaceLames lame_;
-  std::vector<CorrectedFace> faces_;
+  std::vector<elastic::corrected::CorrectedFace> faces_;
   Vec3 origin_ = Vec3::Zero();
   // q = u - 1/2 x . G and G of the nodes; u and G of the vertices: sum w (u_i + 1/2 r_i . G_i) is then
   // sum w q_i + 1/2 x_V . sum w G_i.
@@ -67,7 +70,7 @@ class CorrectedKernel final : public ElasticKernel::Implementation {
 };
 
 template <int D>
-CorrectedKernel<D>::CorrectedKernel(const Mesh& mesh, const ElasticOperator& rows)
+CorrectedKernel<D>::CorrectedKernel(const mesh::Mesh& mesh, const ElasticOperator& rows)
     : mesh_(mesh),
       geometry_(rows.geometry()),
       rows_(rows),
@@ -78,11 +81,12 @@ CorrectedKernel<D>::CorrectedKernel(const Mesh& mesh, const ElasticOperator& row
       plain_points_(plain_points(mesh, rows, vertices_.free)),
       mirrors_(mirror_vertices(mesh, rows, vertices_.free)),
       lame_(mesh, rows),
-      records_(record_space<D>(mesh.cells.n_local() + mesh.boundary.n_local()), 0.0),
-      points_(record_space<D>(mesh.points.n_local()), 0.0) {
-  const Geometry& geometry = rows.geometry();
+      records_(elastic::corrected::record_space<D>(mesh.cells.n_local() + mesh.boundary.n_local()), 0.0),
+      points_(elastic::corrected::record_space<D>(mesh.points.n_local()), 0.0) {
+  const mesh::Geometry& geometry = rows.geometry();
   faces_.reserve(n_faces_with_force(mesh));
-  for (Index f = 0; f < n_faces_with_force(mesh); ++f) faces_.push_back(make_face(mesh, geometry, f));
+  for (Index f = 0; f < n_faces_with_force(mesh); ++f)
+    faces_.push_back(elastic::corrected::make_face(mesh, geometry, f));
   if constexpr (D == 3) {
     const std::vector<std::uint32_t> kinds = edge_kinds(mesh, rows);
     for (std::size_t f = 0; f < kinds.size(); ++f) faces_[f].edges = kinds[f];
@@ -99,7 +103,7 @@ CorrectedKernel<D>::CorrectedKernel(const Mesh& mesh, const ElasticOperator& row
   for (int a = 0; a < D; ++a) {
     double lowest = std::numeric_limits<double>::max();
     for (const Vec3& x : geometry.points) lowest = std::min(lowest, x[a]);
-    origin_[a] = min(mesh.comm, lowest);
+    origin_[a] = parallel::min(mesh.comm, lowest);
   }
 }
 
@@ -107,13 +111,13 @@ CorrectedKernel<D>::CorrectedKernel(const Mesh& mesh, const ElasticOperator& row
 template <int D>
 template <class Take>
 inline void CorrectedKernel<D>::set_record(Index node, const Vec3& place, const Take& row) {
-  Lane<D> q = load<D>(nodes_[node]);
-  Rows<D> gradient;
+  elastic::lanes::Lane<D> q = elastic::corrected::load<D>(nodes_[node]);
+  elastic::corrected::Rows<D> gradient;
   for (int i = 0; i < D; ++i) {
     gradient.row[i] = row(i);
     q -= 0.5 * (place[i] - origin_[i]) * gradient.row[i];
   }
-  store_record<D>(cell(node), q, gradient);
+  elastic::corrected::store_record<D>(cell(node), q, gradient);
 }
 
 template <int D>
@@ -125,15 +129,16 @@ inline void CorrectedKernel<D>::find_cell_gradients() {
   const Index n_cells = mesh_.cells.n_local();
   const Vec3* outside = geometry_.face_centre.data() + mesh_.n_interior;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    const Lane<D> here = load<D>(nodes_[c]);
-    Rows<D> sum;
+    const elastic::lanes::Lane<D> here = elastic::corrected::load<D>(nodes_[c]);
+    elastic::corrected::Rows<D> sum;
     for (Index i = offset[c]; i < offset[c + 1]; ++i) {
-      const Lane<D> difference = weight[i] * (load<D>(nodes_[node[i]]) - here);
+      const elastic::lanes::Lane<D> difference =
+          weight[i] * (elastic::corrected::load<D>(nodes_[node[i]]) - here);
       const Vec3& there = node[i] < n_cells ? centre[node[i]] : outside[node[i] - n_cells];
       for (int a = 0; a < D; ++a) sum.row[a] += (there[a] - centre[c][a]) * difference;
     }
     const auto& m = gradients_.inverse[c];
-    Rows<D> g;
+    elastic::corrected::Rows<D> g;
     if constexpr (D == 2) {
       g.row[0] = m[0] * sum.row[0] + m[1] * sum.row[1];
       g.row[1] = m[1] * sum.row[0] + m[3] * sum.row[1];
@@ -147,7 +152,7 @@ inline void CorrectedKernel<D>::find_cell_gradients() {
   }
   for (const auto& mirror : gradients_.mirrors) {
     double* here = cell(mirror.cell);
-    const Lane<D> u = load<D>(nodes_[mirror.cell]);
+    const elastic::lanes::Lane<D> u = elastic::corrected::load<D>(nodes_[mirror.cell]);
     double normal = 0, reach = 0;
     for (int a = 0; a < D; ++a) {
       normal += mirror.normal[a] * u[a];
@@ -166,17 +171,17 @@ inline void CorrectedKernel<D>::find_vertices(std::span<const Index> points) {
   for (const Index v : points) {
     const auto index = rows_.vertices().nodes(v);
     const auto weight = rows_.vertices().weights(v);
-    Lane<D> u = {};
-    Rows<D> g;
+    elastic::lanes::Lane<D> u = {};
+    elastic::corrected::Rows<D> g;
     for (std::size_t i = 0; i < index.size(); ++i) {
       const double* node = cell(index[i]);
       const double w = weight[i];
-      u += w * load<D>(node);
-      for (int a = 0; a < D; ++a) g.row[a] += w * row_of<D>(node, a);
+      u += w * elastic::corrected::load<D>(node);
+      for (int a = 0; a < D; ++a) g.row[a] += w * elastic::corrected::row_of<D>(node, a);
     }
     const Vec3& x = geometry_.points[v];
     for (int a = 0; a < D; ++a) u += 0.5 * (x[a] - origin_[a]) * g.row[a];
-    store_record<D>(vertex(v), u, g);
+    elastic::corrected::store_record<D>(vertex(v), u, g);
   }
 }
 
@@ -186,8 +191,9 @@ void CorrectedKernel<D>::plain_vertices() {
   for (const Index v : plain_points_) {
     const auto index = rows_.vertices().nodes(v);
     const auto weight = rows_.vertices().weights(v);
-    Lane<D> u = {};
-    for (std::size_t i = 0; i < index.size(); ++i) u += weight[i] * load<D>(nodes_[index[i]]);
+    elastic::lanes::Lane<D> u = {};
+    for (std::size_t i = 0; i < index.size(); ++i)
+      u += weight[i] * elastic::corrected::load<D>(nodes_[index[i]]);
     lanes::store_components<D>(vertex(v), u);
   }
 }
@@ -213,72 +219,82 @@ void CorrectedKernel<D>::mirror_vertex_gradients() {
 
 // The middle value lies L^2/8 u'' below the trapezoid, the mean L^2/12 u''.
 template <int D>
-inline Surface<D> CorrectedKernel<D>::around(Index f) {
-  const CorrectedFace& face = faces_[f];
+inline elastic::corrected::Surface<D> CorrectedKernel<D>::around(Index f) {
+  const elastic::corrected::CorrectedFace& face = faces_[f];
   const auto corners = mesh_.face_points[f];
-  const auto value = [&](int e, const Lane<D>& edge) __attribute__((always_inline)) {
+  const auto value = [&](int e, const elastic::lanes::Lane<D>& edge) __attribute__((always_inline)) {
     const double* first = vertex(corners[e]);
     if constexpr (D == 2) {
-      return load<D>(first);
+      return elastic::corrected::load<D>(first);
     } else {
       constexpr double below[]{0, 1.0 / 8, 1.0 / 12};
       const double* second = vertex(corners[e + 1 < std::ssize(corners) ? e + 1 : 0]);
-      Lane<D> here = 0.5 * (load<D>(first) + load<D>(second));
-      const Lane<D> part = below[(face.edges >> (2 * e)) & 3U] * edge;
-      for (int a = 0; a < D; ++a) here -= part[a] * (row_of<D>(second, a) - row_of<D>(first, a));
+      elastic::lanes::Lane<D> here =
+          0.5 * (elastic::corrected::load<D>(first) + elastic::corrected::load<D>(second));
+      const elastic::lanes::Lane<D> part = below[(face.edges >> (2 * e)) & 3U] * edge;
+      for (int a = 0; a < D; ++a)
+        here -=
+            part[a] * (elastic::corrected::row_of<D>(second, a) - elastic::corrected::row_of<D>(first, a));
       return here;
     }
   };
-  return surface<D>(face, corners, geometry_.points.data(), value);
+  return elastic::corrected::surface<D>(face, corners, geometry_.points.data(), value);
 }
 
 template <int D>
-inline Lane<D> CorrectedKernel<D>::inner(Index f, const Rows<D>& grad) {
-  const CorrectedFace& face = faces_[f];
+inline elastic::lanes::Lane<D> CorrectedKernel<D>::inner(Index f, const elastic::corrected::Rows<D>& grad) {
+  const elastic::corrected::CorrectedFace& face = faces_[f];
   const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
   const Vec3 &from = geometry_.cell_centre[p], &to = geometry_.cell_centre[n];
-  Lane<D> along = load<D>(nodes_[n]) - load<D>(nodes_[p]);
+  elastic::lanes::Lane<D> along =
+      elastic::corrected::load<D>(nodes_[n]) - elastic::corrected::load<D>(nodes_[p]);
   if (face.curved != 0) {
     const double *here = cell(p), *there = cell(n);
     const Vec3& centre = geometry_.face_centre[f];
     for (int i = 0; i < D; ++i)
-      along += (centre[i] - 0.5 * (from[i] + to[i])) * (row_of<D>(there, i) - row_of<D>(here, i));
+      along += (centre[i] - 0.5 * (from[i] + to[i])) *
+               (elastic::corrected::row_of<D>(there, i) - elastic::corrected::row_of<D>(here, i));
   }
-  return normal_derivative<D>(face, to - from, along, grad);
+  return elastic::corrected::normal_derivative<D>(face, to - from, along, grad);
 }
 
 // On the boundary d . grad u = 2 (u_B - u_P) - d . G_P.
 template <int D>
-inline Lane<D> CorrectedKernel<D>::outer(Index f, const Rows<D>& grad) {
+inline elastic::lanes::Lane<D> CorrectedKernel<D>::outer(Index f, const elastic::corrected::Rows<D>& grad) {
   const Index p = mesh_.owner[f];
   const Vec3 d = geometry_.face_centre[f] - geometry_.cell_centre[p];
-  const Lane<D> across = load<D>(nodes_.of_face(f)) - load<D>(nodes_[p]);
-  return normal_derivative<D>(faces_[f], d, 2 * across - contract<D>(d, cell(p) + D), grad);
+  const elastic::lanes::Lane<D> across =
+      elastic::corrected::load<D>(nodes_.of_face(f)) - elastic::corrected::load<D>(nodes_[p]);
+  return elastic::corrected::normal_derivative<D>(
+      faces_[f], d, 2 * across - elastic::corrected::contract<D>(d, cell(p) + D), grad);
 }
 
 // The mirrored difference is central already.
 template <int D>
-inline Lane<D> CorrectedKernel<D>::at_symmetry(Index f, const Rows<D>& grad) {
+inline elastic::lanes::Lane<D> CorrectedKernel<D>::at_symmetry(Index f,
+                                                               const elastic::corrected::Rows<D>& grad) {
   const Index p = mesh_.owner[f];
   const Vec3 d = geometry_.face_centre[f] - geometry_.cell_centre[p];
-  return normal_derivative<D>(faces_[f], d, -load<D>(nodes_[p]), grad);
+  return elastic::corrected::normal_derivative<D>(faces_[f], d, -elastic::corrected::load<D>(nodes_[p]),
+                                                  grad);
 }
 
 template <int D>
 inline void CorrectedKernel<D>::find_boundary_gradients() {
   for (const Index f : open_faces_) {
     if (f >= mesh_.n_flux_faces()) break;
-    const CorrectedFace& face = faces_[f];
+    const elastic::corrected::CorrectedFace& face = faces_[f];
     const auto point = mesh_.face_points[f];
     const auto n_points = static_cast<int>(point.size());
     // In 3-D means of the edges' end points.
-    const Surface<D> here = surface<D>(
-        face, point, geometry_.points.data(), [&](int e, const Lane<D>&) __attribute__((always_inline)) {
-          const Lane<D> first = load<D>(vertex(point[e]));
+    const elastic::corrected::Surface<D> here = elastic::corrected::surface<D>(
+        face, point,
+        geometry_.points.data(), [&](int e, const elastic::lanes::Lane<D>&) __attribute__((always_inline)) {
+          const elastic::lanes::Lane<D> first = elastic::corrected::load<D>(vertex(point[e]));
           if (D == 2) return first;
-          return 0.5 * (first + load<D>(vertex(point[e + 1 < n_points ? e + 1 : 0])));
+          return 0.5 * (first + elastic::corrected::load<D>(vertex(point[e + 1 < n_points ? e + 1 : 0])));
         });
-    const Lane<D> g = outer(f, here.grad);
+    const elastic::lanes::Lane<D> g = outer(f, here.grad);
     set_record(
         mesh_.cells.n_local() + f - mesh_.n_interior,
         geometry_.face_centre[f], [&](int a) __attribute__((always_inline)) {
@@ -291,19 +307,20 @@ template <int D>
 inline void CorrectedKernel<D>::collect_forces(std::span<const double> known, std::span<double> result) {
   nodes_.clear_forces();
   for (Index f = 0; f < mesh_.n_interior; ++f) {
-    const Surface<D> here = around(f);
-    const Lane<D> force = force_on<D>(lame_[f], inner(f, here.grad), here);
+    const elastic::corrected::Surface<D> here = around(f);
+    const elastic::lanes::Lane<D> force =
+        elastic::corrected::force_on<D>(lame_[f], inner(f, here.grad), here);
     lanes::add<D>(nodes_.force(mesh_.owner[f]), -force);
     lanes::add<D>(nodes_.force(mesh_.neighbour[f]), force);
   }
-  const auto slope = [&](Index f, const Rows<D>& grad) __attribute__((always_inline)) {
+  const auto slope = [&](Index f, const elastic::corrected::Rows<D>& grad) __attribute__((always_inline)) {
     return rows_.mirrored(f) ? at_symmetry(f, grad) : outer(f, grad);
   };
   boundary_.add_rows<D>(
       nodes_, known, result.data() + std::size_t(mesh_.cells.n_owned()) * D,
       [&](Index f) __attribute__((always_inline)) {
-        const Surface<D> here = around(f);
-        return force_on<D>(lame_[f], slope(f, here.grad), here);
+        const elastic::corrected::Surface<D> here = around(f);
+        return elastic::corrected::force_on<D>(lame_[f], slope(f, here.grad), here);
       },
       [&](Index f) __attribute__((always_inline)) { return slope(f, around(f).grad); });
   nodes_.take_forces(result);
@@ -336,22 +353,25 @@ void CorrectedKernel<D>::prepare(std::span<const double> unknowns, std::span<con
   cells_pass(*this);
   const std::span<double> all(records_);
   const std::size_t n_cells = mesh_.cells.n_local();
-  mesh_.cells.update_ghosts(all.first(n_cells * record<D>), record<D>);
+  mesh_.cells.update_ghosts(all.first(n_cells * elastic::corrected::record<D>),
+                            elastic::corrected::record<D>);
   // Boundary nodes begin with their cell's gradient; its error is the same for neighbours where cells are.
   for (const Index f : open_faces_) {
     const double* owner = cell(mesh_.owner[f]);
     set_record(static_cast<Index>(n_cells) + f - mesh_.n_interior, geometry_.face_centre[f],
-               [&](int a) { return row_of<D>(owner, a); });
+               [&](int a) { return elastic::corrected::row_of<D>(owner, a); });
   }
   vertices_pass(*this, open_points_);
   plain_vertices();
-  vertices_.constrain<D>(points_, record<D>, known);
+  vertices_.constrain<D>(points_, elastic::corrected::record<D>, known);
   boundary_pass(*this);
   mesh_.boundary.update_ghosts(
-      all.subspan(n_cells * record<D>, std::size_t(mesh_.boundary.n_local()) * record<D>), record<D>);
+      all.subspan(n_cells * elastic::corrected::record<D>,
+                  std::size_t(mesh_.boundary.n_local()) * elastic::corrected::record<D>),
+      elastic::corrected::record<D>);
   vertices_pass(*this, vertices_.free);
   plain_vertices();
-  vertices_.constrain<D>(points_, record<D>, known);
+  vertices_.constrain<D>(points_, elastic::corrected::record<D>, known);
   mirror_vertex_gradients();
 }
 
@@ -367,10 +387,10 @@ void CorrectedKernel<D>::face_gradients(std::span<const double> unknowns, std::s
                                         const ElasticKernel::TakeGradient& take, Index first, Index end) {
   prepare(unknowns, known);
   for (Index f = first; f < end; ++f) {
-    const Surface<D> here = around(f);
-    const Rows<D>& grad = here.grad;
-    const Lane<D>& n = here.n;
-    Lane<D> g;
+    const elastic::corrected::Surface<D> here = around(f);
+    const elastic::corrected::Rows<D>& grad = here.grad;
+    const elastic::lanes::Lane<D>& n = here.n;
+    elastic::lanes::Lane<D> g;
     if (f < mesh_.n_interior)
       g = inner(f, grad);
     else if (rows_.mirrored(f))
@@ -393,10 +413,10 @@ void CorrectedKernel<D>::point_values(std::span<const double> unknowns, std::spa
 
 }  // namespace
 
-std::unique_ptr<ElasticKernel::Implementation> make_corrected_kernel(const Mesh& mesh,
+std::unique_ptr<ElasticKernel::Implementation> make_corrected_kernel(const mesh::Mesh& mesh,
                                                                      const ElasticOperator& rows) {
   if (mesh.dim == 2) return std::make_unique<CorrectedKernel<2>>(mesh, rows);
   return std::make_unique<CorrectedKernel<3>>(mesh, rows);
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

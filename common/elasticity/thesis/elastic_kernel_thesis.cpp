@@ -8,7 +8,7 @@
 #include "common/elasticity/elastic_vertices.hpp"
 #include "common/elasticity/processor_clones.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 namespace {
 
 using lanes::Lane;
@@ -39,7 +39,7 @@ struct ThesisFace<3> {
 
 template <int D>
 struct FaceVectors {
-  Lane<D> n, c[D - 1];
+  elastic::lanes::Lane<D> n, c[D - 1];
   double area;
 };
 
@@ -58,11 +58,11 @@ constexpr int record = D == 2 ? lanes::width<D> : 2 * lanes::width<D>;
 
 [[gnu::always_inline]] inline FaceVectors<3> vectors_of(const ThesisFace<3>& face, const double* points) {
   const double* places = points + lanes::width<3>;
-  Lane<3> d[2];
+  elastic::lanes::Lane<3> d[2];
   for (int i = 0; i < 2; ++i)
     d[i] = load<3>(places + std::size_t(face.plus[i]) * record<3>) -
            load<3>(places + std::size_t(face.minus[i]) * record<3>);
-  const Lane<3> twice = lanes::cross(d[0], d[1]);
+  const elastic::lanes::Lane<3> twice = lanes::cross(d[0], d[1]);
   FaceVectors<3> v;
   v.n = twice * face.inverse_double;
   v.c[0] = lanes::cross(d[1], v.n) * face.inverse_double;
@@ -76,10 +76,10 @@ constexpr int record = D == 2 ? lanes::width<D> : 2 * lanes::width<D>;
 }
 
 template <int D>
-ThesisFace<D> make_face(const Mesh& mesh, const Geometry& geometry, Index f) {
-  const FaceLine line = face_line(mesh, geometry, f);
+ThesisFace<D> make_face(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f) {
+  const fv::FaceLine line = fv::face_line(mesh, geometry, f);
   std::array<Vec3, 4> weights;
-  tangential_weights(mesh, geometry.points, f, line, weights.data());
+  fv::tangential_weights(mesh, geometry.points, f, line, weights.data());
   ThesisFace<D> face;
   const auto point = mesh.face_points[f];
   for (int i = 0; i < D - 1; ++i) {
@@ -100,7 +100,8 @@ ThesisFace<D> make_face(const Mesh& mesh, const Geometry& geometry, Index f) {
 }
 
 template <int D>
-[[gnu::always_inline]] inline Lane<D> along(const ThesisFace<D>& face, int i, const double* points) {
+[[gnu::always_inline]] inline elastic::lanes::Lane<D> along(const ThesisFace<D>& face, int i,
+                                                            const double* points) {
   return load<D>(points + std::size_t(face.plus[i]) * record<D>) -
          load<D>(points + std::size_t(face.minus[i]) * record<D>);
 }
@@ -109,14 +110,16 @@ template <int D>
 //   g = n . grad u = (u_N - u_P) / (d . n) + k . grad_t u                                        (2.57),
 //   (2.77)
 template <int D>
-[[gnu::always_inline]] inline Lane<D> force_on(const ThesisFace<D>& face, const LameConstants& lame,
-                                               const Lane<D>& across, const FaceVectors<D>& vectors,
-                                               const double* points) {
-  const Lane<D>& n = vectors.n;
-  Lane<D> g = across * face.inverse_dn, turned = {};
+[[gnu::always_inline]] inline elastic::lanes::Lane<D> force_on(const ThesisFace<D>& face,
+                                                               const LameConstants& lame,
+                                                               const elastic::lanes::Lane<D>& across,
+                                                               const FaceVectors<D>& vectors,
+                                                               const double* points) {
+  const elastic::lanes::Lane<D>& n = vectors.n;
+  elastic::lanes::Lane<D> g = across * face.inverse_dn, turned = {};
   double trace = 0;
   for (int i = 0; i < D - 1; ++i) {
-    const Lane<D> u = along(face, i, points);
+    const elastic::lanes::Lane<D> u = along(face, i, points);
     g += face.kc[i] * u;
     turned += lanes::dot<D>(n, u) * vectors.c[i];
     trace += lanes::dot<D>(vectors.c[i], u);
@@ -127,9 +130,10 @@ template <int D>
 
 /// n . grad u, the g above.
 template <int D>
-[[gnu::always_inline]] inline Lane<D> slope_at(const ThesisFace<D>& face, const Lane<D>& across,
-                                               const double* points) {
-  Lane<D> g = across * face.inverse_dn;
+[[gnu::always_inline]] inline elastic::lanes::Lane<D> slope_at(const ThesisFace<D>& face,
+                                                               const elastic::lanes::Lane<D>& across,
+                                                               const double* points) {
+  elastic::lanes::Lane<D> g = across * face.inverse_dn;
   for (int i = 0; i < D - 1; ++i) g += face.kc[i] * along(face, i, points);
   return g;
 }
@@ -137,7 +141,7 @@ template <int D>
 template <int D>
 class ThesisKernel final : public ElasticKernel::Implementation {
  public:
-  ThesisKernel(const Mesh& mesh, const ElasticOperator& rows)
+  ThesisKernel(const mesh::Mesh& mesh, const ElasticOperator& rows)
       : mesh_(mesh),
         geometry_(rows.geometry()),
         rows_(rows),
@@ -174,8 +178,8 @@ class ThesisKernel final : public ElasticKernel::Implementation {
                                                          std::span<double> result);
   void fill(std::span<const double> unknowns, std::span<const double> known);
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
   const ElasticOperator& rows_;
   ElasticNodes<D> nodes_;
   ElasticRows boundary_;
@@ -193,7 +197,7 @@ inline void ThesisKernel<D>::interpolate_free() {
   for (const Index v : vertices_.free) {
     const auto index = rows_.vertices().nodes(v);
     const auto weight = rows_.vertices().weights(v);
-    Lane<D> sum = {};
+    elastic::lanes::Lane<D> sum = {};
     for (std::size_t i = 0; i < index.size(); ++i)
       sum += weight[i] * load<D>(nodes + std::size_t(index[i]) * stride);
     lanes::store<D>(points + std::size_t(v) * record<D>, sum);
@@ -235,7 +239,7 @@ inline void ThesisKernel<D>::collect_forces_with(const Vectors& vectors, std::sp
   const double* points = points_.data();
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
-    const Lane<D> force =
+    const elastic::lanes::Lane<D> force =
         force_on<D>(faces_[f], lame_[f], load<D>(nodes_[n]) - load<D>(nodes_[p]), vectors(f), points);
     lanes::add<D>(nodes_.force(p), -force);
     lanes::add<D>(nodes_.force(n), force);
@@ -286,13 +290,14 @@ void ThesisKernel<D>::face_gradients(std::span<const double> unknowns, std::span
   for (Index f = first; f < end; ++f) {
     const ThesisFace<D>& face = faces_[f];
     const bool symmetric = rows_.mirrored(f);
-    Lane<D> g = (load<D>(f < mesh_.n_interior ? nodes_[mesh_.neighbour[f]] : nodes_.of_face(f)) -
-                 load<D>(nodes_[mesh_.owner[f]])) *
-                face.inverse_dn;
+    elastic::lanes::Lane<D> g =
+        (load<D>(f < mesh_.n_interior ? nodes_[mesh_.neighbour[f]] : nodes_.of_face(f)) -
+         load<D>(nodes_[mesh_.owner[f]])) *
+        face.inverse_dn;
     const FaceVectors<D> vectors = vectors_of(face, points_.data());
     Tensor3 gradient = Tensor3::Zero();
     for (int i = 0; i < D - 1; ++i) {
-      const Lane<D> u = along(face, i, points_.data());
+      const elastic::lanes::Lane<D> u = along(face, i, points_.data());
       g += face.kc[i] * u;
       for (int a = 0; a < D; ++a)
         for (int b = 0; b < D; ++b) gradient(a, b) += vectors.c[i][a] * u[b];
@@ -315,10 +320,10 @@ void ThesisKernel<D>::point_values(std::span<const double> unknowns, std::span<c
 
 }  // namespace
 
-std::unique_ptr<ElasticKernel::Implementation> make_thesis_kernel(const Mesh& mesh,
+std::unique_ptr<ElasticKernel::Implementation> make_thesis_kernel(const mesh::Mesh& mesh,
                                                                   const ElasticOperator& rows) {
   if (mesh.dim == 2) return std::make_unique<ThesisKernel<2>>(mesh, rows);
   return std::make_unique<ThesisKernel<3>>(mesh, rows);
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

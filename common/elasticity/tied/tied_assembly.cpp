@@ -7,7 +7,7 @@
 #include "common/elasticity/elastic_nodes.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 GradientStiffness stiffness_of(const LameConstants& lame) {
   GradientStiffness c = GradientStiffness::Zero();
@@ -34,7 +34,7 @@ GradientStiffness stiffness_of_stress(const Tensor3& stress) {
   return c;
 }
 
-TiedAssembly::TiedAssembly(const Mesh& mesh, const ElasticOperator& rows, const TiedUnknowns& unknowns)
+TiedAssembly::TiedAssembly(const mesh::Mesh& mesh, const ElasticOperator& rows, const TiedUnknowns& unknowns)
     : mesh_(mesh), geometry_(rows.geometry()), rows_(rows), unknowns_(unknowns) {
   pairs_.reserve(std::size_t(mesh.n_flux_faces()) * (mesh.dim == 2 ? 8 : 40));
 }
@@ -58,7 +58,7 @@ void TiedAssembly::add_supports() {
     const BoundaryRow& s = rows_.at(f);
     if (s.fixed) continue;
     const LameConstants lame = rows_.lame(mesh_.owner[f]);
-    const FaceLine line = face_line(mesh_, geometry_, f);
+    const fv::FaceLine line = fv::face_line(mesh_, geometry_, f);
     const GlobalIndex node = unknowns_.node(mesh_.cells.n_local() + f - mesh_.n_interior);
     add_block(node, node, (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn * s.known);
     if (s.spring.isZero(0)) continue;
@@ -107,7 +107,7 @@ double TiedAssembly::mean_diagonal() const {
   double total = 0, count = 0;
   for (std::size_t k = 0; k < pairs_.size(); ++k)
     if (pairs_.pair(k).first == pairs_.pair(k).second) total += std::abs(pairs_.block(k)(0, 0)), count += 1;
-  return sum(mesh_.comm, total) / std::max(1.0, sum(mesh_.comm, count));
+  return parallel::sum(mesh_.comm, total) / std::max(1.0, parallel::sum(mesh_.comm, count));
 }
 
 void TiedAssembly::add_ties(double tie) {
@@ -133,11 +133,11 @@ void TiedAssembly::add_ties(double tie) {
   }
 }
 
-SparseMatrix TiedAssembly::matrix(double& tie) {
+linalg::SparseMatrix TiedAssembly::matrix(double& tie) {
   if (tie == 0) tie = mean_diagonal();
   add_ties(tie);
   return pairs_.matrix(mesh_.comm, GlobalIndex(unknowns_.n_blocks()) * mesh_.dim, mesh_.dim,
                        [](GlobalIndex block) { return block; });
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

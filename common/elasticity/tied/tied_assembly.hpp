@@ -11,7 +11,7 @@
 #include "common/elasticity/prestress/pressure_stiffness.hpp"
 #include "common/elasticity/tied/tied_terms.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// dP/dF or C, entry (3 k + a, 3 m + c): what the derivative c of component m does to the stress (k, a) [Pa].
 using GradientStiffness = Eigen::Matrix<double, 9, 9>;
@@ -26,7 +26,7 @@ GradientStiffness stiffness_of_stress(const Tensor3& stress);
 class TiedAssembly {
  public:
   /// All by reference.
-  TiedAssembly(const Mesh& mesh, const ElasticOperator& rows, const TiedUnknowns& unknowns);
+  TiedAssembly(const mesh::Mesh& mesh, const ElasticOperator& rows, const TiedUnknowns& unknowns);
 
   /// sum_ij T_i^T [b_i . stiffness . b_j] T_j of gradients, `stiffness` times the volume [N m].
   void add(std::span<const TiedTerm> terms, const GradientStiffness& stiffness);
@@ -47,19 +47,19 @@ class TiedAssembly {
   /// Blocks between places times `factor`.
   void add_places(double factor, std::span<const PlaceBlock> blocks);
   /// With the ties times `tie`; 0: the mean of the diagonal. Collective.
-  SparseMatrix matrix(double& tie);
+  linalg::SparseMatrix matrix(double& tie);
 
  private:
   void add_block(GlobalIndex i, GlobalIndex j, const Tensor3& block) { pairs_.add(i, j, block); }
   void add_ties(double tie);
   double mean_diagonal() const;
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
   const ElasticOperator& rows_;
   const TiedUnknowns& unknowns_;
   BlockPairs<GlobalIndex> pairs_;
   std::map<Index, std::vector<std::pair<GlobalIndex, Vec3>>> volume_of_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::elastic

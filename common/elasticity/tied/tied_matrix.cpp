@@ -8,13 +8,13 @@
 #include "common/elasticity/tied/tied_assembly.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 namespace {
 
 class Parts {
  public:
-  Parts(const Mesh& mesh, const ElasticOperator& rows, const TiedUnknowns& unknowns, const TiedParts& parts,
-        TiedAssembly& to)
+  Parts(const mesh::Mesh& mesh, const ElasticOperator& rows, const TiedUnknowns& unknowns,
+        const TiedParts& parts, TiedAssembly& to)
       : mesh_(mesh), geometry_(rows.geometry()), rows_(rows), unknowns_(unknowns), parts_(parts), to_(to) {}
 
   void add_faces();
@@ -40,8 +40,8 @@ class Parts {
     return c;
   }
 
-  const Mesh& mesh_;
-  const Geometry& geometry_;
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
   const ElasticOperator& rows_;
   const TiedUnknowns& unknowns_;
   const TiedParts& parts_;
@@ -61,7 +61,7 @@ void Parts::add_faces() {
 
 void Parts::add_edges() {
   const SharedFaces shared = shared_faces(mesh_, rows_);
-  if (!any(mesh_.comm, shared.n_mine > 0)) return;
+  if (!parallel::any(mesh_.comm, shared.n_mine > 0)) return;
   SharedEdges edges(mesh_, rows_, shared.faces, shared.volume);
   if (parts_.stress != 0) find_edge_stresses(shared, parts_.prestress->stress, edges);
   const std::vector<std::vector<TiedTerm>> terms = edge_terms(mesh_, rows_, unknowns_, shared, edges);
@@ -96,18 +96,20 @@ void Parts::add_volumes() {
 
 }  // namespace
 
-bool TiedMatrix::suits(const Mesh& mesh) { return !any(mesh.comm, !mesh.neighbour_shift.empty()); }
+bool TiedMatrix::suits(const mesh::Mesh& mesh) {
+  return !parallel::any(mesh.comm, !mesh.neighbour_shift.empty());
+}
 
-TiedMatrix::TiedMatrix(const Mesh& mesh, const ElasticOperator& rows, const TiedParts& parts)
+TiedMatrix::TiedMatrix(const mesh::Mesh& mesh, const ElasticOperator& rows, const TiedParts& parts)
     : mesh_(mesh), rows_(rows), unknowns_(mesh, rows), matrix_(assemble(parts)) {
   const std::size_t n = unknowns_.n_blocks() * std::size_t(mesh.dim);
   from_.resize(n);
   to_.resize(n);
-  n_rows_ = sum(mesh.comm, GlobalIndex(n));
-  n_ties_ = sum(mesh.comm, GlobalIndex(unknowns_.points().size()) * mesh.dim);
+  n_rows_ = parallel::sum(mesh.comm, GlobalIndex(n));
+  n_ties_ = parallel::sum(mesh.comm, GlobalIndex(unknowns_.points().size()) * mesh.dim);
 }
 
-SparseMatrix TiedMatrix::assemble(const TiedParts& parts) {
+linalg::SparseMatrix TiedMatrix::assemble(const TiedParts& parts) {
   TiedAssembly assembly(mesh_, rows_, unknowns_);
   Parts all(mesh_, rows_, unknowns_, parts, assembly);
   all.add_faces();
@@ -135,7 +137,7 @@ void TiedMatrix::apply(std::span<const double> x, std::span<double> y) {
   for (std::size_t i = 0; i < n; ++i) y[i] += to_[i];
 }
 
-void TiedMatrix::factorise() { factors_ = std::make_unique<SymmetricFactors>(matrix_); }
+void TiedMatrix::factorise() { factors_ = std::make_unique<linalg::SymmetricFactors>(matrix_); }
 
 void TiedMatrix::solve(std::span<const double> x, std::span<double> y) {
   std::ranges::fill(from_, 0);
@@ -144,4 +146,4 @@ void TiedMatrix::solve(std::span<const double> x, std::span<double> y) {
   std::ranges::copy(std::span(to_).first(y.size()), y.begin());
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

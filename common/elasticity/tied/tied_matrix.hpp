@@ -11,7 +11,7 @@
 #include "common/linalg/matrix.hpp"
 #include "common/linalg/symmetric_factors.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// stiffness K + mass M + stress K_sigma of the symmetric gradient.
 struct TiedParts {
@@ -28,9 +28,9 @@ struct TiedParts {
 class TiedMatrix {
  public:
   /// Periodic meshes have vertices on several ranks at once: not those.
-  static bool suits(const Mesh& mesh);
+  static bool suits(const mesh::Mesh& mesh);
   /// Mesh and rows by reference. Collective.
-  TiedMatrix(const Mesh& mesh, const ElasticOperator& rows, const TiedParts& parts);
+  TiedMatrix(const mesh::Mesh& mesh, const ElasticOperator& rows, const TiedParts& parts);
 
   /// y = A x on the rows of ElasticOperator. Collective.
   void apply(std::span<const double> x, std::span<double> y);
@@ -44,16 +44,16 @@ class TiedMatrix {
   GlobalIndex n_rows() const { return n_rows_; }
 
  private:
-  SparseMatrix assemble(const TiedParts& parts);
+  linalg::SparseMatrix assemble(const TiedParts& parts);
 
-  const Mesh& mesh_;
+  const mesh::Mesh& mesh_;
   const ElasticOperator& rows_;
   TiedUnknowns unknowns_;
   double tie_ = 0;
-  SparseMatrix matrix_;
+  linalg::SparseMatrix matrix_;
   GlobalIndex n_ties_ = 0, n_rows_ = 0;
-  std::unique_ptr<SymmetricFactors> factors_;
+  std::unique_ptr<linalg::SymmetricFactors> factors_;
   std::vector<double> from_, to_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -3,7 +3,7 @@
 
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 namespace {
 
 void take(std::vector<TiedTerm>& terms, GlobalIndex block, const Vec3& b, const Tensor3& turn) {
@@ -16,15 +16,15 @@ void take(std::vector<TiedTerm>& terms, GlobalIndex block, const Vec3& b, const 
   terms.push_back({block, b, turn});
 }
 
-Index node_of(const Mesh& mesh, Index f) { return mesh.cells.n_local() + f - mesh.n_interior; }
+Index node_of(const mesh::Mesh& mesh, Index f) { return mesh.cells.n_local() + f - mesh.n_interior; }
 
 /// What of a boundary face's node is not known.
 Tensor3 open_part(const ElasticOperator& rows, Index f) { return Tensor3::Identity() - rows.at(f).known; }
 
 template <int D>
-std::vector<TiedTerm> terms_of(const Mesh& mesh, const ElasticOperator& rows, const TiedUnknowns& unknowns,
-                               Index f) {
-  const Geometry& geometry = rows.geometry();
+std::vector<TiedTerm> terms_of(const mesh::Mesh& mesh, const ElasticOperator& rows,
+                               const TiedUnknowns& unknowns, Index f) {
+  const mesh::Geometry& geometry = rows.geometry();
   const SymmetricFace<D> face = symmetric_face<D>(mesh, rows, f);
   const auto scaled = [&](const std::array<double, D>& from) {
     Vec3 b = Vec3::Zero();
@@ -58,14 +58,14 @@ struct Sent {
 
 }  // namespace
 
-std::vector<TiedTerm> face_terms(const Mesh& mesh, const ElasticOperator& rows, const TiedUnknowns& unknowns,
-                                 Index f) {
+std::vector<TiedTerm> face_terms(const mesh::Mesh& mesh, const ElasticOperator& rows,
+                                 const TiedUnknowns& unknowns, Index f) {
   return mesh.dim == 2 ? terms_of<2>(mesh, rows, unknowns, f) : terms_of<3>(mesh, rows, unknowns, f);
 }
 
-std::vector<TiedTerm> mean_terms(const Mesh& mesh, const ElasticOperator& rows, const TiedUnknowns& unknowns,
-                                 Index f) {
-  const Geometry& geometry = rows.geometry();
+std::vector<TiedTerm> mean_terms(const mesh::Mesh& mesh, const ElasticOperator& rows,
+                                 const TiedUnknowns& unknowns, Index f) {
+  const mesh::Geometry& geometry = rows.geometry();
   const double of_node = 1.0 / mesh.dim;
   std::vector<TiedTerm> terms;
   take(terms, unknowns.node(node_of(mesh, f)), Vec3(of_node, 0, 0), open_part(rows, f));
@@ -76,7 +76,7 @@ std::vector<TiedTerm> mean_terms(const Mesh& mesh, const ElasticOperator& rows, 
   return terms;
 }
 
-std::vector<std::vector<TiedTerm>> edge_terms(const Mesh& mesh, const ElasticOperator& rows,
+std::vector<std::vector<TiedTerm>> edge_terms(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                               const TiedUnknowns& unknowns, const SharedFaces& shared,
                                               const SharedEdges& edges) {
   std::vector<std::vector<TiedTerm>> result(edges.n_edges());
@@ -97,7 +97,7 @@ std::vector<std::vector<TiedTerm>> edge_terms(const Mesh& mesh, const ElasticOpe
     }
     result[std::size_t(e)].clear();
   }
-  for (const Sent& s : all_gather(mesh.comm, away)) {
+  for (const Sent& s : parallel::all_gather(mesh.comm, away)) {
     const Index e = edges.owned_of(s.edge);
     if (e < 0) continue;
     Tensor3 turn;
@@ -117,4 +117,4 @@ std::vector<std::vector<TiedTerm>> edge_terms(const Mesh& mesh, const ElasticOpe
   return result;
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

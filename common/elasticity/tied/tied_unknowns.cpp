@@ -6,10 +6,10 @@
 #include "common/fv/nodes.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
-TiedUnknowns::TiedUnknowns(const Mesh& mesh, const ElasticOperator& rows)
-    : node_(number_nodes(mesh, rows.unknown_faces())),
+TiedUnknowns::TiedUnknowns(const mesh::Mesh& mesh, const ElasticOperator& rows)
+    : node_(fv::number_nodes(mesh, rows.unknown_faces())),
       point_(std::size_t(mesh.points.n_local()), -1),
       n_nodes_(std::size_t(mesh.cells.n_owned()) + rows.unknown_faces().size()) {
   for (Index v = 0; v < mesh.points.n_owned(); ++v)
@@ -19,8 +19,9 @@ TiedUnknowns::TiedUnknowns(const Mesh& mesh, const ElasticOperator& rows)
     GlobalIndex first_node, shift;
   };
   const auto n_points = GlobalIndex(points_.size());
-  const Rank here{exclusive_scan(mesh.comm, GlobalIndex(n_nodes_)), 2 * exclusive_scan(mesh.comm, n_points)};
-  const std::vector<Rank> ranks = all_gather(mesh.comm, std::vector<Rank>{here});
+  const Rank here{parallel::exclusive_scan(mesh.comm, GlobalIndex(n_nodes_)),
+                  2 * parallel::exclusive_scan(mesh.comm, n_points)};
+  const std::vector<Rank> ranks = parallel::all_gather(mesh.comm, std::vector<Rank>{here});
   for (GlobalIndex& n : node_) {
     if (n < 0) continue;
     const auto after = std::ranges::upper_bound(ranks, n, {}, &Rank::first_node);
@@ -33,4 +34,4 @@ TiedUnknowns::TiedUnknowns(const Mesh& mesh, const ElasticOperator& rows)
   first_multiplier_ = first_point + n_points;
 }
 
-}  // namespace couplet
+}  // namespace couplet::elastic

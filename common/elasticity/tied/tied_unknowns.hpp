@@ -6,14 +6,14 @@
 #include "common/elasticity/elasticity.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::elastic {
 
 /// Numbers of blocks of dim rows, rank by rank: the unknown nodes in the order of ElasticOperator, then the owned
 /// vertices whose value is not known, then a multiplier for each of these.
 class TiedUnknowns {
  public:
   /// Collective.
-  TiedUnknowns(const Mesh& mesh, const ElasticOperator& rows);
+  TiedUnknowns(const mesh::Mesh& mesh, const ElasticOperator& rows);
 
   /// Of a local node (cells, then boundary faces); -1: known.
   GlobalIndex node(Index local) const { return node_[std::size_t(local)]; }
@@ -32,4 +32,4 @@ class TiedUnknowns {
   std::size_t n_nodes_ = 0;
 };
 
-}  // namespace couplet
+}  // namespace couplet::elastic

@@ -9,14 +9,14 @@
 #include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::io {
 
-void doubt_mesh_scale(const Mesh& mesh, std::span<const Vec3> points, std::span<const Vec3> places) {
+void doubt_mesh_scale(const mesh::Mesh& mesh, std::span<const Vec3> points, std::span<const Vec3> places) {
   constexpr double smallest = 1e-6, largest = 2e3;  // [m]
   constexpr double corner = 1.0 / 300;  // between sizes that occur in one scene and millimetres for metres
   const double size = mesh_size(mesh, points);
   if (size < smallest || size > largest)
-    log::finding(comm_rank(mesh.comm),
+    log::finding(parallel::comm_rank(mesh.comm),
                  {.id = "questionable-mesh-scale",
                   .number = size,
                   .limit = size < smallest ? smallest : largest,
@@ -26,7 +26,7 @@ void doubt_mesh_scale(const Mesh& mesh, std::span<const Vec3> points, std::span<
   double farthest = 0;
   for (const Vec3& place : places) farthest = std::max(farthest, place.norm());
   if (farthest > 0 && farthest < corner * size)
-    log::finding(comm_rank(mesh.comm),
+    log::finding(parallel::comm_rank(mesh.comm),
                  {.id = "questionable-mesh-scale",
                   .number = farthest,
                   .limit = corner * size,
@@ -37,4 +37,4 @@ void doubt_mesh_scale(const Mesh& mesh, std::span<const Vec3> points, std::span<
                   .advice = "is the mesh in millimetres? Then set 'mesh-scale: 0.001'"});
 }
 
-}  // namespace couplet
+}  // namespace couplet::io

@@ -10,13 +10,13 @@
 #include "common/base/point_tree.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::io {
 
 struct Balls::Group {
   double radius = 0;  // largest
   std::vector<Vec3> centres{};
   std::vector<Index> number{};
-  std::unique_ptr<PointTree> tree{};
+  std::unique_ptr<base::PointTree> tree{};
 };
 
 Balls::Balls(std::vector<Vec3> centres, std::vector<double> radii) {
@@ -29,7 +29,7 @@ Balls::Balls(std::vector<Vec3> centres, std::vector<double> radii) {
     group->number.push_back(static_cast<Index>(i));
   }
   for (auto& [size, group] : by_size) {
-    group->tree = std::make_unique<PointTree>(group->centres);
+    group->tree = std::make_unique<base::PointTree>(group->centres);
     groups_.push_back(std::move(group));
   }
 }
@@ -58,19 +58,19 @@ void add_ball(std::span<const Vec3> places, std::span<const Index> points, std::
   radii.push_back(radius);
 }
 
-Balls point_balls(const Mesh& mesh, std::span<const Vec3> places) {
+Balls point_balls(const mesh::Mesh& mesh, std::span<const Vec3> places) {
   const auto n = mesh.points.n_owned();
   return {{places.begin(), places.begin() + n}, std::vector<double>(n, 0.0)};
 }
 
-Balls cell_balls(const Mesh& mesh, std::span<const Vec3> places) {
+Balls cell_balls(const mesh::Mesh& mesh, std::span<const Vec3> places) {
   std::vector<Vec3> centres;
   std::vector<double> radii;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) add_ball(places, mesh.cell_points[c], centres, radii);
   return {std::move(centres), std::move(radii)};
 }
 
-Balls face_balls(const Mesh& mesh, std::span<const Vec3> places) {
+Balls face_balls(const mesh::Mesh& mesh, std::span<const Vec3> places) {
   std::vector<Vec3> centres;
   std::vector<double> radii;
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
@@ -80,7 +80,7 @@ Balls face_balls(const Mesh& mesh, std::span<const Vec3> places) {
 
 }  // namespace
 
-double mesh_size(const Mesh& mesh, std::span<const Vec3> places) {
+double mesh_size(const mesh::Mesh& mesh, std::span<const Vec3> places) {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()),
        high = Vec3::Constant(-std::numeric_limits<double>::infinity());
   for (const Vec3& p : places) low = low.cwiseMin(p), high = high.cwiseMax(p);
@@ -89,7 +89,7 @@ double mesh_size(const Mesh& mesh, std::span<const Vec3> places) {
   return (high - low).norm();
 }
 
-PlaceSearch::PlaceSearch(const Mesh& mesh, std::span<const Vec3> places)
+PlaceSearch::PlaceSearch(const mesh::Mesh& mesh, std::span<const Vec3> places)
     : mesh_(mesh),
       places_(places),
       size_(mesh_size(mesh, places)),
@@ -103,4 +103,4 @@ std::vector<Index> PlaceSearch::faces(const Vec3& x, double slack) const {
   return faces;
 }
 
-}  // namespace couplet
+}  // namespace couplet::io

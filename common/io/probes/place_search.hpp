@@ -6,7 +6,7 @@
 
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::io {
 
 /// Balls of very different sizes, asked for those that hold a place: k-d trees of their centres, one for
 /// each power of two of the radius. n log n to build; log n a question and what it finds.
@@ -24,14 +24,14 @@ class Balls {
 };
 
 /// Diagonal of the box around the reference mesh [m]. Collective.
-double mesh_size(const Mesh& mesh, std::span<const Vec3> places);
+double mesh_size(const mesh::Mesh& mesh, std::span<const Vec3> places);
 
 /// What of a mesh in its reference configuration may hold a place, for many places: owned points, owned cells,
 /// boundary faces of this rank. The mesh must outlive it. Making one is collective.
 class PlaceSearch {
  public:
-  PlaceSearch(const Mesh& mesh, std::span<const Vec3> places);
-  const Mesh& mesh() const { return mesh_; }
+  PlaceSearch(const mesh::Mesh& mesh, std::span<const Vec3> places);
+  const mesh::Mesh& mesh() const { return mesh_; }
   std::span<const Vec3> places() const { return places_; }
   double size() const { return size_; }  ///< [m]
   /// Within `slack` [m] of x, ascending, and perhaps some more.
@@ -40,10 +40,10 @@ class PlaceSearch {
   std::vector<Index> faces(const Vec3& x, double slack) const;
 
  private:
-  const Mesh& mesh_;
+  const mesh::Mesh& mesh_;
   std::span<const Vec3> places_;
   double size_;
   Balls points_, cells_, faces_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::io

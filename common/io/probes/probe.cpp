@@ -12,7 +12,7 @@
 #include "common/io/probes/shape_functions.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::io {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::infinity();
@@ -37,7 +37,7 @@ Candidate nearest_point(std::span<const Vec3> places, const auto& candidates, co
   return best;
 }
 
-Candidate containing_cell(const Mesh& mesh, std::span<const Vec3> places, const auto& candidates,
+Candidate containing_cell(const mesh::Mesh& mesh, std::span<const Vec3> places, const auto& candidates,
                           const Vec3& place) {
   constexpr double slack = 1e-9;
   Candidate best;
@@ -74,15 +74,15 @@ Candidate nearest_on_face(std::span<const Vec3> places, std::span<const Index> p
   };
   const auto x = [&](int i) -> const Vec3& { return places[points[i]]; };
   if (points.size() == 2) {
-    consider({0, 1}, nearest_on_segment(x(0), x(1), place).weights);
+    consider({0, 1}, base::nearest_on_segment(x(0), x(1), place).weights);
   } else {
-    consider({0, 1, 2}, nearest_on_triangle(x(0), x(1), x(2), place).weights);
-    if (points.size() == 4) consider({0, 2, 3}, nearest_on_triangle(x(0), x(2), x(3), place).weights);
+    consider({0, 1, 2}, base::nearest_on_triangle(x(0), x(1), x(2), place).weights);
+    if (points.size() == 4) consider({0, 2, 3}, base::nearest_on_triangle(x(0), x(2), x(3), place).weights);
   }
   return best;
 }
 
-Candidate nearest_on_boundary(const Mesh& mesh, std::span<const Vec3> places, const auto& candidates,
+Candidate nearest_on_boundary(const mesh::Mesh& mesh, std::span<const Vec3> places, const auto& candidates,
                               const Vec3& place) {
   Candidate best;
   for (const Index f : candidates) {
@@ -97,7 +97,7 @@ std::pair<double, int> agree(MPI_Comm comm, double key) {
   struct {
     double key;
     int rank;
-  } value{key, comm_rank(comm)};
+  } value{key, parallel::comm_rank(comm)};
   MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE_INT, MPI_MINLOC, comm);
   return {value.key, value.rank};
 }
@@ -110,7 +110,7 @@ struct Chosen {
   int rank = 0;
   bool outside = false;
 };
-Chosen choose(const Mesh& mesh, std::span<const Vec3> places, const Vec3& place, double size,
+Chosen choose(const mesh::Mesh& mesh, std::span<const Vec3> places, const Vec3& place, double size,
               const auto& look) {
   Chosen chosen;
   chosen.candidate = nearest_point(places, look.points(place, on_point * size), place);
@@ -127,7 +127,7 @@ Chosen choose(const Mesh& mesh, std::span<const Vec3> places, const Vec3& place,
 
 // For a single place, which pays for no tree.
 struct Everything {
-  const Mesh& mesh;
+  const mesh::Mesh& mesh;
   auto points(const Vec3&, double) const { return std::views::iota(Index(0), mesh.points.n_owned()); }
   auto cells(const Vec3&, double) const { return std::views::iota(Index(0), mesh.cells.n_owned()); }
   auto faces(const Vec3&, double) const { return std::views::iota(mesh.n_interior, mesh.n_flux_faces()); }
@@ -138,12 +138,12 @@ struct Everything {
 void Probe::take(const Vec3& place, int rank, std::vector<Index>&& points, std::vector<double>&& weights) {
   place_ = place;
   MPI_Bcast(place_.data(), 3, MPI_DOUBLE, rank, comm_);
-  if (comm_rank(comm_) != rank) return;
+  if (parallel::comm_rank(comm_) != rank) return;
   points_ = std::move(points);
   weights_ = std::move(weights);
 }
 
-Probe::Probe(const Mesh& mesh, std::span<const Vec3> places, const std::string& name, const Vec3& place,
+Probe::Probe(const mesh::Mesh& mesh, std::span<const Vec3> places, const std::string& name, const Vec3& place,
              std::optional<double> tolerance)
     : comm_(mesh.comm) {
   const double size = mesh_size(mesh, places);
@@ -158,7 +158,7 @@ Probe::Probe(const Mesh& mesh, std::span<const Vec3> places, const std::string& 
 }
 
 std::optional<Probe> Probe::in(const PlaceSearch& search, const Vec3& place) {
-  const Mesh& mesh = search.mesh();
+  const mesh::Mesh& mesh = search.mesh();
   const double size = search.size();
   Chosen chosen = choose(mesh, search.places(), place, size, search);
   if (chosen.outside && !(chosen.key <= on_boundary * size)) return {};
@@ -174,10 +174,10 @@ std::vector<double> Probe::sample(std::span<const double> values, int components
     for (int c = 0; c < components; ++c)
       result[c] += weights_[i] * values[std::size_t(points_[i]) * components + c];
   // All ranks but one bring zeros.
-  const bool root = comm_rank(comm_) == 0;
+  const bool root = parallel::comm_rank(comm_) == 0;
   MPI_Reduce(root ? MPI_IN_PLACE : result.data(), result.data(), components, MPI_DOUBLE, MPI_SUM, 0, comm_);
   if (!root) result.clear();
   return result;
 }
 
-}  // namespace couplet
+}  // namespace couplet::io

@@ -9,7 +9,7 @@
 #include "common/io/probes/place_search.hpp"
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::io {
 
 /// One place in the reference configuration where values are watched. It moves with the material it lies in.
 ///
@@ -20,7 +20,7 @@ namespace couplet {
 class Probe {
  public:
   /// Collective over mesh.comm. `name` is for messages; tolerance [m], by default 1e-6 of the mesh's size.
-  Probe(const Mesh& mesh, std::span<const Vec3> places, const std::string& name, const Vec3& place,
+  Probe(const mesh::Mesh& mesh, std::span<const Vec3> places, const std::string& name, const Vec3& place,
         std::optional<double> tolerance = {});
   /// One of many in a mesh: nothing if the place lies outside it. Collective.
   static std::optional<Probe> in(const PlaceSearch& search, const Vec3& place);
@@ -44,4 +44,4 @@ class Probe {
   std::vector<double> weights_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::io

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <array>
 
-namespace couplet {
+namespace couplet::io {
 namespace {
 
-bool is_flat(CellType type) { return type == CellType::triangle || type == CellType::quadrilateral; }
+bool is_flat(mesh::CellType type) {
+  return type == mesh::CellType::triangle || type == mesh::CellType::quadrilateral;
+}
 
 // Reference coordinates r, s, t of a hexahedron corner in VTK order; the quadrilateral uses the first four.
 constexpr int corner[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
@@ -70,55 +72,56 @@ ShapeValues pyramid(const Vec3& x) {
   return v;
 }
 
-int n_points_of(CellType type) {
+int n_points_of(mesh::CellType type) {
   switch (type) {
-    case CellType::triangle:
+    case mesh::CellType::triangle:
       return 3;
-    case CellType::quadrilateral:
-    case CellType::tetrahedron:
+    case mesh::CellType::quadrilateral:
+    case mesh::CellType::tetrahedron:
       return 4;
-    case CellType::pyramid:
+    case mesh::CellType::pyramid:
       return 5;
-    case CellType::prism:
+    case mesh::CellType::prism:
       return 6;
-    case CellType::hexahedron:
+    case mesh::CellType::hexahedron:
       return 8;
   }
   return 0;
 }
 
-bool inside(CellType type, const Vec3& x, double slack) {
-  const bool by_box =
-      type == CellType::quadrilateral || type == CellType::hexahedron || type == CellType::pyramid;
+bool inside(mesh::CellType type, const Vec3& x, double slack) {
+  const bool by_box = type == mesh::CellType::quadrilateral || type == mesh::CellType::hexahedron ||
+                      type == mesh::CellType::pyramid;
   const int dim = is_flat(type) ? 2 : 3;
   for (int d = 0; d < dim; ++d)
-    if (x[d] < -slack || ((by_box || (type == CellType::prism && d == 2)) && x[d] > 1 + slack)) return false;
+    if (x[d] < -slack || ((by_box || (type == mesh::CellType::prism && d == 2)) && x[d] > 1 + slack))
+      return false;
   if (by_box) return true;
-  const double sum = x[0] + x[1] + (type == CellType::tetrahedron ? x[2] : 0.0);
+  const double sum = x[0] + x[1] + (type == mesh::CellType::tetrahedron ? x[2] : 0.0);
   return sum <= 1 + slack;
 }
 
 }  // namespace
 
-ShapeValues shape_functions(CellType type, const Vec3& reference) {
+ShapeValues shape_functions(mesh::CellType type, const Vec3& reference) {
   switch (type) {
-    case CellType::triangle:
+    case mesh::CellType::triangle:
       return simplex(reference, 2);
-    case CellType::quadrilateral:
+    case mesh::CellType::quadrilateral:
       return brick(reference, 4, 2);
-    case CellType::tetrahedron:
+    case mesh::CellType::tetrahedron:
       return simplex(reference, 3);
-    case CellType::prism:
+    case mesh::CellType::prism:
       return prism(reference);
-    case CellType::pyramid:
+    case mesh::CellType::pyramid:
       return pyramid(reference);
-    case CellType::hexahedron:
+    case mesh::CellType::hexahedron:
       return brick(reference, 8, 3);
   }
   return {};
 }
 
-std::optional<std::array<double, 8>> weights_in_cell(CellType type, std::span<const Vec3> points,
+std::optional<std::array<double, 8>> weights_in_cell(mesh::CellType type, std::span<const Vec3> points,
                                                      const Vec3& place, double slack) {
   const int n = n_points_of(type);
   Vec3 low = points[0], high = points[0];
@@ -154,4 +157,4 @@ std::optional<std::array<double, 8>> weights_in_cell(CellType type, std::span<co
   return std::nullopt;
 }
 
-}  // namespace couplet
+}  // namespace couplet::io

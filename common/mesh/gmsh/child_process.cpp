@@ -15,7 +15,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 constexpr rlim_t hours = 3600;
@@ -110,4 +110,4 @@ ProgramEnd run_child(const ChildProcess& child) {
   return {-1, WIFSIGNALED(status) ? WTERMSIG(status) : 0};
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -7,7 +7,7 @@
 
 #include "common/mesh/gmsh/sandbox.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 struct ChildProcess {
   std::vector<std::string> command;      ///< the program with its whole path
@@ -22,4 +22,4 @@ struct ChildProcess {
 /// that is killed. Throws Error if it cannot be started.
 ProgramEnd run_child(const ChildProcess& child);
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -6,7 +6,7 @@
 #include "common/base/error.hpp"
 #include "common/mesh/gmsh/geo_words.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 using Tokens = std::vector<GeoToken>;
@@ -284,4 +284,4 @@ std::size_t file_name_after(const Tokens& tokens, std::size_t i) {
   return 0;
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -5,7 +5,7 @@
 #include <array>
 #include <cctype>
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 constexpr std::size_t longest_text = 240;  // gmsh copies texts into buffers of 256 characters here and there
@@ -141,4 +141,4 @@ class Lexer {
 
 GeoTokens cut_geo(std::string_view text) { return Lexer(text).run(); }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

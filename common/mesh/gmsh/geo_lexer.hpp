@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace couplet {
+namespace couplet::mesh {
 
 /// One piece of gmsh's .geo language.
 struct GeoToken {
@@ -30,4 +30,4 @@ struct GeoTokens {
 /// The tokens point into `text`.
 GeoTokens cut_geo(std::string_view text);
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -3,7 +3,7 @@
 
 #include "common/mesh/gmsh/geo_check.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 constexpr std::size_t longest_line = 1000;
@@ -59,4 +59,4 @@ std::string rewrite_geo(const std::vector<GeoToken>& tokens,
   return text + '\n';
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -6,7 +6,7 @@
 
 #include "common/mesh/gmsh/geo_lexer.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 /// The pieces of a .geo one after the other as text that any lexer cuts in the same way: no comments, blanks between all
 /// pieces, each in the line where it stood, but for lines longer than gmsh's buffer and for what follows a For, an If or a
@@ -14,4 +14,4 @@ namespace couplet {
 std::string rewrite_geo(const std::vector<GeoToken>& tokens,
                         const std::function<std::string(const std::string&)>& name_of);
 
-}  // namespace couplet
+}  // namespace couplet::mesh

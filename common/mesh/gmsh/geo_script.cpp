@@ -12,7 +12,7 @@
 #include "common/mesh/gmsh/geo_rewrite.hpp"
 #include "common/mesh/gmsh/geo_words.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 namespace fs = std::filesystem;
@@ -233,4 +233,4 @@ GeoScript read_geo(const fs::path& file) {
   return script;
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace couplet {
+namespace couplet::mesh {
 
 /// A .geo with the files it includes or merges, as far as it must be understood before gmsh gets it.
 struct GeoScript {
@@ -39,4 +39,4 @@ struct GeoScript {
 /// Throws Error if a file cannot be read.
 GeoScript read_geo(const std::filesystem::path& file);
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string>
 
-namespace couplet::geo_words {
+namespace couplet::mesh::geo_words {
 namespace {
 
 class Words {
@@ -149,4 +149,4 @@ bool is_formula(std::string_view option) {
   return words.has(option);
 }
 
-}  // namespace couplet::geo_words
+}  // namespace couplet::mesh::geo_words

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-namespace couplet::geo_words {
+namespace couplet::mesh::geo_words {
 
 /// Words of gmsh's grammar that draw or mesh, or are part of such a statement: "Point", "Transfinite", "Sqrt".
 bool is_allowed(std::string_view word);
@@ -38,4 +38,4 @@ inline constexpr std::string_view sentence =
     "Periodic, sizes and Fields, For, If, Macro, DefineConstant, Include and Merge of files in the folder "
     "of the case, Printf to the terminal (docs/formats.md)";
 
-}  // namespace couplet::geo_words
+}  // namespace couplet::mesh::geo_words

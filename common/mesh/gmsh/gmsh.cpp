@@ -15,7 +15,7 @@
 #include "common/mesh/gmsh/mesh_cache.hpp"
 #include "common/mesh/gmsh/sandbox.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 namespace fs = std::filesystem;
@@ -92,7 +92,7 @@ void put(const fs::path& mesh, const fs::path& result, const fs::path& source) {
         "or create the .msh elsewhere and use that.",
         source.string());
   }
-  flush_to_disk(own);
+  base::flush_to_disk(own);
   fs::rename(own, result);
 }
 
@@ -145,7 +145,7 @@ fs::path convert_mesh(const fs::path& file) {
         "example with meshio, to .msh 4.1 with its groups as physical names.",
         file.string(), kind == ".med" ? "MED" : "CGNS");
   const std::string text = read_text(file);
-  const std::string hash = fmt::format("{:016x}", stable_hash(text));
+  const std::string hash = fmt::format("{:016x}", base::stable_hash(text));
   const fs::path result = file.parent_path() / (file.stem().string() + "." + hash + ".cache.msh");
   if (is_sound_cache(result)) return result;
   log::info("reading {} with gmsh", file.string());
@@ -153,4 +153,4 @@ fs::path convert_mesh(const fs::path& file) {
   return result;
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

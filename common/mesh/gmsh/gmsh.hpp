@@ -7,7 +7,7 @@
 
 #include "common/mesh/load.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 /// What gmsh is to read.
 struct GmshInput {
@@ -35,4 +35,4 @@ bool gmsh_has(const std::string& library);
 /// A mesh that is finished: .msh, .inp, or of another program. Throws Error.
 RawMesh read_finished_mesh(const std::filesystem::path& file);
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -9,7 +9,7 @@
 #include "common/mesh/on_root.hpp"
 #include "common/mesh/quality.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 /// A cached mesh that cannot be read (a machine that went down, a full disk) is made anew: it is no fault of the
@@ -89,4 +89,4 @@ LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -9,7 +9,7 @@
 #include "common/base/text.hpp"
 #include "common/log/log.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 constexpr std::string_view head = "$Comments\ncouplet ";
@@ -22,7 +22,7 @@ std::string text_if_any(const std::filesystem::path& file) {
 }
 
 std::string seal_of(std::string_view text, const std::string& name) {
-  const std::size_t digest = stable_hash(fmt::format("{}\n{:016x}", name, stable_hash(text)));
+  const std::size_t digest = base::stable_hash(fmt::format("{}\n{:016x}", name, base::stable_hash(text)));
   return fmt::format("{}{:016x}\n$EndComments\n", head, digest);
 }
 
@@ -47,4 +47,4 @@ bool is_sound_cache(const std::filesystem::path& file) {
   return false;
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

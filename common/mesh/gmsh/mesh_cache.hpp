@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace couplet {
+namespace couplet::mesh {
 
 /// Appends a digest of the file and of its `name` to a .msh 4.1, as a section that every reader passes over.
 void seal_cache(const std::filesystem::path& file, const std::string& name);
@@ -13,4 +13,4 @@ void seal_cache(const std::filesystem::path& file, const std::string& name);
 /// log, and is to be made anew.
 bool is_sound_cache(const std::filesystem::path& file);
 
-}  // namespace couplet
+}  // namespace couplet::mesh

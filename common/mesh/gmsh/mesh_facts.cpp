@@ -8,7 +8,7 @@
 #include "common/mesh/gmsh/geo_script.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 double MeshFacts::smallest_side() const { return dim == 2 ? std::min(size[0], size[1]) : size.minCoeff(); }
 double MeshFacts::largest_side() const { return size.maxCoeff(); }
@@ -55,4 +55,4 @@ MeshFacts facts_of_file(const std::filesystem::path& file, const MeshParameters&
   return facts;
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -5,7 +5,7 @@
 
 #include "common/mesh/load.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 /// What estimates before a run look at.
 struct MeshFacts {
@@ -23,4 +23,4 @@ MeshFacts facts_of(const RawMesh& raw);
 /// volume. Throws Error.
 MeshFacts facts_of_file(const std::filesystem::path& file, const MeshParameters& parameters, double scale);
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -13,7 +13,7 @@
 #include "common/mesh/gmsh/mesh_cache.hpp"
 #include "common/mesh/load.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 void check_names(const std::filesystem::path& geo, const std::vector<std::string>& known,
@@ -26,7 +26,7 @@ void check_names(const std::filesystem::path& geo, const std::vector<std::string
           "names that are set from outside as 'DefineConstant [ {} = {} ];'.",
           geo.string(), name, name, value);
     throw Error("The geometry file '{}' defines no parameter '{}' with DefineConstant. {}", geo.string(),
-                name, did_you_mean(name, known, "names"));
+                name, base::did_you_mean(name, known, "names"));
   }
 }
 
@@ -89,8 +89,8 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim, const 
   std::vector<std::string> numbers;
   for (const auto& [name, value] : parameters)
     numbers.insert(numbers.end(), {"-setnumber", name, fmt::format("{}", value)});
-  const std::string hash =
-      fmt::format("{:016x}", stable_hash(fmt::format("{}\n{}\n{}", dim, join(numbers, " "), script.text)));
+  const std::string hash = fmt::format(
+      "{:016x}", base::stable_hash(fmt::format("{}\n{}\n{}", dim, base::join(numbers, " "), script.text)));
   const std::string stem = geo.stem().string() + "." + hash;
   const std::filesystem::path result = geo.parent_path() / (stem + ".cache.msh");
   if (is_sound_cache(result)) return result;
@@ -107,4 +107,4 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim, const 
   return result;
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -8,7 +8,7 @@
 #include "common/log/log.hpp"
 #include "common/mesh/gmsh/sandbox.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 namespace fs = std::filesystem;
@@ -118,4 +118,4 @@ RawMesh read_by_meshio(const fs::path& file) {
   return read_inp(deck);
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -6,7 +6,7 @@
 
 #include "common/mesh/load.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 /// Formats that the Python module meshio reads for us: .med, .exo, .e, .ex2.
 bool is_read_by_meshio(const std::string& extension);
@@ -16,4 +16,4 @@ bool is_read_by_meshio(const std::string& extension);
 /// install, and with what meshio has said.
 RawMesh read_by_meshio(const std::filesystem::path& file);
 
-}  // namespace couplet
+}  // namespace couplet::mesh

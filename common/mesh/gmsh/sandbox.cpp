@@ -15,7 +15,7 @@
 #include "common/log/log.hpp"
 #include "common/mesh/gmsh/child_process.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 namespace fs = std::filesystem;
@@ -24,7 +24,7 @@ using Words = std::vector<std::string>;
 /// The file that a shell would start; nothing if there is none on the PATH.
 std::optional<std::string> on_path(const std::string& program) {
   const char* path = std::getenv("PATH");
-  for (const std::string& folder : split(path != nullptr ? path : "/usr/bin:/bin", ':')) {
+  for (const std::string& folder : base::split(path != nullptr ? path : "/usr/bin:/bin", ':')) {
     const fs::path file = fs::path(folder.empty() ? "." : folder) / program;
     std::error_code ignored;
     if (fs::is_regular_file(file, ignored) && access(file.c_str(), X_OK) == 0)
@@ -160,4 +160,4 @@ ProgramEnd run_trusted(const Words& command, const fs::path& output) {
   return run_child(child);
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace couplet {
+namespace couplet::mesh {
 
 /// A new folder for one run of a program, only for this user, in the folder for temporary files; gone with this object.
 class OwnFolder {
@@ -36,4 +36,4 @@ ProgramEnd run_in_sandbox(const std::vector<std::string>& command, const std::fi
 /// trusts.
 ProgramEnd run_trusted(const std::vector<std::string>& command, const std::filesystem::path& output);
 
-}  // namespace couplet
+}  // namespace couplet::mesh

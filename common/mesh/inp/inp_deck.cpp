@@ -11,7 +11,7 @@
 #include "common/base/text.hpp"
 #include "common/csv/cells.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 /// Members of all sets together, sets within sets counted: a deck of sets of sets would grow without end.
@@ -274,4 +274,4 @@ const InpSet* InpSets::find(const std::string& name) const {
 
 InpDeck read_inp_deck(InpLines& lines) { return DeckReader(lines).read(); }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -12,7 +12,7 @@
 #include "common/mesh/inp/inp_elements.hpp"
 #include "common/mesh/inp/inp_lines.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 /// Numbers of nodes or elements: first, first + step, ..., last.
 struct InpRange {
@@ -95,4 +95,4 @@ bool for_each_member(const std::vector<InpRange>& ranges,
   return true;
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 constexpr InpShape triangle{CellType::triangle, 2, 3, 3, {{{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 0, -1, -1}}}};
@@ -73,4 +73,4 @@ std::string why_not_read(std::string_view name) {
       name.substr(0, 40), reason);
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

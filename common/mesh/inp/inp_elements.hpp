@@ -9,7 +9,7 @@
 
 #include "common/mesh/mesh.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 /// An element of CalculiX or Abaqus as a cell. Corners come first in both, in the order of VTK and gmsh.
 struct InpShape {
@@ -37,4 +37,4 @@ InpType inp_type(std::string_view name);
 /// Why an element of unknown type is not read.
 std::string why_not_read(std::string_view name);
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -10,7 +10,7 @@
 #include "common/base/text.hpp"
 #include "common/csv/cells.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 namespace fs = std::filesystem;
@@ -73,7 +73,7 @@ bool InpLines::next() {
       number_.pop_back();
       continue;
     }
-    line_ = trim(line_);
+    line_ = base::trim(line_);
     if (!line_.empty() && !line_.starts_with("**")) return true;
   }
   return false;
@@ -101,16 +101,16 @@ InpKeyword InpLines::keyword() {
   for (const std::string_view cell : cells_) {
     if (result.word.empty()) {
       // "SOLID  SECTION" is "SOLID SECTION".
-      for (const std::string& part : split(upper(cell), ' '))
+      for (const std::string& part : base::split(upper(cell), ' '))
         if (!part.empty()) result.word += (result.word.empty() ? "" : " ") + part;
       if (result.word.empty()) fail("'*' without a keyword.");
       continue;
     }
     const std::size_t equals = cell.find('=');
-    std::string_view value = equals == std::string_view::npos ? "" : trim(cell.substr(equals + 1));
+    std::string_view value = equals == std::string_view::npos ? "" : base::trim(cell.substr(equals + 1));
     if (value.size() >= 2 && value.front() == '"' && value.back() == '"')
       value = value.substr(1, value.size() - 2);
-    if (!cell.empty()) result.parameters.emplace_back(upper(trim(cell.substr(0, equals))), value);
+    if (!cell.empty()) result.parameters.emplace_back(upper(base::trim(cell.substr(0, equals))), value);
   }
   return result;
 }
@@ -132,4 +132,4 @@ void InpLines::identifiers(std::size_t n, std::vector<std::int64_t>& numbers) {
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

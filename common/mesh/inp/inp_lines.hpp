@@ -11,7 +11,7 @@
 
 #include "common/csv/line_reader.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 std::string upper(std::string_view text);
 
@@ -65,4 +65,4 @@ class InpLines final {
 /// A whole number above 0, as nodes and elements have them; 0: none.
 std::int64_t identifier_of(std::string_view text);
 
-}  // namespace couplet
+}  // namespace couplet::mesh

@@ -6,7 +6,7 @@
 
 #include "common/mesh/topology.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 using Corners = std::array<Index, 4>;
@@ -204,4 +204,4 @@ int InpNames::number_of(std::vector<std::string>& names, const std::string& name
 
 std::size_t name_patches(InpBody& body) { return InpPatches(body).name(); }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

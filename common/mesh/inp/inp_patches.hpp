@@ -10,7 +10,7 @@
 #include "common/mesh/inp/inp_deck.hpp"
 #include "common/mesh/load.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 /// A mesh on its way from the deck.
 struct InpBody {
@@ -50,4 +50,4 @@ void InpBody::visit(const std::vector<InpRange>& members,
     throw Error("{}: the sets of this deck have too many members.", lines.place());
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

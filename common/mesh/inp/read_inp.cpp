@@ -7,7 +7,7 @@
 #include "common/mesh/inp/inp_patches.hpp"
 #include "common/mesh/load.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 constexpr std::size_t most_words = 20;  // in a message
@@ -108,7 +108,8 @@ class InpMesh {
     std::vector<std::string> words;
     for (const auto& [word, n] : deck_.passed_over)
       if (words.size() < most_words) words.push_back(word);
-    if (!words.empty()) log::info("'{}': only the mesh is read; skipped: {}.", lines_.name(), join(words));
+    if (!words.empty())
+      log::info("'{}': only the mesh is read; skipped: {}.", lines_.name(), base::join(words));
   }
 
   InpLines& lines_;
@@ -125,4 +126,4 @@ RawMesh read_inp(const std::filesystem::path& file) {
   return InpMesh(lines).make();
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

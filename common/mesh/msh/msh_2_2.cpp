@@ -3,7 +3,7 @@
 
 #include "common/mesh/msh/msh_file.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 void read_nodes(MshCursor& in, MshContent& content) {
@@ -72,4 +72,4 @@ void read_msh_2_2(MshCursor& in, const std::string& section, MshContent& content
   }
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

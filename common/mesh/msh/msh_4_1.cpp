@@ -5,7 +5,7 @@
 
 #include "common/mesh/msh/msh_file.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 void MshReader41::read_entities(MshCursor& in) {
   std::array<std::size_t, 4> counts;
@@ -87,4 +87,4 @@ void MshReader41::read(MshCursor& in, const std::string& section, MshContent& co
   in.end_section();
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

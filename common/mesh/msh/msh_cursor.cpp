@@ -5,7 +5,7 @@
 
 #include "common/mesh/msh/msh_file.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
@@ -129,4 +129,4 @@ Index point_or_fail(const MshCursor& cursor, const MshContent& content, std::siz
   return found->second;
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

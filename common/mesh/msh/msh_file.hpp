@@ -12,7 +12,7 @@
 #include "common/base/error.hpp"
 #include "common/mesh/load.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 
 /// What versions 2.2 and 4.1 have in common: points, elements with gmsh's type numbers, physical groups.
 struct MshContent {
@@ -105,4 +105,4 @@ class MshReader41 {
   std::map<std::pair<int, int>, std::vector<int>> groups_of_entity_;
 };
 
-}  // namespace couplet
+}  // namespace couplet::mesh

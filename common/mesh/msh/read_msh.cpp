@@ -6,7 +6,7 @@
 #include "common/mesh/msh/msh_entities.hpp"
 #include "common/mesh/msh/msh_file.hpp"
 
-namespace couplet {
+namespace couplet::mesh {
 namespace {
 
 std::string read_all(const std::filesystem::path& file) {
@@ -190,4 +190,4 @@ std::vector<int> read_boundary_entities(const std::filesystem::path& file) {
   return entities;
 }
 
-}  // namespace couplet
+}  // namespace couplet::mesh

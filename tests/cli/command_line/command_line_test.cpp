@@ -8,17 +8,18 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-using Task = CommandLine::Task;
+using Task = app::CommandLine::Task;
 
-ParsedCommandLine parse(std::vector<const char*> arguments) {
+app::ParsedCommandLine parse(std::vector<const char*> arguments) {
   static double density = 1000;
   static std::string name;
   arguments.insert(arguments.begin(), "solid_solver");
-  return parse_command_line(static_cast<int>(arguments.size()), arguments.data(),
-                            {"solid_solver", "Elastic solids.", [](config::Section& s) {
-                               s.value("program", name);
-                               s.value("density", density).unit("kg/m^3").required().doc("mass per volume");
-                             }});
+  return app::parse_command_line(
+      static_cast<int>(arguments.size()), arguments.data(),
+      {"solid_solver", "Elastic solids.", [](config::Section& s) {
+         s.value("program", name);
+         s.value("density", density).unit("kg/m^3").required().doc("mass per volume");
+       }});
 }
 
 TEST(CommandLine, everything_that_can_be_asked_for_arrives) {

@@ -45,7 +45,7 @@ int main(int argc, char** argv) {
   spoil(file, argv[2], argv[3], std::strtoull(argv[4], nullptr, 10));
   H5Fclose(file);
   const std::filesystem::path folder = path.parent_path();
-  if (const auto set = couplet::read_checkpoint_set(folder))
-    couplet::finish_checkpoint_set(folder, set->stamp);
+  if (const auto set = couplet::io::read_checkpoint_set(folder))
+    couplet::io::finish_checkpoint_set(folder, set->stamp);
   return 0;
 }

@@ -15,6 +15,7 @@
 #include "coupler/coupler.hpp"
 
 namespace couplet {
+using namespace coupling;
 using namespace coupler;
 namespace {
 
@@ -61,11 +62,11 @@ class Tank final : public Participant {
     level_ = next_, before_ = taken_;
     return {.dt = step_.dt};
   }
-  void save(CheckpointWriter& file) const override {
+  void save(io::CheckpointWriter& file) const override {
     file.write_scalar("level", level_);
     file.write_scalar("before", before_);
   }
-  void load(CheckpointReader& file) override {
+  void load(io::CheckpointReader& file) override {
     level_ = file.read_scalar("level");
     before_ = file.read_scalar("before");
   }
@@ -102,7 +103,7 @@ class Asking final : public Channel {
 
 struct Tanks {
   CouplingParameters coupling;
-  SimulationParameters simulation;
+  app::SimulationParameters simulation;
   Tank left{"left-level", "right-level", 1, 1, -1}, right{"right-level", "left-level", 2, -1, 1};
   bool ask = true;
   fs::path folder = fs::temp_directory_path() / ("couplet-tanks-" + std::to_string(::getpid())), restart;
@@ -207,7 +208,7 @@ TEST(WithinStep, a_run_continues_bit_for_bit) {
   const auto wanted = whole();
   run.simulation.end_time = 1;
   run();
-  run.restart = find_checkpoint(run.folder / "checkpoints");
+  run.restart = app::find_checkpoint(run.folder / "checkpoints");
   run.simulation.end_time = 2;
   run.left = Tank{"left-level", "right-level", 1, 0, 0},
   run.right = Tank{"right-level", "left-level", 2, 0, 0};

@@ -9,16 +9,16 @@ namespace couplet::tests {
 
 /// Passes all on to a participant (a reference or its own) but its output; a test overrides what it changes.
 template <class Inner>
-class Passing : public Participant {
+class Passing : public coupling::Participant {
  public:
   template <class... Arguments>
   explicit Passing(Arguments&&... arguments) : inner(std::forward<Arguments>(arguments)...) {}
-  Interface initialise() override { return inner.initialise(); }
-  void begin_step(const Step& step) override { inner.begin_step(step); }
-  Exchange solve(const Exchange& in) override { return inner.solve(in); }
-  StepReport accept_step() override { return inner.accept_step(); }
-  void save(CheckpointWriter& file) const override { inner.save(file); }
-  void load(CheckpointReader& file) override { inner.load(file); }
+  coupling::Interface initialise() override { return inner.initialise(); }
+  void begin_step(const coupling::Step& step) override { inner.begin_step(step); }
+  coupling::Exchange solve(const coupling::Exchange& in) override { return inner.solve(in); }
+  coupling::StepReport accept_step() override { return inner.accept_step(); }
+  void save(io::CheckpointWriter& file) const override { inner.save(file); }
+  void load(io::CheckpointReader& file) override { inner.load(file); }
   void write_output(double, int) override {}
   void write_monitors(double) override {}
 

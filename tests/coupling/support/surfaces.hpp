@@ -11,7 +11,7 @@
 
 namespace couplet::tests {
 
-inline void add_face(Interface& s, std::vector<Index> corners, const Vec3& area) {
+inline void add_face(coupling::Interface& s, std::vector<Index> corners, const Vec3& area) {
   Vec3 centre = Vec3::Zero();
   for (const Index v : corners) centre += s.vertices[v] / double(corners.size());
   if (s.face_offset.empty()) s.face_offset.push_back(0);
@@ -23,8 +23,8 @@ inline void add_face(Interface& s, std::vector<Index> corners, const Vec3& area)
 
 /// The three wetted sides of a flap of 0.1 x 1 m: up, across, down. `sign` 1: areas out of the flap. `shift`
 /// moves the vertices within the sides along them, by that share of an edge.
-inline Interface flap(int along, int across, double sign, double shift = 0) {
-  Interface s;
+inline coupling::Interface flap(int along, int across, double sign, double shift = 0) {
+  coupling::Interface s;
   s.dim = 2;
   const auto at = [&](int i, int n) { return (i == 0 || i == n ? i : i + shift) / double(n); };
   for (int i = 0; i <= along; ++i) s.vertices.emplace_back(0, at(i, along), 0);
@@ -38,8 +38,8 @@ inline Interface flap(int along, int across, double sign, double shift = 0) {
 }
 
 /// The unit circle by n edges; areas outwards.
-inline Interface ring(int n) {
-  Interface s;
+inline coupling::Interface ring(int n) {
+  coupling::Interface s;
   s.dim = 2;
   const auto angle = [n](double i) { return 2 * std::numbers::pi * i / n; };
   for (int i = 0; i < n; ++i) s.vertices.emplace_back(std::cos(angle(i)), std::sin(angle(i)), 0);
@@ -52,8 +52,8 @@ inline Interface ring(int n) {
 
 /// (0, 2) x (0, 1) at height `z`, n quadrilaterals on a length of 1, or each cut into two triangles; areas
 /// along sign z.
-inline Interface plate(int n, bool triangles, double sign, double z = 0) {
-  Interface s;
+inline coupling::Interface plate(int n, bool triangles, double sign, double z = 0) {
+  coupling::Interface s;
   for (int j = 0; j <= n; ++j)
     for (int i = 0; i <= 2 * n; ++i) s.vertices.emplace_back(i / double(n), j / double(n), z);
   const Vec3 area(0, 0, sign / (double(n) * n));
@@ -69,11 +69,13 @@ inline Interface plate(int n, bool triangles, double sign, double z = 0) {
 }
 
 /// This rank's part of a whole surface, cut evenly; vertices and faces each their own way.
-inline Interface part_of(MPI_Comm world, const Interface& whole) {
-  const auto rank = std::size_t(comm_rank(world));
-  const Starts v = even_starts(GlobalIndex(whole.vertices.size()), comm_size(world)),
-               f = even_starts(GlobalIndex(whole.face_centres.size()), comm_size(world));
-  Interface part;
+inline coupling::Interface part_of(MPI_Comm world, const coupling::Interface& whole) {
+  const auto rank = std::size_t(parallel::comm_rank(world));
+  const coupling::Starts v = coupling::even_starts(GlobalIndex(whole.vertices.size()),
+                                                   parallel::comm_size(world)),
+                         f = coupling::even_starts(GlobalIndex(whole.face_centres.size()),
+                                                   parallel::comm_size(world));
+  coupling::Interface part;
   part.dim = whole.dim;
   part.takes = whole.takes, part.gives = whole.gives;
   part.vertices.assign(whole.vertices.begin() + v[rank], whole.vertices.begin() + v[rank + 1]);
@@ -91,10 +93,12 @@ inline Interface part_of(MPI_Comm world, const Interface& whole) {
   return part;
 }
 
-inline coupler::PointSet vertices_of(const Interface& s) { return {"vertices", s.vertices, {}, &s}; }
-inline coupler::PointSet faces_of(const Interface& s) {
+inline coupler::PointSet vertices_of(const coupling::Interface& s) {
+  return {"vertices", s.vertices, {}, &s};
+}
+inline coupler::PointSet faces_of(const coupling::Interface& s) {
   coupler::PointSet set{"faces", s.face_centres, {}, &s};
-  set.place = Interface::Place::faces;
+  set.place = coupling::Interface::Place::faces;
   for (const Vec3& area : s.face_areas) set.sizes.push_back(area.norm());
   return set;
 }

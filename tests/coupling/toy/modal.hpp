@@ -108,8 +108,8 @@ class SineModes {
   std::vector<double> at_vertices_, at_faces_;  // mode by mode
 };
 
-inline Interface modal_wall(const ModalParameters& p, double normal) {
-  Interface line{2, {}, {}, {}, {}, {}};
+inline coupling::Interface modal_wall(const ModalParameters& p, double normal) {
+  coupling::Interface line{2, {}, {}, {}, {}, {}};
   const double h = p.length / (p.vertices - 1);
   for (int v = 0; v < p.vertices; ++v) {
     line.vertices.emplace_back(v * h, p.radius, 0);
@@ -120,18 +120,18 @@ inline Interface modal_wall(const ModalParameters& p, double normal) {
   return line;
 }
 
-class ModalChannel final : public Participant {
+class ModalChannel final : public coupling::Participant {
  public:
   explicit ModalChannel(const ModalParameters& p) : p_(p), modes_(p), now_(modes_.modes()), next_(now_) {}
-  Interface initialise() override {
-    Interface line = modal_wall(p_, 1);
-    line.takes = {{"displacement", "m", Interface::Place::vertices},
-                  {"velocity", "m/s", Interface::Place::vertices}};
-    line.gives = {{"pressure-force", "N", Interface::Place::faces}};
+  coupling::Interface initialise() override {
+    coupling::Interface line = modal_wall(p_, 1);
+    line.takes = {{"displacement", "m", coupling::Interface::Place::vertices},
+                  {"velocity", "m/s", coupling::Interface::Place::vertices}};
+    line.gives = {{"pressure-force", "N", coupling::Interface::Place::faces}};
     return line;
   }
-  void begin_step(const Step& step) override { step_ = step; }
-  Exchange solve(const Exchange& in) override {
+  void begin_step(const coupling::Step& step) override { step_ = step; }
+  coupling::Exchange solve(const coupling::Exchange& in) override {
     next_ = in.contains("velocity") ? modes_.of_vertices(in.at("velocity")) : now_;
     const double t = step_.time + step_.dt / 2;
     std::vector<double> p(next_.size());
@@ -140,42 +140,43 @@ class ModalChannel final : public Participant {
              p_.density * added_mass_length(p_, i + 1) * (next_[i] - now_[i]) / step_.dt;
     return {{"pressure-force", modes_.forces(p)}};
   }
-  StepReport accept_step() override {
+  coupling::StepReport accept_step() override {
     now_ = next_;
     return {.dt = step_.dt};
   }
-  void save(CheckpointWriter& file) const override { file.write("velocity", now_); }
-  void load(CheckpointReader& file) override { file.read("velocity", now_); }
+  void save(io::CheckpointWriter& file) const override { file.write("velocity", now_); }
+  void load(io::CheckpointReader& file) override { file.read("velocity", now_); }
   void write_output(double, int) override {}
   void write_monitors(double) override {}
 
  private:
   ModalParameters p_;
   SineModes modes_;
-  Step step_;
+  coupling::Step step_;
   std::vector<double> now_, next_;  // amplitudes of the wall's velocity
 };
 
-class ModalWall final : public Participant {
+class ModalWall final : public coupling::Participant {
  public:
-  explicit ModalWall(const ModalParameters& p, const ParticipantContext& context = {})
+  explicit ModalWall(const ModalParameters& p, const app::ParticipantContext& context = {})
       : p_(p), modes_(p), eta_(modes_.modes()), v_(eta_), next_eta_(eta_), next_v_(eta_) {
-    if (comm_size(context.comm) > 1) throw Error("This wall knows one rank only.");
+    if (parallel::comm_size(context.comm) > 1) throw Error("This wall knows one rank only.");
     if (!context.output_folder.empty())
       series_.emplace(context.output_folder / "mode.csv",
                       std::vector<std::string>{"time [s]", "mode 1 [m]", "its velocity [m/s]"},
                       context.restart_time);
   }
-  Interface initialise() override {
-    Interface line = modal_wall(p_, -1);
-    line.takes = {{"pressure-force", "N", Interface::Place::faces}};
-    line.gives = {{"displacement", "m", Interface::Place::vertices},
-                  {"velocity", "m/s", Interface::Place::vertices}};
-    if (p_.gives_density) line.gives.push_back({"surface-density", "kg/m^2", Interface::Place::faces, 1});
+  coupling::Interface initialise() override {
+    coupling::Interface line = modal_wall(p_, -1);
+    line.takes = {{"pressure-force", "N", coupling::Interface::Place::faces}};
+    line.gives = {{"displacement", "m", coupling::Interface::Place::vertices},
+                  {"velocity", "m/s", coupling::Interface::Place::vertices}};
+    if (p_.gives_density)
+      line.gives.push_back({"surface-density", "kg/m^2", coupling::Interface::Place::faces, 1});
     return line;
   }
-  void begin_step(const Step& step) override { time_ = step.time, dt_ = step.dt; }
-  Exchange solve(const Exchange& in) override {
+  void begin_step(const coupling::Step& step) override { time_ = step.time, dt_ = step.dt; }
+  coupling::Exchange solve(const coupling::Exchange& in) override {
     std::vector<double> force(2 * (p_.vertices - 1));
     if (in.contains("pressure-force")) force = in.at("pressure-force");
     std::vector<double> p = modes_.of_forces(force);
@@ -186,16 +187,17 @@ class ModalWall final : public Participant {
       next_v_[i] = (m / dt_ * v_[i] - s * (eta_[i] + dt_ / 4 * v_[i]) + p[i]) / (m / dt_ + s * dt_ / 4);
       next_eta_[i] = eta_[i] + dt_ / 2 * (v_[i] + next_v_[i]);
     }
-    Exchange out{{"displacement", modes_.at_vertices(next_eta_)}, {"velocity", modes_.at_vertices(next_v_)}};
+    coupling::Exchange out{{"displacement", modes_.at_vertices(next_eta_)},
+                           {"velocity", modes_.at_vertices(next_v_)}};
     if (p_.gives_density) out["surface-density"].assign(std::size_t(p_.vertices - 1), p_.surface_density);
     return out;
   }
-  StepReport accept_step() override {
+  coupling::StepReport accept_step() override {
     eta_ = next_eta_, v_ = next_v_;
     return {.dt = dt_};
   }
-  void save(CheckpointWriter& file) const override { file.write("eta", eta_), file.write("v", v_); }
-  void load(CheckpointReader& file) override { file.read("eta", eta_), file.read("v", v_); }
+  void save(io::CheckpointWriter& file) const override { file.write("eta", eta_), file.write("v", v_); }
+  void load(io::CheckpointReader& file) override { file.read("eta", eta_), file.read("v", v_); }
   void write_output(double, int) override {}
   void write_monitors(double time) override {
     if (series_) series_->row(std::vector<double>{time, eta_[0], v_[0]});
@@ -208,7 +210,7 @@ class ModalWall final : public Participant {
   SineModes modes_;
   double time_ = 0, dt_ = 0;
   std::vector<double> eta_, v_, next_eta_, next_v_;
-  std::optional<Series> series_;
+  std::optional<io::Series> series_;
 };
 
 }  // namespace couplet::toy

@@ -33,22 +33,24 @@ inline void declare(config::Section& s, PistonParameters& p) {
   s.value("throws-at-start", p.throws_at_start).doc("an exception leaves the set-up");
 }
 
-class Piston final : public Participant {
+class Piston final : public coupling::Participant {
  public:
-  Piston(const ParticipantContext& context, const PistonParameters& p)
+  Piston(const app::ParticipantContext& context, const PistonParameters& p)
       : comm_(context.comm), p_(p), now_(2 * p.vertices), next_(now_) {
     if (p.throws_at_start) throw Error("The piston was told not to start.");
-    if (!context.output_folder.empty() && comm_rank(comm_) == 0)
+    if (!context.output_folder.empty() && parallel::comm_rank(comm_) == 0)
       series_.emplace(context.output_folder / "motion.csv",
                       std::vector<std::string>{"time [s]", "velocity [m/s]"}, context.restart_time);
   }
-  Interface initialise() override {
-    const std::vector<Interface::Datum> motion{{"displacement", "m", Interface::Place::vertices},
-                                               {"velocity", "m/s", Interface::Place::vertices}};
-    Interface line{2, {}, {}, {}, motion, {{"pressure-force", "N", Interface::Place::faces}}};
+  coupling::Interface initialise() override {
+    const std::vector<coupling::Interface::Datum> motion{
+        {"displacement", "m", coupling::Interface::Place::vertices},
+        {"velocity", "m/s", coupling::Interface::Place::vertices}};
+    coupling::Interface line{2,  {},     {},
+                             {}, motion, {{"pressure-force", "N", coupling::Interface::Place::faces}}};
     const double h = 1. / (p_.vertices - 1);
     // From right to left: the mapping has something to do.
-    for (int i = p_.vertices - 1; comm_rank(comm_) == 0 && i >= 0; --i) {
+    for (int i = p_.vertices - 1; parallel::comm_rank(comm_) == 0 && i >= 0; --i) {
       line.vertices.emplace_back(i * h, p_.shift, 0);
       line.face_offset.push_back(2 * (p_.vertices - 1 - i));
       if (i == 0) continue;
@@ -58,8 +60,8 @@ class Piston final : public Participant {
     }
     return line;
   }
-  void begin_step(const Step& step) override { step_ = step; }
-  Exchange solve(const Exchange& in) override {
+  void begin_step(const coupling::Step& step) override { step_ = step; }
+  coupling::Exchange solve(const coupling::Exchange& in) override {
     if (step_.number == p_.throws_in_step) throw std::runtime_error("The piston broke, as it was told to.");
     if (step_.dt > p_.fails_above * (1 + 1e-12))
       throw SolveFailure("dt = {:g} s is above {:g} s, the largest this piston can do.", step_.dt,
@@ -68,20 +70,20 @@ class Piston final : public Participant {
     if (in.contains("velocity")) next_ = in.at("velocity");
     MPI_Bcast(next_.data(), int(next_.size()), MPI_DOUBLE, 0, comm_);
     std::vector<double> mine;
-    const int faces = p_.vertices - 1, rank = comm_rank(comm_), ranks = comm_size(comm_);
+    const int faces = p_.vertices - 1, rank = parallel::comm_rank(comm_), ranks = parallel::comm_size(comm_);
     for (int f = faces * rank / ranks; f < faces * (rank + 1) / ranks; ++f) {
       const double change = (next_[2 * f + 1] + next_[2 * f + 3] - now_[2 * f + 1] - now_[2 * f + 3]) / 2;
       mine.insert(mine.end(), {0, p_.driving_force - p_.added_mass * change / step_.dt});
     }
-    const std::vector<double> force = all_gather(comm_, mine);
-    return rank == 0 ? Exchange{{"pressure-force", force}} : Exchange{};
+    const std::vector<double> force = parallel::all_gather(comm_, mine);
+    return rank == 0 ? coupling::Exchange{{"pressure-force", force}} : coupling::Exchange{};
   }
-  StepReport accept_step() override {
+  coupling::StepReport accept_step() override {
     now_ = next_;
     return {.dt = step_.dt};
   }
-  void save(CheckpointWriter& file) const override { file.write("velocity", now_); }
-  void load(CheckpointReader& file) override { file.read("velocity", now_); }
+  void save(io::CheckpointWriter& file) const override { file.write("velocity", now_); }
+  void load(io::CheckpointReader& file) override { file.read("velocity", now_); }
   void write_output(double, int) override {}
   void write_monitors(double time) override {
     if (series_) series_->row(std::vector<double>{time, now_[1]});
@@ -90,9 +92,9 @@ class Piston final : public Participant {
  private:
   MPI_Comm comm_;
   PistonParameters p_;
-  Step step_;
+  coupling::Step step_;
   std::vector<double> now_, next_;  // velocity of every vertex (x, y) at t^n and t^{n+1}
-  std::optional<Series> series_;
+  std::optional<io::Series> series_;
 };
 
 }  // namespace couplet::toy

@@ -4,10 +4,10 @@
 int main(int argc, char** argv) {
   using namespace couplet;
   toy::PistonParameters parameters;
-  return run_program(
+  return app::run_program(
       argc, argv,
       {"toy_piston", "a fluid that is an added mass", [&](config::Section& s) { declare(s, parameters); },
-       [&](const ParticipantContext& context) -> std::unique_ptr<Participant> {
+       [&](const app::ParticipantContext& context) -> std::unique_ptr<coupling::Participant> {
          return std::make_unique<toy::Piston>(context, parameters);
        }});
 }

@@ -4,9 +4,10 @@
 int main(int argc, char** argv) {
   using namespace couplet;
   toy::SpringParameters parameters;
-  return run_program(argc, argv,
-                     {"toy_spring", "masses on springs", [&](config::Section& s) { declare(s, parameters); },
-                      [&](const ParticipantContext& context) -> std::unique_ptr<Participant> {
-                        return std::make_unique<toy::Spring>(context.comm, parameters);
-                      }});
+  return app::run_program(
+      argc, argv,
+      {"toy_spring", "masses on springs", [&](config::Section& s) { declare(s, parameters); },
+       [&](const app::ParticipantContext& context) -> std::unique_ptr<coupling::Participant> {
+         return std::make_unique<toy::Spring>(context.comm, parameters);
+       }});
 }

@@ -4,10 +4,10 @@
 int main(int argc, char** argv) {
   using namespace couplet;
   toy::ModalParameters parameters;
-  return run_program(
+  return app::run_program(
       argc, argv,
       {"toy_wall", "an elastic wall in sine modes", [&](config::Section& s) { declare(s, parameters); },
-       [&](const ParticipantContext& context) -> std::unique_ptr<Participant> {
+       [&](const app::ParticipantContext& context) -> std::unique_ptr<coupling::Participant> {
          return std::make_unique<toy::ModalWall>(parameters, context);
        }});
 }

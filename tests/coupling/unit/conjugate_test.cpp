@@ -12,6 +12,8 @@
 #include "tests/coupling/support/surfaces.hpp"
 
 namespace couplet {
+using namespace coupling;
+using namespace parallel;
 using namespace coupler;
 namespace {
 

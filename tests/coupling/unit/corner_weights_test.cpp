@@ -8,7 +8,7 @@ namespace couplet {
 namespace {
 
 TEST(CornerWeights, meet_the_centre_of_a_face_that_is_no_parallelogram) {
-  Interface s;
+  coupling::Interface s;
   s.vertices = {{0, 0, 0}, {4, 0, 0}, {1.5, 2, 0}, {0.5, 2, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
   s.face_offset = {0, 4, 7};
   s.face_vertices = {0, 1, 2, 3, 4, 5, 6};
@@ -32,7 +32,7 @@ TEST(CornerWeights, meet_the_centre_of_a_face_that_is_no_parallelogram) {
 // Over the triangles about the mean (3/2, 3/4) of the corners, whose areas are as 6, 7, 4 and 3: a third of both
 // triangles at a corner and 1/12 of all.
 TEST(CornerWeights, are_those_of_the_triangles_about_the_mean_of_the_corners) {
-  Interface s;
+  coupling::Interface s;
   s.vertices = {{0, 0, 0}, {4, 0, 0}, {2, 2, 0}, {0, 1, 0}};
   s.face_offset = {0, 4};
   s.face_vertices = {0, 1, 2, 3};

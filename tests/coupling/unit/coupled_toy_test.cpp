@@ -17,6 +17,7 @@
 #include "tests/coupling/toy/spring.hpp"
 
 namespace couplet {
+using namespace coupling;
 using namespace coupler;
 namespace {
 
@@ -45,8 +46,8 @@ class RecordingMover final : public Participant {
     log_.push_back("accept_step");
     return {};
   }
-  void save(CheckpointWriter& file) const override { file.write_scalar("nothing", 0); }
-  void load(CheckpointReader&) override {}
+  void save(io::CheckpointWriter& file) const override { file.write_scalar("nothing", 0); }
+  void load(io::CheckpointReader&) override {}
   void write_output(double, int) override {}
   void write_monitors(double) override {}
   bool fails = false;
@@ -113,7 +114,7 @@ class HastySpring final : public tests::Passing<toy::Spring&> {
 /// One coupled run and its results.
 struct ToyRun {
   CouplingParameters coupling;
-  SimulationParameters simulation;
+  app::SimulationParameters simulation;
   toy::PistonParameters fluid;
   toy::SpringParameters solid;
   bool with_mover = false, mover_fails = false;
@@ -148,7 +149,7 @@ struct ToyRun {
 
   void operator()() {
     fs::create_directories(folder);
-    ParticipantContext context;
+    app::ParticipantContext context;
     context.comm = MPI_COMM_SELF;
     toy::Piston piston(context, fluid);
     toy::Spring spring(MPI_COMM_SELF, solid);
@@ -372,7 +373,7 @@ TEST(CoupledToy, a_velocity_that_is_not_the_rate_of_the_displacement_is_found_an
     ASSERT_EQ(found() - before, times == 1 ? 0 : 1) << times;
     if (times == 1) continue;
     const log::Finding& last = log::findings().back();
-    EXPECT_EQ(last.severity, Severity::wrong);
+    EXPECT_EQ(last.severity, base::Severity::wrong);
     EXPECT_NEAR(last.number, times, 0.1 * times);
     EXPECT_THAT(last.sentence, testing::HasSubstr("velocity of 'solid'"));
   }
@@ -410,10 +411,10 @@ TEST(CoupledToy, a_step_that_is_accepted_unconverged_is_a_finding_and_a_useless_
   };
   EXPECT_EQ(accepted(100, 0.5), 0);  // 1 - 0.5 (1 + 0.9) = 0.05 a pass
   EXPECT_GT(accepted(4, 0.5), 0);
-  EXPECT_EQ(log::findings().back().severity, Severity::warning);
+  EXPECT_EQ(log::findings().back().severity, base::Severity::warning);
   EXPECT_GT(accepted(1, 0.05), 0);
   EXPECT_TRUE(std::ranges::any_of(log::findings(), [](const log::Finding& f) {
-    return f.id == "unconverged-step" && f.severity == Severity::wrong && f.number >= 0.5;
+    return f.id == "unconverged-step" && f.severity == base::Severity::wrong && f.number >= 0.5;
   }));
 }
 
@@ -433,7 +434,7 @@ TEST(CoupledToy, interrupted_run_equals_uninterrupted_run_bit_for_bit) {
   ToyRun second;
   setup(second);
   second.folder += "-second";
-  second.restart = find_checkpoint(first.folder / "checkpoints");
+  second.restart = app::find_checkpoint(first.folder / "checkpoints");
   second();
   EXPECT_EQ(second.problem, "");
   EXPECT_EQ(second.position, whole.position);

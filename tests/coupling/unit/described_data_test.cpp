@@ -8,6 +8,7 @@
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
+using namespace coupling;
 namespace {
 
 /// Takes a displacement: on the ranks of which `on` says so.
@@ -23,8 +24,8 @@ class Describes : public Participant {
   void begin_step(const Step&) override {}
   Exchange solve(const Exchange&) override { return {}; }
   StepReport accept_step() override { return {}; }
-  void save(CheckpointWriter&) const override {}
-  void load(CheckpointReader&) override {}
+  void save(io::CheckpointWriter&) const override {}
+  void load(io::CheckpointReader&) override {}
   void write_output(double, int) override {}
   void write_monitors(double) override {}
 
@@ -38,16 +39,16 @@ Reply initialise(bool on) {
 }
 
 TEST(DescribedData, on_all_ranks_or_on_the_first_alone) {
-  const int rank = comm_rank(MPI_COMM_WORLD);
+  const int rank = parallel::comm_rank(MPI_COMM_WORLD);
   EXPECT_EQ(initialise(true).status, Reply::Status::ok);
   EXPECT_EQ(initialise(rank == 0).status, Reply::Status::ok);
 }
 
 TEST(DescribedData, on_another_rank_alone_are_refused_on_all) {
-  const int last = comm_size(MPI_COMM_WORLD) - 1;
+  const int last = parallel::comm_size(MPI_COMM_WORLD) - 1;
   if (last == 0) GTEST_SKIP() << "needs two ranks";
   try {
-    initialise(comm_rank(MPI_COMM_WORLD) == last);
+    initialise(parallel::comm_rank(MPI_COMM_WORLD) == last);
     FAIL() << "nothing was refused";
   } catch (const Error& e) {
     EXPECT_THAT(e.what(), testing::HasSubstr(std::to_string(last) + " describes different data"));

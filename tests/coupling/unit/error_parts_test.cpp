@@ -8,6 +8,7 @@
 #include "common/base/error.hpp"
 
 namespace couplet {
+using namespace coupling;
 namespace {
 
 TEST(ErrorPartsTest, its_text_is_read_again) {
@@ -26,9 +27,9 @@ TEST(ErrorPartsTest, one_part_as_large_as_the_solution_proves_an_answer_useless_
   EXPECT_FALSE(worthless({{"solid", {.mesh = 0.6, .step = 0.3}}}).has_value());
   const auto sum = worthless({{"solid", {.mesh = 0.6, .step = 0.5}}});
   ASSERT_TRUE(sum.has_value());
-  EXPECT_EQ(sum->severity, Severity::warning);
+  EXPECT_EQ(sum->severity, base::Severity::warning);
   EXPECT_EQ(worthless({{"fluid", {.mesh = 0.1}}, {"solid", {.mesh = 1.1, .step = 0.1}}})->severity,
-            Severity::wrong);
+            base::Severity::wrong);
 }
 
 TEST(ErrorPartsTest, the_largest_part_dominates_and_what_is_a_tenth_of_it_buys_nothing) {

@@ -14,6 +14,7 @@
 #include "coupler/coupler.hpp"
 
 namespace couplet {
+using namespace coupling;
 using namespace coupler;
 namespace {
 
@@ -52,8 +53,8 @@ class Lump final : public Participant {
     now_ = next_;
     return {.dt = dt_};
   }
-  void save(CheckpointWriter& file) const override { file.write_scalar("temperature", now_); }
-  void load(CheckpointReader& file) override { now_ = file.read_scalar("temperature"); }
+  void save(io::CheckpointWriter& file) const override { file.write_scalar("temperature", now_); }
+  void load(io::CheckpointReader& file) override { now_ = file.read_scalar("temperature"); }
   void write_output(double, int) override {}
   void write_monitors(double) override {}
   double temperature() const { return now_; }
@@ -66,7 +67,7 @@ class Lump final : public Participant {
 struct Pair {
   using Order = CouplingParameters::Exchange::Order;
   CouplingParameters coupling;
-  SimulationParameters simulation;
+  app::SimulationParameters simulation;
   Lump hot{3, 400, 0.5}, cold{2, 300, 0};
   fs::path folder = fs::temp_directory_path() / ("couplet-exchange-" + std::to_string(::getpid()));
   fs::path restart;
@@ -134,7 +135,7 @@ TEST(Exchange, restart_continues_bit_for_bit) {
   whole.simulation.checkpoint_interval = 1;
   ASSERT_EQ(whole.run(), "");
   Pair rest;
-  rest.restart = find_checkpoint(whole.folder / "checkpoints");
+  rest.restart = app::find_checkpoint(whole.folder / "checkpoints");
   rest.folder += "-rest";
   rest.simulation.end_time = 5;
   const double before = whole.hot.temperature();

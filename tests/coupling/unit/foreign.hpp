@@ -15,21 +15,21 @@
 namespace couplet {
 
 /// Has a surface and answers; keeps and writes nothing.
-class Quiet : public Participant {
+class Quiet : public coupling::Participant {
  public:
-  void begin_step(const Step& step) override { step_ = step; }
-  StepReport accept_step() override { return {.dt = step_.dt}; }
-  void save(CheckpointWriter&) const override {}
-  void load(CheckpointReader&) override {}
+  void begin_step(const coupling::Step& step) override { step_ = step; }
+  coupling::StepReport accept_step() override { return {.dt = step_.dt}; }
+  void save(io::CheckpointWriter&) const override {}
+  void load(io::CheckpointReader&) override {}
   void write_output(double, int) override {}
   void write_monitors(double) override {}
 
  protected:
-  Step step_;
+  coupling::Step step_;
 };
 
 /// Vertices at equal distances on 0 <= x <= 1; `faces` between them, of areas (0, height / n).
-inline void lay_out(Interface& line, int n_vertices, bool faces = false, double height = 1) {
+inline void lay_out(coupling::Interface& line, int n_vertices, bool faces = false, double height = 1) {
   const int n = n_vertices - 1;
   for (int i = 0; i <= n; ++i) line.vertices.emplace_back(double(i) / n, 0, 0);
   if (!faces) return;
@@ -45,24 +45,25 @@ inline void lay_out(Interface& line, int n_vertices, bool faces = false, double 
 /// A case of a fluid and a solid in one process, in a folder of its own.
 struct ForeignCase {
   coupler::CouplingParameters coupling;
-  SimulationParameters simulation;
+  app::SimulationParameters simulation;
   std::filesystem::path folder = std::filesystem::temp_directory_path() /
                                  ("couplet-foreign-" + std::to_string(::getpid())),
                         restart;
 
   ForeignCase() {
     spdlog::set_level(spdlog::level::off);
-    coupling.scheme = Scheme::implicit;
+    coupling.scheme = coupling::Scheme::implicit;
     coupling.mapping.type = coupler::MappingParameters::Type::rbf;
   }
   ~ForeignCase() { std::filesystem::remove_all(folder); }
 
-  std::unique_ptr<coupler::Coupler> coupler(Participant& fluid, Participant& solid) const {
+  std::unique_ptr<coupler::Coupler> coupler(coupling::Participant& fluid,
+                                            coupling::Participant& solid) const {
     std::filesystem::create_directories(folder);
     return std::make_unique<coupler::Coupler>(
         coupling, simulation,
-        coupler::CouplerChannels{std::make_unique<LocalChannel>("fluid", fluid),
-                                 std::make_unique<LocalChannel>("solid", solid), nullptr},
+        coupler::CouplerChannels{std::make_unique<coupling::LocalChannel>("fluid", fluid),
+                                 std::make_unique<coupling::LocalChannel>("solid", solid), nullptr},
         coupler::CouplerFolders{folder, folder / "checkpoints", restart});
   }
 };

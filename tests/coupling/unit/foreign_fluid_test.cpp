@@ -3,6 +3,7 @@
 #include "tests/coupling/unit/foreign.hpp"
 
 namespace couplet {
+using namespace coupling;
 namespace {
 
 using Place = Interface::Place;

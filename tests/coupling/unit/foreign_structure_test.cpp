@@ -7,6 +7,7 @@
 #include "tests/coupling/unit/foreign.hpp"
 
 namespace couplet {
+using namespace coupling;
 namespace {
 
 using Place = Interface::Place;
@@ -128,7 +129,7 @@ TEST(ForeignStructure, continues_from_a_checkpoint_bit_for_bit_whether_its_veloc
     run.simulation.end_time = 0.5;
     EXPECT_EQ(run(), "");
     EXPECT_NEAR(run.velocity[1], 6 * 0.5, 1e-10);
-    run.restart = find_checkpoint(run.folder / "checkpoints");
+    run.restart = app::find_checkpoint(run.folder / "checkpoints");
     // One step: its velocity follows from both displacements that were kept.
     run.simulation.end_time = 0.55;
     EXPECT_EQ(run(), "");
@@ -145,7 +146,7 @@ TEST(ForeignStructure, a_checkpoint_of_one_that_gives_its_velocity_has_no_displa
   run.shaker.gives_velocity = true;
   run.simulation.end_time = 0.5;
   EXPECT_EQ(run(), "");
-  run.restart = find_checkpoint(run.folder / "checkpoints");
+  run.restart = app::find_checkpoint(run.folder / "checkpoints");
   run.shaker.gives_velocity = false;
   run.simulation.end_time = 0.9;
   EXPECT_THAT(run.error(), testing::HasSubstr("solid-displacement"));

@@ -15,6 +15,7 @@
 #include "tests/coupling/toy/spring.hpp"
 
 namespace couplet {
+using namespace coupling;
 using namespace coupler;
 namespace {
 
@@ -66,8 +67,8 @@ class Strait final : public Participant {
     now_ = next_;
     return {.dt = step_.dt};
   }
-  void save(CheckpointWriter& file) const override { file.write("velocity", now_); }
-  void load(CheckpointReader& file) override { file.read("velocity", now_); }
+  void save(io::CheckpointWriter& file) const override { file.write("velocity", now_); }
+  void load(io::CheckpointReader& file) override { file.read("velocity", now_); }
   void write_output(double, int) override {}
   void write_monitors(double) override {}
 
@@ -96,7 +97,7 @@ class Shifted final : public tests::Passing<toy::Spring> {
 
 struct GroupRun {
   CouplingParameters coupling;
-  SimulationParameters simulation;
+  app::SimulationParameters simulation;
   double added_mass = 3, drag = 0;
   int bodies = 2;
   fs::path folder = fs::temp_directory_path() / ("couplet-groups-" + std::to_string(::getpid())), restart;
@@ -184,7 +185,7 @@ TEST(Groups, restart_continues_bit_for_bit_with_the_accelerators_history) {
     first.simulation.end_time = 0.5;
     first();
     second.folder += "-second";
-    second.restart = find_checkpoint(first.folder / "checkpoints");
+    second.restart = app::find_checkpoint(first.folder / "checkpoints");
     second();
     EXPECT_EQ(second.problem, "");
     EXPECT_EQ(second.position, whole.position);
@@ -232,7 +233,7 @@ TEST(SubSteps, a_restart_between_coupling_steps_is_bit_for_bit) {
   first.simulation.end_time = 0.5;
   first();
   second.folder += "-second";
-  second.restart = find_checkpoint(first.folder / "checkpoints");
+  second.restart = app::find_checkpoint(first.folder / "checkpoints");
   second();
   EXPECT_EQ(second.position, whole.position);
 }

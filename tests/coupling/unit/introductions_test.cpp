@@ -5,6 +5,7 @@
 #include "tests/coupling/unit/foreign.hpp"
 
 namespace couplet {
+using namespace coupling;
 using namespace coupler;
 namespace {
 

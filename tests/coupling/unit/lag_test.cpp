@@ -15,6 +15,7 @@
 #include "tests/coupling/toy/spring.hpp"
 
 namespace couplet {
+using namespace coupling;
 namespace {
 
 namespace fs = std::filesystem;
@@ -76,11 +77,11 @@ struct LagRun {
     coupling.scheme = scheme;
     coupling.convergence.relative = 1e-12;
     coupling.predictor_order = order;
-    SimulationParameters simulation;
+    app::SimulationParameters simulation;
     simulation.end_time = end, simulation.time_step = dt, simulation.error_estimate = estimates;
     toy::PistonParameters fluid;
     fluid.added_mass = mu, fluid.driving_force = 1;
-    ParticipantContext context;
+    app::ParticipantContext context;
     context.comm = MPI_COMM_SELF;
     toy::Piston piston(context, fluid);
     Drag dragged(piston, drag);
@@ -168,7 +169,7 @@ TEST(LagEstimate, changes_nothing_and_continues_over_a_restart_bit_for_bit) {
   first();
   LagRun second{.drag = 0.1, .end = 2};
   second.folder += "-second";
-  second.restart = find_checkpoint(first.folder / "checkpoints");
+  second.restart = app::find_checkpoint(first.folder / "checkpoints");
   second();
   EXPECT_EQ(second.way, std::vector(whole.way.begin() + 20, whole.way.end()));
   EXPECT_EQ(second.told(), whole.told());

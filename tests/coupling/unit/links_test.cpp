@@ -12,6 +12,7 @@
 #include "coupler/judge/places.hpp"
 
 namespace couplet {
+using namespace coupling;
 using namespace coupler;
 namespace {
 

@@ -12,6 +12,7 @@
 #include "tests/coupling/support/surfaces.hpp"
 
 namespace couplet {
+using namespace coupling;
 using namespace coupler;
 namespace {
 

@@ -13,6 +13,8 @@
 #include "tests/support/world.hpp"
 
 namespace couplet {
+using namespace coupling;
+using namespace parallel;
 using namespace coupler;
 namespace {
 

@@ -9,6 +9,7 @@
 #include "common/coupling/wait.hpp"
 
 namespace couplet {
+using namespace coupling;
 namespace {
 
 /// A message of one process to itself.

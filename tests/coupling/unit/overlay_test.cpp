@@ -10,8 +10,8 @@ namespace couplet {
 namespace {
 
 /// A face looks up; those of the other side, which look down, cover it up to x = 0.4.
-double length_given(const Interface& other) {
-  Interface edge;
+double length_given(const coupling::Interface& other) {
+  coupling::Interface edge;
   edge.dim = 2;
   edge.vertices = {{0, 0, 0}, {1, 0, 0}};
   edge.face_centres = {{0.5, 0, 0}}, edge.face_areas = {{0, 1, 0}};
@@ -27,7 +27,7 @@ double length_given(const Interface& other) {
 }
 
 TEST(Overlay, a_part_of_an_edge_that_nothing_covers_goes_to_the_nearest_in_full) {
-  Interface other;
+  coupling::Interface other;
   other.dim = 2;
   other.vertices = {{0, 0, 0}, {0.4, 0, 0}};
   other.face_centres = {{0.2, 0, 0}}, other.face_areas = {{0, -0.4, 0}};
@@ -36,7 +36,7 @@ TEST(Overlay, a_part_of_an_edge_that_nothing_covers_goes_to_the_nearest_in_full)
 }
 
 TEST(Overlay, a_part_of_a_face_that_nothing_covers_goes_to_the_nearest_in_full) {
-  Interface face, other;
+  coupling::Interface face, other;
   face.dim = other.dim = 3;
   face.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   face.face_centres = {{0.5, 0.5, 0}}, face.face_areas = {{0, 0, 1}};

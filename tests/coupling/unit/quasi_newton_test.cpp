@@ -288,10 +288,10 @@ TEST(Accelerators, continue_from_a_checkpoint_bit_for_bit) {
     const auto whole = make_accelerator(parameters, MPI_COMM_SELF);
     const auto second = make_accelerator(parameters, MPI_COMM_SELF);
     for (int n = 0; n < 5; ++n) step(*whole, 10, 0.1 * n);
-    CheckpointWriter writer(MPI_COMM_SELF, file);
+    io::CheckpointWriter writer(MPI_COMM_SELF, file);
     whole->save(writer);
     writer.close();
-    CheckpointReader reader(MPI_COMM_SELF, file);
+    io::CheckpointReader reader(MPI_COMM_SELF, file);
     second->load(reader);
     for (int n = 5; n < 9; ++n) {
       Iterate a, b;

@@ -7,6 +7,7 @@
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
+using namespace app;
 namespace {
 
 using testing::HasSubstr;
@@ -99,10 +100,10 @@ TEST(RollCall, all_processes_hear_all_answers) {
   self.participant = "solid";
   self.case_file = "case with blanks.yaml";
   self.case_hash = std::size_t(-1);
-  self.world_rank = comm_rank(MPI_COMM_WORLD);
+  self.world_rank = parallel::comm_rank(MPI_COMM_WORLD);
   self.errors = std::vector<std::string>(std::size_t(self.world_rank), "a line\nand another");
   const std::vector<Attendant> all = roll_call(MPI_COMM_WORLD, self);
-  ASSERT_EQ(int(all.size()), comm_size(MPI_COMM_WORLD));
+  ASSERT_EQ(int(all.size()), parallel::comm_size(MPI_COMM_WORLD));
   for (int r = 0; r < int(all.size()); ++r) {
     EXPECT_EQ(all[r].world_rank, r);
     EXPECT_EQ(all[r].case_file, self.case_file);
@@ -111,7 +112,7 @@ TEST(RollCall, all_processes_hear_all_answers) {
     EXPECT_EQ(all[r].errors, std::vector<std::string>(std::size_t(r), "a line\nand another"));
   }
   ASSERT_EQ(members(all).size(), 1u);
-  EXPECT_EQ(members(all)[0].ranks, comm_size(MPI_COMM_WORLD));
+  EXPECT_EQ(members(all)[0].ranks, parallel::comm_size(MPI_COMM_WORLD));
 }
 
 }  // namespace

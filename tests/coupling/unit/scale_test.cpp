@@ -10,6 +10,7 @@
 #include "coupler/judge/places.hpp"
 
 namespace couplet {
+using namespace coupling;
 using namespace coupler;
 namespace {
 

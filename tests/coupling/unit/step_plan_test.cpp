@@ -11,6 +11,7 @@
 #include "common/base/error.hpp"
 
 namespace couplet {
+using namespace coupling;
 namespace {
 
 TEST(StepPlan, nominal_steps_end_at_the_end) {

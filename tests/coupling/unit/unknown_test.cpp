@@ -6,6 +6,7 @@
 #include <cmath>
 
 namespace couplet {
+using namespace coupling;
 using namespace coupler;
 namespace {
 

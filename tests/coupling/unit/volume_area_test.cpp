@@ -8,6 +8,7 @@
 #include "coupler/acceleration/volume_level.hpp"
 
 namespace couplet {
+using namespace coupling;
 using namespace coupler;
 namespace {
 

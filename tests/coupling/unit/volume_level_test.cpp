@@ -14,6 +14,7 @@
 #include "tests/coupling/toy/spring.hpp"
 
 namespace couplet {
+using namespace coupling;
 namespace {
 
 namespace fs = std::filesystem;
@@ -80,8 +81,8 @@ class Bag final : public Participant {
     now_ = next_;
     return {.dt = step_.dt};
   }
-  void save(CheckpointWriter& file) const override { file.write("velocity", now_); }
-  void load(CheckpointReader& file) override { file.read("velocity", now_); }
+  void save(io::CheckpointWriter& file) const override { file.write("velocity", now_); }
+  void load(io::CheckpointReader& file) override { file.read("velocity", now_); }
   void write_output(double, int) override {}
   void write_monitors(double) override {}
 
@@ -94,7 +95,7 @@ class Bag final : public Participant {
 
 struct BagRun {
   coupler::CouplingParameters coupling;
-  SimulationParameters simulation;
+  app::SimulationParameters simulation;
   toy::SpringParameters spring;
   int bags = 1;
   bool at_once = false;
@@ -275,7 +276,7 @@ TEST(VolumeLevel, interrupted_run_equals_uninterrupted_run_bit_for_bit) {
     BagRun second;
     second.bags = bags;
     second.folder += "-second";
-    second.restart = find_checkpoint(first.folder / "checkpoints");
+    second.restart = app::find_checkpoint(first.folder / "checkpoints");
     second();
     EXPECT_EQ(second.problem, "");
     EXPECT_EQ(second.position, whole.position);

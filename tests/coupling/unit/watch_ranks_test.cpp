@@ -11,6 +11,7 @@
 #include "tests/support/world.hpp"
 
 namespace couplet {
+using namespace coupling;
 namespace {
 
 using Place = Interface::Place;

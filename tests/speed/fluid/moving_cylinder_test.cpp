@@ -45,8 +45,8 @@ mesh_mover::Parameters motion() {
 }
 
 /// One step to t + dt: mesh motion, then the flow.
-void step(Fluid<2>& fluid, mesh_mover::Laplacian& laplacian, const Mesh& mesh, const Geometry& geometry,
-          double t) {
+void step(Fluid<2>& fluid, mesh_mover::Laplacian& laplacian, const mesh::Mesh& mesh,
+          const mesh::Geometry& geometry, double t) {
   std::vector<double> prescribed(2 * geometry.points.size(), 0.0);
   for (const Index point : laplacian.interface_points())
     prescribed[2 * point + 1] = amplitude * std::sin(omega * (t + dt));
@@ -64,7 +64,7 @@ void step(Fluid<2>& fluid, mesh_mover::Laplacian& laplacian, const Mesh& mesh, c
 }
 
 double mean_divergence(const Fluid<2>& fluid) {
-  const Mesh& mesh = fluid.mesh();
+  const mesh::Mesh& mesh = fluid.mesh();
   const State<2>& s = fluid.state();
   std::vector<double> out(mesh.cells.n_local(), 0.0);
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
@@ -82,7 +82,7 @@ double mean_divergence(const Fluid<2>& fluid) {
 class MovingCylinder : public testing::TestWithParam<double> {};
 
 TEST_P(MovingCylinder, keeps_its_mass_while_it_is_timed) {
-  const auto [mesh, geometry] = load_mesh(MPI_COMM_SELF, COUPLET_CYLINDER, 2, {{"n", 50}});
+  const auto [mesh, geometry] = mesh::load_mesh(MPI_COMM_SELF, COUPLET_CYLINDER, 2, {{"n", 50}});
   FluidParameters parameters = channel();
   parameters.pressure_tolerance = GetParam();
   Fluid<2> fluid(mesh, geometry, parameters, true);

@@ -14,6 +14,7 @@
 #include "tests/coupling/toy/modal.hpp"
 
 namespace couplet {
+using namespace coupling;
 using namespace coupler;
 namespace {
 
@@ -22,7 +23,7 @@ using Type = AccelerationParameters::Type;
 
 struct ModalRun {
   CouplingParameters coupling;
-  SimulationParameters simulation;
+  app::SimulationParameters simulation;
   toy::ModalParameters p;
   fs::path folder = fs::temp_directory_path() / ("couplet-modal-" + std::to_string(::getpid()));
   std::string problem;

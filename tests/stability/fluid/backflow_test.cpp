@@ -22,13 +22,14 @@ double largest_speed(bool stabilised) {
   p.boundaries["xmax"] = boundary(BoundaryType::outlet);
   p.boundaries["xmin"].backflow_stabilisation = p.boundaries["xmax"].backflow_stabilisation = stabilised;
   FluidCase<2> c(MPI_COMM_WORLD,
-                 make_box(BoxCells::quadrilaterals, {12, 24, 1}, Vec3::Zero(), Vec3(0.5, 1, 1)), p);
+                 mesh::make_box(mesh::BoxCells::quadrilaterals, {12, 24, 1}, Vec3::Zero(), Vec3(0.5, 1, 1)),
+                 p);
   double largest = 0;
   for (int i = 0; i < 150; ++i) {
     c.step(0.01);
     for (const Vec<2>& u : c.state().u) largest = std::max(largest, u.norm());
   }
-  return max(MPI_COMM_WORLD, largest);
+  return parallel::max(MPI_COMM_WORLD, largest);
 }
 
 const double bound = 1.25 * std::sqrt(2 * 200 / 1.3);

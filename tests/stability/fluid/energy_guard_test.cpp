@@ -21,7 +21,9 @@ FluidParameters layers() {
   all_sides(p, 2, boundary(BoundaryType::slip));
   return p;
 }
-RawMesh box(int n) { return make_box(BoxCells::quadrilaterals, {n, n, 1}, Vec3::Zero(), Vec3::Ones()); }
+mesh::RawMesh box(int n) {
+  return mesh::make_box(mesh::BoxCells::quadrilaterals, {n, n, 1}, Vec3::Zero(), Vec3::Ones());
+}
 
 TEST(EnergyGuard, an_explicit_viscous_term_beyond_its_limit_fails_by_name_and_leaves_level_n) {
   FluidParameters p = layers();

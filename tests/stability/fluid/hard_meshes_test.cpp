@@ -10,6 +10,7 @@
 #include "common/mesh/quality.hpp"
 
 namespace couplet::fluid::test {
+using namespace mesh;
 namespace {
 
 struct Outcome {

@@ -39,8 +39,8 @@ class LightWall {
   double unseen() const { return unseen_; }
 
  private:
-  static RawMesh mesh() {
-    return make_box(BoxCells::quadrilaterals, {32, 24, 1}, Vec3::Zero(), Vec3(1, 0.75, 1));
+  static mesh::RawMesh mesh() {
+    return mesh::make_box(mesh::BoxCells::quadrilaterals, {32, 24, 1}, Vec3::Zero(), Vec3(1, 0.75, 1));
   }
   static FluidParameters parameters(double viscosity) {
     FluidParameters p;
@@ -64,7 +64,7 @@ class LightWall {
       if (fluid.boundary().is_interface(static_cast<Index>(b)))
         sum += (fluid.pressure_force()[b] + fluid.viscous_force()[b]).y() *
                std::sin(wave * case_.state().placement->boundary_centre[b].x());
-    return couplet::sum(MPI_COMM_WORLD, sum);
+    return couplet::parallel::sum(MPI_COMM_WORLD, sum);
   }
   /// The force is linear in a within one prediction: two passes say all.
   double solve(double first, double push) {

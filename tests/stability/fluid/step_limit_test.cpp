@@ -6,6 +6,7 @@
 #include "common/base/error.hpp"
 
 namespace couplet::fluid::test {
+using namespace mesh;
 namespace {
 
 double largest_speed(const FluidCase<2>& c) {

@@ -9,6 +9,7 @@
 #include "common/base/error.hpp"
 
 namespace couplet::fluid::test {
+using namespace mesh;
 namespace {
 
 using Case = std::tuple<ViscousTreatment, double>;

@@ -19,13 +19,15 @@ FluidParameters vortices(double reynolds) {
   return p;
 }
 
-RawMesh eighth(int n) { return make_box(BoxCells::hexahedra, {n, n, n}, Vec3::Zero(), Vec3::Constant(M_PI)); }
+mesh::RawMesh eighth(int n) {
+  return mesh::make_box(mesh::BoxCells::hexahedra, {n, n, n}, Vec3::Zero(), Vec3::Constant(M_PI));
+}
 
 double kinetic_energy(const FluidCase<3>& c) {
   double sum = 0;
   for (Index i = 0; i < c.mesh().cells.n_owned(); ++i)
     sum += 0.5 * c.state().placement->volume[i] * c.state().u[i].squaredNorm();
-  return couplet::sum(c.mesh().comm, sum);
+  return couplet::parallel::sum(c.mesh().comm, sum);
 }
 
 // Mechanism: convection that does work on its own moves energy to the smallest scales and piles it up there.

@@ -9,6 +9,8 @@
 #include "swing.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
+using namespace time;
 namespace {
 
 // Mechanism: a scheme that carries an acceleration or an earlier level along weighs it by a step that is gone.

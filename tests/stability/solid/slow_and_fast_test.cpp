@@ -7,6 +7,7 @@
 #include "swing.hpp"
 
 namespace couplet::testing {
+using namespace time;
 namespace {
 
 /// Step at an elastic Courant number: cells of 0.1 m, E = 1e5 Pa, 1000 kg/m^3.

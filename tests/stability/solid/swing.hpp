@@ -13,7 +13,7 @@
 namespace couplet::testing {
 
 /// A sheet held at xmin that starts with a velocity; undamped.
-inline SolidParameters free_swing(TimeScheme scheme, FaceGradient gradient) {
+inline SolidParameters free_swing(time::TimeScheme scheme, FaceGradient gradient) {
   SolidParameters p = box_parameters(2);
   p.analysis = SolidParameters::Analysis::dynamic;
   p.material = {1000, 1e5, 0.3};
@@ -34,7 +34,7 @@ struct Swing {
 };
 
 /// `steps`: one after the other, again and again; the program looks at its energy every 20 of them.
-inline Swing swing(const RawMesh& raw, const SolidParameters& p, const std::vector<double>& steps,
+inline Swing swing(const mesh::RawMesh& raw, const SolidParameters& p, const std::vector<double>& steps,
                    int count) {
   const auto solid = make_solid(raw, p);
   Swing result;
@@ -57,8 +57,9 @@ inline Swing swing(const RawMesh& raw, const SolidParameters& p, const std::vect
 }
 
 /// Ten cells along, four across; the middle leans, the ends stand.
-inline RawMesh sheet(double lean) {
-  RawMesh raw = make_box(BoxCells::quadrilaterals, {10, 4, 1}, Vec3::Zero(), Vec3(1, 0.4, 0));
+inline mesh::RawMesh sheet(double lean) {
+  mesh::RawMesh raw =
+      mesh::make_box(mesh::BoxCells::quadrilaterals, {10, 4, 1}, Vec3::Zero(), Vec3(1, 0.4, 0));
   for (Vec3& x : raw.points) x[0] += lean * (x[1] - 0.2) * std::sin(M_PI * x[0]);
   return raw;
 }

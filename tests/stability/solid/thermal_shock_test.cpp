@@ -22,8 +22,9 @@ Shock shock(HeatScheme scheme, double fourier) {
   p.scheme = scheme;
   p.initial_temperature = {"0"};
   p.boundaries["xmin"] = heat_boundary(HeatType::temperature, "1");
-  HeatCase scene(make_box(BoxCells::quadrilaterals, {int(n), 1, 1}, Vec3::Zero(), Vec3(1, 0.1, 0)),
-                 {{1, 1.0, 1.0}}, p);
+  HeatCase scene(
+      mesh::make_box(mesh::BoxCells::quadrilaterals, {int(n), 1, 1}, Vec3::Zero(), Vec3(1, 0.1, 0)),
+      {{1, 1.0, 1.0}}, p);
   Shock result;
   const int before_it = log::doubts();
   for (int i = 0; i < 60; ++i) {

@@ -11,6 +11,7 @@
 #include "common/config/leaves.hpp"
 
 namespace couplet {
+using namespace app;
 namespace {
 
 using testing::ElementsAre;

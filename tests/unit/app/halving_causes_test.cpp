@@ -10,6 +10,8 @@
 #include "common/app/loop/step_loop.hpp"
 
 namespace couplet {
+using namespace app;
+using namespace coupling;
 namespace {
 
 using testing::HasSubstr;

@@ -34,7 +34,7 @@ class MpiStart : public testing::Test {
     ::clearenv();
     ::setenv("HOME", home_.c_str(), 1);
     for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
-    prepare_mpi_start();
+    parallel::prepare_mpi_start();
   }
   static std::string value(const char* name) {
     const char* text = std::getenv(name);

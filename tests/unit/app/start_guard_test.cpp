@@ -16,7 +16,7 @@ TEST(StartGuardDeathTest, ends_a_start_that_takes_too_long) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(
       {
-        StartGuard guard(0.05, "fluid");
+        app::StartGuard guard(0.05, "fluid");
         std::this_thread::sleep_for(30s);
         std::_Exit(0);
       },
@@ -27,8 +27,8 @@ TEST(StartGuardDeathTest, is_silent_once_disarmed_and_where_no_timeout_is_asked_
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(
       {
-        std::optional<StartGuard> guard(std::in_place, 0.05, "fluid");
-        const StartGuard never(0, "solid");
+        std::optional<app::StartGuard> guard(std::in_place, 0.05, "fluid");
+        const app::StartGuard never(0, "solid");
         guard.reset();
         std::this_thread::sleep_for(300ms);
         std::_Exit(0);

@@ -15,6 +15,8 @@
 #include "common/io/checkpoint_set.hpp"
 
 namespace couplet {
+using namespace app;
+using namespace io;
 namespace {
 
 namespace fs = std::filesystem;
@@ -32,7 +34,7 @@ class Checkpoints : public testing::Test {
     simulation.time_step = 1;
     simulation.checkpoint_interval = 1;
     simulation.checkpoints_kept = keep;
-    StepLoop loop(MPI_COMM_SELF, simulation, Scheme::standalone, folder);
+    StepLoop loop(MPI_COMM_SELF, simulation, coupling::Scheme::standalone, folder);
     double time = 0;
     if (!restart.empty()) {
       loop.restart(read_run_state(restart));
@@ -40,13 +42,13 @@ class Checkpoints : public testing::Test {
     }
     StepActions actions;
     steps.clear();
-    actions.attempt = [&](const Step& step) {
+    actions.attempt = [&](const coupling::Step& step) {
       steps.push_back(step);
       return std::nullopt;
     };
     actions.accept = [&](double t, int) { time = t; };
     actions.write_start = [](int) {};
-    actions.report = [](const Step&, double) {};
+    actions.report = [](const coupling::Step&, double) {};
     actions.save = [&](const fs::path& place) {
       CheckpointWriter file(MPI_COMM_SELF, place / "one.h5");
       file.write_scalar("time", time);
@@ -71,7 +73,7 @@ class Checkpoints : public testing::Test {
     return text.str();
   }
   fs::path folder = fs::temp_directory_path() / fmt::format("couplet-app-{}", ::getpid());
-  std::vector<Step> steps;  ///< tried in the last run
+  std::vector<coupling::Step> steps;  ///< tried in the last run
 };
 
 TEST_F(Checkpoints, a_participant_is_told_the_last_step_and_takes_one_step_of_its_own_in_each) {
@@ -125,9 +127,9 @@ TEST_F(Checkpoints, a_folder_or_a_link_of_the_user_in_the_way_stays_as_it_is) {
 TEST_F(Checkpoints, a_file_is_not_written_through_a_link) {
   std::ofstream(folder / "precious") << "precious";
   fs::create_symlink(folder / "precious", folder / "link");
-  EXPECT_THAT(error_of([&] { own_file(folder / "link"); }), HasSubstr("is a symbolic link"));
-  EXPECT_EQ(own_file(folder / "precious"), folder / "precious");
-  EXPECT_EQ(own_file(folder / "new"), folder / "new");
+  EXPECT_THAT(error_of([&] { base::own_file(folder / "link"); }), HasSubstr("is a symbolic link"));
+  EXPECT_EQ(base::own_file(folder / "precious"), folder / "precious");
+  EXPECT_EQ(base::own_file(folder / "new"), folder / "new");
   EXPECT_THAT(error_of([&] { CheckpointWriter(MPI_COMM_SELF, folder / "a.h5"); }), "");
   fs::create_symlink(folder / "precious", folder / "a.h5.part");
   EXPECT_THAT(error_of([&] { CheckpointWriter(MPI_COMM_SELF, folder / "a.h5"); }),

@@ -8,6 +8,7 @@
 #include <random>
 
 namespace couplet {
+using namespace base;
 namespace {
 
 const Vec3 a(0, 0, 0), b(2, 0, 0), c(0, 1, 0);

@@ -7,6 +7,7 @@
 #include <vector>
 
 namespace couplet {
+using namespace base;
 namespace {
 
 TEST(SavedNumbers, are_taken_in_order_and_none_is_left) {

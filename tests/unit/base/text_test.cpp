@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 namespace couplet {
+using namespace base;
 namespace {
 
 TEST(Text, edit_distance_counts_insertions_deletions_replacements_and_swaps) {

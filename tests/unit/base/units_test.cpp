@@ -8,6 +8,7 @@
 #include "common/base/error.hpp"
 
 namespace couplet {
+using namespace base;
 namespace {
 
 struct Case {

@@ -41,8 +41,8 @@ TEST(Limits, control_characters_are_refused_with_their_place) {
 }
 
 TEST(Limits, brackets_in_units_are_counted) {
-  EXPECT_EQ(parse_unit("((m))").factor, 1);
-  EXPECT_THROW(parse_unit(std::string(19000, '(') + "m" + std::string(19000, ')')), Error);
+  EXPECT_EQ(base::parse_unit("((m))").factor, 1);
+  EXPECT_THROW(base::parse_unit(std::string(19000, '(') + "m" + std::string(19000, ')')), Error);
 }
 
 struct Limited {

@@ -12,6 +12,8 @@
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
+using namespace coupling;
+using namespace mesh;
 namespace {
 
 class InterfaceMapOf : public ::testing::TestWithParam<BoxCells> {
@@ -43,8 +45,8 @@ double f(const Vec3& x, int component) { return std::sin(3 * x[0] + component) +
 /// What the ranks have together, by number.
 template <class T>
 std::map<GlobalIndex, T> together(const std::vector<GlobalIndex>& ids, const std::vector<T>& values) {
-  const auto all_ids = all_gather(MPI_COMM_WORLD, ids);
-  const auto all = all_gather(MPI_COMM_WORLD, values);
+  const auto all_ids = parallel::all_gather(MPI_COMM_WORLD, ids);
+  const auto all = parallel::all_gather(MPI_COMM_WORLD, values);
   std::map<GlobalIndex, T> result;
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_FALSE(result.contains(all_ids[i])) << "twice";
@@ -89,7 +91,7 @@ TEST_P(InterfaceMapOf, description_holds_every_vertex_and_face_once) {
 
 TEST_P(InterfaceMapOf, faces_name_their_vertices_by_their_places_in_the_list_of_all_ranks) {
   const Interface interface = InterfaceMap(mesh, {"xmax", "ymin"}).describe(geometry);
-  const std::vector<Vec3> all = all_gather(MPI_COMM_WORLD, interface.vertices);
+  const std::vector<Vec3> all = parallel::all_gather(MPI_COMM_WORLD, interface.vertices);
   ASSERT_EQ(interface.face_offset.size(), interface.face_centres.size() + 1);
   EXPECT_EQ(interface.parts, (std::vector<std::string>{"xmax", "ymin"}));
   for (std::size_t i = 0; i < interface.face_centres.size(); ++i) {

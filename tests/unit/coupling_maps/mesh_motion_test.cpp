@@ -11,13 +11,15 @@
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
+using namespace coupling;
+using namespace mesh;
 namespace {
 
 /// The world as two programs: the mover on rank 0 (or on the last two of five), the fluid on the others.
 class TwoPrograms : public ::testing::Test {
  protected:
   TwoPrograms() {
-    const int size = comm_size(MPI_COMM_WORLD), rank = comm_rank(MPI_COMM_WORLD);
+    const int size = parallel::comm_size(MPI_COMM_WORLD), rank = parallel::comm_rank(MPI_COMM_WORLD);
     const int n_mover = size == 5 ? 2 : 1;
     is_mover = rank < n_mover;
     MPI_Comm_split(MPI_COMM_WORLD, is_mover ? 0 : 1, rank, &own);

@@ -12,6 +12,7 @@
 #include "thermocline/judge/effect_cards.hpp"
 
 namespace couplet::testing {
+using namespace effects;
 using namespace coupler;
 using namespace solid;
 namespace {
@@ -284,10 +285,10 @@ TEST(ComplianceWatch, knows_nothing_of_walls_at_rest_and_of_the_first_step) {
 
 TEST(EffectCards, coupling_verdicts_turn_at_their_thresholds) {
   CouplingParameters one_pass, iterated;
-  one_pass.scheme = Scheme::explicit_;
+  one_pass.scheme = coupling::Scheme::explicit_;
   one_pass.fluid = iterated.fluid = {"fluid"};
   one_pass.structure = iterated.structure = {"solid"};
-  iterated.scheme = Scheme::semi_implicit;
+  iterated.scheme = coupling::Scheme::semi_implicit;
   const auto sound = [&](const char* effect, const CouplingEvidence& e) {
     const auto v = verdict_on(effect, coupling_effect_cards(), one_pass, e);
     EXPECT_TRUE(v.has_value()) << effect;
@@ -399,17 +400,17 @@ TEST(AuditTrail, tells_again_what_turns_wrong) {
                   .recommendation = "",
                   .wrong_from = 0.5};
   EXPECT_EQ(v.id(), "balance-of-the-kinetic-energy");
-  EXPECT_EQ(v.severity(), Severity::warning);
+  EXPECT_EQ(v.severity(), base::Severity::warning);
   EXPECT_EQ(trail.news({v}).size(), 1u);
   v.number = 0.4;
   EXPECT_THAT(trail.news({v}), IsEmpty());
   v.number = 0.6;
-  EXPECT_EQ(v.severity(), Severity::wrong);
+  EXPECT_EQ(v.severity(), base::Severity::wrong);
   EXPECT_EQ(trail.news({v}).size(), 1u);
   EXPECT_THAT(trail.news({v}), IsEmpty());
   EXPECT_EQ(trail.unsound().size(), 1u);
   v.number = std::nan("");
-  EXPECT_EQ(v.severity(), Severity::wrong);
+  EXPECT_EQ(v.severity(), base::Severity::wrong);
 }
 
 TEST(AuditTrail, tells_bad_news_once) {

@@ -10,6 +10,8 @@
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
+using namespace elastic;
+using namespace mesh;
 namespace {
 
 constexpr double mu = 1.1, lambda = 1.7;
@@ -94,7 +96,7 @@ const std::vector<BoundaryRow> all_kinds = {fixed_row(), free_row(), mirror_row(
 
 /// The kernel beside the assembled matrix and its known columns.
 void expect_the_rows_of_the_matrix(const Setting& s) {
-  std::mt19937 random(17 + comm_rank(MPI_COMM_WORLD));
+  std::mt19937 random(17 + parallel::comm_rank(MPI_COMM_WORLD));
   std::uniform_real_distribution<double> number(-1, 1);
   std::vector<double> u(s.rows.n_unknowns()), known;
   for (double& x : u) x = number(random);
@@ -154,7 +156,7 @@ TEST(ElasticKernel, linear_fields_pass_from_one_material_into_the_next) {
       for (const Index f : rows.unknown_faces()) put(geometry.face_centre[f], u);
       for (const Index v : rows.constraints().points()) put(geometry.points[v], known);
       for (const Index f : rows.known_faces()) put(geometry.face_centre[f], known);
-      EXPECT_GT(sum(MPI_COMM_WORLD, GlobalIndex(rows.unknown_faces().size())), 0);
+      EXPECT_GT(parallel::sum(MPI_COMM_WORLD, GlobalIndex(rows.unknown_faces().size())), 0);
       std::vector<double> force(u.size());
       kernel.apply(u, known, force);
       for (const double x : force) ASSERT_NEAR(x, 0, 1e-11);
@@ -218,7 +220,7 @@ TEST(ElasticKernel, no_vertex_of_a_symmetry_plane_moves_across_it) {
   for (const FaceGradientScheme scheme : {FaceGradientScheme::thesis, FaceGradientScheme::corrected})
     for (const Case& c : all_cases) {
       const Setting s(c, scheme, all_kinds);
-      std::mt19937 random(17 + comm_rank(MPI_COMM_WORLD));
+      std::mt19937 random(17 + parallel::comm_rank(MPI_COMM_WORLD));
       std::uniform_real_distribution<double> number(-1, 1);
       std::vector<double> u(s.rows.n_unknowns()),
           points(std::size_t(s.mesh.points.n_local()) * s.mesh.dim, 0);
@@ -232,7 +234,7 @@ TEST(ElasticKernel, no_vertex_of_a_symmetry_plane_moves_across_it) {
             across = std::max(across, std::abs(points[v * s.mesh.dim + 1]));
           }
       EXPECT_LT(across, 1e-13);
-      EXPECT_GT(max(MPI_COMM_WORLD, along), 0.1);
+      EXPECT_GT(parallel::max(MPI_COMM_WORLD, along), 0.1);
     }
 }
 

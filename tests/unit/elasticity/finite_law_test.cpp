@@ -10,6 +10,7 @@
 #include "solid_solver/laws/laws.hpp"
 
 namespace couplet::testing {
+using namespace elastic;
 namespace {
 
 constexpr LameConstants lame{0.8e6, 1.3e6};

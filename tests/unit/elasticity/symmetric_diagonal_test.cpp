@@ -10,6 +10,8 @@
 #include "common/mesh/load.hpp"
 
 namespace couplet {
+using namespace elastic;
+using namespace mesh;
 namespace {
 
 constexpr LameConstants lame{1.1, 1.7};
@@ -24,7 +26,7 @@ std::pair<double, double> beside_the_matrix(BoxCells cells, const BoundaryRow& s
   conditions[1] = second;
   const ElasticOperator rows(mesh, geometry, conditions, lame);
   const SymmetricDiagonal diagonal = symmetric_diagonal(mesh, rows, VolumeStrain::faces);
-  const SparseMatrix matrix = symmetric_matrix(mesh, rows, {});
+  const linalg::SparseMatrix matrix = symmetric_matrix(mesh, rows, {});
 
   const std::size_t dim = mesh.dim, n_cells = std::size_t(mesh.cells.n_owned());
   EXPECT_EQ(diagonal.cells.size(), n_cells * dim);

@@ -11,6 +11,8 @@
 #include "common/mesh/load.hpp"
 
 namespace couplet {
+using namespace elastic;
+using namespace mesh;
 namespace {
 
 constexpr LameConstants lame{1.1, 1.7};

@@ -9,6 +9,7 @@
 #include "common/base/error.hpp"
 
 namespace couplet {
+using namespace fv;
 namespace {
 
 std::string message_of(const std::string& text) {

@@ -9,6 +9,8 @@
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
+using namespace fv;
+using namespace mesh;
 namespace {
 
 /// Every boundary point stays, every inner point moves: skewed cells and warped faces.
@@ -79,9 +81,9 @@ TEST_P(OnEveryCellType, corners_in_few_cells_take_a_wider_row_that_does_not_magn
     return most;
   };
   std::int64_t here = 0, in_all = 0;
-  EXPECT_LT(max(part.mesh.comm, magnified(part, here)), 6);
+  EXPECT_LT(parallel::max(part.mesh.comm, magnified(part, here)), 6);
   magnified(whole, in_all);
-  EXPECT_EQ(sum(part.mesh.comm, here), in_all);
+  EXPECT_EQ(parallel::sum(part.mesh.comm, here), in_all);
   const bool has_small_corners = GetParam() == BoxCells::tetrahedra || GetParam() == BoxCells::prisms;
   if (has_small_corners || GetParam() == BoxCells::hexahedra) {
     EXPECT_EQ(whole.mesh.wide_points.empty(), !has_small_corners);
@@ -105,7 +107,7 @@ TEST_P(OnEveryCellType, symmetric_linear_fields_are_exact_at_symmetry_planes_and
         (interpolation.vector_at<3>(v, values.cells, values.boundary) - field(geometry.points[v])).norm(),
         1e-11);
   }
-  EXPECT_GT(sum(mesh.comm, GlobalIndex(on_planes)), 0);
+  EXPECT_GT(parallel::sum(mesh.comm, GlobalIndex(on_planes)), 0);
 }
 
 TEST_P(OnEveryCellType, fixed_vertices_see_faces_of_fixed_patches_only) {

@@ -10,6 +10,8 @@
 #include "common/mesh/load.hpp"
 
 namespace couplet {
+using namespace fv;
+using namespace mesh;
 namespace {
 
 class Conduction : public ::testing::TestWithParam<BoxCells> {};

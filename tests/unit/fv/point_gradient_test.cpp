@@ -6,6 +6,7 @@
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
+using namespace mesh;
 namespace {
 
 LoadedMesh box(BoxCells cells, double amount) {
@@ -47,7 +48,7 @@ TEST_P(PointGradient, linear_fields_are_exact_on_warped_cells_whatever_the_commo
       at_points(mesh, geometry, [&](const Vec3& x) { return Vec3(Vec3(7, 8, 9) + wanted.transpose() * x); });
   for (const Tensor3& slope : {Tensor3(Tensor3::Zero()), wanted}) {
     const std::vector<Tensor3> slopes(mesh.points.n_local(), slope);
-    const std::vector<Tensor3> gradients = gradients_from_points(mesh, geometry, values, slopes);
+    const std::vector<Tensor3> gradients = fv::gradients_from_points(mesh, geometry, values, slopes);
     ASSERT_EQ(std::ssize(gradients), mesh.cells.n_owned());
     for (const Tensor3& g : gradients) EXPECT_LT((g - wanted).norm(), 1e-11);
   }
@@ -67,7 +68,7 @@ TEST_P(PointGradient, quadratic_fields_are_exact_at_the_centres) {
   });
   std::vector<Tensor3> slopes;
   for (const Vec3& x : geometry.points) slopes.push_back(slope_at(x));
-  const std::vector<Tensor3> gradients = gradients_from_points(mesh, geometry, values, slopes);
+  const std::vector<Tensor3> gradients = fv::gradients_from_points(mesh, geometry, values, slopes);
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
     EXPECT_LT((gradients[c] - slope_at(geometry.cell_centre[c])).norm(), 1e-11);
 }

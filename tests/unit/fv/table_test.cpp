@@ -14,6 +14,7 @@
 #include "common/fv/expression.hpp"
 
 namespace couplet {
+using namespace fv;
 namespace {
 
 using ::testing::HasSubstr;

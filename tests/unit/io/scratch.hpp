@@ -16,15 +16,15 @@ class Scratch final {
  public:
   Scratch() {
     std::string name = std::filesystem::temp_directory_path() / ("couplet-io-" + std::to_string(::getpid()));
-    broadcast(MPI_COMM_WORLD, name);
+    parallel::broadcast(MPI_COMM_WORLD, name);
     path_ = name;
-    if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::create_directories(path_);
+    if (parallel::comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::create_directories(path_);
     MPI_Barrier(MPI_COMM_WORLD);
   }
   ~Scratch() {
     MPI_Barrier(MPI_COMM_WORLD);
     std::error_code ignored;
-    if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove_all(path_, ignored);
+    if (parallel::comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove_all(path_, ignored);
     MPI_Barrier(MPI_COMM_WORLD);
   }
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }

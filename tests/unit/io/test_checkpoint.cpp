@@ -17,13 +17,14 @@
 #include "tests/unit/io/scratch.hpp"
 
 namespace couplet {
+using namespace io;
 namespace {
 
 using ::testing::HasSubstr;
 
 // Another count on every rank (none on the last of three), with values that printing would spoil.
 std::vector<double> awkward_values() {
-  const int rank = comm_rank(world);
+  const int rank = parallel::comm_rank(world);
   std::mt19937_64 random(42 + rank);
   std::vector<double> values(rank == 2 ? 0 : 1000 + 17 * rank);
   for (double& v : values) v = std::ldexp(double(random()) / 3, int(random() % 200) - 100);
@@ -46,7 +47,7 @@ void write_one(const std::filesystem::path& file, const std::vector<double>& val
 // Changes the file as a crash or a bad disk would, seen by all ranks.
 template <class Action>
 void damage(const std::filesystem::path& file, Action&& action) {
-  if (comm_rank(world) == 0) action(file);
+  if (parallel::comm_rank(world) == 0) action(file);
   MPI_Barrier(world);
 }
 
@@ -147,9 +148,9 @@ TEST(Checkpoint, another_number_of_ranks_is_refused_with_both_numbers) {
   const auto file = scratch / "a.h5";
   write_one(file, awkward_values());
   // One rank alone reads what all wrote, or the other way round.
-  const int size = comm_size(world);
+  const int size = parallel::comm_size(world);
   if (size == 1) return;
-  if (comm_rank(world) == 0) {
+  if (parallel::comm_rank(world) == 0) {
     const std::string text = error_of([&] { CheckpointReader(MPI_COMM_SELF, file); });
     EXPECT_THAT(text, HasSubstr(fmt::format("was written on {} ranks, this run has 1", size)));
   }
@@ -163,7 +164,7 @@ TEST(Checkpoint, a_missing_name_or_another_size_is_told_on_every_rank) {
   EXPECT_THAT(error_of([&] { reader.read("fluid/velocity"); }), HasSubstr("has no array 'fluid/velocity'"));
   EXPECT_THAT(error_of([&] { reader.read_scalar("dt"); }), HasSubstr("has no value 'dt'"));
   // Only rank 0 asks for a wrong size: all must hear of it.
-  std::vector<double> values(awkward_values().size() + (comm_rank(world) == 0 ? 1 : 0));
+  std::vector<double> values(awkward_values().size() + (parallel::comm_rank(world) == 0 ? 1 : 0));
   EXPECT_THAT(error_of([&] { reader.read("solid/displacement", values); }),
               HasSubstr("has 1000 values of 'solid/displacement' on rank 0, but 1001 are expected"));
   EXPECT_EQ(reader.read_scalar("time"), 1.25);

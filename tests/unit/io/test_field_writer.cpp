@@ -12,6 +12,8 @@
 #include "tests/unit/io/scratch.hpp"
 
 namespace couplet {
+using namespace io;
+using namespace mesh;
 namespace {
 
 using ::testing::HasSubstr;
@@ -21,7 +23,7 @@ const double nan_time = std::numeric_limits<double>::quiet_NaN();
 LoadedMesh make_mesh(BoxCells cells, int n = 4) {
   const bool flat = cells == BoxCells::quadrilaterals || cells == BoxCells::triangles;
   RawMesh raw;
-  if (comm_rank(world) == 0)
+  if (parallel::comm_rank(world) == 0)
     raw = make_box(cells, {n, 3, flat ? 1 : 2}, Vec3::Zero(), Vec3(2, 1, flat ? 0 : 1));
   return distribute(world, raw);
 }

@@ -8,11 +8,12 @@
 #include "common/mesh/load.hpp"
 
 namespace couplet {
+using namespace io;
 namespace {
 
-LoadedMesh box() {
-  return distribute(MPI_COMM_WORLD,
-                    make_box(BoxCells::quadrilaterals, {6, 5, 1}, Vec3::Zero(), Vec3(6, 5, 0)));
+mesh::LoadedMesh box() {
+  return mesh::distribute(
+      MPI_COMM_WORLD, mesh::make_box(mesh::BoxCells::quadrilaterals, {6, 5, 1}, Vec3::Zero(), Vec3(6, 5, 0)));
 }
 
 TEST(Numbering, a_mesh_shared_out_as_before_is_taken) {

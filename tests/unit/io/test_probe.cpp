@@ -9,6 +9,8 @@
 #include "tests/unit/io/scratch.hpp"
 
 namespace couplet {
+using namespace io;
+using namespace mesh;
 namespace {
 
 using ::testing::HasSubstr;
@@ -16,7 +18,7 @@ using ::testing::HasSubstr;
 LoadedMesh make_stretched(BoxCells cells, double distortion = 0.2) {
   const bool flat = cells == BoxCells::quadrilaterals || cells == BoxCells::triangles;
   RawMesh raw;
-  if (comm_rank(world) == 0) {
+  if (parallel::comm_rank(world) == 0) {
     raw = make_box(cells, {5, 4, flat ? 1 : 3}, Vec3(0.5, 0, 0), Vec3(2.5, 1, flat ? 0 : 0.75));
     perturb_interior(raw, distortion, 7);
   }
@@ -43,7 +45,7 @@ TEST_P(ProbeIn, a_cell_is_exact_for_linear_fields) {
     const Vec3 x(0.5 + 2 * s, 1 - s * s, mesh.dim == 2 ? 0 : 0.75 * s * (1.3 - s));
     const Probe probe(mesh, geometry.points, "p", x);
     const auto got = probe.sample(values, 2);
-    EXPECT_EQ(got.size(), comm_rank(world) == 0 ? 2u : 0u);
+    EXPECT_EQ(got.size(), parallel::comm_rank(world) == 0 ? 2u : 0u);
     if (got.empty()) continue;
     EXPECT_NEAR(got[0], linear(x), 1e-12) << s;
     EXPECT_NEAR(got[1], -2 * linear(x), 1e-12) << s;
@@ -59,7 +61,7 @@ TEST_P(ProbeIn, a_mesh_point_is_exactly_that_point) {
     double wanted = 0;
     for (Index p = 0; p < mesh.points.n_owned(); ++p)
       if ((geometry.points[p] - corner).norm() < 1e-12) wanted = values[p];
-    wanted = sum(world, wanted);
+    wanted = parallel::sum(world, wanted);
     if (wanted == 0) continue;  // the interior point was moved by the distortion
     const auto got = Probe(mesh, geometry.points, "p", corner).sample(values, 1);
     if (!got.empty()) {
@@ -108,7 +110,7 @@ TEST(Probe, lives_on_exactly_one_rank) {
   const Probe probe(mesh, geometry.points, "p", Vec3(1.3, 0.6, 0));
   double total = 0;
   for (const double w : probe.weights()) total += w;
-  EXPECT_NEAR(sum(world, total), 1, 1e-14);
+  EXPECT_NEAR(parallel::sum(world, total), 1, 1e-14);
 }
 
 }  // namespace

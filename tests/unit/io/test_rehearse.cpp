@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 /// What rehearse() says of reading so; empty: nothing.
 std::string said_of(const std::function<void()>& read) {
   try {
-    rehearse("a.h5", "file", read);
+    io::rehearse("a.h5", "file", read);
   } catch (const Error& error) {
     return error.what();
   }

@@ -9,6 +9,7 @@
 #include "tests/unit/io/scratch.hpp"
 
 namespace couplet {
+using namespace io;
 namespace {
 
 using ::testing::HasSubstr;
@@ -20,7 +21,7 @@ std::string text_of(const std::filesystem::path& file) {
 
 // A series lives on one rank: each rank has its own file here.
 std::filesystem::path own_file(const Scratch& scratch) {
-  return scratch / fmt::format("tip{}.csv", comm_rank(MPI_COMM_WORLD));
+  return scratch / fmt::format("tip{}.csv", parallel::comm_rank(MPI_COMM_WORLD));
 }
 
 const std::vector<std::string> columns{"time [s]", "tip x [m]"};

@@ -14,6 +14,8 @@
 #include "tests/unit/io/scratch.hpp"
 
 namespace couplet {
+using namespace io;
+using namespace mesh;
 namespace {
 
 using ::testing::HasSubstr;
@@ -23,7 +25,7 @@ const double from_start = std::numeric_limits<double>::quiet_NaN();
 LoadedMesh box_of(BoxCells cells) {
   const bool flat = cells == BoxCells::quadrilaterals || cells == BoxCells::triangles;
   RawMesh raw;
-  if (comm_rank(world) == 0)
+  if (parallel::comm_rank(world) == 0)
     raw = make_box(cells, {5, 3, flat ? 1 : 2}, Vec3::Zero(), Vec3(2, 1, flat ? 0 : 1));
   return distribute(world, raw);
 }

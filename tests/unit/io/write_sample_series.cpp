@@ -14,13 +14,13 @@ namespace {
 
 using namespace couplet;
 
-void write_series(const std::string& folder, const std::string& name, BoxCells cells) {
-  const bool flat = cells == BoxCells::quadrilaterals || cells == BoxCells::triangles;
-  RawMesh raw;
-  if (comm_rank(MPI_COMM_WORLD) == 0)
-    raw = make_box(cells, {6, 4, flat ? 1 : 2}, Vec3::Zero(), Vec3(2, 1, flat ? 0 : 1));
-  const auto [mesh, geometry] = distribute(MPI_COMM_WORLD, raw);
-  FieldWriter writer(mesh, geometry.points, folder, name, true, std::numeric_limits<double>::quiet_NaN());
+void write_series(const std::string& folder, const std::string& name, mesh::BoxCells cells) {
+  const bool flat = cells == mesh::BoxCells::quadrilaterals || cells == mesh::BoxCells::triangles;
+  mesh::RawMesh raw;
+  if (parallel::comm_rank(MPI_COMM_WORLD) == 0)
+    raw = mesh::make_box(cells, {6, 4, flat ? 1 : 2}, Vec3::Zero(), Vec3(2, 1, flat ? 0 : 1));
+  const auto [mesh, geometry] = mesh::distribute(MPI_COMM_WORLD, raw);
+  io::FieldWriter writer(mesh, geometry.points, folder, name, true, std::numeric_limits<double>::quiet_NaN());
   for (int i = 0; i < 4; ++i) {
     const double time = 0.1 * i;
     std::vector<Vec3> points = geometry.points;
@@ -31,15 +31,15 @@ void write_series(const std::string& folder, const std::string& name, BoxCells c
       if (!flat) displacement.push_back(0);
       x[0] += time * x[1];
     }
-    const Geometry moved = compute_geometry(mesh, points);
+    const mesh::Geometry moved = mesh::compute_geometry(mesh, points);
     for (const Vec3& x : moved.cell_centre) {
       pressure.push_back(x[0] + time);
       for (int d = 0; d < mesh.dim; ++d) velocity.push_back(x[d]);
     }
     writer.write(time, points,
-                 {{"displacement", "m", OutputField::Place::points, mesh.dim, displacement},
-                  {"pressure", "Pa", OutputField::Place::cells, 1, pressure},
-                  {"velocity", "m/s", OutputField::Place::cells, mesh.dim, velocity}});
+                 {{"displacement", "m", io::OutputField::Place::points, mesh.dim, displacement},
+                  {"pressure", "Pa", io::OutputField::Place::cells, 1, pressure},
+                  {"velocity", "m/s", io::OutputField::Place::cells, mesh.dim, velocity}});
   }
 }
 
@@ -48,14 +48,14 @@ void write_series(const std::string& folder, const std::string& name, BoxCells c
 int main(int argc, char** argv) {
   MPI_Init(&argc, &argv);
   {
-    const PetscEnvironment petsc(MPI_COMM_WORLD);
+    const linalg::PetscEnvironment petsc(MPI_COMM_WORLD);
     const std::string folder = argc > 1 ? argv[1] : ".";
-    write_series(folder, "quadrilaterals", BoxCells::quadrilaterals);
-    write_series(folder, "triangles", BoxCells::triangles);
-    write_series(folder, "hexahedra", BoxCells::hexahedra);
-    write_series(folder, "tetrahedra", BoxCells::tetrahedra);
-    write_series(folder, "prisms", BoxCells::prisms);
-    write_series(folder, "mixed", BoxCells::mixed);
+    write_series(folder, "quadrilaterals", mesh::BoxCells::quadrilaterals);
+    write_series(folder, "triangles", mesh::BoxCells::triangles);
+    write_series(folder, "hexahedra", mesh::BoxCells::hexahedra);
+    write_series(folder, "tetrahedra", mesh::BoxCells::tetrahedra);
+    write_series(folder, "prisms", mesh::BoxCells::prisms);
+    write_series(folder, "mixed", mesh::BoxCells::mixed);
   }
   MPI_Finalize();
   return 0;

@@ -15,6 +15,8 @@
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
+using namespace linalg;
+using namespace parallel;
 namespace {
 
 /// Upwind convection and diffusion on a line of n cells a rank, uncoupled between ranks: not symmetric.

@@ -10,6 +10,7 @@
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
+using namespace linalg;
 namespace {
 
 /// The 5-point Laplacian on n x n cells, rows dealt out in blocks; `dirichlet`: unit diagonal share on the
@@ -22,7 +23,7 @@ struct Poisson {
 
   Poisson(int n_, bool dirichlet) : n(n_) {
     const GlobalIndex total = GlobalIndex(n) * n;
-    const int rank = comm_rank(MPI_COMM_WORLD), size = comm_size(MPI_COMM_WORLD);
+    const int rank = parallel::comm_rank(MPI_COMM_WORLD), size = parallel::comm_size(MPI_COMM_WORLD);
     first = total * rank / size;
     last = total * (rank + 1) / size;
     for (GlobalIndex r = first; r < last; ++r) {
@@ -59,7 +60,7 @@ double relative_residual(const SparseMatrix& m, const std::vector<double>& x, co
     r += (b[i] - y[i]) * (b[i] - y[i]);
     n += b[i] * b[i];
   }
-  return std::sqrt(sum(MPI_COMM_WORLD, r) / sum(MPI_COMM_WORLD, n));
+  return std::sqrt(parallel::sum(MPI_COMM_WORLD, r) / parallel::sum(MPI_COMM_WORLD, n));
 }
 
 TEST(LinearSolver, every_method_reaches_its_tolerance) {

@@ -8,6 +8,7 @@
 #include "common/linalg/single_factors.hpp"
 
 namespace couplet {
+using namespace linalg;
 namespace {
 
 /// -div grad on n x n cells that are `aspect` times as long as thick, held on two sides.

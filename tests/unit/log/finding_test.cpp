@@ -9,6 +9,7 @@
 #include "common/base/text.hpp"
 
 namespace couplet {
+using namespace base;
 namespace {
 
 using log::FindingId;

@@ -10,6 +10,8 @@
 #include "support.hpp"
 
 namespace couplet {
+using namespace mesh;
+using namespace parallel;
 namespace {
 
 class Distribute : public ::testing::TestWithParam<test::Box> {

@@ -13,6 +13,7 @@
 #include "common/mesh/gmsh/mesh_facts.hpp"
 
 namespace couplet {
+using namespace mesh;
 namespace {
 
 using testing::ElementsAre;

@@ -8,6 +8,7 @@
 #include "support.hpp"
 
 namespace couplet {
+using namespace mesh;
 namespace {
 
 class GeometryOf : public ::testing::TestWithParam<test::Box> {
@@ -57,14 +58,15 @@ TEST_P(GeometryOf, volumes_are_positive_and_add_up) {
     total += geometry.volume[c];
   }
   const double exact = test::box_volume(mesh.dim);
-  EXPECT_NEAR(sum(mesh.comm, total), exact, 1e-13 * exact);
+  EXPECT_NEAR(parallel::sum(mesh.comm, total), exact, 1e-13 * exact);
 }
 
 TEST_P(GeometryOf, first_moments_add_up_to_those_of_the_box) {
   Vec3 moment = Vec3::Zero();
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) moment += geometry.volume[c] * geometry.cell_centre[c];
   const Vec3 exact = test::box_volume(mesh.dim) * 0.5 * (test::lower + test::upper);
-  for (int axis = 0; axis < mesh.dim; ++axis) EXPECT_NEAR(sum(mesh.comm, moment[axis]), exact[axis], 1e-12);
+  for (int axis = 0; axis < mesh.dim; ++axis)
+    EXPECT_NEAR(parallel::sum(mesh.comm, moment[axis]), exact[axis], 1e-12);
 }
 
 TEST_P(GeometryOf, face_vectors_point_out_of_the_owner) {

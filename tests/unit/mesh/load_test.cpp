@@ -9,6 +9,8 @@
 #include "support.hpp"
 
 namespace couplet {
+using namespace mesh;
+using namespace parallel;
 namespace {
 
 using ::testing::HasSubstr;

@@ -6,6 +6,7 @@
 #include "support.hpp"
 
 namespace couplet {
+using namespace mesh;
 namespace {
 
 using ::testing::EndsWith;

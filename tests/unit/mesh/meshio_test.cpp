@@ -13,6 +13,7 @@
 #include "support.hpp"
 
 namespace couplet {
+using namespace mesh;
 namespace {
 
 using ::testing::AllOf;

@@ -8,6 +8,7 @@
 #include <random>
 
 namespace couplet {
+using namespace mesh;
 namespace {
 
 /// Graph of an nx x ny grid whose nodes are numbered at random.

@@ -14,6 +14,7 @@
 #include "support.hpp"
 
 namespace couplet {
+using namespace mesh;
 namespace {
 
 using ::testing::AllOf;

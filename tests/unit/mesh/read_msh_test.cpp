@@ -9,6 +9,7 @@
 #include "support.hpp"
 
 namespace couplet {
+using namespace mesh;
 namespace {
 
 class ReadMsh : public ::testing::TestWithParam<const char*> {};

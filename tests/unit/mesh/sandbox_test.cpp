@@ -9,6 +9,7 @@
 #include "support.hpp"
 
 namespace couplet {
+using namespace mesh;
 namespace {
 
 namespace fs = std::filesystem;

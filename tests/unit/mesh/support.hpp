@@ -15,25 +15,25 @@ namespace couplet::test {
 
 struct Box {
   const char* name;
-  BoxCells cells;
+  mesh::BoxCells cells;
 };
 
 inline const std::vector<Box>& boxes() {
-  static const std::vector<Box> all{{"quadrilaterals", BoxCells::quadrilaterals},
-                                    {"triangles", BoxCells::triangles},
-                                    {"hexahedra", BoxCells::hexahedra},
-                                    {"tetrahedra", BoxCells::tetrahedra},
-                                    {"prisms", BoxCells::prisms},
-                                    {"mixed", BoxCells::mixed}};
+  static const std::vector<Box> all{{"quadrilaterals", mesh::BoxCells::quadrilaterals},
+                                    {"triangles", mesh::BoxCells::triangles},
+                                    {"hexahedra", mesh::BoxCells::hexahedra},
+                                    {"tetrahedra", mesh::BoxCells::tetrahedra},
+                                    {"prisms", mesh::BoxCells::prisms},
+                                    {"mixed", mesh::BoxCells::mixed}};
   return all;
 }
 
 inline const Vec3 lower(1, -2, 0.5), upper(3, 1, 1.5);
 
 /// A distorted box of 4 x 5 x 3 grid cells between `lower` and `upper`.
-inline RawMesh distorted_box(BoxCells cells) {
-  RawMesh raw = make_box(cells, {4, 5, 3}, lower, upper);
-  perturb_interior(raw, 0.2, 7);
+inline mesh::RawMesh distorted_box(mesh::BoxCells cells) {
+  mesh::RawMesh raw = mesh::make_box(cells, {4, 5, 3}, lower, upper);
+  mesh::perturb_interior(raw, 0.2, 7);
   return raw;
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace couplet {
+using namespace parallel;
 namespace {
 
 class Collective : public ::testing::Test {

@@ -12,11 +12,12 @@ namespace {
 /// rank after.
 class Ring : public ::testing::Test {
  protected:
-  const int size = comm_size(MPI_COMM_WORLD), rank = comm_rank(MPI_COMM_WORLD);
+  const int size = parallel::comm_size(MPI_COMM_WORLD), rank = parallel::comm_rank(MPI_COMM_WORLD);
   const int before = (rank + size - 1) % size, after = (rank + 1) % size;
   const Index n_owned = 2 + rank;
-  IndexMap map{MPI_COMM_WORLD, n_owned, size > 1 ? std::vector<int>{before, after} : std::vector<int>{},
-               size > 1 ? std::vector<Index>{1 + before, 0} : std::vector<Index>{}};
+  parallel::IndexMap map{MPI_COMM_WORLD, n_owned,
+                         size > 1 ? std::vector<int>{before, after} : std::vector<int>{},
+                         size > 1 ? std::vector<Index>{1 + before, 0} : std::vector<Index>{}};
   GlobalIndex first_of(int r) const { return 2 * r + r * (r - 1) / 2; }
 };
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 namespace couplet {
+using namespace time;
 namespace {
 
 using Complex = std::complex<double>;

@@ -7,6 +7,7 @@
 #include "common/time/time_scheme.hpp"
 
 namespace couplet {
+using namespace time;
 namespace {
 
 double of(const Levels& l, double x, double u, double u_old) { return l.x * x + l.u * u + l.u_old * u_old; }

@@ -9,6 +9,7 @@
 #include "common/base/error.hpp"
 
 namespace couplet {
+using namespace time;
 namespace {
 
 TEST(StepErrorsTest, errors_of_an_oscillation_add_up) {

@@ -9,6 +9,7 @@
 #include "fluid_case.hpp"
 
 namespace couplet::fluid::test {
+using namespace mesh;
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -39,7 +40,7 @@ double flow_through(const FluidCase<2>& c, const char* patch) {
   double flow = 0;
   const Patch& faces = *c.mesh().find_patch(patch);
   for (Index f = faces.first; f < faces.first + faces.count; ++f) flow += c.state().phi[f];
-  return sum(c.mesh().comm, flow);
+  return parallel::sum(c.mesh().comm, flow);
 }
 
 TEST(Inlet, parabolic_profile_is_the_poiseuille_flow_of_that_mean_speed) {

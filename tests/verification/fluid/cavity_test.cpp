@@ -26,10 +26,10 @@ std::vector<std::pair<double, double>> read_table(const std::string& name) {
 
 /// Largest deviation along a centre line; `component` of u at (0.5, s) or (s, 0.5).
 double deviation(const FluidCase<2>& c, const std::string& table, int component) {
-  const Mesh& mesh = c.mesh();
-  const Geometry& geometry = c.geometry();
-  const VertexInterpolation interpolation(mesh, geometry,
-                                          std::vector<PatchStencil>(mesh.patches.size(), PatchStencil::open));
+  const mesh::Mesh& mesh = c.mesh();
+  const mesh::Geometry& geometry = c.geometry();
+  const fv::VertexInterpolation interpolation(
+      mesh, geometry, std::vector<fv::PatchStencil>(mesh.patches.size(), fv::PatchStencil::open));
   std::vector<double> at_points(mesh.points.n_local() * 2, 0.0);
   for (Index p = 0; p < mesh.points.n_local(); ++p) {
     if (interpolation.nodes(p).empty()) continue;
@@ -42,8 +42,8 @@ double deviation(const FluidCase<2>& c, const std::string& table, int component)
   EXPECT_EQ(rows.size(), 17u);
   for (const auto& [place, value] : rows) {
     if (place == 0 || place == 1) continue;  // on the wall: the boundary value itself
-    const Probe probe(mesh, geometry.points, "ghia",
-                      component == 0 ? Vec3(0.5, place, 0) : Vec3(place, 0.5, 0));
+    const io::Probe probe(mesh, geometry.points, "ghia",
+                          component == 0 ? Vec3(0.5, place, 0) : Vec3(place, 0.5, 0));
     const double computed = probe.sample(at_points, 2)[component];
     worst = std::max(worst, std::abs(computed - value));
   }
@@ -57,8 +57,8 @@ TEST(Cavity, agrees_with_ghia_at_reynolds_100_within_one_percent_of_the_lid_spee
   p.pressure_tolerance = 1e-5;
   all_sides(p, 2, boundary(BoundaryType::no_slip));
   p.boundaries["ymax"] = boundary(BoundaryType::moving_wall, {"1", "0"});
-  FluidCase<2> c(MPI_COMM_SELF, make_box(BoxCells::quadrilaterals, {64, 64, 1}, Vec3::Zero(), Vec3::Ones()),
-                 p);
+  FluidCase<2> c(MPI_COMM_SELF,
+                 mesh::make_box(mesh::BoxCells::quadrilaterals, {64, 64, 1}, Vec3::Zero(), Vec3::Ones()), p);
   c.run(20, 20);
   const double u = deviation(c, "ghia_u_x0.5.csv", 0), v = deviation(c, "ghia_v_y0.5.csv", 1);
   printf("cavity Re 100, 64 x 64: largest deviation u %.4f v %.4f of the lid speed\n", u, v);

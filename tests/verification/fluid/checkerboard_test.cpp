@@ -53,7 +53,8 @@ Outcome cavity(Projection projection, double dt) {
   p.pressure_tolerance = 1e-8;
   all_sides(p, 2, boundary(BoundaryType::no_slip));
   p.boundaries["ymax"] = boundary(BoundaryType::moving_wall, {"1", "0"});
-  FluidCase<2> c(MPI_COMM_SELF, make_box(BoxCells::quadrilaterals, {n, n, 1}, Vec3::Zero(), Vec3::Ones()), p);
+  FluidCase<2> c(MPI_COMM_SELF,
+                 mesh::make_box(mesh::BoxCells::quadrilaterals, {n, n, 1}, Vec3::Zero(), Vec3::Ones()), p);
   double viscous = 0, pressure = 0;
   for (int i = 0; i < std::lround(4 / dt); ++i) {
     c.step(dt);

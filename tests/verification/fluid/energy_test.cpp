@@ -10,6 +10,7 @@
 #include "fluid_solver/step/rates.hpp"
 
 namespace couplet::fluid::test {
+using namespace mesh;
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -46,7 +47,7 @@ double share_of_energy(FluidCase<D>& c, const State<D>& s, double nu) {
     work += s.u[i].dot(r.rate[i]);
     size += s.u[i].norm() * r.rate[i].norm();
   }
-  return sum(c.mesh().comm, work) / sum(c.mesh().comm, size);
+  return parallel::sum(c.mesh().comm, work) / parallel::sum(c.mesh().comm, size);
 }
 
 template <int D>
@@ -104,7 +105,7 @@ double kinetic(const FluidCase<2>& c) {
   double energy = 0;
   for (Index i = 0; i < c.mesh().cells.n_owned(); ++i)
     energy += 0.5 * c.state().placement->volume[i] * c.state().u[i].squaredNorm();
-  return sum(c.mesh().comm, energy);
+  return parallel::sum(c.mesh().comm, energy);
 }
 
 constexpr std::pair<Projection, const char*> projections[] = {
@@ -134,7 +135,8 @@ Drift inviscid_drift(double dt, Projection projection) {
     rates.apply(c.state(), false, false, r);
     double work = 0;
     for (Index k = 0; k < c.mesh().cells.n_owned(); ++k) work += c.state().u[k].dot(r.rate[k]);
-    drift.convection = std::max(drift.convection, std::abs(dt * sum(MPI_COMM_WORLD, work)) / before);
+    drift.convection =
+        std::max(drift.convection, std::abs(dt * parallel::sum(MPI_COMM_WORLD, work)) / before);
   }
   drift.total = std::abs(kinetic(c) / before - 1);
   return drift;

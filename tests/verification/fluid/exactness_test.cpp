@@ -7,6 +7,7 @@
 #include "fluid_case.hpp"
 
 namespace couplet::fluid::test {
+using namespace mesh;
 namespace {
 
 constexpr double rho = 1.7;

@@ -7,6 +7,7 @@
 #include "fluid_solver/step/rates.hpp"
 
 namespace couplet::fluid::test {
+using namespace mesh;
 namespace {
 
 /// A sheared box of perturbed cells, every side a wall of given velocity, in a linear flow u = a + G x.
@@ -69,7 +70,7 @@ void check_friction(BoxCells cells) {
     EXPECT_LT(split.viscous[c].norm(), 1e-12);
     without = std::max(without, orthogonal.rate[c].norm());
   }
-  EXPECT_GT(max(MPI_COMM_WORLD, without), 1e-3) << "the oblique part counts on this mesh";
+  EXPECT_GT(parallel::max(MPI_COMM_WORLD, without), 1e-3) << "the oblique part counts on this mesh";
 }
 
 // nu grad u . S over all faces of a cell is none where grad u is the same everywhere.
@@ -127,7 +128,8 @@ void check_flux(BoxCells cells) {
     const Vec<D> middle = 0.5 * (flow.u[flow.mesh.owner[f]] + flow.u[flow.mesh.neighbour[f]]);
     skew = std::max(skew, std::abs(flux[f] - middle.dot(flow.at->area[f])));
   }
-  EXPECT_GT(max(MPI_COMM_WORLD, skew), 1e-3) << "the carrying on to the face's centre counts on this mesh";
+  EXPECT_GT(parallel::max(MPI_COMM_WORLD, skew), 1e-3)
+      << "the carrying on to the face's centre counts on this mesh";
 }
 
 TEST(FaceLoops, flux_of_a_linear_flow_is_exact_on_skew_cells) {
@@ -184,7 +186,7 @@ TEST(FaceLoops, load_of_a_uniform_pressure_works_by_the_volume_that_its_walls_sw
   }
   for (Index k = 0; k < c.flow.mesh.cells.n_owned(); ++k)
     volume += c.work.step.to->volume[k] - c.flow.at->volume[k];
-  done = sum(MPI_COMM_WORLD, done), volume = sum(MPI_COMM_WORLD, volume);
+  done = parallel::sum(MPI_COMM_WORLD, done), volume = parallel::sum(MPI_COMM_WORLD, volume);
   EXPECT_GT(std::abs(volume), 0.02);
   EXPECT_NEAR(done, 250 * volume, 1e-10);
 }

@@ -35,8 +35,8 @@ inline void all_sides(FluidParameters& p, int dim, const BoundaryParameters& b) 
 template <int D>
 class FluidCase {
  public:
-  FluidCase(MPI_Comm comm, const RawMesh& raw, FluidParameters parameters, PointMotion motion = {})
-      : loaded_(std::make_unique<LoadedMesh>(distribute(comm, raw))), motion_(std::move(motion)) {
+  FluidCase(MPI_Comm comm, const mesh::RawMesh& raw, FluidParameters parameters, PointMotion motion = {})
+      : loaded_(std::make_unique<mesh::LoadedMesh>(mesh::distribute(comm, raw))), motion_(std::move(motion)) {
     parameters.dimension = D;
     fluid_ = std::make_unique<Fluid<D>>(mesh(), geometry(), parameters, bool(motion_));
   }
@@ -76,7 +76,7 @@ class FluidCase {
       square += s.placement->volume[c] * (s.u[c] - exact(x).template head<D>()).squaredNorm();
       volume += s.placement->volume[c];
     }
-    return std::sqrt(sum(mesh().comm, square) / sum(mesh().comm, volume));
+    return std::sqrt(parallel::sum(mesh().comm, square) / parallel::sum(mesh().comm, volume));
   }
   double largest_velocity_error(const std::function<Vec3(const Vec3&)>& exact) const {
     const State<D>& s = fluid_->state();
@@ -86,7 +86,7 @@ class FluidCase {
       x.head<D>() = s.placement->centre[c];
       largest = std::max(largest, (s.u[c] - exact(x).template head<D>()).norm());
     }
-    return max(mesh().comm, largest);
+    return parallel::max(mesh().comm, largest);
   }
   /// Root mean square of p - exact after both lost their means.
   double pressure_error(const std::function<double(const Vec3&)>& exact) const {
@@ -100,20 +100,20 @@ class FluidCase {
       mean += s.placement->volume[c] * difference[c];
       volume += s.placement->volume[c];
     }
-    volume = sum(mesh().comm, volume);
-    mean = sum(mesh().comm, mean) / volume;
+    volume = parallel::sum(mesh().comm, volume);
+    mean = parallel::sum(mesh().comm, mean) / volume;
     for (Index c = 0; c < mesh().cells.n_owned(); ++c)
       square += s.placement->volume[c] * std::pow(difference[c] - mean, 2);
-    return std::sqrt(sum(mesh().comm, square) / volume);
+    return std::sqrt(parallel::sum(mesh().comm, square) / volume);
   }
 
   Fluid<D>& fluid() { return *fluid_; }
   const State<D>& state() const { return fluid_->state(); }
-  const Mesh& mesh() const { return loaded_->mesh; }
-  const Geometry& geometry() const { return loaded_->geometry; }
+  const mesh::Mesh& mesh() const { return loaded_->mesh; }
+  const mesh::Geometry& geometry() const { return loaded_->geometry; }
 
  private:
-  std::unique_ptr<LoadedMesh> loaded_;
+  std::unique_ptr<mesh::LoadedMesh> loaded_;
   PointMotion motion_;
   std::unique_ptr<Fluid<D>> fluid_;
 };
@@ -127,7 +127,7 @@ double difference(const FluidCase<D>& a, const FluidCase<D>& b) {
     square += v * (a.state().u[c] - b.state().u[c]).squaredNorm();
     volume += v;
   }
-  return std::sqrt(sum(a.mesh().comm, square) / sum(a.mesh().comm, volume));
+  return std::sqrt(parallel::sum(a.mesh().comm, square) / parallel::sum(a.mesh().comm, volume));
 }
 
 /// A channel whose floor moves: inlet left, outlet right, slip lid.
@@ -145,9 +145,10 @@ inline FluidParameters channel(ViscousTreatment viscous = ViscousTreatment::auto
   return p;
 }
 
-inline RawMesh channel_mesh() {
-  RawMesh raw = make_box(BoxCells::quadrilaterals, {24, 12, 1}, Vec3::Zero(), Vec3(2, 1, 1));
-  perturb_interior(raw, 0.15, 7);
+inline mesh::RawMesh channel_mesh() {
+  mesh::RawMesh raw =
+      mesh::make_box(mesh::BoxCells::quadrilaterals, {24, 12, 1}, Vec3::Zero(), Vec3(2, 1, 1));
+  mesh::perturb_interior(raw, 0.15, 7);
   return raw;
 }
 

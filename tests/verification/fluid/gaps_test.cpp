@@ -38,7 +38,8 @@ FluidParameters valve(bool with_gap, double opening = limit) {
 
 struct Valve {
   explicit Valve(const FluidParameters& p)
-      : c(MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {60, 6, 1}, Vec3::Zero(), Vec3(6, height, 1)), p,
+      : c(MPI_COMM_WORLD,
+          mesh::make_box(mesh::BoxCells::quadrilaterals, {60, 6, 1}, Vec3::Zero(), Vec3(6, height, 1)), p,
           [](const Vec3& x, GlobalIndex, double t) { return pinched(x, t); }) {}
   static Vec3 lid(const Vec3& x, double t) {
     Vec3 reference = x;  // x does not move, and the lid's own y is the height
@@ -50,15 +51,15 @@ struct Valve {
   }
   /// Out of the patch [m^3/s].
   double flow(const char* name) const {
-    const Patch& patch = *c.mesh().find_patch(name);
+    const mesh::Patch& patch = *c.mesh().find_patch(name);
     double out = 0;
     for (Index f = patch.first; f < patch.first + patch.count; ++f) out += c.state().phi[f];
-    return sum(c.mesh().comm, out);
+    return parallel::sum(c.mesh().comm, out);
   }
   /// Largest |sum phi| / V of the cells that are not blocked [1/s].
   double divergence() const {
     const State<2>& s = c.state();
-    const Mesh& mesh = c.mesh();
+    const mesh::Mesh& mesh = c.mesh();
     std::vector<double> sums(mesh.cells.n_local(), 0.0);
     for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
       sums[mesh.owner[f]] += s.phi[f];
@@ -67,7 +68,7 @@ struct Valve {
     double worst = 0;
     for (Index i = 0; i < mesh.cells.n_owned(); ++i)
       if (!s.blocked || !(*s.blocked)[i]) worst = std::max(worst, std::abs(sums[i]) / s.placement->volume[i]);
-    return max(mesh.comm, worst);
+    return parallel::max(mesh.comm, worst);
   }
   FluidCase<2> c;
 };
@@ -78,7 +79,7 @@ TEST(Gaps, a_slot_closes_by_99_percent_and_opens_again) {
   without.run(0.48);
   EXPECT_FALSE(with.c.state().blocked);
   const double apart = std::abs(with.flow("xmin") - without.flow("xmin"));  // ranks: two partitions
-  EXPECT_LE(apart, comm_size(MPI_COMM_WORLD) == 1 ? 0 : 1e-8) << "an open gap does nothing";
+  EXPECT_LE(apart, parallel::comm_size(MPI_COMM_WORLD) == 1 ? 0 : 1e-8) << "an open gap does nothing";
   with.run(1.4);
   without.run(1.4);
   EXPECT_TRUE(with.c.state().blocked);
@@ -122,14 +123,14 @@ TEST(Gaps, a_checkpoint_of_a_closed_valve_goes_on_bit_for_bit) {
   v.run(1.2);
   const double t = v.c.state().time;
   Fluid<2> other(v.c.mesh(), v.c.geometry(), v.c.fluid().parameters(), true);
-  StateInMemory memory;
+  io::StateInMemory memory;
   {
-    CheckpointWriter writer(memory);
+    io::CheckpointWriter writer(memory);
     v.c.fluid().solvers().save(writer);
     writer.close();
   }
   other.restore(v.c.state());
-  CheckpointReader reader(memory);
+  io::CheckpointReader reader(memory);
   other.solvers().load(reader);
   const auto points = [&](double at) {
     std::vector<Vec3> moved;
@@ -144,7 +145,7 @@ TEST(Gaps, a_checkpoint_of_a_closed_valve_goes_on_bit_for_bit) {
   double apart = 0;
   for (std::size_t c = 0; c < other.state().u.size(); ++c)
     apart = std::max(apart, (other.state().u[c] - v.c.state().u[c]).norm());
-  EXPECT_LE(max(MPI_COMM_WORLD, apart), comm_size(MPI_COMM_WORLD) == 1 ? 0 : 1e-9);
+  EXPECT_LE(parallel::max(MPI_COMM_WORLD, apart), parallel::comm_size(MPI_COMM_WORLD) == 1 ? 0 : 1e-9);
 }
 
 /// Of the free cells left of the slot: mean pressure [Pa], volume [m^3].

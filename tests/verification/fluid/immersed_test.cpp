@@ -7,6 +7,7 @@
 #include "fluid_case.hpp"
 
 namespace couplet::fluid::test {
+using namespace mesh;
 namespace {
 
 FluidParameters channel_with(const std::string& level, std::vector<std::string> velocity = {}) {
@@ -52,12 +53,12 @@ TEST(ImmersedGate, closes_and_opens_the_channel) {
     const Patch& out = *c.mesh().find_patch("xmax");
     double sum_of = 0;
     for (Index f = out.first; f < out.first + out.count; ++f) sum_of += c.state().phi[f];
-    return sum(c.mesh().comm, sum_of);
+    return parallel::sum(c.mesh().comm, sum_of);
   };
   const auto solids = [&] {
     GlobalIndex n = 0;
     for (Index i = 0; i < c.mesh().cells.n_owned(); ++i) n += c.fluid().bodies()->is_solid(i);
-    return sum(c.mesh().comm, n);
+    return parallel::sum(c.mesh().comm, n);
   };
   c.run(0.1, 10);
   const GlobalIndex open = solids();
@@ -68,7 +69,7 @@ TEST(ImmersedGate, closes_and_opens_the_channel) {
   EXPECT_GT(flow(), 1e-2);
   double largest = 0;
   for (const Vec<2>& u : c.state().u) largest = std::max(largest, u.norm());
-  EXPECT_LT(max(MPI_COMM_WORLD, largest), 3);
+  EXPECT_LT(parallel::max(MPI_COMM_WORLD, largest), 3);
 }
 
 /// A square of 4 x 4 cells under p = x and in a uniform flow that stops at it: a pressure at the middles of the cells beside

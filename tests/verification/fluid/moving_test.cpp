@@ -7,6 +7,7 @@
 #include "fluid_case.hpp"
 
 namespace couplet::fluid::test {
+using namespace mesh;
 namespace {
 
 // Inner points swing about their places, each part of the box in its own phase.
@@ -81,7 +82,7 @@ Vec<2> force_on_body(FluidCase<2>& c) {
     sums[0] += force[0];
     sums[1] += force[1];
   }
-  return {sum(c.mesh().comm, sums[0]), sum(c.mesh().comm, sums[1])};
+  return {parallel::sum(c.mesh().comm, sums[0]), parallel::sum(c.mesh().comm, sums[1])};
 }
 
 /// A cylinder swings in still fluid, once with its mesh, once at rest in a fluid that swings about it. The

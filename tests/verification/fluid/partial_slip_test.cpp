@@ -30,8 +30,8 @@ FluidParameters channel_between(const BoundaryParameters& floor, const BoundaryP
 }
 
 /// n x n cells of the unit square, x by `tilt` of y, then turned by `angle` about the origin.
-RawMesh square(int n, double tilt = 0, double angle = 0) {
-  RawMesh raw = make_box(BoxCells::quadrilaterals, {n, n, 1}, Vec3::Zero(), Vec3(1, 1, 1));
+mesh::RawMesh square(int n, double tilt = 0, double angle = 0) {
+  mesh::RawMesh raw = mesh::make_box(mesh::BoxCells::quadrilaterals, {n, n, 1}, Vec3::Zero(), Vec3(1, 1, 1));
   for (Vec3& x : raw.points) {
     const double a = x.x() + tilt * x.y(), b = x.y();
     x = Vec3(std::cos(angle) * a - std::sin(angle) * b, std::sin(angle) * a + std::cos(angle) * b, 0);
@@ -49,11 +49,11 @@ double error_of_drag(const BoundaryParameters& floor, ViscousTreatment viscous, 
       channel_between(floor, boundary(BoundaryType::moving_wall, {along(lid, c), along(lid, s)}), viscous);
   FluidCase<2> flow(MPI_COMM_WORLD, square(8, tilt, angle), p);
   flow.run(12, 300);
-  const Patch& patch = *flow.mesh().find_patch("ymin");
+  const mesh::Patch& patch = *flow.mesh().find_patch("ymin");
   shear = 0;
   for (Index f = patch.first; f < patch.first + patch.count; ++f)
     shear += flow.fluid().viscous_force()[f - flow.mesh().n_interior].dot(Vec<2>(c, s));
-  shear = sum(MPI_COMM_WORLD, shear);
+  shear = parallel::sum(MPI_COMM_WORLD, shear);
   return flow.largest_velocity_error([&](const Vec3& x) {
     const double height = c * x.y() - s * x.x();
     return Vec3(lid * (height + length) / (1 + length) * Vec3(c, s, 0));

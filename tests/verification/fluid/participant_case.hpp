@@ -14,7 +14,7 @@ namespace couplet::fluid::test {
 /// The steps numbered begin, begin + 1, ... before end.
 inline void take_steps(FluidParticipant<2>& run, int begin, int end, double dt = 0.02) {
   for (int i = begin; i < end; ++i) {
-    run.begin_step({dt * i, dt, Scheme::standalone, i});
+    run.begin_step({dt * i, dt, coupling::Scheme::standalone, i});
     run.solve({});
     run.accept_step();
   }

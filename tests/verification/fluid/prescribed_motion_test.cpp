@@ -12,6 +12,7 @@
 #include "fluid_solver/participant.hpp"
 
 namespace couplet::fluid::test {
+using namespace mesh;
 namespace {
 
 constexpr double rho = 1.3;
@@ -32,12 +33,12 @@ class Alone {
   explicit Alone(const FluidParameters& p, int n = 16)
       : participant_(std::make_unique<FluidParticipant<2>>(
             distribute(MPI_COMM_WORLD,
-                       comm_rank(MPI_COMM_WORLD) == 0 ? mesh(n, periodic_patches(p)) : RawMesh{}),
+                       parallel::comm_rank(MPI_COMM_WORLD) == 0 ? mesh(n, periodic_patches(p)) : RawMesh{}),
             p, FluidContext{}, MotionLink{})) {
     participant_->initialise();
   }
   void step(double dt) {
-    participant_->begin_step({participant_->fluid().state().time, dt, Scheme::standalone, 0});
+    participant_->begin_step({participant_->fluid().state().time, dt, coupling::Scheme::standalone, 0});
     participant_->solve({});
     participant_->accept_step();
   }
@@ -47,7 +48,7 @@ class Alone {
   double largest(const std::function<double(Index)>& error) const {
     double worst = 0;
     for (Index c = 0; c < mesh().cells.n_owned(); ++c) worst = std::max(worst, std::abs(error(c)));
-    return max(mesh().comm, worst);
+    return parallel::max(mesh().comm, worst);
   }
 
  private:
@@ -90,13 +91,13 @@ TEST(PrescribedMotion, a_uniform_flow_does_not_feel_a_mesh_that_moves_and_turns)
 }
 
 TEST(PrescribedMotion, a_body_turns_rigidly_and_what_is_outside_rests) {
-  MotionParameters m;
+  fv::MotionParameters m;
   m.angle = {"t"};
   m.translation = {{"0.02*t"}, {"0"}};
   m.centre = Vec3(0.5, 0.5, 0);
   m.inner_radius = 0.1;
   m.outer_radius = 0.45;
-  const PrescribedMotion motion(m, 2);
+  const fv::PrescribedMotion motion(m, 2);
   const auto [mesh, geometry] =
       distribute(MPI_COMM_SELF, make_box(BoxCells::quadrilaterals, {40, 40, 1}, Vec3::Zero(), Vec3(1, 1, 1)));
   const std::vector<Vec3>& before = geometry.points;
@@ -161,10 +162,10 @@ TEST(PrescribedMotion, that_goes_on_at_the_start_takes_its_fluid_along) {
 TEST(PrescribedMotion, velocity_at_the_start) {
   const std::vector<Vec3> at{Vec3(0.5, 0, 0)};
   const auto start = [&](const std::string& x, const std::string& angle) {
-    MotionParameters m;
+    fv::MotionParameters m;
     m.translation = {{x}, {"0"}};
     m.angle = {angle};
-    return PrescribedMotion(m, 2).starting_velocities(at, 0, 1)[0];
+    return fv::PrescribedMotion(m, 2).starting_velocities(at, 0, 1)[0];
   };
   EXPECT_LT((start("0.3*t", "0") - Vec3(0.3, 0, 0)).norm(), 1e-9);
   EXPECT_LT((start("0.1*sin(1e6*t)", "0") - Vec3(1e5, 0, 0)).norm(), 1);
@@ -186,7 +187,7 @@ TEST(PrescribedMotion, an_impulse_at_the_start_is_said) {
     return testing::internal::GetCapturedStdout() + testing::internal::GetCapturedStderr();
   };
   const std::string moving = said("0.3*t", false);
-  if (comm_rank(MPI_COMM_WORLD) == 0) {
+  if (parallel::comm_rank(MPI_COMM_WORLD) == 0) {
     EXPECT_THAT(moving, testing::HasSubstr("its bodies already move at 0.3 m/s"));
   }
   EXPECT_THAT(said("0.3*t^2", false), testing::Not(testing::HasSubstr("already")));

@@ -11,10 +11,10 @@
 namespace couplet::fluid::test {
 
 /// Between circles of radius 1 and 2, n cells across.
-inline RawMesh ring_mesh(int n) {
-  if (comm_rank(MPI_COMM_WORLD) > 0) return {};
+inline mesh::RawMesh ring_mesh(int n) {
+  if (parallel::comm_rank(MPI_COMM_WORLD) > 0) return {};
   const int around = 8 * n;
-  RawMesh raw;
+  mesh::RawMesh raw;
   raw.dim = 2;
   raw.patches = {"inner", "outer"};
   raw.zones = {"fluid"};
@@ -26,7 +26,7 @@ inline RawMesh ring_mesh(int n) {
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < around; ++i) {
       const Index a = j * around + i, b = j * around + (i + 1) % around;
-      raw.cell_type.push_back(CellType::quadrilateral);
+      raw.cell_type.push_back(mesh::CellType::quadrilateral);
       raw.cell_points.push_row(std::vector<Index>{a, a + around, b + around, b});
       raw.cell_zone.push_back(0);
     }

@@ -14,6 +14,8 @@
 #include "tests/support/saved_state.hpp"
 
 namespace couplet::fluid::test {
+using namespace mesh;
+using namespace parallel;
 namespace {
 
 constexpr double mu = 0.1;

@@ -11,15 +11,16 @@
 #include "fluid_solver/participant.hpp"
 
 namespace couplet::fluid::test {
+using namespace mesh;
 namespace {
 
 namespace fs = std::filesystem;
 
 /// A folder of this test on this number of ranks, made anew. Collective.
 fs::path folder_of(const std::string& name) {
-  const fs::path folder =
-      fs::temp_directory_path() / ("couplet-" + name + "-" + std::to_string(comm_size(MPI_COMM_WORLD)));
-  if (comm_rank(MPI_COMM_WORLD) == 0) {
+  const fs::path folder = fs::temp_directory_path() /
+                          ("couplet-" + name + "-" + std::to_string(parallel::comm_size(MPI_COMM_WORLD)));
+  if (parallel::comm_rank(MPI_COMM_WORLD) == 0) {
     fs::remove_all(folder);
     fs::create_directories(folder);
   }
@@ -29,12 +30,12 @@ fs::path folder_of(const std::string& name) {
 
 void write(const fs::path& file, const std::string& text) {
   MPI_Barrier(MPI_COMM_WORLD);  // nobody still reads the one before
-  if (comm_rank(MPI_COMM_WORLD) == 0) std::ofstream(file) << text;
+  if (parallel::comm_rank(MPI_COMM_WORLD) == 0) std::ofstream(file) << text;
   MPI_Barrier(MPI_COMM_WORLD);
 }
 
 RawMesh box(std::array<Index, 3> cells) {
-  return comm_rank(MPI_COMM_WORLD) == 0
+  return parallel::comm_rank(MPI_COMM_WORLD) == 0
              ? make_box(BoxCells::quadrilaterals, cells, Vec3::Zero(), Vec3(2, 1, 1))
              : RawMesh{};
 }
@@ -90,7 +91,7 @@ TEST(VelocityTable, is_linear_in_space_and_time_between_its_places) {
 std::string refusal(const fs::path& file, const std::string& text, double y = 0.5) {
   write(file, text);
   try {
-    const GridTable table = GridTable::read(file, {"u", "v"}, GridTable::Outside::error);
+    const fv::GridTable table = fv::GridTable::read(file, {"u", "v"}, fv::GridTable::Outside::error);
     std::array<double, 2> values{};
     table.evaluate(Vec3(0, y, 0), 0, values);
   } catch (const Error& e) {
@@ -193,9 +194,9 @@ const LoadedMesh& the_mesh() {
 /// Writes three outputs of Couette flow with a line and a plane.
 fs::path run(FluidParameters p, const std::string& name, int begin = 0, int end = 3) {
   const fs::path folder =
-      begin == 0
-          ? folder_of(name)
-          : fs::temp_directory_path() / ("couplet-" + name + "-" + std::to_string(comm_size(MPI_COMM_WORLD)));
+      begin == 0 ? folder_of(name)
+                 : fs::temp_directory_path() /
+                       ("couplet-" + name + "-" + std::to_string(parallel::comm_size(MPI_COMM_WORLD)));
   if (begin == 0) write(folder / "in.csv", "y,u,v\n0,0,0\n1,1,0\n");
   p.boundaries["xmin"].table->file = folder / "in.csv";
   FluidContext context{"fluid", folder};
@@ -203,16 +204,16 @@ fs::path run(FluidParameters p, const std::string& name, int begin = 0, int end 
   FluidParticipant<2> fluid(the_mesh(), p, context, MotionLink{});
   fluid.initialise();
   if (begin > 0) {
-    CheckpointReader file(MPI_COMM_WORLD, folder / "state.h5");
+    io::CheckpointReader file(MPI_COMM_WORLD, folder / "state.h5");
     fluid.load(file);
   }
   for (int i = begin; i < end; ++i) {
-    fluid.begin_step({0.01 * i, 0.01, Scheme::standalone, i});
+    fluid.begin_step({0.01 * i, 0.01, coupling::Scheme::standalone, i});
     fluid.solve({});
     fluid.accept_step();
     fluid.write_output(0.01 * (i + 1), i + 1);
     if (i != 1) continue;
-    CheckpointWriter file(MPI_COMM_WORLD, folder / "state.h5");
+    io::CheckpointWriter file(MPI_COMM_WORLD, folder / "state.h5");
     fluid.save(file);
     file.close();
   }

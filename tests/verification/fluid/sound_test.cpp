@@ -10,6 +10,7 @@
 #include "fluid_solver/state/state_io.hpp"
 
 namespace couplet::fluid::test {
+using namespace mesh;
 namespace {
 
 constexpr double c = 340, rho = 1.2, width = 0.2e-3;  // [m/s], [kg/m^3]; half width of a pulse [s]
@@ -52,7 +53,7 @@ Pressures pressures(const FluidCase<2>& d) {
   double largest = 0;
   for (Index i = 0; i < d.mesh().cells.n_owned(); ++i)
     largest = std::max(largest, std::abs(s.pressure[0]->p[i]));
-  return {sums[1] / sums[0], max(comm, largest), sums[3] / sums[2]};
+  return {sums[1] / sums[0], parallel::max(comm, largest), sums[3] / sums[2]};
 }
 
 /// A pulse of 1 Pa that goes to the right from x = 0.25 m.
@@ -179,7 +180,7 @@ double share_of(const FluidCase<2>& d, const std::function<double(double)>& mode
   double share = 0;
   for (Index i = 0; i < d.mesh().cells.n_owned(); ++i)
     share += d.state().pressure[0]->p[i] * mode(d.state().placement->centre[i][0]);
-  return sum(d.mesh().comm, share);
+  return parallel::sum(d.mesh().comm, share);
 }
 
 /// A quarter wave: closed on the left, open on the right.
@@ -264,15 +265,15 @@ TEST_P(Pulse, goes_on_bit_for_bit_from_a_checkpoint) {
     if (volume) p.compressibility->upstream_volume = 0.003;
     FluidCase<2> d(MPI_COMM_WORLD, duct(50), p);
     d.run(6e-4, 30);
-    StateInMemory memory;
+    io::StateInMemory memory;
     {
-      CheckpointWriter writer(memory);
+      io::CheckpointWriter writer(memory);
       write_state(writer, d.state(), true);
       d.fluid().solvers().save(writer);
       writer.close();
     }
     Fluid<2> other(d.mesh(), d.geometry(), d.fluid().parameters(), false);
-    CheckpointReader reader(memory);
+    io::CheckpointReader reader(memory);
     other.restore(read_state<2>(reader, d.mesh(), other.state().placement, true));
     other.solvers().load(reader);
     for (int i = 0; i < 4; ++i)

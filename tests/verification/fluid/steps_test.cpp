@@ -7,6 +7,7 @@
 #include "fluid_case.hpp"
 
 namespace couplet::fluid::test {
+using namespace mesh;
 namespace {
 
 double bump(double x) { return 0.1 * std::pow(std::sin(std::numbers::pi * x / 2), 2); }
@@ -33,7 +34,7 @@ std::vector<double> fingerprint(FluidCase<2>& c) {
       sums[4] += weight * c.fluid().pressure_force()[b].x();
       sums[5] += weight * c.fluid().viscous_force()[b].x();
     }
-  for (double& value : sums) value = sum(c.mesh().comm, value);
+  for (double& value : sums) value = parallel::sum(c.mesh().comm, value);
   return sums;
 }
 
@@ -183,7 +184,7 @@ TEST(AddedMass, impulse_does_not_depend_on_the_number_of_sub_steps) {
     c.fluid().solve_pressure(c.wall([](const Vec3&, double) { return Vec3(0.1, 0, 0); }, 1));
     double force = 0;
     for (const Vec<2>& f : c.fluid().pressure_force()) force += f.x();
-    EXPECT_NEAR(sum(MPI_COMM_WORLD, force), -2 * 0.1, 1e-9) << "own step " << own_step;
+    EXPECT_NEAR(parallel::sum(MPI_COMM_WORLD, force), -2 * 0.1, 1e-9) << "own step " << own_step;
   }
 }
 
@@ -231,13 +232,13 @@ TEST(ImpulsiveStart, loads_the_first_step_with_the_impulse_of_the_fluid_set_in_m
     for (std::size_t b = 0; b < c.state().w.size(); ++b)
       if (c.fluid().boundary().is_interface(b)) impulse += dt * c.fluid().pressure_force()[b].y();
     // psi falls linearly from rho U L at the inlet to 0: on the floor, length L, downwards.
-    EXPECT_NEAR(sum(MPI_COMM_WORLD, impulse), -3 * 0.5 * 2 * 2 / 2, 1e-6);
+    EXPECT_NEAR(parallel::sum(MPI_COMM_WORLD, impulse), -3 * 0.5 * 2 * 2 / 2, 1e-6);
   }
   c.fluid().accept();
   c.step(1e-4);  // from then on the flow is steady
   double force = 0;
   for (const Vec<2>& f : c.fluid().pressure_force()) force = std::max(force, f.norm());
-  EXPECT_LT(max(MPI_COMM_WORLD, force), 1e-6);
+  EXPECT_LT(parallel::max(MPI_COMM_WORLD, force), 1e-6);
 }
 
 TEST(Poiseuille, profile_and_pressure_drop_are_kept_in_a_channel) {

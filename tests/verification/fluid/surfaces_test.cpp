@@ -16,6 +16,7 @@
 #include "tests/support/surface_file.hpp"
 
 namespace couplet::fluid::test {
+using namespace mesh;
 namespace {
 
 constexpr double rho = 1.3, mu = 0.02, length = 2;
@@ -74,19 +75,20 @@ class Written {
  public:
   Written(const FluidParameters& p, const std::string& name, int n, const RawMesh& raw, double dt = 0.01) {
     folder_ = std::filesystem::temp_directory_path() /
-              ("couplet-surfaces-" + name + "-" + std::to_string(comm_size(MPI_COMM_WORLD)));
-    if (comm_rank(MPI_COMM_WORLD) == 0) {
+              ("couplet-surfaces-" + name + "-" + std::to_string(parallel::comm_size(MPI_COMM_WORLD)));
+    if (parallel::comm_rank(MPI_COMM_WORLD) == 0) {
       std::filesystem::remove_all(folder_);
       std::filesystem::create_directories(folder_);
     }
     MPI_Barrier(MPI_COMM_WORLD);
-    FluidParticipant<2> fluid(distribute(MPI_COMM_WORLD, comm_rank(MPI_COMM_WORLD) == 0 ? raw : RawMesh{}), p,
-                              FluidContext{"fluid", folder_}, MotionLink{});
+    FluidParticipant<2> fluid(
+        distribute(MPI_COMM_WORLD, parallel::comm_rank(MPI_COMM_WORLD) == 0 ? raw : RawMesh{}), p,
+        FluidContext{"fluid", folder_}, MotionLink{});
     fluid.initialise();
     fluid.write_monitors(0);
     fluid.write_output(0, 0);
     for (int i = 0; i < n; ++i) {
-      fluid.begin_step({dt * i, dt, Scheme::standalone, i});
+      fluid.begin_step({dt * i, dt, coupling::Scheme::standalone, i});
       fluid.solve({});
       fluid.accept_step();
       fluid.write_monitors(dt * (i + 1));
@@ -96,7 +98,7 @@ class Written {
   }
   ~Written() {
     MPI_Barrier(MPI_COMM_WORLD);
-    if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove_all(folder_);
+    if (parallel::comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove_all(folder_);
   }
   const std::filesystem::path& folder() const { return folder_; }
   Columns csv(const std::string& file) const { return read_csv(folder_ / file); }

@@ -32,7 +32,9 @@ FluidParameters parameters(const Variant& variant, double rtol) {
   return p;
 }
 
-RawMesh box(int n) { return make_box(BoxCells::quadrilaterals, {n, n, 1}, Vec3(0, 0, 0), Vec3(pi, pi, 1)); }
+mesh::RawMesh box(int n) {
+  return mesh::make_box(mesh::BoxCells::quadrilaterals, {n, n, 1}, Vec3(0, 0, 0), Vec3(pi, pi, 1));
+}
 
 Vec3 exact_velocity(const Vec3& x, double t) {
   return std::exp(-2 * nu * t) *

@@ -13,13 +13,14 @@
 #include "tests/support/saved_state.hpp"
 
 namespace couplet::fluid::test {
+using namespace mesh;
 namespace {
 
 constexpr double mu = 0.1;
 
 template <int D>
 RawMesh box(BoxCells cells) {
-  if (comm_rank(MPI_COMM_WORLD) > 0) return {};
+  if (parallel::comm_rank(MPI_COMM_WORLD) > 0) return {};
   RawMesh raw = make_box(cells, D == 2 ? std::array<Index, 3>{8, 8, 1} : std::array<Index, 3>{3, 3, 3},
                          Vec3(-0.5, -0.5, -0.5), Vec3(0.5, 0.5, 0.5));
   perturb_interior(raw, 0.15, 5);
@@ -71,7 +72,7 @@ double largest_friction(const Fluid<D>& fluid) {
     worst = std::max(
         worst, fluid.viscous_force()[b].norm() /
                    fluid.state().placement->area[fluid.mesh().n_interior + static_cast<Index>(b)].norm());
-  return max(MPI_COMM_WORLD, worst);
+  return parallel::max(MPI_COMM_WORLD, worst);
 }
 
 /// Fluid and walls turn as one, the fluid goes through those of the box: no friction. du/dn alone gives mu omega = 0.05 Pa.

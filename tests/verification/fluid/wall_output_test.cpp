@@ -60,19 +60,21 @@ std::vector<std::vector<double>> rows_of(const std::filesystem::path& file, std:
 
 std::filesystem::path run(const FluidParameters& p, const std::string& name, int steps = 3) {
   const auto folder = std::filesystem::temp_directory_path() /
-                      ("couplet-" + name + "-" + std::to_string(comm_size(MPI_COMM_WORLD)));
-  if (comm_rank(MPI_COMM_WORLD) == 0) {
+                      ("couplet-" + name + "-" + std::to_string(parallel::comm_size(MPI_COMM_WORLD)));
+  if (parallel::comm_rank(MPI_COMM_WORLD) == 0) {
     std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
   }
   MPI_Barrier(MPI_COMM_WORLD);
-  const RawMesh raw = comm_rank(MPI_COMM_WORLD) == 0
-                          ? make_box(BoxCells::quadrilaterals, {20, 10, 1}, Vec3::Zero(), Vec3(length, 1, 1))
-                          : RawMesh{};
-  FluidParticipant<2> fluid(distribute(MPI_COMM_WORLD, raw), p, FluidContext{"fluid", folder}, MotionLink{});
+  const mesh::RawMesh raw =
+      parallel::comm_rank(MPI_COMM_WORLD) == 0
+          ? mesh::make_box(mesh::BoxCells::quadrilaterals, {20, 10, 1}, Vec3::Zero(), Vec3(length, 1, 1))
+          : mesh::RawMesh{};
+  FluidParticipant<2> fluid(mesh::distribute(MPI_COMM_WORLD, raw), p, FluidContext{"fluid", folder},
+                            MotionLink{});
   fluid.initialise();
   for (int i = 0; i < steps; ++i) {
-    fluid.begin_step({0.01 * i, 0.01, Scheme::standalone, i});
+    fluid.begin_step({0.01 * i, 0.01, coupling::Scheme::standalone, i});
     fluid.solve({});
     fluid.accept_step();
     fluid.write_monitors(0.01 * (i + 1));

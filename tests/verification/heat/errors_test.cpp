@@ -10,6 +10,7 @@
 #include "tests/verification/heat/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 // A slab |x| < 1, convection Bi = 1 on its faces, z tan z = Bi: the slowest mode, exp(-z^2 Fo) cos(z x), which nothing disturbs.
@@ -18,7 +19,7 @@ double cooled(double x, double fo) { return std::exp(-z * z * fo) * std::cos(z *
 const double mean_before = std::sin(z) / z;
 
 struct Outcome {
-  ErrorParts parts;
+  coupling::ErrorParts parts;
   double wrong = 0;  ///< true error over the size of the variation
 };
 
@@ -39,7 +40,7 @@ Outcome slab(int n, int steps, HeatScheme scheme, bool again = false) {
   auto errors = std::make_unique<HeatErrors>(scene.mesh(), scene.geometry(), p);
   for (int i = 0; i < steps; ++i) {
     const HeatState& now = scene.heat->accepted();
-    scene.heat->solve({now.time, 0.5 / steps, Scheme::standalone, now.steps});
+    scene.heat->solve({now.time, 0.5 / steps, coupling::Scheme::standalone, now.steps});
     errors->see_step(scene.heat->accepted(), scene.heat->trial());
     scene.heat->accept_step();
     if (!again) continue;
@@ -75,8 +76,8 @@ TEST(HeatErrors, long_steps_dominate_where_they_do) {
 }
 
 TEST(HeatErrors, a_run_that_goes_on_says_the_same) {
-  const ErrorParts whole = slab(8, 12, HeatScheme::three_point).parts,
-                   stopped = slab(8, 12, HeatScheme::three_point, true).parts;
+  const coupling::ErrorParts whole = slab(8, 12, HeatScheme::three_point).parts,
+                             stopped = slab(8, 12, HeatScheme::three_point, true).parts;
   EXPECT_EQ(whole.step, stopped.step);
   EXPECT_EQ(whole.mesh, stopped.mesh);
 }
@@ -104,7 +105,7 @@ TEST(HeatErrors, a_linear_field_errs_nowhere_and_one_temperature_says_nothing) {
                    {{1, 1.0, 1.0}}, p);
     const HeatErrors errors(scene.mesh(), scene.geometry(), p);
     scene.step(1);
-    const ErrorParts parts = errors.parts(*scene.heat);
+    const coupling::ErrorParts parts = errors.parts(*scene.heat);
     if (level) {
       EXPECT_FALSE(parts.known());
     } else {

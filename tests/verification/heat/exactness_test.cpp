@@ -9,6 +9,7 @@
 #include "tests/verification/heat/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 const HeatProperties steel{7850, 50.0, 480.0};
@@ -57,8 +58,8 @@ TEST_P(Exactness, a_symmetry_plane_is_the_middle_of_the_mirrored_solid) {
 
 TEST_P(Exactness, heat_is_neither_lost_nor_made_while_properties_depend_on_the_temperature) {
   const int dim = dimension_of(GetParam());
-  const HeatProperties varying{7850, Property({"table(T, 300, 60, 600, 30)"}, "k"),
-                               Property({"table(T, 300, 450, 400, 500, 600, 700)"}, "c")};
+  const HeatProperties varying{7850, fv::Property({"table(T, 300, 60, 600, 30)"}, "k"),
+                               fv::Property({"table(T, 300, 450, 400, 500, 600, 700)"}, "c")};
   for (const HeatScheme scheme : {HeatScheme::euler, HeatScheme::three_point, HeatScheme::trapezoidal}) {
     HeatParameters p;
     p.scheme = scheme;
@@ -82,7 +83,7 @@ TEST(SteadyHeat, tells_the_time_that_it_neglects_by_the_mean_temperature) {
   p.boundaries["xmin"] = heat_boundary(HeatType::temperature, "300");
   p.boundaries["xmax"] = heat_boundary(HeatType::temperature, "500");
   HeatCase scene(make_box(BoxCells::quadrilaterals, {8, 2, 1}, Vec3::Zero(), Vec3(1, 0.1, 0)),
-                 {{3, 1.0, Property({"table(T, 300, 500, 800, 1500)"}, "c")}}, p);
+                 {{3, 1.0, fv::Property({"table(T, 300, 500, 800, 1500)"}, "c")}}, p);
   std::vector<std::string> said;
   for (int i = 0; i < 2; ++i) scene.step(1);
   scene.heat->judge(said);
@@ -101,7 +102,7 @@ TEST_P(Exactness, ranks_agree_with_one_rank) {
   p.boundaries["xmax"] = convection("100 + t", "320*(1 + x*y)");
   p.boundaries["ymin"].type = HeatType::symmetry;
   if (dim == 3) p.boundaries["zmax"] = heat_boundary(HeatType::flux, "1e4*x");
-  const HeatProperties varying{7850, Property({"table(T, 300, 60, 600, 30)"}, "k"), 480.0};
+  const HeatProperties varying{7850, fv::Property({"table(T, 300, 60, 600, 30)"}, "k"), 480.0};
   HeatCase together(distorted_box(GetParam()), {varying}, p);
   HeatCase alone(distorted_box(GetParam()), {varying}, p, MPI_COMM_SELF);
   for (int i = 0; i < 3; ++i) together.step(20), alone.step(20);
@@ -111,7 +112,7 @@ TEST_P(Exactness, ranks_agree_with_one_rank) {
   double gap = 0;
   for (Index c = 0; c < together.mesh().cells.n_owned(); ++c)
     gap = std::max(gap, std::abs(together.temperature(c) - by_id[together.mesh().cell_id[c]]));
-  gap = max(MPI_COMM_WORLD, gap) / 350;
+  gap = parallel::max(MPI_COMM_WORLD, gap) / 350;
   ::testing::Test::RecordProperty("gap", fmt::format("{:.3e}", gap));
   EXPECT_LT(gap, 1e-10);
 }

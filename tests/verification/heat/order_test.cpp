@@ -7,6 +7,7 @@
 #include "tests/verification/heat/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 double slope_of(double coarse, double fine, double ratio) {
@@ -125,7 +126,7 @@ TEST(OrderInSpaceOfVaryingConductivity, is_two) {
     p.boundaries["xmin"] = heat_boundary(HeatType::temperature, "300");
     p.boundaries["xmax"] = heat_boundary(HeatType::temperature, "400");
     RawMesh raw = make_box(BoxCells::quadrilaterals, {n, 4, 1}, Vec3::Zero(), Vec3(1, 1, 0));
-    HeatCase scene(raw, {{1, Property({"table(T, 300, 1, 400, 2)"}, "k"), 1.0}}, p);
+    HeatCase scene(raw, {{1, fv::Property({"table(T, 300, 1, 400, 2)"}, "k"), 1.0}}, p);
     scene.step(1);
     return scene.error([](const Vec3& x) { return 300 + 100 * (std::sqrt(1 + 3 * x[0]) - 1); });
   };

@@ -7,6 +7,7 @@
 #include "tests/verification/heat/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 // A half space at 0 whose face is put to 1: T = erfc(x / (2 sqrt(a t))), a = 1; 4 sqrt(a t) deep.

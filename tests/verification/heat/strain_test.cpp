@@ -12,6 +12,8 @@
 #include "tests/verification/heat/thermoelastic.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
+using namespace parallel;
 namespace {
 
 constexpr double modulus = 200e9, nu = 0.3, alpha = 1.2e-5, rise = 100;
@@ -184,7 +186,7 @@ TEST_P(Strain, two_materials_held_all_around_push_with_one_traction) {
     m.youngs_modulus = e[i];
     m.poissons_ratio = poisson[i];
     m.heat.expansion = config::ExpressionText{expansion[i]};
-    const LameConstants lame = lame_constants(p, m);
+    const elastic::LameConstants lame = lame_constants(p, m);
     lengths += 0.5 * (3 * lame.lambda + 2 * lame.mu) * strain[i] / (lame.lambda + 2 * lame.mu);
     compliance += 0.5 / (lame.lambda + 2 * lame.mu);
   }
@@ -312,12 +314,12 @@ TEST(SolvedTemperature, goes_on_bit_for_bit_after_a_restart) {
     step(*first, 30);
     const Scratch file;
     {
-      CheckpointWriter writer(MPI_COMM_WORLD, file.path());
+      io::CheckpointWriter writer(MPI_COMM_WORLD, file.path());
       first->save(writer);
       writer.close();
     }
     const auto second = std::make_unique<Solid>(body, p, SolidContext{});
-    CheckpointReader reader(MPI_COMM_WORLD, file.path());
+    io::CheckpointReader reader(MPI_COMM_WORLD, file.path());
     second->load(reader);
     for (Solid* solid : {first.get(), second.get()}) step(*solid, 10), step(*solid, 10);
     EXPECT_EQ(first->stepper().state().cell_u, second->stepper().state().cell_u);

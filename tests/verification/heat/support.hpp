@@ -37,18 +37,18 @@ inline HeatBoundary convection(const std::string& coefficient, const std::string
 
 /// A mesh with the heat equation on it.
 struct HeatCase {
-  std::unique_ptr<LoadedMesh> loaded;
+  std::unique_ptr<mesh::LoadedMesh> loaded;
   std::unique_ptr<Heat> heat;
 
-  HeatCase(const RawMesh& raw, const std::vector<HeatProperties>& materials, const HeatParameters& p,
+  HeatCase(const mesh::RawMesh& raw, const std::vector<HeatProperties>& materials, const HeatParameters& p,
            MPI_Comm comm = MPI_COMM_WORLD)
-      : loaded(std::make_unique<LoadedMesh>(distribute(comm, raw))),
+      : loaded(std::make_unique<mesh::LoadedMesh>(mesh::distribute(comm, raw))),
         heat(std::make_unique<Heat>(mesh(), geometry(), materials, p, std::vector<std::string>{})) {}
 
-  const Mesh& mesh() const { return loaded->mesh; }
-  const Geometry& geometry() const { return loaded->geometry; }
+  const mesh::Mesh& mesh() const { return loaded->mesh; }
+  const mesh::Geometry& geometry() const { return loaded->geometry; }
   void step(double dt) {
-    heat->solve({heat->accepted().time, dt, Scheme::standalone, heat->accepted().steps});
+    heat->solve({heat->accepted().time, dt, coupling::Scheme::standalone, heat->accepted().steps});
     heat->accept_step();
   }
   double temperature(Index cell) const { return heat->accepted().cells[cell]; }
@@ -62,7 +62,7 @@ struct HeatCase {
       squares += geometry().volume[c] * std::pow(temperature(c) - exact(place(c)), 2);
       volume += geometry().volume[c];
     }
-    return std::sqrt(sum(mesh().comm, squares) / sum(mesh().comm, volume));
+    return std::sqrt(parallel::sum(mesh().comm, squares) / parallel::sum(mesh().comm, volume));
   }
   /// Largest error of cells, boundary faces and points.
   double largest_error(const Exact& exact) const {
@@ -75,7 +75,7 @@ struct HeatCase {
     for (std::size_t f = 0; f < faces.size(); ++f) see(faces[f], geometry().face_centre[f]);
     const std::vector<double> points = heat->point_temperature(heat->accepted());
     for (std::size_t v = 0; v < points.size(); ++v) see(points[v], geometry().points[v]);
-    return max(mesh().comm, largest);
+    return parallel::max(mesh().comm, largest);
   }
 };
 

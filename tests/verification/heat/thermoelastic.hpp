@@ -19,9 +19,9 @@ inline SolidParameters warm_box(int dim, const std::string& temperature) {
   return p;
 }
 
-inline RawMesh distorted_box(BoxCells cells) {
-  RawMesh raw = make_box(cells, {5, 4, 3}, Vec3::Zero(), Vec3(1, 0.8, 0.6));
-  perturb_interior(raw, 0.25, 11);
+inline mesh::RawMesh distorted_box(mesh::BoxCells cells) {
+  mesh::RawMesh raw = mesh::make_box(cells, {5, 4, 3}, Vec3::Zero(), Vec3(1, 0.8, 0.6));
+  mesh::perturb_interior(raw, 0.25, 11);
   return raw;
 }
 

@@ -16,6 +16,7 @@
 #include "tests/support/saved_state.hpp"
 
 namespace couplet::mesh_mover::test {
+using namespace mesh;
 namespace {
 
 using std::numbers::pi;
@@ -99,8 +100,8 @@ Parameters block(int kind, Method method, BoundaryMotion walls) {
   return p;
 }
 
-ParticipantContext in_test_data() {
-  ParticipantContext c = context();
+app::ParticipantContext in_test_data() {
+  app::ParticipantContext c = context();
   c.case_folder = COUPLET_TEST_DATA;
   return c;
 }
@@ -208,9 +209,10 @@ TEST(Barrier, in_three_dimensions_goes_on_from_a_checkpoint_and_hardly_depends_o
   run(mover, 0.4, 0.6, 2);
   EXPECT_EQ(mover.displacement(), end);
 
-  ParticipantContext alone = in_test_data();
+  app::ParticipantContext alone = in_test_data();
   alone.comm = MPI_COMM_SELF;
-  alone.output_folder = support::own_folder() / ("alone-" + std::to_string(comm_rank(MPI_COMM_WORLD)));
+  alone.output_folder =
+      support::own_folder() / ("alone-" + std::to_string(parallel::comm_rank(MPI_COMM_WORLD)));
   std::filesystem::create_directories(alone.output_folder);
   Mover reference(p, alone);
   reference.initialise();
@@ -223,7 +225,7 @@ TEST(Barrier, in_three_dimensions_goes_on_from_a_checkpoint_and_hardly_depends_o
   for (Index v = 0; v < mover.mesh().points.n_local(); ++v)
     for (int c = 0; c < 3; ++c)
       worst = std::max(worst, std::abs(by_id[3 * mover.mesh().point_id[v] + c] - end[3 * v + c]));
-  EXPECT_LT(max(MPI_COMM_WORLD, worst), 1e-4 * 0.0039);
+  EXPECT_LT(parallel::max(MPI_COMM_WORLD, worst), 1e-4 * 0.0039);
 }
 
 TEST(Barrier, follows_two_cylinders_that_pass_each_other_where_the_laplacian_folds) {
@@ -237,7 +239,7 @@ TEST(Barrier, follows_two_cylinders_that_pass_each_other_where_the_laplacian_fol
     for (const char* body : {"upper", "lower"}) p.boundaries[body].motion = BoundaryMotion::moving;
     p.boundaries["upper"].prescribed.translation = {{"sin(2*pi*t)"}, {"0"}};
     p.boundaries["lower"].prescribed.translation = {{"-sin(2*pi*t)"}, {"0"}};
-    ParticipantContext c = context();
+    app::ParticipantContext c = context();
     c.case_folder = COUPLET_CONFIGS "/passing-cylinders";
     Mover mover(p, c);
     mover.initialise();
@@ -253,7 +255,7 @@ TEST(Barrier, follows_two_cylinders_that_pass_each_other_where_the_laplacian_fol
 /// The Laplacian while it serves; the barrier from the start where a prescribed motion would fold the mesh later on.
 TEST(Barrier, auto_chooses_it_where_the_laplacian_would_fold) {
   Parameters p = block(0, Method::automatic, BoundaryMotion::fixed);
-  ParticipantContext c = in_test_data();
+  app::ParticipantContext c = in_test_data();
   c.simulation.end_time = 1;
   Mover mover(p, c);
   mover.initialise();
@@ -312,8 +314,8 @@ TEST(Barrier, slides_along_planes_and_edges_of_any_direction) {
     along = std::max(along, std::abs(u.x() - 0.8 * x.x()));
     across = std::max({across, std::abs(u.y()), std::abs(u.z())});
   }
-  EXPECT_LT(max(mesh.comm, along), 1e-3);
-  EXPECT_LT(max(mesh.comm, across), 1e-3);
+  EXPECT_LT(parallel::max(mesh.comm, along), 1e-3);
+  EXPECT_LT(parallel::max(mesh.comm, across), 1e-3);
 }
 
 TEST(Barrier, periodic_patches_are_refused_by_name) {

@@ -13,6 +13,7 @@
 #include "plate_case.hpp"
 
 namespace couplet::mesh_mover::test {
+using namespace mesh;
 namespace {
 
 using std::numbers::pi;
@@ -22,7 +23,7 @@ constexpr int around = 24;
 /// 1 < r < 2 over half a turn; in 3-D a half tube of height 1.
 LoadedMesh half_ring(BoxCells cells, int dim) {
   RawMesh raw;
-  if (comm_rank(MPI_COMM_WORLD) == 0) {
+  if (parallel::comm_rank(MPI_COMM_WORLD) == 0) {
     raw = make_box(cells, {6, around, 2}, Vec3::Zero(), Vec3::Ones());
     for (Vec3& x : raw.points)
       x = Vec3((1 + x[0]) * std::cos(pi * x[1]), (1 + x[0]) * std::sin(pi * x[1]), dim == 3 ? x[2] : 0);
@@ -52,7 +53,7 @@ Far of_outer_points(const Mesh& mesh, const Geometry& geometry, const std::vecto
     far.off = std::max(far.off, std::abs((x.head<2>() + moved).norm() - outer));
     far.along = std::max(far.along, moved.norm());
   }
-  return {max(mesh.comm, far.off), max(mesh.comm, far.along)};
+  return {parallel::max(mesh.comm, far.off), parallel::max(mesh.comm, far.along)};
 }
 
 TEST(CurvedSlide, points_stay_on_the_polygon_of_the_patch_however_far_they_slide) {

@@ -17,6 +17,7 @@
 #include "plate_case.hpp"
 
 namespace couplet::mesh_mover::test {
+using namespace mesh;
 namespace {
 
 using std::numbers::pi;
@@ -146,7 +147,7 @@ TEST(Rotations, an_eighth_of_a_turn_keeps_the_shape_of_the_body_and_all_cells_va
     const Vec3 d(k * (x.x() - x.y()) - x.x(), k * (x.x() + x.y()) - x.y(), 0);
     for (int c = 0; c < 2; ++c) worst = std::max(worst, std::abs(mover.displacement()[2 * v + c] - d[c]));
   }
-  EXPECT_LT(max(mesh.comm, worst), 1e-12);
+  EXPECT_LT(parallel::max(mesh.comm, worst), 1e-12);
 }
 
 TEST(Rotations, go_on_beyond_half_a_turn) {
@@ -163,7 +164,7 @@ TEST(Rotations, go_on_beyond_half_a_turn) {
   double r2 = 10 * r1;
   for (const Vec3& x : geometry.points)
     if (std::max(std::abs(x.x()), std::abs(x.y())) > 0.999) r2 = std::min(r2, x.norm());
-  r2 = min(mesh.comm, r2);
+  r2 = parallel::min(mesh.comm, r2);
   double worst = 0, turned = 0;
   for (Index v = 0; v < mesh.points.n_local(); ++v) {
     const Vec3& x = geometry.points[v];
@@ -174,8 +175,8 @@ TEST(Rotations, go_on_beyond_half_a_turn) {
     turned = std::max(turned, angle);
     for (int c = 0; c < 2; ++c) worst = std::max(worst, std::abs(mover.displacement()[2 * v + c] - d[c]));
   }
-  EXPECT_LT(max(mesh.comm, worst), 1e-9);
-  EXPECT_GT(max(mesh.comm, turned), 0.6 * pi);
+  EXPECT_LT(parallel::max(mesh.comm, worst), 1e-9);
+  EXPECT_GT(parallel::max(mesh.comm, turned), 0.6 * pi);
 }
 
 TEST(Rotations, a_body_without_room_is_refused_by_name) {
@@ -201,7 +202,7 @@ TEST_P(EveryMethod, returns_to_the_reference_mesh_with_the_body) {
   mover.initialise();
   run(mover, 0, 0.5, 5);
   const std::vector<double> out = mover.displacement();
-  EXPECT_GT(max(MPI_COMM_WORLD, *std::ranges::max_element(out)), 0.2);
+  EXPECT_GT(parallel::max(MPI_COMM_WORLD, *std::ranges::max_element(out)), 0.2);
   run(mover, 0.5, 1, 5);
   const double left =
       largest_difference(MPI_COMM_WORLD, mover.displacement(), std::vector<double>(out.size()));
@@ -301,9 +302,9 @@ TEST(Guard, each_limit_refuses_with_its_key_and_the_cell_and_lets_a_small_motion
     p.boundaries["plate"].prescribed.translation = {{"0"}, {"t"}};
     Mover mover(p, context());
     mover.initialise();
-    mover.begin_step({0, 1e-4, Scheme::standalone, 0});
+    mover.begin_step({0, 1e-4, coupling::Scheme::standalone, 0});
     EXPECT_NO_THROW(mover.solve({})) << key;
-    mover.begin_step({0, 0.3, Scheme::standalone, 0});
+    mover.begin_step({0, 0.3, coupling::Scheme::standalone, 0});
     try {
       mover.solve({});
       ADD_FAILURE() << key << " let it pass";

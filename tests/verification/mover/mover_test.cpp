@@ -16,6 +16,8 @@
 #include "tests/support/saved_state.hpp"
 
 namespace couplet::mesh_mover {
+using namespace coupling;
+using namespace mesh;
 namespace {
 
 Parameters all_patches(const Mesh& mesh, BoundaryMotion motion) {
@@ -38,7 +40,7 @@ std::vector<double> at_points(const Mesh& mesh, const Geometry& geometry, F&& f)
 double largest_difference(const Mesh& mesh, const std::vector<double>& a, const std::vector<double>& b) {
   double worst = 0;
   for (std::size_t i = 0; i < a.size(); ++i) worst = std::max(worst, std::abs(a[i] - b[i]));
-  return max(mesh.comm, worst);
+  return parallel::max(mesh.comm, worst);
 }
 
 LoadedMesh perturbed_box(BoxCells cells, int n) {
@@ -137,7 +139,7 @@ TEST(Laplacian, cg_and_the_direct_method_move_the_mesh_alike_and_back_to_the_sta
   const auto [mesh, geometry] = perturbed_box(BoxCells::triangles, 12);
   Parameters p = all_patches(mesh, BoundaryMotion::interface);
   Laplacian direct(mesh, geometry, p);
-  p.linear.method = LinearMethod::cg_multigrid;
+  p.linear.method = linalg::LinearMethod::cg_multigrid;
   p.linear.relative_tolerance = 1e-12;
   Laplacian iterative(mesh, geometry, p);
   const auto bend = at_points(
@@ -169,10 +171,10 @@ TEST(Laplacian, stiffening_protects_the_small_cells) {
     Index smallest = 0;
     for (Index c = 0; c < mesh.cells.n_owned(); ++c)
       if (geometry.volume[c] < geometry.volume[smallest]) smallest = c;
-    const double v0 = min(mesh.comm, geometry.volume[smallest]);
+    const double v0 = parallel::min(mesh.comm, geometry.volume[smallest]);
     for (Index c = 0; c < mesh.cells.n_owned(); ++c)
       if (geometry.volume[c] < 1.001 * v0) least[chi] = g.volume[c] / geometry.volume[c];
-    least[chi] = min(mesh.comm, least[chi]);
+    least[chi] = parallel::min(mesh.comm, least[chi]);
   }
   EXPECT_LT(least[0], 0.72);
   EXPECT_GT(least[1], 0.95);
@@ -233,8 +235,8 @@ Parameters square() {
   return p;
 }
 
-ParticipantContext context_of_the_test() {
-  ParticipantContext context;
+app::ParticipantContext context_of_the_test() {
+  app::ParticipantContext context;
   context.comm = MPI_COMM_WORLD;
   context.name = "mover";
   context.case_folder = COUPLET_TEST_DATA;
@@ -258,7 +260,7 @@ TEST(Mover, gives_the_same_mesh_for_the_same_interface_whatever_came_between) {
   mover.begin_step({.time = 0, .dt = 0.1, .scheme = Scheme::implicit, .number = 1});
   mover.solve(push_middle(interface, 0.1));
   const std::vector<double> first = mover.displacement();
-  EXPECT_GT(max(MPI_COMM_WORLD, *std::max_element(first.begin(), first.end())), 0.05);
+  EXPECT_GT(parallel::max(MPI_COMM_WORLD, *std::max_element(first.begin(), first.end())), 0.05);
   mover.solve(push_middle(interface, -0.2));
   EXPECT_THROW(mover.solve(push_middle(interface, -0.9)), SolveFailure);
   mover.begin_step({.time = 0, .dt = 0.05, .scheme = Scheme::implicit, .number = 1});

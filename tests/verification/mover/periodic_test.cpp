@@ -18,6 +18,8 @@
 #include "tests/support/saved_state.hpp"
 
 namespace couplet::mesh_mover::test {
+using namespace mesh;
+using namespace parallel;
 namespace {
 
 using std::numbers::pi;
@@ -211,7 +213,7 @@ TEST(Periodic, sides_move_alike_from_a_checkpoint_too) {
     checkpoint.load_into(mover);
     run(mover, 0.5, 1, 1);
     EXPECT_EQ(mover.displacement(), end);
-    ParticipantContext alone = context();
+    app::ParticipantContext alone = context();
     alone.comm = MPI_COMM_SELF;
     alone.output_folder = support::own_folder() / ("alone-" + std::to_string(comm_rank(MPI_COMM_WORLD)));
     std::filesystem::create_directories(alone.output_folder);

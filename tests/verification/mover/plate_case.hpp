@@ -17,7 +17,7 @@ inline double largest_difference(MPI_Comm comm, const std::vector<double>& a, co
   double worst = a.size() == b.size() ? 0 : 1e300;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
     worst = std::max(worst, std::abs(a[i] - b[i]));
-  return max(comm, worst);
+  return parallel::max(comm, worst);
 }
 
 inline Parameters plate_in_a_square(Method method, Form form, double chi = 1) {
@@ -33,8 +33,8 @@ inline Parameters plate_in_a_square(Method method, Form form, double chi = 1) {
   return p;
 }
 
-inline ParticipantContext context() {
-  ParticipantContext c;
+inline app::ParticipantContext context() {
+  app::ParticipantContext c;
   c.comm = MPI_COMM_WORLD;
   c.name = "mover";
   c.case_folder = COUPLET_CONFIGS "/moving-mesh";
@@ -46,7 +46,7 @@ inline ParticipantContext context() {
 inline void run(Mover& mover, double from, double to, int steps) {
   for (int i = 0; i < steps; ++i) {
     const double dt = (to - from) / steps;
-    mover.begin_step({from + i * dt, dt, Scheme::standalone, i});
+    mover.begin_step({from + i * dt, dt, coupling::Scheme::standalone, i});
     mover.solve({});
     mover.accept_step();
   }

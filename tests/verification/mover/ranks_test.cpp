@@ -41,8 +41,8 @@ TEST_P(EveryMethod, is_not_changed_by_checkpoints) {
   for (Mover* mover : {&never, &always}) mover->initialise();
   for (int i = 0; i < 4; ++i) {
     for (Mover* mover : {&never, &always}) run(*mover, 0.1 * i, 0.1 * (i + 1), 1);
-    StateInMemory memory;
-    CheckpointWriter writer(memory);
+    io::StateInMemory memory;
+    io::CheckpointWriter writer(memory);
     always.save(writer);
     writer.close();
   }
@@ -54,9 +54,10 @@ TEST_P(EveryMethod, is_the_same_on_any_number_of_ranks) {
   Parameters p = plate_in_a_square(method, form);
   turn_by(p, "0.4*t");
   p.boundaries["plate"].prescribed.displacement = {{"0"}, {"0.1*t*x^2"}};
-  ParticipantContext alone = context();
+  app::ParticipantContext alone = context();
   alone.comm = MPI_COMM_SELF;
-  alone.output_folder = support::own_folder() / ("alone-" + std::to_string(comm_rank(MPI_COMM_WORLD)));
+  alone.output_folder =
+      support::own_folder() / ("alone-" + std::to_string(parallel::comm_rank(MPI_COMM_WORLD)));
   std::filesystem::create_directories(alone.output_folder);
   Mover mover(p, context()), reference(p, alone);
   mover.initialise();
@@ -72,7 +73,7 @@ TEST_P(EveryMethod, is_the_same_on_any_number_of_ranks) {
     for (int c = 0; c < 2; ++c)
       worst = std::max(worst,
                        std::abs(by_id[2 * mover.mesh().point_id[v] + c] - mover.displacement()[2 * v + c]));
-  EXPECT_LT(max(MPI_COMM_WORLD, worst), 1e-9);
+  EXPECT_LT(parallel::max(MPI_COMM_WORLD, worst), 1e-9);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryMethod,

@@ -12,15 +12,15 @@
 namespace couplet::plate::test {
 
 /// A square of 1 kg that can only rise and fall: one face of 1 m^2 looks down.
-inline ModalModel block() {
-  ModalModel model;
+inline modes::ModalModel block() {
+  modes::ModalModel model;
   model.vertices = {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}};
   model.faces.push_row(std::array<Index, 4>{0, 1, 2, 3});
   model.frequency = {0};
   for (int v = 0; v < 4; ++v) model.vertex_shape.insert(model.vertex_shape.end(), {0, 0, 1});
   model.participation = {0, 0, 1};
   model.mass = 1;
-  average_faces(model);
+  modes::average_faces(model);
   return model;
 }
 
@@ -34,7 +34,7 @@ struct Bounce {
   Bounce(double stiffness, double gap, double v, ContactRule rule, double gravity = 0)
       : share(MPI_COMM_SELF, block()),
         contact(share, parameters(stiffness, gap, rule), Vec3::UnitZ(), 0),
-        body({0}, {0}, {gravity}, {TimeScheme::trapezoidal}, &contact),
+        body({0}, {0}, {gravity}, {time::TimeScheme::trapezoidal}, &contact),
         now(body.start({0}, {v})),
         next(now) {}
   static ContactParameters parameters(double stiffness, double gap, ContactRule rule) {

@@ -135,13 +135,13 @@ TEST(PlateContact, a_mode_on_a_seat_at_its_rest_position_bounces_at_twice_its_fr
   p.contact.emplace();
   p.contact->height.text = "-0.005";  // touches the lower side at rest
   p.initial_amplitudes = {0.001};
-  const RawMesh raw = square(6);
+  const mesh::RawMesh raw = square(6);
   Structure plate(p, PlateContext{}, &raw);
   const double f = plate.share().omega()[0] / (2 * std::numbers::pi), dt = 1 / f / 400;
   std::vector<double> impacts;
   double before = 0;
   for (int i = 0; i < 4000; ++i) {
-    plate.begin_step({i * dt, dt, Scheme::standalone, i});
+    plate.begin_step({i * dt, dt, coupling::Scheme::standalone, i});
     plate.solve({});
     plate.accept_step();
     const double v = plate.state().v[0];
@@ -163,12 +163,12 @@ TEST(PlateContact, a_plate_with_modes_keeps_its_energy_through_an_impact_and_the
     p.contact->height.text = "-0.006 + 0.0005 * x";
     p.contact->where.text = where;
     p.initial_amplitudes = {0.003, 0.0002};
-    const RawMesh raw = square(8);
+    const mesh::RawMesh raw = square(8);
     Structure plate(p, PlateContext{}, &raw);
     const double dt = 2 * std::numbers::pi / plate.share().omega()[0] / 500;
     double deepest = 0, worst = 0;
     for (int i = 0; i < 500; ++i) {
-      plate.begin_step({i * dt, dt, Scheme::standalone, i});
+      plate.begin_step({i * dt, dt, coupling::Scheme::standalone, i});
       plate.solve({});
       plate.accept_step();
       deepest = std::max(deepest, plate.state().energies.contact);
@@ -187,13 +187,13 @@ TEST(PlateContact, a_run_whose_scheme_makes_more_energy_than_there_was_is_refuse
     p.contact->height.text = "-0.006";
     p.contact->rule = rule;
     p.initial_amplitudes = {0.003};
-    const RawMesh raw = square(4);
+    const mesh::RawMesh raw = square(4);
     Structure plate(p, PlateContext{}, &raw);
     const double dt = 2 * std::numbers::pi / plate.share().omega()[0] / 30;
     double most = 0;
     const auto run = [&] {
       for (int i = 0; i < 20000; ++i) {
-        plate.begin_step({i * dt, dt, Scheme::standalone, i});
+        plate.begin_step({i * dt, dt, coupling::Scheme::standalone, i});
         plate.solve({});
         plate.accept_step();
         most = std::max(most, plate.state().energies.total());
@@ -213,7 +213,7 @@ std::string refusal(const ContactParameters& contact, double amplitude = 0) {
   Parameters p = reed_like();
   p.contact = contact;
   p.initial_amplitudes = {amplitude};
-  const RawMesh raw = square(4);
+  const mesh::RawMesh raw = square(4);
   try {
     const Structure plate(p, PlateContext{}, &raw);
     return "";
@@ -246,11 +246,11 @@ TEST(PlateContact, a_seat_that_is_never_met_is_told_with_its_distance) {
     p.contact.emplace();
     p.contact->height.text = height;
     p.initial_amplitudes = {0.003};
-    const RawMesh raw = square(4);
+    const mesh::RawMesh raw = square(4);
     Structure plate(p, PlateContext{}, &raw);
     const double dt = 2 * std::numbers::pi / plate.share().omega()[0] / 200;
     for (int i = 0; i < 200; ++i) {
-      plate.begin_step({i * dt, dt, Scheme::standalone, i});
+      plate.begin_step({i * dt, dt, coupling::Scheme::standalone, i});
       plate.solve({});
       plate.accept_step();
     }

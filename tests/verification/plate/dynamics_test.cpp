@@ -8,6 +8,7 @@
 #include "tests/verification/plate/plates.hpp"
 
 namespace couplet::plate {
+using namespace time;
 namespace {
 
 using namespace test;
@@ -141,9 +142,9 @@ class Direct {
 };
 
 TEST(PlateDynamics, fifteen_modes_follow_direct_integration_of_the_same_plate) {
-  const SlepcEnvironment slepc;
+  const modes::SlepcEnvironment slepc;
   const PlateModel plate = make_plate(square(8), {{"xmin", Support::clamped}});
-  const EigenModes modes = plate.modes(15);
+  const modes::EigenModes modes = plate.modes(15);
   const double dt = 2 * std::numbers::pi / lambdas(modes)[0] / 100;
   std::vector<double> pressure;
   for (Index c = 0; c < plate.surface().cells.size(); ++c)

@@ -35,19 +35,20 @@ struct Cost {
   long long bytes_made = 0;  // of making the oscillators and the seat
 };
 
-ModalModel body() {
-  ModalModel model;
+modes::ModalModel body() {
+  modes::ModalModel model;
   model.vertices = {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}};
   model.faces.push_row(std::array<Index, 4>{0, 1, 2, 3});
   model.frequency.assign(10, 5);
   for (int v = 0; v < 4; ++v)
     for (int c = 0; c < 3; ++c) model.vertex_shape.insert(model.vertex_shape.end(), 10, c == 2 ? 1 : 0);
   model.participation.assign(30, 1);
-  average_faces(model);
+  modes::average_faces(model);
   return model;
 }
 
-Cost cost(bool seat, double damping, double gravity, TimeScheme scheme = TimeScheme::trapezoidal) {
+Cost cost(bool seat, double damping, double gravity,
+          time::TimeScheme scheme = time::TimeScheme::trapezoidal) {
   const Share share(MPI_COMM_SELF, body());
   Cost result;
   const long long before_making = allocated;
@@ -78,7 +79,7 @@ TEST(PlateEffects, a_step_without_seat_allocates_the_list_of_its_stages_alone) {
   const Cost plain = cost(false, 0, 0);
   // One list of one stage (trapezoidal) a step, nothing of the size of the structure.
   EXPECT_LE(plain.allocations, 10);
-  EXPECT_LE(plain.bytes, 10 * static_cast<long long>(sizeof(Stage)));
+  EXPECT_LE(plain.bytes, 10 * static_cast<long long>(sizeof(time::Stage)));
   const Cost full = cost(false, 0.3, -9.81);
   EXPECT_EQ(full.allocations, plain.allocations);
   EXPECT_EQ(full.bytes, plain.bytes);

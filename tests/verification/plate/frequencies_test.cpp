@@ -7,6 +7,8 @@
 #include "tests/verification/plate/plates.hpp"
 
 namespace couplet::plate {
+using namespace mesh;
+using namespace modes;
 namespace {
 
 using namespace test;

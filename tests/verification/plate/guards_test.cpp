@@ -14,6 +14,8 @@
 #include "tests/verification/plate/plates.hpp"
 
 namespace couplet::plate {
+using namespace effects;
+using namespace mesh;
 namespace {
 
 using namespace test;
@@ -34,8 +36,11 @@ std::vector<EffectVerdict> verdicts(const Parameters& p, int steps, double dt,
   Structure plate(p, PlateContext{}, &raw);
   plate.initialise();
   for (int i = 0; i < steps; ++i) {
-    plate.begin_step(
-        {.time = i * dt, .dt = dt, .scheme = Scheme::standalone, .number = i, .is_last = i + 1 == steps});
+    plate.begin_step({.time = i * dt,
+                      .dt = dt,
+                      .scheme = coupling::Scheme::standalone,
+                      .number = i,
+                      .is_last = i + 1 == steps});
     plate.solve({});
     plate.accept_step();
   }
@@ -252,7 +257,8 @@ TEST(PlateGuards, a_pressure_without_a_sound_value_names_its_key_time_and_place)
     p.load.emplace().upper.emplace().text = upper;
     return message_of([&] {
       Structure plate(p, PlateContext{}, &raw);
-      plate.begin_step({.time = 2, .dt = 0.01, .scheme = Scheme::standalone, .number = 0, .is_last = true});
+      plate.begin_step(
+          {.time = 2, .dt = 0.01, .scheme = coupling::Scheme::standalone, .number = 0, .is_last = true});
       plate.solve({});
     });
   };
@@ -333,7 +339,7 @@ TEST(PlateGuards, a_load_without_a_part_in_any_mode_is_told) {
   stands.placement.x = Vec3(0, 1, 0);
   stands.placement.y = Vec3(0, 0, 1);
   const RawMesh raw = square(4);
-  write_modes(folder / "stands.h5", build_model(stands, PlateContext{}, &raw).model, "");
+  modes::write_modes(folder / "stands.h5", build_model(stands, PlateContext{}, &raw).model, "");
   Parameters p;
   p.modes_file = "stands.h5";
   p.load.emplace().upper.emplace().text = "1";

@@ -17,6 +17,9 @@
 #include "tests/verification/plate/plates.hpp"
 
 namespace couplet::plate {
+using namespace mesh;
+using namespace modes;
+using namespace parallel;
 namespace {
 
 using namespace test;
@@ -52,12 +55,12 @@ class PlateModesFile : public ::testing::Test {
   }
   /// Displacement after ten steps under a load, on rank 0.
   static std::vector<double> run(Structure& structure) {
-    const Interface interface = structure.initialise();
-    Exchange in;
+    const coupling::Interface interface = structure.initialise();
+    coupling::Exchange in;
     for (const Vec3& x : interface.face_centres)
       for (const double f : {0.01, 0.02 * x.y(), 0.1 + x.x()}) in["pressure-force"].push_back(f);
     for (int i = 0; i < 10; ++i) {
-      structure.begin_step({0.01 * i, 0.01, Scheme::standalone, i});
+      structure.begin_step({0.01 * i, 0.01, coupling::Scheme::standalone, i});
       structure.solve(in);
       structure.accept_step();
     }

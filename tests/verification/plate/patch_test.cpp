@@ -6,6 +6,7 @@
 #include "tests/verification/plate/plates.hpp"
 
 namespace couplet::plate {
+using namespace mesh;
 namespace {
 
 using namespace test;

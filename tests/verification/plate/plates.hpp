@@ -14,15 +14,15 @@
 
 namespace couplet::plate::test {
 
-inline RawMesh square(int n, BoxCells cells = BoxCells::triangles, double distortion = 0) {
-  RawMesh raw = make_box(cells, {n, n, 1}, Vec3::Zero(), Vec3(1, 1, 0));
-  if (distortion > 0) perturb_interior(raw, distortion, 7);
+inline mesh::RawMesh square(int n, mesh::BoxCells cells = mesh::BoxCells::triangles, double distortion = 0) {
+  mesh::RawMesh raw = mesh::make_box(cells, {n, n, 1}, Vec3::Zero(), Vec3(1, 1, 0));
+  if (distortion > 0) mesh::perturb_interior(raw, distortion, 7);
   return raw;
 }
 
 /// A disc of radius 1 in n rings of triangles; its outline is the patch "rim".
-inline RawMesh disc(int n) {
-  RawMesh raw;
+inline mesh::RawMesh disc(int n) {
+  mesh::RawMesh raw;
   raw.dim = 2;
   raw.points.push_back(Vec3::Zero());
   const auto first = [](int ring) { return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1); };
@@ -36,7 +36,7 @@ inline RawMesh disc(int n) {
     }
   const auto add = [&](Index a, Index b, Index c) {
     raw.cell_points.push_row(std::array{a, b, c});
-    raw.cell_type.push_back(CellType::triangle);
+    raw.cell_type.push_back(mesh::CellType::triangle);
     raw.cell_zone.push_back(0);
   };
   for (int r = 1; r <= n; ++r)
@@ -58,7 +58,7 @@ inline RawMesh disc(int n) {
 /// D = 1 N m and rho h = 1 kg/m^2, so that lambda = omega a^2.
 inline PlateCell unit_cell() { return {0.01, 100, 12 * (1 - 0.09) / 1e-6, 0.3}; }
 
-inline PlateModel make_plate(const RawMesh& raw, const std::map<std::string, Support>& held,
+inline PlateModel make_plate(const mesh::RawMesh& raw, const std::map<std::string, Support>& held,
                              const PlateCell& cell = unit_cell()) {
   Midsurface surface = midsurface_of(raw);
   std::vector<Support> support;
@@ -72,7 +72,7 @@ inline std::map<std::string, Support> all_edges(Support support) {
   return {{"xmin", support}, {"xmax", support}, {"ymin", support}, {"ymax", support}, {"rim", support}};
 }
 
-inline std::vector<double> lambdas(const EigenModes& modes) {
+inline std::vector<double> lambdas(const modes::EigenModes& modes) {
   std::vector<double> result;
   for (const double value : modes.eigenvalue) result.push_back(std::sqrt(std::max(0., value)));
   return result;

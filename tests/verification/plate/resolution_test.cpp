@@ -11,6 +11,7 @@
 #include "tests/verification/plate/plates.hpp"
 
 namespace couplet::plate {
+using namespace time;
 namespace {
 
 using namespace test;
@@ -203,29 +204,32 @@ TEST(PlateResolution, a_contact_wants_ten_steps) {
 }
 
 /// Verdicts of a clamped square plate under a pressure after two seconds.
-std::vector<EffectVerdict> verdicts(const std::string& pressure, double dt) {
+std::vector<effects::EffectVerdict> verdicts(const std::string& pressure, double dt) {
   Parameters p;
   p.material = {1000, 1e9, 0.3};
   p.thickness = 0.01;
   p.number = 6;
   for (const char* patch : {"xmin", "xmax", "ymin", "ymax"}) p.boundaries[patch].support = Support::clamped;
   p.load.emplace().lower.emplace().text = pressure;
-  const RawMesh raw = square(6);
+  const mesh::RawMesh raw = square(6);
   Structure plate(p, PlateContext{}, &raw);
   plate.initialise();
   const int steps = int(std::lround(2 / dt));
   for (int i = 0; i < steps; ++i) {
-    plate.begin_step(
-        {.time = i * dt, .dt = dt, .scheme = Scheme::standalone, .number = i, .is_last = i + 1 == steps});
+    plate.begin_step({.time = i * dt,
+                      .dt = dt,
+                      .scheme = coupling::Scheme::standalone,
+                      .number = i,
+                      .is_last = i + 1 == steps});
     plate.solve({});
     plate.accept_step();
   }
   return plate.audit();
 }
 
-std::vector<std::string> unsound(const std::vector<EffectVerdict>& all) {
+std::vector<std::string> unsound(const std::vector<effects::EffectVerdict>& all) {
   std::vector<std::string> names;
-  for (const EffectVerdict& v : all)
+  for (const effects::EffectVerdict& v : all)
     if (!v.sound()) names.push_back(v.effect);
   return names;
 }
@@ -249,7 +253,7 @@ TEST(PlateResolution, the_audit_says_so) {
   };
   EXPECT_EQ(fast(20), Names{});
   EXPECT_EQ(fast(80).front(), "load faster than the modes");
-  for (const EffectVerdict& v : verdicts("t < 1 ? 10 : 0", 0.04)) {
+  for (const effects::EffectVerdict& v : verdicts("t < 1 ? 10 : 0", 0.04)) {
     if (v.effect != "step that resolves the modes") continue;
     EXPECT_NE(v.recommendation.find("simulation.time-step: 0.003 s"), std::string::npos) << v.recommendation;
   }

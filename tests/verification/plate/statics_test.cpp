@@ -12,6 +12,8 @@
 #include "tests/verification/plate/plates.hpp"
 
 namespace couplet::plate {
+using namespace mesh;
+using namespace modes;
 namespace {
 
 using namespace test;
@@ -100,7 +102,7 @@ TEST(PlateStatics, a_plate_of_two_thicknesses_and_its_weight_follow_the_closed_f
   p.gravity = {0, 0, -g};
   const RawMesh raw = stepped_strip(20);
   Structure structure(p, PlateContext{}, &raw);
-  structure.begin_step({0, 1, Scheme::standalone, 0});
+  structure.begin_step({0, 1, coupling::Scheme::standalone, 0});
   structure.solve({});
   structure.accept_step();
   double deepest = 0;

@@ -9,6 +9,7 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 /// Cook's membrane of n x n quadrilaterals, E = 250 MPa, sheared by 6.25 MPa.
@@ -127,7 +128,7 @@ Swing swing(FaceGradient gradient, double until, bool outputs = true) {
   SolidParameters p = box_parameters(2);
   p.analysis = SolidParameters::Analysis::dynamic;
   p.material = {2600, 1e7, 0.3};
-  p.time_scheme.type = TimeScheme::trapezoidal;
+  p.time_scheme.type = time::TimeScheme::trapezoidal;
   p.method.face_gradient = gradient;
   p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
   p.initial_velocity = {{"0.1*x*sin(40*y)*cos(30*x)"}, {"0.2*x*x*sin(35*x)"}};

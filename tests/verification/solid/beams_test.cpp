@@ -12,6 +12,7 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 /// Axis of the prisms: across the beam in the load's direction, across the other way, along the beam.
@@ -118,7 +119,7 @@ Answer bent(const Beam& beam) {
     moved += s * solid->stepper().state().face_u[std::size_t(f - mesh.n_interior) * 3 + std::size_t(down)];
     area += s;
   }
-  return {sum(mesh.comm, moved) / sum(mesh.comm, area), *solid->judge().last_audit()};
+  return {parallel::sum(mesh.comm, moved) / parallel::sum(mesh.comm, area), *solid->judge().last_audit()};
 }
 
 /// Cubes two and four across (near incompressibility four and eight), extrapolated.

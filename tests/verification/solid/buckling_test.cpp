@@ -12,6 +12,7 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 constexpr double pi = std::numbers::pi, modulus = 210e9;
@@ -154,7 +155,7 @@ TEST(BucklingFinding, is_told_of_linear_runs_near_and_above_the_load) {
     step(*solid, 1);
   };
   for (const auto& [part, severity] :
-       {std::pair(0.1, -1), {0.5, int(Severity::warning)}, {1.2, int(Severity::wrong)}}) {
+       {std::pair(0.1, -1), {0.5, int(base::Severity::warning)}, {1.2, int(base::Severity::wrong)}}) {
     const std::size_t before = log::findings().size();
     run(part);
     EXPECT_EQ(severity_of("buckling", before), severity) << part;
@@ -182,7 +183,7 @@ TEST(Equilibrium, that_does_not_hold_is_told_with_the_load_where_it_was_lost) {
   compress(0.85, 100, BoxCells::quadrilaterals);
   EXPECT_EQ(severity_of("unstable-equilibrium", before), -1);
   compress(2.6, 0, BoxCells::quadrilaterals);
-  ASSERT_EQ(severity_of("unstable-equilibrium", before), int(Severity::wrong));
+  ASSERT_EQ(severity_of("unstable-equilibrium", before), int(base::Severity::wrong));
   const log::Finding& last = log::findings().back();
   EXPECT_LT(last.number, 0);
   EXPECT_NE(last.sentence.find("lost near t = 0.3"), std::string::npos) << last.sentence;  // 1 / 2.6

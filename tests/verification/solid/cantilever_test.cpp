@@ -25,10 +25,11 @@ Tip tip_of(const std::array<int, 3>& n) {
   p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
   p.boundaries["xmax"] = boundary(Type::traction, {"0", "-125", "0"});
   const auto start = std::chrono::steady_clock::now();
-  const auto solid = make_solid(make_box(BoxCells::hexahedra, n, Vec3(0, -1, -1), Vec3(20, 1, 1)), p);
+  const auto solid =
+      make_solid(mesh::make_box(mesh::BoxCells::hexahedra, n, Vec3(0, -1, -1), Vec3(20, 1, 1)), p);
   step(*solid, 1);
   const std::vector<double> points = solid->fields().point_displacement();
-  const Probe probe(solid->body().mesh(), solid->body().geometry().points, "tip", Vec3(20, 0, 0));
+  const io::Probe probe(solid->body().mesh(), solid->body().geometry().points, "tip", Vec3(20, 0, 0));
   const double deflection = -probe.sample(points, 3)[1];
   Vec3 total = solid->fields().total_load();
   const double load = total.norm();

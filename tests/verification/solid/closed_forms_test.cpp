@@ -9,6 +9,7 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 /// Relative L2 errors over the cells.
@@ -94,7 +95,7 @@ std::unique_ptr<Solid> solve_cylinder(const SolidParameters& p, BoxCells cells, 
 
 /// u_r = a r + b / r with the constants of the plane problem.
 Errors cylinder_errors(const Solid& solid, double a, double b) {
-  const LameConstants l = solid.body().elastic().lame(0);
+  const elastic::LameConstants l = solid.body().elastic().lame(0);
   return compare(
       solid, [&](const Vec3& x) { return Vec3((a + b / x.squaredNorm()) * x); },
       [&](const Vec3& x) {
@@ -118,7 +119,7 @@ TEST_P(SolidClosedForms, lame_cylinder_converges_with_second_order) {
   for (const auto plane : {SolidParameters::Plane::strain, SolidParameters::Plane::stress})
     for (const BoxCells cells : {BoxCells::quadrilaterals, BoxCells::triangles}) {
       const SolidParameters p = cylinder(plane, GetParam());
-      const LameConstants l = lame_constants(p);
+      const elastic::LameConstants l = lame_constants(p);
       // sigma_r(ri) = -p, sigma_r(ro) = 0.
       const double swing = pressure / (1 / (inner * inner) - 1 / (outer * outer));
       const double b = swing / (2 * l.mu), a = swing / (outer * outer) / (2 * (l.mu + l.lambda));
@@ -135,7 +136,7 @@ TEST_P(SolidClosedForms, lame_cylinder_converges_with_second_order) {
 TEST_P(SolidClosedForms, cylinder_in_a_frictionless_rigid_wall_converges_with_second_order) {
   SolidParameters p = cylinder(SolidParameters::Plane::strain, GetParam());
   p.boundaries["xmax"] = boundary(Type::frictionless);
-  const LameConstants l = lame_constants(p);
+  const elastic::LameConstants l = lame_constants(p);
   // a ro + b / ro = 0 and 2 (mu + lambda) a - 2 mu b / ri^2 = -p.
   const double b = pressure / (2 * (l.mu + l.lambda) / (outer * outer) + 2 * l.mu / (inner * inner));
   const double a = -b / (outer * outer);

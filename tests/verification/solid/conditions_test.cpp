@@ -11,6 +11,7 @@
 #include "tests/verification/solid/linear_field.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 using ::testing::AllOf;
@@ -104,7 +105,7 @@ TEST_P(Conditions, normal_springs_hold_along_the_normal_only) {
   p.boundaries["xmax"].along_normal = true;
   const auto solid = make(distorted_box(cells), p);
   step(*solid, 1);
-  const LameConstants lame = lame_constants(p);
+  const elastic::LameConstants lame = lame_constants(p);
   const double strain = -3e6 / (lame.lambda + 2 * lame.mu);
   const std::vector<Vec3>& places = solid->body().geometry().points;
   double error = 0;
@@ -114,7 +115,7 @@ TEST_P(Conditions, normal_springs_hold_along_the_normal_only) {
     for (int a = 0; a < dim; ++a) u[a] = points[v * dim + a];
     error = std::max(error, (u - Vec3(5e-4 + strain * (places[v][0] - 1), 0, 0)).norm());
   }
-  EXPECT_LT(max(MPI_COMM_WORLD, error), 1e-10 * 5e-4);
+  EXPECT_LT(parallel::max(MPI_COMM_WORLD, error), 1e-10 * 5e-4);
   for (const PatchForce& r : solid->fields().reactions(points))
     if (r.patch == "xmax") {
       EXPECT_NEAR(r.force[0], -3e6 * 0.8 * (dim == 3 ? 0.6 : 1), 1e-3);
@@ -374,7 +375,7 @@ TEST(SolidSupports, a_moving_support_carries_a_free_body_along) {
   double error = 0;
   for (Index v = 0; v < solid->body().mesh().points.n_local(); ++v)
     error = std::max(error, (Eigen::Map<const Vec3>(points.data() + 3 * v) - wanted).norm());
-  EXPECT_LT(max(MPI_COMM_WORLD, error), 1e-10);
+  EXPECT_LT(parallel::max(MPI_COMM_WORLD, error), 1e-10);
 }
 
 TEST(SolidBoundaries, a_part_without_faces_is_refused) {

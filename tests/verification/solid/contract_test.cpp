@@ -13,6 +13,8 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
+using namespace coupling;
+using namespace mesh;
 namespace {
 
 RawMesh flap_mesh(BoxCells cells) {
@@ -130,8 +132,8 @@ TEST_P(SolidContract, interface_values_are_those_of_the_vertices) {
   double sent = 0;
   for (std::size_t i = 0; i < interface.vertices.size(); ++i)
     if (interface.vertices[i][1] > 1 - 1e-9) sent = std::max(sent, out.at("displacement")[i * interface.dim]);
-  EXPECT_NEAR(max(MPI_COMM_WORLD, sent), max(MPI_COMM_WORLD, top), 1e-15);
-  EXPECT_GT(max(MPI_COMM_WORLD, top), 0);
+  EXPECT_NEAR(parallel::max(MPI_COMM_WORLD, sent), parallel::max(MPI_COMM_WORLD, top), 1e-15);
+  EXPECT_GT(parallel::max(MPI_COMM_WORLD, top), 0);
 }
 
 TEST_P(SolidContract, all_ranks_together_give_what_one_rank_gives) {
@@ -164,7 +166,8 @@ TEST_P(SolidContract, all_ranks_together_give_what_one_rank_gives) {
   std::map<std::array<double, 3>, std::size_t> vertex_of;
   for (std::size_t i = 0; i < here.vertices.size(); ++i)
     vertex_of[{here.vertices[i][0], here.vertices[i][1], here.vertices[i][2]}] = i;
-  EXPECT_EQ(sum(MPI_COMM_WORLD, GlobalIndex(there.vertices.size())), GlobalIndex(here.vertices.size()));
+  EXPECT_EQ(parallel::sum(MPI_COMM_WORLD, GlobalIndex(there.vertices.size())),
+            GlobalIndex(here.vertices.size()));
   for (const char* name : {"displacement", "velocity"}) {
     std::vector<double> given, wanted;
     for (std::size_t i = 0; i < there.vertices.size(); ++i) {

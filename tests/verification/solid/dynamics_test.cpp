@@ -8,6 +8,7 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 constexpr double length = 1, density = 1000, stiffness = 1e6;

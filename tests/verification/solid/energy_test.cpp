@@ -7,6 +7,8 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
+using namespace time;
 namespace {
 
 /// A sheet under everything that does work: traction, pressure, body force, moving support, damping.

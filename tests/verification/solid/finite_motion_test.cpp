@@ -10,6 +10,7 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 std::unique_ptr<Solid> make(const RawMesh& raw, const SolidParameters& p, MPI_Comm comm = MPI_COMM_WORLD) {
@@ -38,7 +39,7 @@ TEST(FiniteStrain, rigid_rotation_makes_no_stress) {
         for (const Tensor3& s : solid->fields().cell_stress(solid->fields().point_displacement()))
           most = std::max(most, s.cwiseAbs().maxCoeff());
       }
-      EXPECT_LT(max(solid->body().mesh().comm, most), 1e-9 * p.material.youngs_modulus) << law;
+      EXPECT_LT(parallel::max(solid->body().mesh().comm, most), 1e-9 * p.material.youngs_modulus) << law;
     }
   }
 }
@@ -75,7 +76,8 @@ TEST(FiniteStrain, pressure_follows_the_surface) {
         ends[k] = solid->body().geometry().points[v] + Vec3(u[2 * v], u[2 * v + 1], 0);
   for (Vec3& end : ends)
     for (int a = 0; a < 3; ++a) {
-      const double most = max(MPI_COMM_WORLD, end[a]), least = min(MPI_COMM_WORLD, end[a]);
+      const double most = parallel::max(MPI_COMM_WORLD, end[a]),
+                   least = parallel::min(MPI_COMM_WORLD, end[a]);
       end[a] = std::abs(most) > std::abs(least) ? most : least;
     }
   const Vec3 along = ends[1] - ends[0];
@@ -88,7 +90,8 @@ TEST(FiniteStrain, pressure_follows_the_surface) {
 
 /// Linear momentum, angular momentum about the origin and energy of a free body that spins and swings.
 std::array<double, 7> kept(const Solid& solid) {
-  const ElasticKernel kernel(solid.body().mesh(), solid.body().elastic(), FaceGradientScheme::symmetric);
+  const elastic::ElasticKernel kernel(solid.body().mesh(), solid.body().elastic(),
+                                      elastic::FaceGradientScheme::symmetric);
   kernel.set_density(std::vector<double>(solid.body().mesh().cells.n_local(), 1000.));
   const Mesh& mesh = solid.body().mesh();
   const Geometry& geometry = solid.body().geometry();
@@ -111,7 +114,7 @@ std::array<double, 7> kept(const Solid& solid) {
     const Vec3 p(momentum[3 * i], momentum[3 * i + 1], momentum[3 * i + 2]), spin = x[i].cross(p);
     for (std::size_t a = 0; a < 3; ++a) result[a] += p[Index(a)], result[3 + a] += spin[Index(a)];
   }
-  for (double& r : result) r = sum(MPI_COMM_WORLD, r);
+  for (double& r : result) r = parallel::sum(MPI_COMM_WORLD, r);
   const SolidEnergies e =
       solid.stepper().ledger().total(solid.stepper().state(), solid.fields().point_displacement());
   result[6] = e.kinetic + e.strain;

@@ -16,6 +16,8 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
+using namespace parallel;
 namespace {
 
 using ::testing::HasSubstr;
@@ -81,7 +83,7 @@ TEST(FiniteStrain, the_estimate_of_the_mesh_is_within_a_factor_of_two) {
     coarse->collect_errors();
     step(*coarse, 1), step(*fine, 1);
     const double wrong = (tip(*coarse) - tip(*fine)).norm() / tip(*fine).norm();
-    const ErrorParts parts = coarse->error_parts();
+    const coupling::ErrorParts parts = coarse->error_parts();
     fmt::print("K {}: estimated {:.3g}, true {:.3g}\n", K, parts.mesh, wrong);
     EXPECT_GT(parts.mesh, wrong / 2) << K;
     EXPECT_LT(parts.mesh, wrong * 2) << K;
@@ -188,7 +190,7 @@ TEST(FiniteStrain, failed_load_names_the_worst_cell_and_leaves_the_state) {
   const auto solid = make(beam(BoxCells::hexahedra, 2, 20), bent("saint-venant-kirchhoff", 1));
   step(*solid, 0.5);
   const std::vector<double> kept = solid->stepper().state().cell_u;
-  solid->begin_step({0.5, 400, Scheme::standalone, 1});
+  solid->begin_step({0.5, 400, coupling::Scheme::standalone, 1});
   EXPECT_THAT([&] { solid->solve({}); }, ThrowsMessage<SolveFailure>(HasSubstr("where det F =")));
   EXPECT_EQ(solid->stepper().state().cell_u, kept);
   step(*solid, 0.1);
@@ -243,7 +245,8 @@ TEST(FiniteStrain, tangent_is_the_derivative_of_the_forces_on_all_cells) {
       const auto solid = make(raw, busy(dim, volume));
       const auto law =
           laws::find("mooney-rivlin")->make(lame_constants(solid->body().parameters()), std::vector{0.3});
-      const auto kernel = make_finite_kernel(solid->body().mesh(), solid->body().elastic(), {law.get()});
+      const auto kernel =
+          elastic::make_finite_kernel(solid->body().mesh(), solid->body().elastic(), {law.get()});
       const std::size_t n = solid->body().elastic().n_unknowns();
       const std::vector<double> u = noise(n, 0.02, 1), v = noise(n, 1, 2), w = noise(n, 1, 3);
       const double h = 1e-6;

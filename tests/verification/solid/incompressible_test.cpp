@@ -14,6 +14,7 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 SolidParameters rubber(int dim, const std::string& law, double modulus, double nu) {
@@ -34,7 +35,7 @@ Vec3 displacement_at(const Solid& solid, const Vec3& x) {
     if ((geometry.points[v] - x).norm() < 1e-9)
       for (int a = 0; a < mesh.dim; ++a)
         result[a] = u[std::size_t(v) * std::size_t(mesh.dim) + std::size_t(a)];
-  for (int a = 0; a < 3; ++a) result[a] = max(mesh.comm, result[a]);
+  for (int a = 0; a < 3; ++a) result[a] = parallel::max(mesh.comm, result[a]);
   return result;
 }
 
@@ -52,7 +53,7 @@ std::unique_ptr<Solid> cook(int n, int steps, MPI_Comm comm = MPI_COMM_WORLD) {
 
 TEST(Incompressible, cook_takes_one_load_step_and_few_iterations) {
   const Vec3 corner(0.048, 0.06, 0);
-  const bool alone = comm_size(MPI_COMM_WORLD) == 1;
+  const bool alone = parallel::comm_size(MPI_COMM_WORLD) == 1;
   const int n = alone ? 16 : 8;
   const auto once = cook(n, 1);
   EXPECT_LE(once->stepper().effort().iterations, 8);
@@ -95,7 +96,7 @@ TEST(Incompressible, a_ring_under_a_pressure_that_follows_is_that_of_the_closed_
   const double mu = 3e6 / (2 * 1.49999), inner = 1.5, load = mu * pressure_over_mu(inner);
   std::vector<double> errors;
   for (const int n : {8, 16, 32}) {
-    if (n == 32 && comm_size(MPI_COMM_WORLD) > 1) break;
+    if (n == 32 && parallel::comm_size(MPI_COMM_WORLD) > 1) break;
     const auto solid = ring(n, load);
     errors.push_back(displacement_at(*solid, Vec3(1, 0, 0))[0] / (inner - 1) - 1);
     RecordProperty(fmt::format("error_{}", n), fmt::format("{:.3e}", errors.back()));
@@ -125,7 +126,7 @@ TEST(Incompressible, a_ring_under_a_pressure_that_follows_is_that_of_the_closed_
 double dot(std::span<const double> a, std::span<const double> b) {
   double result = 0;
   for (std::size_t i = 0; i < a.size(); ++i) result += a[i] * b[i];
-  return sum(MPI_COMM_WORLD, result);
+  return parallel::sum(MPI_COMM_WORLD, result);
 }
 
 /// |w . K v - v . K w| over the larger of them for two rough fields, K the tangent of a pressed and deformed ring; all of
@@ -136,7 +137,7 @@ double asymmetry(bool whole_wall) {
   const Geometry& geometry = solid->body().geometry();
   const auto law =
       laws::find("mooney-rivlin")->make(lame_constants(solid->body().parameters()), std::vector{0.2});
-  const auto kernel = make_finite_kernel(mesh, solid->body().elastic(), {law.get()});
+  const auto kernel = elastic::make_finite_kernel(mesh, solid->body().elastic(), {law.get()});
   std::vector<double> pressure(std::size_t(mesh.boundary.n_owned()), 0);
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
     const Vec3& x = geometry.face_centre[f];
@@ -170,7 +171,7 @@ TEST(Incompressible, tangent_of_the_pressure_is_symmetric_where_the_wall_is_clos
 TEST(Incompressible, a_swinging_column_keeps_its_energy) {
   SolidParameters p = rubber(3, "nearly-incompressible-neo-hookean", 17e6, 0.4999);
   p.analysis = SolidParameters::Analysis::dynamic;
-  p.time_scheme.type = TimeScheme::trapezoidal;
+  p.time_scheme.type = time::TimeScheme::trapezoidal;
   p.boundaries["ymin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
   p.initial_velocity = {{"10*y/6"}, {"0"}, {"0"}};
   auto solid = make_solid(make_box(BoxCells::hexahedra, {2, 8, 2}, Vec3::Zero(), Vec3(1, 6, 1)), p);

@@ -12,6 +12,7 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet {
+using namespace coupling;
 
 using namespace solid;
 
@@ -33,7 +34,9 @@ SolidParameters pressed_box() {
   return p;
 }
 
-RawMesh raw_box() { return make_box(BoxCells::hexahedra, {4, 3, 2}, Vec3::Zero(), Vec3(2, 1, 0.5)); }
+mesh::RawMesh raw_box() {
+  return mesh::make_box(mesh::BoxCells::hexahedra, {4, 3, 2}, Vec3::Zero(), Vec3(2, 1, 0.5));
+}
 
 Exchange given(const Interface& interface, double pressure, double temperature) {
   const std::size_t n = interface.face_centres.size();
@@ -58,7 +61,7 @@ double largest_error(const Solid& solid, double pressure, double warmer) {
   for (std::size_t v = 0; v < u.size() / 3; ++v)
     for (int c = 0; c < 3; ++c)
       worst = std::max(worst, std::abs(u[3 * v + c] - strain[c] * solid.body().geometry().points[v][c]));
-  return max(solid.body().mesh().comm, worst) / 1e-3;
+  return parallel::max(solid.body().mesh().comm, worst) / 1e-3;
 }
 
 TEST(InterfaceData, pressure_and_temperature_deform_a_box_as_they_must) {
@@ -176,7 +179,8 @@ TEST(FaceInterpolation, stays_within_its_faces) {
 TEST(InterfaceTemperature, a_rank_holds_its_own_faces_and_those_that_its_places_need) {
   // A strip of faces that the ranks share, with places a little beyond the ends of each part.
   constexpr int faces_a_rank = 40;
-  const int begin = faces_a_rank * comm_rank(MPI_COMM_WORLD), ranks = comm_size(MPI_COMM_WORLD);
+  const int begin = faces_a_rank * parallel::comm_rank(MPI_COMM_WORLD),
+            ranks = parallel::comm_size(MPI_COMM_WORLD);
   std::vector<Vec3> faces, places;
   std::vector<double> here;
   for (int k = begin; k < begin + faces_a_rank; ++k) faces.emplace_back(1, 0, k), here.push_back(300 + 2 * k);

@@ -10,6 +10,7 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 struct Pair {
@@ -108,13 +109,13 @@ double change_of(const Solid& a, const Solid& b) {
     difference += geometry.volume[i / mesh.dim] * (v[i] - u[i]) * (v[i] - u[i]);
     whole += geometry.volume[i / mesh.dim] * u[i] * u[i];
   }
-  return std::sqrt(sum(mesh.comm, difference) / sum(mesh.comm, whole));
+  return std::sqrt(parallel::sum(mesh.comm, difference) / parallel::sum(mesh.comm, whole));
 }
 
 class LargeStrainPair : public ::testing::TestWithParam<Pair> {};
 
 TEST_P(LargeStrainPair, is_estimated_within_a_factor_of_1_5_of_the_true_difference) {
-  if (comm_size(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "one rank; ranks_agree holds the others to it";
+  if (parallel::comm_size(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "one rank; ranks_agree holds the others to it";
   SolidParameters p = parameters(GetParam());
   p.output.large_strain_estimate = true;
   const auto linear = make_solid(mesh_of(GetParam()), p);

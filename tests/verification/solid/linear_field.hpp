@@ -33,7 +33,7 @@ inline LinearField general_field(int dim) {
 
 inline std::vector<std::string> traction_text(const SolidParameters& p, const LinearField& field,
                                               const Vec3& n) {
-  const LameConstants lame = lame_constants(p);
+  const elastic::LameConstants lame = lame_constants(p);
   const Tensor3 stress = lame.mu * (field.slope + field.slope.transpose()) +
                          lame.lambda * field.slope.trace() * Tensor3::Identity();
   const Vec3 traction = stress * n;
@@ -43,7 +43,7 @@ inline std::vector<std::string> traction_text(const SolidParameters& p, const Li
 }
 
 /// A mesh and a face gradient; names such as "prisms_corrected".
-using CellsAndGradient = std::tuple<BoxCells, FaceGradient>;
+using CellsAndGradient = std::tuple<mesh::BoxCells, FaceGradient>;
 inline const auto all_cells_and_gradients = ::testing::Combine(
     ::testing::ValuesIn(all_cells),
     ::testing::Values(FaceGradient::thesis, FaceGradient::corrected, FaceGradient::symmetric));
@@ -62,9 +62,9 @@ inline SolidParameters to_round_off(SolidParameters p, FaceGradient gradient) {
   return p;
 }
 
-inline RawMesh distorted_box(BoxCells cells) {
-  RawMesh raw = make_box(cells, {5, 4, 3}, Vec3::Zero(), Vec3(1, 0.8, 0.6));
-  perturb_interior(raw, 0.25, 11);
+inline mesh::RawMesh distorted_box(mesh::BoxCells cells) {
+  mesh::RawMesh raw = mesh::make_box(cells, {5, 4, 3}, Vec3::Zero(), Vec3(1, 0.8, 0.6));
+  mesh::perturb_interior(raw, 0.25, 11);
   return raw;
 }
 
@@ -78,8 +78,8 @@ inline bool symmetric_refuses(const CellsAndGradient& which, const SolidParamete
 
 /// Largest error of cells, points and traction faces over the largest displacement.
 inline double relative_error(const Solid& solid, const LinearField& field) {
-  const Mesh& mesh = solid.body().mesh();
-  const Geometry& geometry = solid.body().geometry();
+  const mesh::Mesh& mesh = solid.body().mesh();
+  const mesh::Geometry& geometry = solid.body().geometry();
   const int dim = mesh.dim;
   double error = 0, size = 0;
   const auto compare = [&](std::span<const double> values, Index i, const Vec3& x) {
@@ -94,7 +94,7 @@ inline double relative_error(const Solid& solid, const LinearField& field) {
   for (Index v = 0; v < mesh.points.n_local(); ++v) compare(points, v, geometry.points[v]);
   for (const Index f : solid.body().elastic().unknown_faces())
     compare(solid.stepper().state().face_u, f - mesh.n_interior, geometry.face_centre[f]);
-  return max(mesh.comm, error) / max(mesh.comm, size);
+  return parallel::max(mesh.comm, error) / parallel::max(mesh.comm, size);
 }
 
 /// Largest error of the stress over the largest stress.
@@ -104,7 +104,7 @@ inline double relative_stress_error(const Solid& solid, const LinearField& field
   const int dim = solid.body().mesh().dim;
   for (const Tensor3& s : solid.fields().cell_stress(solid.fields().point_displacement()))
     error = std::max(error, (s - exact).topLeftCorner(dim, dim).norm());
-  return max(solid.body().mesh().comm, error) / exact.norm();
+  return parallel::max(solid.body().mesh().comm, error) / exact.norm();
 }
 
 inline void expect_exact(const Solid& solid, const LinearField& field) {
@@ -121,13 +121,13 @@ inline std::vector<Vec3> displacement_by_cell(const Solid& solid) {
     GlobalIndex id;
     double u[3];
   };
-  const Mesh& mesh = solid.body().mesh();
+  const mesh::Mesh& mesh = solid.body().mesh();
   std::vector<Entry> own;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
     own.push_back({mesh.cell_id[c], {0, 0, 0}});
     std::copy_n(&solid.stepper().state().cell_u[std::size_t(c) * mesh.dim], mesh.dim, own.back().u);
   }
-  std::vector<Entry> all = all_gather(mesh.comm, own);
+  std::vector<Entry> all = parallel::all_gather(mesh.comm, own);
   std::ranges::sort(all, {}, &Entry::id);
   std::vector<Vec3> result;
   for (const Entry& e : all) result.emplace_back(e.u[0], e.u[1], e.u[2]);

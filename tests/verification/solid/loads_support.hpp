@@ -34,8 +34,8 @@ inline SolidBoundary liquid(double density, double gravity, const std::string& l
 
 /// Calls take(face, force [N]) for the loaded faces of this rank.
 template <class Take>
-void visit_loads(const Mesh& mesh, const Geometry& geometry, const SolidParameters& p, const Take& take,
-                 double t = 0) {
+void visit_loads(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const SolidParameters& p,
+                 const Take& take, double t = 0) {
   const SolidBoundaries boundaries(mesh, geometry, p);
   std::vector<double> forces(std::size_t(mesh.boundary.n_owned()) * mesh.dim, 0);
   boundaries.add_forces(t, forces);
@@ -51,7 +51,7 @@ struct Resultant {
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   double loaded = 0;  ///< faces
 };
-inline Resultant resultant(const Mesh& mesh, const Geometry& geometry, const SolidParameters& p,
+inline Resultant resultant(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const SolidParameters& p,
                            double t = 0) {
   Resultant r;
   visit_loads(
@@ -63,16 +63,16 @@ inline Resultant resultant(const Mesh& mesh, const Geometry& geometry, const Sol
       },
       t);
   for (int a = 0; a < 3; ++a) {
-    r.force[a] = sum(mesh.comm, r.force[a]);
-    r.moment[a] = sum(mesh.comm, r.moment[a]);
+    r.force[a] = parallel::sum(mesh.comm, r.force[a]);
+    r.moment[a] = parallel::sum(mesh.comm, r.moment[a]);
   }
-  r.loaded = sum(mesh.comm, r.loaded);
+  r.loaded = parallel::sum(mesh.comm, r.loaded);
   return r;
 }
 
 /// Radii 1 to 2 above the x axis, the inner side being "ymin"; n cells around.
-inline RawMesh half_ring(BoxCells cells, int n) {
-  RawMesh raw = make_box(cells, {n, 3, 2}, Vec3::Zero(), Vec3::Ones());
+inline mesh::RawMesh half_ring(mesh::BoxCells cells, int n) {
+  mesh::RawMesh raw = mesh::make_box(cells, {n, 3, 2}, Vec3::Zero(), Vec3::Ones());
   for (Vec3& x : raw.points) {
     const double angle = std::numbers::pi * (1 - x[0]), radius = 1 + x[1];
     x = {radius * std::cos(angle), radius * std::sin(angle), x[2]};
@@ -82,27 +82,27 @@ inline RawMesh half_ring(BoxCells cells, int n) {
 
 /// Mean displacement of the faces of a patch.
 inline Vec3 mean_on(const Solid& solid, const std::string& name) {
-  const Mesh& mesh = solid.body().mesh();
-  const Geometry& geometry = solid.body().geometry();
+  const mesh::Mesh& mesh = solid.body().mesh();
+  const mesh::Geometry& geometry = solid.body().geometry();
   Vec3 total = Vec3::Zero();
   double area = 0;
-  for (const Patch& patch : mesh.patches)
+  for (const mesh::Patch& patch : mesh.patches)
     for (Index f = patch.first; patch.name == name && f < patch.first + patch.count; ++f) {
       const double size = geometry.face_area[f].norm();
       area += size;
       for (int a = 0; a < mesh.dim; ++a)
         total[a] += size * solid.stepper().state().face_u[std::size_t(f - mesh.n_interior) * mesh.dim + a];
     }
-  area = sum(mesh.comm, area);
-  for (int a = 0; a < 3; ++a) total[a] = sum(mesh.comm, total[a]) / area;
+  area = parallel::sum(mesh.comm, area);
+  for (int a = 0; a < 3; ++a) total[a] = parallel::sum(mesh.comm, total[a]) / area;
   return total;
 }
 
 /// Of cells and of faces that have mass [kg m/s].
 inline Vec3 momentum_of(const Solid& solid) {
   const SolidBody& body = solid.body();
-  const Mesh& mesh = body.mesh();
-  const Geometry& geometry = body.geometry();
+  const mesh::Mesh& mesh = body.mesh();
+  const mesh::Geometry& geometry = body.geometry();
   const SolidState& state = solid.stepper().state();
   Vec3 total = Vec3::Zero();
   for (int a = 0; a < mesh.dim; ++a) {
@@ -112,12 +112,12 @@ inline Vec3 momentum_of(const Solid& solid) {
       for (std::size_t i = std::size_t(a); i < on_faces.size(); i += std::size_t(mesh.dim)) on_faces[i] = 1;
       const std::vector<double> v = body.unknowns_of(state.cell_v, state.face_v),
                                 e = body.unknowns_of(one, on_faces);
-      total[a] = body.kernel().product(ElasticPart::mass, {v, state.known_rate}, {e, {}});
+      total[a] = body.kernel().product(elastic::ElasticPart::mass, {v, state.known_rate}, {e, {}});
     } else {
       for (Index c = 0; c < mesh.cells.n_owned(); ++c)
         total[a] += body.density(c) * geometry.volume[c] * state.cell_v[std::size_t(c) * mesh.dim + a];
     }
-    total[a] = sum(mesh.comm, total[a]);
+    total[a] = parallel::sum(mesh.comm, total[a]);
   }
   return total;
 }

@@ -15,6 +15,7 @@
 #include "tests/verification/solid/loads_support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 using ::testing::AllOf;
@@ -247,7 +248,7 @@ std::string deck_of(const RawMesh& raw) {
 TEST(SolidLoads, and_supports_on_a_mesh_of_calculix_reproduce_a_linear_field) {
   for (const BoxCells cells : {BoxCells::hexahedra, BoxCells::tetrahedra}) {
     const auto file = std::filesystem::temp_directory_path() /
-                      fmt::format("couplet-deck-{}-{}.inp", ::getpid(), comm_rank(MPI_COMM_WORLD));
+                      fmt::format("couplet-deck-{}-{}.inp", ::getpid(), parallel::comm_rank(MPI_COMM_WORLD));
     std::ofstream(file) << deck_of(distorted_box(cells));
     const RawMesh raw = read_inp(file);
     std::filesystem::remove(file);

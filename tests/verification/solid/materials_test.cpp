@@ -11,6 +11,8 @@
 #include "tests/verification/solid/linear_field.hpp"
 
 namespace couplet::testing {
+using namespace elastic;
+using namespace mesh;
 namespace {
 
 using ::testing::HasSubstr;
@@ -143,8 +145,10 @@ TEST_P(Materials, piecewise_linear_fields_are_exact_across_an_oblique_interface)
       jump = std::max(jump, ((faces[b] - faces[mesh.twin[b]]) * n).norm());
       ++n_bonded;
     }
-    EXPECT_GT(sum(mesh.comm, n_bonded), 3);
-    const auto ratio = [&](double a, double b) { return max(mesh.comm, a) / max(mesh.comm, b); };
+    EXPECT_GT(parallel::sum(mesh.comm, n_bonded), 3);
+    const auto ratio = [&](double a, double b) {
+      return parallel::max(mesh.comm, a) / parallel::max(mesh.comm, b);
+    };
     RecordProperty("relative_error", fmt::format("{:.3e}", ratio(error, size)));
     RecordProperty("relative_stress_error", fmt::format("{:.3e}", ratio(stress_error, stress_size)));
     RecordProperty("relative_traction_jump", fmt::format("{:.3e}", ratio(jump, stress_size)));
@@ -203,8 +207,8 @@ TEST_P(Materials, unequal_thermal_expansion_of_bonded_materials_is_exact) {
     error = std::max(error, (u - Vec3(wanted, 0, 0)).norm());
     stress_error = std::max(stress_error, std::abs(stresses[c](0, 0) - stress));
   }
-  EXPECT_LT(max(mesh.comm, error), 1e-10 * std::abs(0.6 * e_soft));
-  EXPECT_LT(max(mesh.comm, stress_error), 1e-9 * std::abs(stress));
+  EXPECT_LT(parallel::max(mesh.comm, error), 1e-10 * std::abs(0.6 * e_soft));
+  EXPECT_LT(parallel::max(mesh.comm, stress_error), 1e-9 * std::abs(stress));
 }
 
 TEST_P(Materials, zones_of_equal_material_give_the_answer_of_one_material) {

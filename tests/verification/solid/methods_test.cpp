@@ -11,6 +11,8 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
+using namespace elastic;
+using namespace mesh;
 namespace {
 
 using MethodType = MethodParameters::Type;
@@ -56,7 +58,7 @@ MethodParameters method(MethodType type, FaceGradient gradient, double tolerance
 std::vector<double> whole(const Solid& solid) {
   const int dim = solid.body().mesh().dim;
   const Index n = solid.body().mesh().cells.n_owned();
-  std::vector<double> values(std::size_t(sum(MPI_COMM_WORLD, GlobalIndex(n))) * dim, 0);
+  std::vector<double> values(std::size_t(parallel::sum(MPI_COMM_WORLD, GlobalIndex(n))) * dim, 0);
   for (Index c = 0; c < n; ++c)
     for (int a = 0; a < dim; ++a)
       values[std::size_t(solid.body().mesh().cell_id[c]) * dim + a] =
@@ -141,7 +143,7 @@ TEST(SolidMethods, ranks_do_not_change_the_answer) {
           gap = std::max(gap, std::abs(here - there));
           size = std::max(size, std::abs(there));
         }
-      const double relative = max(MPI_COMM_WORLD, gap) / max(MPI_COMM_WORLD, size);
+      const double relative = parallel::max(MPI_COMM_WORLD, gap) / parallel::max(MPI_COMM_WORLD, size);
       EXPECT_LT(relative, 1e-8);
       worst = std::max(worst, relative);
     }
@@ -207,12 +209,12 @@ std::pair<int, double> bent_bar(int n, bool on_springs, MPI_Comm comm = MPI_COMM
   double sum_z = 0;
   for (Index c = 0; c < solid.body().mesh().cells.n_owned(); ++c)
     sum_z += solid.stepper().state().cell_u[std::size_t(c) * 3 + 2];
-  return {solid.stepper().effort().iterations, sum(comm, sum_z)};
+  return {solid.stepper().effort().iterations, parallel::sum(comm, sum_z)};
 }
 
 // By the rigid motions of aggregates: 100 cubes along took 2108 iterations without them. What springs hold is in their operator.
 TEST(SolidMethods, slender_bodies_bend) {
-  if (comm_size(MPI_COMM_WORLD) > 1) {
+  if (parallel::comm_size(MPI_COMM_WORLD) > 1) {
     const double bent = bent_bar(40, false).second;
     EXPECT_NEAR(bent_bar(40, false, MPI_COMM_SELF).second, bent, 1e-6 * std::abs(bent));
     const double sprung = bent_bar(65, true).second;

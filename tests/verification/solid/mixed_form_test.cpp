@@ -11,6 +11,7 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 using Preconditioner = MethodParameters::Preconditioner;
@@ -57,7 +58,7 @@ Answer solved(const RawMesh& raw, const SolidParameters& p, MPI_Comm comm = MPI_
         const std::array<double, 4> weights{1, x[0], x[1], std::sin(7 * x[0]) * std::cos(5 * x[1])};
         moment += weights[std::size_t(k)] * u[std::size_t(c) * std::size_t(mesh.dim) + std::size_t(a)];
       }
-      answer.u.push_back(sum(mesh.comm, moment));
+      answer.u.push_back(parallel::sum(mesh.comm, moment));
     }
   answer.iterations = solid.stepper().effort().iterations;
   return answer;
@@ -76,7 +77,7 @@ constexpr std::array kinds{BoxCells::quadrilaterals, BoxCells::triangles, BoxCel
                            BoxCells::mixed};
 
 TEST(MixedForm, gives_what_factors_give) {
-  if (comm_size(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "on one rank";
+  if (parallel::comm_size(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "on one rank";
   for (const BoxCells cells : kinds) {
     SCOPED_TRACE(int(cells));
     const int dim = dimension_of(cells);
@@ -89,7 +90,7 @@ TEST(MixedForm, gives_what_factors_give) {
 
 // Also where some of the bulk modulus stays with the faces, and in steps in which inertia rules.
 TEST(MixedForm, of_shared_volume_strain_and_of_motion) {
-  if (comm_size(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "on one rank";
+  if (parallel::comm_size(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "on one rank";
   for (const bool moves : {false, true}) {
     std::array<SolidParameters, 2> p{nearly_incompressible(2, 0.4999, Preconditioner::mixed),
                                      nearly_incompressible(2, 0.4999, Preconditioner::factors)};
@@ -106,7 +107,7 @@ TEST(MixedForm, of_shared_volume_strain_and_of_motion) {
 
 // Conjugate gradients without pressures have no end there.
 TEST(MixedForm, iterations_hardly_grow_as_nu_goes_to_one_half) {
-  if (comm_size(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "on one rank";
+  if (parallel::comm_size(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "on one rank";
   const RawMesh raw = body(BoxCells::quadrilaterals, 16);
   const auto iterations = [&](double nu) {
     return solved(raw, nearly_incompressible(2, nu, Preconditioner::mixed)).iterations;
@@ -143,7 +144,7 @@ TEST(MixedForm, goes_on_bit_for_bit) {
 }
 
 TEST(MixedForm, is_refused_without_mean_stresses_of_cells) {
-  if (comm_size(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "on one rank";
+  if (parallel::comm_size(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "on one rank";
   SolidParameters p = nearly_incompressible(2, 0.3, Preconditioner::mixed);
   p.method.volume_strain = MethodParameters::VolumeStrain::faces;
   EXPECT_THROW(solved(body(BoxCells::quadrilaterals, 2), p), Error);

@@ -14,6 +14,8 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
+using namespace modes;
 namespace {
 
 SolidParameters vibrating(int dim) {
@@ -60,7 +62,7 @@ TEST(SolidModesOfAFreeBody, carry_its_whole_mass_and_move_its_surface_rigidly) {
   const auto solid = make_solid(make_box(BoxCells::hexahedra, {4, 3, 3}, Vec3::Zero(), Vec3(2, 1, 1)), p);
   const EigenModes found = solid_modes(*vibration(solid->body()), p.method, cell_mass(*solid), 8);
   const ModalModel model = modal_model(*vibration(solid->body()), found);
-  if (comm_rank(MPI_COMM_WORLD) != 0) return;
+  if (parallel::comm_rank(MPI_COMM_WORLD) != 0) return;
   ASSERT_EQ(model.n_modes(), 8u);
   EXPECT_EQ(problem_of(model), "");
   EXPECT_EQ(model.vertices.size(), 5u * 4u * 4u - 3u * 2u * 2u);  // less those inside

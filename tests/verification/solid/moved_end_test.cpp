@@ -11,13 +11,14 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 struct Way {
   const char* name;
   bool is_dynamic, is_large;
   FaceGradient gradient;
-  TimeScheme scheme = TimeScheme::trapezoidal;
+  time::TimeScheme scheme = time::TimeScheme::trapezoidal;
   MethodParameters::Type method = MethodParameters::Type::automatic;
 };
 
@@ -25,11 +26,11 @@ constexpr std::array ways{
     Way{"static_linear", false, false, FaceGradient::symmetric},
     Way{"static_corrected", false, false, FaceGradient::corrected},
     Way{"static_large", false, true, FaceGradient::symmetric},
-    Way{"static_large_segregated", false, true, FaceGradient::thesis, TimeScheme::trapezoidal,
+    Way{"static_large_segregated", false, true, FaceGradient::thesis, time::TimeScheme::trapezoidal,
         MethodParameters::Type::segregated},
     Way{"dynamic_linear", true, false, FaceGradient::symmetric},
     Way{"dynamic_corrected", true, false, FaceGradient::corrected},
-    Way{"dynamic_bathe", true, false, FaceGradient::symmetric, TimeScheme::bathe},
+    Way{"dynamic_bathe", true, false, FaceGradient::symmetric, time::TimeScheme::bathe},
     Way{"dynamic_large", true, true, FaceGradient::symmetric},
 };
 
@@ -68,7 +69,7 @@ std::array<double, 2> moved(const Way& way, MPI_Comm comm) {
   std::array<double, 2> result{};
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
     for (int a = 0; a < 2; ++a) result[std::size_t(a)] += geometry.volume[c] * u[std::size_t(2 * c + a)];
-  for (int a = 0; a < 2; ++a) result[std::size_t(a)] = sum(comm, result[std::size_t(a)]);
+  for (int a = 0; a < 2; ++a) result[std::size_t(a)] = parallel::sum(comm, result[std::size_t(a)]);
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 constexpr std::array<double, 3> amplitude{2e-6, 4e-6, 6e-6};
@@ -27,7 +28,7 @@ std::string derivative_text(int dim, const std::array<int, 3>& derivatives) {
 }
 
 /// - div sigma = - mu lap u - (mu + lambda) grad div u.
-std::vector<std::string> body_force_text(int dim, const LameConstants& lame) {
+std::vector<std::string> body_force_text(int dim, const elastic::LameConstants& lame) {
   std::vector<std::string> result;
   for (int i = 0; i < dim; ++i) {
     std::string text = "0";

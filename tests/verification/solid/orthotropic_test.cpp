@@ -13,6 +13,7 @@
 #include "tests/verification/solid/linear_field.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 using Plane = SolidParameters::Plane;
@@ -66,7 +67,9 @@ Errors errors(const Solid& solid, const Displacement& u, const Stress& stress) {
     stress_size += v * stress(x).topLeftCorner(mesh.dim, mesh.dim).squaredNorm();
     volume += v;
   }
-  const auto ratio = [&](double a, double b) { return std::sqrt(sum(mesh.comm, a) / sum(mesh.comm, b)); };
+  const auto ratio = [&](double a, double b) {
+    return std::sqrt(parallel::sum(mesh.comm, a) / parallel::sum(mesh.comm, b));
+  };
   return {ratio(gap, size), ratio(stress_gap, stress_size)};
 }
 
@@ -75,7 +78,7 @@ std::string kind_of(const ::testing::TestParamInfo<BoxCells>& info) { return nam
 INSTANTIATE_TEST_SUITE_P(Solid, Orthotropy, ::testing::ValuesIn(all_cells), kind_of);
 
 TEST_P(Orthotropy, constant_strain_is_exact_in_turned_axes) {
-  if (comm_size(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "the ring and the beam compare the ranks";
+  if (parallel::comm_size(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "the ring and the beam compare the ranks";
   const int dim = dimension_of(GetParam());
   const LinearField field = general_field(dim);
   SolidParameters p = ply_parameters(dim);
@@ -127,8 +130,8 @@ std::unique_ptr<Solid> strip(BoxCells cells, int n, const std::vector<std::strin
 
 TEST(Orthotropic, of_equal_constants_is_the_isotropic_matrix) {
   const double e = 200e9, nu = 0.3, g = e / (2 * (1 + nu));
-  const ElasticMatrix isotropic = isotropic_matrix(lame_constants(e, nu));
-  EXPECT_LT((orthotropic_matrix({{e, e, e}, {nu, nu, nu}, {g, g, g}}) - isotropic).norm(),
+  const elastic::ElasticMatrix isotropic = elastic::isotropic_matrix(lame_constants(e, nu));
+  EXPECT_LT((elastic::orthotropic_matrix({{e, e, e}, {nu, nu, nu}, {g, g, g}}) - isotropic).norm(),
             1e-12 * isotropic.norm());
 }
 
@@ -153,7 +156,7 @@ TEST(Orthotropic, a_bar_cut_off_axis_stretches_and_shears_as_its_closed_form) {
 
 // sigma_xx = p y: u = p (s11 x y + s16 y^2 / 2), v = p (s12 y^2 - s11 x^2) / 2.
 TEST(Orthotropic, a_bar_cut_off_axis_bends_as_its_closed_form_with_second_order) {
-  if (comm_size(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "the ring and the beam compare the ranks";
+  if (parallel::comm_size(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "the ring and the beam compare the ranks";
   const OffAxis s = off_axis(ply(), std::numbers::pi / 6);
   const double p = 1e8;
   for (const BoxCells cells : {BoxCells::quadrilaterals, BoxCells::triangles}) {
@@ -251,7 +254,7 @@ TEST(Orthotropic, ranks_agree_on_tetrahedra_whose_edges_share) {
 TEST(Orthotropic, undamped_motion_keeps_its_energy) {
   SolidParameters p = ply_parameters(3);
   p.analysis = SolidParameters::Analysis::dynamic;
-  p.time_scheme.type = TimeScheme::trapezoidal;
+  p.time_scheme.type = time::TimeScheme::trapezoidal;
   p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
   p.initial_velocity = {{"x*y"}, {"x^2"}, {"0.5*x*sin(9*z)"}};
   auto solid = make_solid(distorted_box(BoxCells::tetrahedra), p);

@@ -13,6 +13,7 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 std::vector<std::string> lines_of(const std::filesystem::path& file) {
@@ -52,7 +53,7 @@ TEST(SolidOutput, probes_and_reactions_hold_the_displacement_and_the_balance_of_
     solid.write_output(solid.stepper().state().time, i);
   }
   MPI_Barrier(MPI_COMM_WORLD);
-  if (comm_rank(MPI_COMM_WORLD) != 0) return;
+  if (parallel::comm_rank(MPI_COMM_WORLD) != 0) return;
   const auto probes = lines_of(folder.path() / "probes.csv");
   ASSERT_EQ(probes.size(), 4u);
   EXPECT_EQ(probes[0], "time [s],corner x [m],corner y [m],inside x [m],inside y [m]");
@@ -99,7 +100,7 @@ TEST(SolidOutput, probes_watch_velocity_stress_strain_and_what_follows_from_them
     solid.write_monitors(solid.stepper().state().time);
   }
   MPI_Barrier(MPI_COMM_WORLD);
-  if (comm_rank(MPI_COMM_WORLD) != 0) return;
+  if (parallel::comm_rank(MPI_COMM_WORLD) != 0) return;
   const auto lines = lines_of(folder.path() / "probes.csv");
   for (const std::string probe : {"corner", "inside"}) {
     const double x = probe == "corner" ? 2 : 0.731;
@@ -133,7 +134,7 @@ TEST(SolidOutput, acceleration_of_a_driven_block_is_that_of_its_support) {
     solid.write_monitors(solid.stepper().state().time);
   }
   MPI_Barrier(MPI_COMM_WORLD);
-  if (comm_rank(MPI_COMM_WORLD) != 0) return;
+  if (parallel::comm_rank(MPI_COMM_WORLD) != 0) return;
   const double expected = -1e-3 * 2500 * std::sin(50 * solid.stepper().state().time);
   const auto lines = lines_of(folder.path() / "probes.csv");
   EXPECT_NEAR(last_of(lines, "support acceleration y [m/s^2]") / expected, 1, 1e-4);
@@ -161,7 +162,8 @@ TEST(SolidOutput, point_tensors_are_exact_for_linear_fields_up_to_the_boundary) 
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) cells.push_back(field(geometry.cell_centre[c]));
   for (Index b = 0; b < mesh.boundary.n_owned(); ++b)
     faces.push_back(field(geometry.face_centre[mesh.n_interior + b]));
-  const VertexInterpolation inside(mesh, geometry, std::vector(mesh.patches.size(), PatchStencil::fixed));
+  const fv::VertexInterpolation inside(mesh, geometry,
+                                       std::vector(mesh.patches.size(), fv::PatchStencil::fixed));
   const std::vector<double> at_points =
       PointTensors(mesh, geometry, is_symmetry, inside).interpolate(cells, faces);
   for (Index v = 0; v < mesh.points.n_local(); ++v) {
@@ -186,7 +188,7 @@ TEST(SolidOutput, left_out_effects_are_judged_by_numbers) {
   }
   const auto lines = [](const Solid& solid) {
     std::vector<std::string> texts;
-    for (const EffectVerdict& verdict : solid.audit()) texts.push_back(text(verdict));
+    for (const effects::EffectVerdict& verdict : solid.audit()) texts.push_back(effects::text(verdict));
     return texts;
   };
   EXPECT_THAT(

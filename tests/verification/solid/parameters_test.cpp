@@ -202,11 +202,11 @@ TEST(SolidParameters, plane_stress_has_the_stiffness_of_a_thin_sheet) {
   p.material = {1, 1, 0.3};
   p.dimension = 2;
   p.plane = SolidParameters::Plane::stress;
-  const LameConstants sheet = lame_constants(p);
+  const elastic::LameConstants sheet = lame_constants(p);
   // Uniaxial stress in the plane: E' = 4 mu (mu + lambda) / (2 mu + lambda) must be E.
   EXPECT_NEAR(4 * sheet.mu * (sheet.mu + sheet.lambda) / (2 * sheet.mu + sheet.lambda), 1, 1e-14);
   p.plane = SolidParameters::Plane::strain;
-  const LameConstants cut = lame_constants(p);
+  const elastic::LameConstants cut = lame_constants(p);
   EXPECT_NEAR(4 * cut.mu * (cut.mu + cut.lambda) / (2 * cut.mu + cut.lambda), 1 / (1 - 0.09), 1e-14);
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 class Patch : public ::testing::TestWithParam<CellsAndGradient> {
  protected:
-  const BoxCells cells = std::get<0>(GetParam());
+  const mesh::BoxCells cells = std::get<0>(GetParam());
   const int dim = dimension_of(cells);
   SolidParameters parameters() const { return to_round_off(box_parameters(dim), std::get<1>(GetParam())); }
 };
@@ -80,7 +80,7 @@ TEST_P(Patch, small_rigid_rotation_and_translation_give_no_stress) {
   for (const Tensor3& s : solid->fields().cell_stress(solid->fields().point_displacement()))
     largest = std::max(largest, s.norm());
   // Against the stress that a stretch of the same size would give.
-  const double relative = max(MPI_COMM_WORLD, largest) / (p.material.youngs_modulus * 1e-3);
+  const double relative = parallel::max(MPI_COMM_WORLD, largest) / (p.material.youngs_modulus * 1e-3);
   RecordProperty("relative_stress", fmt::format("{:.3e}", relative));
   EXPECT_LT(relative, 1e-8);
 }
@@ -109,7 +109,8 @@ TEST_P(Patch, reactions_balance_tractions_pressure_and_body_forces) {
 TEST(SolidBoundaries, wrong_patch_names_are_reported_with_those_that_exist) {
   SolidParameters p = box_parameters(2);
   p.boundaries.erase("ymax");
-  const RawMesh raw = make_box(BoxCells::quadrilaterals, {2, 2, 1}, Vec3::Zero(), Vec3(1, 1, 0));
+  const mesh::RawMesh raw =
+      mesh::make_box(mesh::BoxCells::quadrilaterals, {2, 2, 1}, Vec3::Zero(), Vec3(1, 1, 0));
   EXPECT_THAT([&] { make_solid(raw, p); },
               ::testing::ThrowsMessage<Error>(
                   ::testing::AllOf(::testing::HasSubstr("patch 'ymax' of mesh 'box' has no entry"),

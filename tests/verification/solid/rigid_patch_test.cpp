@@ -13,6 +13,7 @@
 #include "tests/verification/solid/loads_support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 using ::testing::HasSubstr;
@@ -48,15 +49,15 @@ Motion motion_of(const Solid& solid, const std::string& name, const Vec3& about,
   });
   // The added ones of 2-D count once a rank, which is no matter.
   for (int i = 0; i < 6; ++i) {
-    right[i] = sum(mesh.comm, right[i]);
-    for (int j = 0; j < 6; ++j) normal(i, j) = sum(mesh.comm, normal(i, j));
+    right[i] = parallel::sum(mesh.comm, right[i]);
+    for (int j = 0; j < 6; ++j) normal(i, j) = parallel::sum(mesh.comm, normal(i, j));
   }
   const Eigen::Matrix<double, 6, 1> q = normal.ldlt().solve(right);
   Motion motion{q.head<3>(), q.tail<3>()};
   visit([&](const Vec3& r, const Vec3& u) {
     motion.deviation = std::max(motion.deviation, (u - motion.shift - motion.turn.cross(r)).norm());
   });
-  motion.deviation = max(mesh.comm, motion.deviation);
+  motion.deviation = parallel::max(mesh.comm, motion.deviation);
   return motion;
 }
 
@@ -86,8 +87,9 @@ TEST_P(RigidPatch, moves_as_a_rigid_body_in_equilibrium_with_its_load) {
   // The work of the load is its force on the displacement of its point, twice the strain energy, but for what the trial functions
   // of a face give to its vertices, which are not rigid: less with each refinement.
   const std::vector<double> u = solid->body().unknowns_of(state.cell_u, state.face_u);
-  const double energy = sum(MPI_COMM_WORLD, solid->body().kernel().product(
-                                                ElasticPart::stiffness, {u, state.known}, {u, state.known}));
+  const double energy = parallel::sum(
+      MPI_COMM_WORLD,
+      solid->body().kernel().product(elastic::ElasticPart::stiffness, {u, state.known}, {u, state.known}));
   EXPECT_NEAR(force.dot(motion.shift), energy, 0.005 * energy);
   for (const auto& r : solid->fields().reactions(solid->fields().point_displacement())) {
     if (r.patch == "xmin") {
@@ -118,8 +120,8 @@ TEST(RigidPatches, are_stiffer_than_patches_that_share_the_load_and_bend_as_beam
 }
 
 TEST(RigidPatches, stay_rigid_in_motion_and_take_the_momentum_of_their_load) {
-  for (const TimeScheme scheme :
-       {TimeScheme::trapezoidal, TimeScheme::generalised_alpha, TimeScheme::bathe}) {
+  for (const time::TimeScheme scheme :
+       {time::TimeScheme::trapezoidal, time::TimeScheme::generalised_alpha, time::TimeScheme::bathe}) {
     SolidParameters p = box_parameters(2);
     p.analysis = SolidParameters::Analysis::dynamic;
     p.time_scheme.type = scheme;

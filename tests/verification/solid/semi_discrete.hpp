@@ -15,10 +15,10 @@ namespace couplet::testing {
 class SemiDiscrete {
  public:
   explicit SemiDiscrete(const Solid& solid) : solid_(solid) {
-    const ElasticOperator& elastic = solid.body().elastic();
+    const elastic::ElasticOperator& elastic = solid.body().elastic();
     const auto n = Eigen::Index(elastic.n_unknowns());
     n_ = Eigen::Index(solid.body().mesh().cells.n_owned()) * solid.body().mesh().dim;
-    const SparseMatrix matrix = elastic.matrix({});
+    const linalg::SparseMatrix matrix = elastic.matrix({});
     Eigen::MatrixXd a(n, n);
     std::vector<double> unit(n, 0), column(n);
     for (Eigen::Index j = 0; j < n; ++j) {

@@ -22,8 +22,8 @@ SolidParameters plane_bar() {
 
 /// Largest displacement upwards of any point at 1 s.
 double deflection(const SolidParameters& p, double height, int along, int steps = 1) {
-  const auto solid =
-      make_solid(make_box(BoxCells::quadrilaterals, {along, 2, 1}, Vec3::Zero(), Vec3(1, height, 0)), p);
+  const auto solid = make_solid(
+      mesh::make_box(mesh::BoxCells::quadrilaterals, {along, 2, 1}, Vec3::Zero(), Vec3(1, height, 0)), p);
   for (int i = 0; i < steps; ++i) step(*solid, 1. / steps);
   const std::vector<double> u = solid->fields().point_displacement();
   double most = 0;
@@ -72,7 +72,7 @@ std::string method_of(int along) {
   SolidParameters p = box_parameters(3);
   p.kinematics = SolidParameters::Kinematics::finite_strain;
   p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
-  return make_solid(make_box(BoxCells::hexahedra, {along, 2, 2}, Vec3::Zero(), Vec3(40, 1, 1)), p)
+  return make_solid(mesh::make_box(mesh::BoxCells::hexahedra, {along, 2, 2}, Vec3::Zero(), Vec3(40, 1, 1)), p)
       ->body()
       .equilibrium()
       .name({});

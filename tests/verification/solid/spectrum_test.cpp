@@ -16,6 +16,8 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
+using namespace time;
 namespace {
 
 /// The beam of case C (Slone et al. 2003) as a plane model.

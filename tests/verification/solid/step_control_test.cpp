@@ -12,6 +12,7 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
+using namespace time;
 namespace {
 
 constexpr double end_time = 16, longest_step = 0.4;
@@ -26,22 +27,24 @@ SolidParameters bent_sheet() {
   return p;
 }
 
-RawMesh sheet() { return make_box(BoxCells::quadrilaterals, {10, 3, 1}, Vec3::Zero(), Vec3(1, 0.3, 0)); }
+mesh::RawMesh sheet() {
+  return mesh::make_box(mesh::BoxCells::quadrilaterals, {10, 3, 1}, Vec3::Zero(), Vec3(1, 0.3, 0));
+}
 
 using Visit = std::function<void(const Solid&)>;
 
 /// Through the loop that a program runs; gives its accepted steps and how many were refused.
 std::pair<int, int> run(Solid& solid, const Visit& visit, double time_step, int max_halvings) {
-  SimulationParameters simulation;
+  app::SimulationParameters simulation;
   simulation.end_time = end_time;
   simulation.time_step = time_step;
   simulation.max_step_halvings = max_halvings;
   const auto folder =
       std::filesystem::temp_directory_path() / fmt::format("couplet-step-control-{}", ::getpid());
-  StepLoop loop(MPI_COMM_WORLD, simulation, Scheme::standalone, folder);
+  app::StepLoop loop(MPI_COMM_WORLD, simulation, coupling::Scheme::standalone, folder);
   double advised = std::numeric_limits<double>::infinity();
-  StepActions actions;
-  actions.attempt = [&](const Step& step) -> std::optional<std::string> {
+  app::StepActions actions;
+  actions.attempt = [&](const coupling::Step& step) -> std::optional<std::string> {
     try {
       solid.begin_step(step);
       solid.solve({});
@@ -57,7 +60,7 @@ std::pair<int, int> run(Solid& solid, const Visit& visit, double time_step, int 
   };
   actions.write_start = [](int) {};
   actions.save = [](const std::filesystem::path&) {};
-  actions.report = [](const Step&, double) {};
+  actions.report = [](const coupling::Step&, double) {};
   actions.advised_dt = [&] { return advised; };
   EXPECT_EQ(loop.run(actions), "");
   std::filesystem::remove_all(folder);

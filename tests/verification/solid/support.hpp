@@ -40,22 +40,24 @@ inline SolidParameters box_parameters(int dim) {
   return p;
 }
 
-inline std::unique_ptr<Solid> make_solid(RawMesh raw, const SolidParameters& p) {
+inline std::unique_ptr<Solid> make_solid(mesh::RawMesh raw, const SolidParameters& p) {
   raw.materials = zones_of(p.materials);
-  return std::make_unique<Solid>(distribute(MPI_COMM_WORLD, raw), p, SolidContext{});
+  return std::make_unique<Solid>(mesh::distribute(MPI_COMM_WORLD, raw), p, SolidContext{});
 }
 
 /// One accepted step from the present state.
 inline void step(Solid& solid, double dt) {
-  solid.begin_step({solid.stepper().state().time, dt, Scheme::standalone, solid.stepper().state().steps});
+  solid.begin_step(
+      {solid.stepper().state().time, dt, coupling::Scheme::standalone, solid.stepper().state().steps});
   solid.solve({});
   solid.accept_step();
 }
 
-inline constexpr std::array all_cells{BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
-                                      BoxCells::tetrahedra,     BoxCells::prisms,    BoxCells::mixed};
+inline constexpr std::array all_cells{mesh::BoxCells::quadrilaterals, mesh::BoxCells::triangles,
+                                      mesh::BoxCells::hexahedra,      mesh::BoxCells::tetrahedra,
+                                      mesh::BoxCells::prisms,         mesh::BoxCells::mixed};
 
-inline const char* name(BoxCells cells) {
+inline const char* name(mesh::BoxCells cells) {
   constexpr std::array names{"quadrilaterals", "triangles", "hexahedra", "tetrahedra", "prisms", "mixed"};
   return names.at(std::size_t(cells));
 }

@@ -19,13 +19,14 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 /// One step, then all output.
 std::unique_ptr<Solid> write(const RawMesh& raw, const SolidParameters& p, const SharedFolder& folder) {
-  auto solid =
-      std::make_unique<Solid>(distribute(MPI_COMM_WORLD, comm_rank(MPI_COMM_WORLD) == 0 ? raw : RawMesh{}), p,
-                              SolidContext{"solid", folder.path()});
+  auto solid = std::make_unique<Solid>(
+      distribute(MPI_COMM_WORLD, parallel::comm_rank(MPI_COMM_WORLD) == 0 ? raw : RawMesh{}), p,
+      SolidContext{"solid", folder.path()});
   step(*solid, 1);
   solid->write_monitors(1);
   solid->write_output(1, 1);
@@ -192,10 +193,10 @@ TEST(SolidSurfaces, of_a_body_that_conducts_heat) {
   p.heat->boundaries["xmax"] = {HeatBoundary::Type::temperature, {"300"}, {}, {}};
   p.output.surfaces = {"all"};
   RawMesh raw;
-  if (comm_rank(MPI_COMM_WORLD) == 0)
+  if (parallel::comm_rank(MPI_COMM_WORLD) == 0)
     raw = make_box(BoxCells::triangles, {6, 4, 1}, Vec3::Zero(), Vec3(2, 1, 0));
   ThermalSolid solid(distribute(MPI_COMM_WORLD, raw), p, SolidContext{"solid", folder.path()});
-  solid.begin_step({0, 1, Scheme::standalone, 0});
+  solid.begin_step({0, 1, coupling::Scheme::standalone, 0});
   solid.solve({});
   solid.accept_step();
   solid.write_output(1, 1);
@@ -221,7 +222,7 @@ TEST(SolidSurfaces, are_not_written_unless_asked_for_and_only_of_patches) {
     EXPECT_THAT(file.path().filename().string(), ::testing::Not(::testing::StartsWith("surface")));
   EXPECT_EQ(last_row(folder.path() / "reactions.csv").count("xmin moment z [N m]"), 0u);
   p.output.surfaces = {"xmim"};
-  EXPECT_THAT([&] { make_solid(comm_rank(MPI_COMM_WORLD) == 0 ? raw : RawMesh{}, p); },
+  EXPECT_THAT([&] { make_solid(parallel::comm_rank(MPI_COMM_WORLD) == 0 ? raw : RawMesh{}, p); },
               ::testing::ThrowsMessage<Error>(::testing::HasSubstr(
                   "output.surfaces: 'xmim' is not a patch of the boundary. Did you mean 'xmin'?")));
 }

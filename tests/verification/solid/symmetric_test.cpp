@@ -13,10 +13,12 @@
 #include "tests/verification/solid/linear_field.hpp"
 
 namespace couplet::testing {
+using namespace elastic;
+using namespace mesh;
 namespace {
 
 std::vector<double> random_values(MPI_Comm comm, std::size_t n, unsigned seed) {
-  std::mt19937 generator(seed + 100 * comm_rank(comm));
+  std::mt19937 generator(seed + 100 * parallel::comm_rank(comm));
   std::uniform_real_distribution<double> any_value(-1, 1);
   std::vector<double> values(n);
   for (double& v : values) v = any_value(generator);
@@ -26,7 +28,7 @@ std::vector<double> random_values(MPI_Comm comm, std::size_t n, unsigned seed) {
 double dot(MPI_Comm comm, std::span<const double> a, std::span<const double> b) {
   double here = 0;
   for (std::size_t i = 0; i < a.size(); ++i) here += a[i] * b[i];
-  return sum(comm, here);
+  return parallel::sum(comm, here);
 }
 
 /// Every condition that the operator knows, on a mesh moved by a quarter of its cells.
@@ -72,7 +74,7 @@ double smallest_eigenvalue(const Solid& solid) {
 }
 
 TEST(Symmetric, has_positive_eigenvalues_on_stretched_cells_two_across) {
-  if (comm_size(MPI_COMM_WORLD) > 1) return;
+  if (parallel::comm_size(MPI_COMM_WORLD) > 1) return;
   for (const BoxCells cells : all_cells) {
     SCOPED_TRACE(name(cells));
     const int dim = dimension_of(cells);
@@ -112,7 +114,7 @@ double tip(BoxCells cells, const std::array<int, 3>& n, double length, double nu
     sum_here += s * solid->stepper().state().face_u[std::size_t(f - mesh.n_interior) * 3 + 1];
     area += s;
   }
-  return sum(mesh.comm, sum_here) / sum(mesh.comm, area);
+  return parallel::sum(mesh.comm, sum_here) / parallel::sum(mesh.comm, area);
 }
 
 // Reference: 3-D, refined: 0.40042 at 10:1, nu = 0.3, E = 1e6, load 100.

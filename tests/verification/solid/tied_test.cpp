@@ -11,6 +11,9 @@
 #include "tests/verification/solid/linear_field.hpp"
 
 namespace couplet::testing {
+using namespace elastic;
+using namespace mesh;
+using namespace parallel;
 namespace {
 
 using Volume = MethodParameters::VolumeStrain;

@@ -9,6 +9,7 @@
 #include "tests/verification/solid/semi_discrete.hpp"
 
 namespace couplet::testing {
+using namespace time;
 namespace {
 
 constexpr double end_time = 1.2;
@@ -27,7 +28,9 @@ SolidParameters driven_sheet(TimeScheme scheme) {
   return p;
 }
 
-RawMesh sheet() { return make_box(BoxCells::quadrilaterals, {8, 3, 1}, Vec3::Zero(), Vec3(1, 0.4, 0)); }
+mesh::RawMesh sheet() {
+  return mesh::make_box(mesh::BoxCells::quadrilaterals, {8, 3, 1}, Vec3::Zero(), Vec3(1, 0.4, 0));
+}
 
 /// The cells at the end time, exactly.
 Eigen::VectorXd exact(const SolidParameters& p) {
@@ -35,9 +38,9 @@ Eigen::VectorXd exact(const SolidParameters& p) {
   const SemiDiscrete model(*solid);
   const SolidBoundaries boundaries(solid->body().mesh(), solid->body().geometry(), p);
   const PrescribedDisplacement prescribed(solid->body().mesh(), boundaries, solid->body().elastic());
-  const auto body = make_expressions(p.body_force, 2, "body-force");
-  const Mesh& mesh = solid->body().mesh();
-  const Geometry& geometry = solid->body().geometry();
+  const auto body = fv::make_expressions(p.body_force, 2, "body-force");
+  const mesh::Mesh& mesh = solid->body().mesh();
+  const mesh::Geometry& geometry = solid->body().geometry();
   const SolidDamping damping = p.damping.value_or(SolidDamping{});
   const auto force = [&](double t) {
     std::vector<double> rhs(solid->body().elastic().n_unknowns(), 0);

@@ -8,6 +8,7 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 /// Largest change of the energy over its first value, looked at every thousandth step.
@@ -16,7 +17,7 @@ double drift(BoxCells cells, double dt, int steps, FaceGradient gradient) {
   SolidParameters p = box_parameters(dim);
   p.analysis = SolidParameters::Analysis::dynamic;
   p.material = {2600, 1e7, 0.3};
-  p.time_scheme.type = TimeScheme::trapezoidal;
+  p.time_scheme.type = time::TimeScheme::trapezoidal;
   p.method.face_gradient = gradient;
   p.method.relative_tolerance = 1e-14;
   p.output.energies = true;

@@ -11,6 +11,8 @@
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
+using namespace parallel;
 namespace {
 
 using ::testing::HasSubstr;
@@ -195,7 +197,7 @@ TEST(UpdatedLagrangian, says_what_it_cannot) {
   p = bent(1);
   p.method.max_iterations = 5;
   const auto solid = make(beam(2, 10), p);
-  solid->begin_step({0, 1, Scheme::standalone, 0});
+  solid->begin_step({0, 1, coupling::Scheme::standalone, 0});
   EXPECT_THAT([&] { solid->solve({}); },
               ThrowsMessage<SolveFailure>(HasSubstr("'solution-method.max-iterations'")));
 }

@@ -10,6 +10,7 @@
 #include "tests/verification/solid/linear_field.hpp"
 
 namespace couplet::testing {
+using namespace mesh;
 namespace {
 
 using Volume = MethodParameters::VolumeStrain;
@@ -35,7 +36,7 @@ double cook(int n, double nu, Volume volume, MPI_Comm comm = MPI_COMM_WORLD) {
   const std::vector<double> u = solid.fields().point_displacement();
   for (std::size_t v = 0; v < u.size() / 2; ++v)
     if ((solid.body().geometry().points[v] - Vec3(0.048, 0.06, 0)).norm() < 1e-9) corner = u[2 * v + 1];
-  return 1e3 * max(comm, corner);
+  return 1e3 * parallel::max(comm, corner);
 }
 
 TEST(VolumeStrain, shared_keeps_linear_fields_exact) {
@@ -63,7 +64,8 @@ TEST(VolumeStrain, shared_is_assembled_as_it_is_applied) {
     SolidParameters p = with(Volume::shared, dim);
     p.boundaries["xmin"] = boundary(Type::fixed_displacement, std::vector<std::string>(dim, "0"));
     const auto solid = make_solid(distorted_box(cells), p);
-    const SparseMatrix matrix = symmetric_matrix(solid->body().mesh(), solid->body().elastic(), {});
+    const linalg::SparseMatrix matrix =
+        elastic::symmetric_matrix(solid->body().mesh(), solid->body().elastic(), {});
     const std::size_t n = solid->body().elastic().n_unknowns();
     std::mt19937 generator(7);
     std::uniform_real_distribution<double> any_value(-1, 1);
@@ -122,7 +124,7 @@ double stress_of_free_expansion(BoxCells cells, double nu, Volume volume) {
     if (dim == 2) s(2, 2) = 0;
     most = std::max(most, s.cwiseAbs().maxCoeff());
   }
-  return max(MPI_COMM_WORLD, most) / (modulus * alpha * 2 * gradient);
+  return parallel::max(MPI_COMM_WORLD, most) / (modulus * alpha * 2 * gradient);
 }
 
 // Where each face's own temperature pulled on one volume strain a cell: 27 on quadrilaterals at nu 0.4999. What is left is the

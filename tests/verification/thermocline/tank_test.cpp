@@ -16,6 +16,7 @@
 #include "thermocline/model/output.hpp"
 
 namespace couplet::thermocline {
+using namespace coupling;
 namespace {
 
 TEST(EnergyBalance, the_whole_tank_closes_over_a_week) {
@@ -294,7 +295,7 @@ class Participation : public ::testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
   std::unique_ptr<Tank> make() const {
-    ParticipantContext context;
+    app::ParticipantContext context;
     context.name = "tank";
     context.output_folder = folder_;
     TankParameters p = solar_one_parameters();
@@ -351,10 +352,10 @@ TEST_F(Participation, a_checkpoint_continues_bit_for_bit) {
   const auto a = make(), b = make();
   for (int n = 0; n < 45; ++n) take(*a, n);
   {
-    CheckpointWriter writer(MPI_COMM_SELF, folder_ / "state.h5");
+    io::CheckpointWriter writer(MPI_COMM_SELF, folder_ / "state.h5");
     a->save(writer);
     writer.close();
-    CheckpointReader reader(MPI_COMM_SELF, folder_ / "state.h5");
+    io::CheckpointReader reader(MPI_COMM_SELF, folder_ / "state.h5");
     b->load(reader);
   }
   for (int n = 45; n < 100; ++n) take(*a, n), take(*b, n);
@@ -365,8 +366,8 @@ TEST_F(Participation, checkpoints_leave_a_run_as_it_is) {
   const auto never = make(), always = make();
   for (int n = 0; n < 60; ++n) {
     take(*never, n), take(*always, n);
-    StateInMemory memory;
-    CheckpointWriter writer(memory);
+    io::StateInMemory memory;
+    io::CheckpointWriter writer(memory);
     always->save(writer);
     writer.close();
   }
@@ -381,7 +382,7 @@ TEST_F(Participation, a_wall_outside_that_is_a_membrane_gives_the_stress_of_the_
   TankRun inside(p);
   p.external_wall.emplace();
   p.external_wall->sections = 240;
-  ParticipantContext context;
+  app::ParticipantContext context;
   context.name = "tank";
   context.output_folder = folder_;
   context.coupled = true;
@@ -426,7 +427,7 @@ TEST_F(Participation, a_wall_outside_that_is_a_membrane_gives_the_stress_of_the_
 TEST_F(Participation, an_external_wall_needs_somebody_who_computes_it) {
   TankParameters p = solar_one_parameters();
   p.external_wall.emplace();
-  ParticipantContext context;
+  app::ParticipantContext context;
   context.name = "tank";
   context.output_folder = folder_;
   EXPECT_THROW(Tank(p, context), Error);
