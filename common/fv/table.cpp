@@ -50,9 +50,9 @@ std::size_t find_column(const std::filesystem::path& file, const std::vector<std
 void check_brackets(const csv::CsvReader& rows, const std::string& name) {
   const std::size_t open = name.rfind('(');
   if (!name.ends_with(')') || open == std::string::npos) return;
-  const std::string unit(trim(std::string_view(name).substr(open + 1, name.size() - open - 2)));
+  const std::string unit(base::trim(std::string_view(name).substr(open + 1, name.size() - open - 2)));
   try {
-    parse_unit(unit);
+    base::parse_unit(unit);
   } catch (const Error&) {
     return;  // as y(t)
   }

@@ -82,13 +82,15 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
   const std::vector<double> unknowns = body_.unknowns_of(state.cell_u, state.face_u);
   const std::vector<double> known = body_.known_of({state.cell_u, state.face_u, points});
   const elastic::ElasticOperator& rows = body_.elastic();
-  std::optional<InnerVariation> variation;  // thermal strain would count as one
-  if (compare && body_.kernel().is_symmetric() && body_.effects().empty() &&
-      InnerVariation::is_needed(mesh_, rows))
+  // Thermal strain would count as a variation; a temperature that neither strains nor softens the body changes nothing.
+  const bool strained = std::ranges::any_of(body_.effects(), [&](const auto& effect) {
+    return body_.parameters().expansion.has_value() || !effect->stiffness().empty();
+  });
+  std::optional<InnerVariation> variation;
+  if (compare && body_.kernel().is_symmetric() && !strained && InnerVariation::is_needed(mesh_, rows))
     variation.emplace(mesh_, rows);
   std::optional<SmoothEnergy> smooth;
-  if (compare && body_.kernel().is_symmetric() && body_.effects().empty() &&
-      (dim == 3 || !body_.is_dynamic()) &&
+  if (compare && body_.kernel().is_symmetric() && !strained && (dim == 3 || !body_.is_dynamic()) &&
       SmoothEnergy::is_of_use(mesh_))  // in the plane high modes would decide
     smooth.emplace(mesh_, rows);
   const auto is_mine = [&](Index f) { return mesh_.owner[f] < mesh_.cells.n_owned(); };
