@@ -32,7 +32,7 @@ constexpr double settled_part = 0.01;
 void tell_dynamic_buckling(MPI_Comm comm, double factor) {
   if (!(factor < BucklingEstimate::low)) return;
   log::finding(
-      comm_rank(comm),
+      parallel::comm_rank(comm),
       {.id = "buckling",
        .number = factor,
        .limit = BucklingEstimate::low,
