@@ -69,7 +69,7 @@ MUTANTS = [
            "    loss += damping.mass / work.stage.dt *", "    loss += 0.5 * damping.mass / work.stage.dt *",
            "verification_solid_energy", "SolidEnergy.*"),
     Mutant("half the loss by mass damping at large strain", "solid_solver/motion/ledger.cpp",
-           "energies.damping_loss += damping.mass / work.stage.dt *", "energies.damping_loss += 0.5 * damping.mass / work.stage.dt *",
+           "energies.damping_loss +=\n        damping.mass / work.stage.dt *", "energies.damping_loss +=\n        0.5 * damping.mass / work.stage.dt *",
            "verification_solid_energy", "SolidEnergy.*"),
     Mutant("half the loss by mass damping, cell by cell", "solid_solver/motion/ledger.cpp",
            "damping.mass / dt * body_.density(c) *", "0.5 * damping.mass / dt * body_.density(c) *",
