@@ -26,7 +26,6 @@ FluidOutput<D>::FluidOutput(const Fluid<D>& fluid, const mesh::Geometry& geometr
   for (const mesh::Patch& patch : mesh_.patches)
     if (is_wall(fluid.parameters().boundaries.at(patch.name))) walls_.push_back(&patch);
   check_coefficients();
-  check_flow_areas();
   if (!fluid.parameters().output.surfaces.empty()) surfaces_.emplace(fluid);
 }
 

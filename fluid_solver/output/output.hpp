@@ -45,7 +45,6 @@ class FluidOutput {
   void write_coefficients(double time);
   void write_fluxes(double time);
   void check_coefficients() const;
-  void check_flow_areas() const;
   void write_flow_areas(double time);
   void write_energy(double time);
   void write_bodies(double time);

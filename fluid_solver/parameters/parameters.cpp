@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fluid_solver/parameters/parameters.hpp"
 
+#include <fmt/format.h>
+
+#include "common/base/text.hpp"
 #include "common/config/pairs.hpp"
 #include "common/io/surface_series.hpp"
 #include "common/mesh/periodic_points.hpp"
@@ -205,6 +208,18 @@ void declare_models(config::Section& s, FluidParameters& p) {
       "incompressible, judged by the speed of sound of a gas at 1 atm or of a liquid, by density and viscosity");
 }
 
+/// What is wrong with the patches of output.flow-areas; empty if nothing is.
+std::string wrong_flow_areas(const FluidParameters& p) {
+  std::vector<std::string> patches;
+  for (const auto& [patch, unused] : p.boundaries) patches.push_back(patch);
+  for (const auto& [name, area] : p.output.flow_areas)
+    for (const std::string& patch : {area.from, area.to})
+      if (!p.boundaries.contains(patch))
+        return fmt::format("'{}' of '{}' is not a patch of the boundary; these are: {}", patch, name,
+                           base::join(patches));
+  return "";
+}
+
 /// What is written.
 void declare_written(config::Section& s, FluidParameters& p) {
   s.section(
@@ -212,6 +227,7 @@ void declare_written(config::Section& s, FluidParameters& p) {
       [&p](config::Section& o) {
         declare_output(o, p.output);
         o.check([&p] { return io::wrong_surfaces(p.output.surfaces, p.boundaries); }, "surfaces");
+        o.check([&p] { return wrong_flow_areas(p); }, "flow-areas");
       },
       "output in addition to velocity, pressure, forces and balance");
   s.map<ProbeParameters>(

@@ -31,18 +31,16 @@ constexpr double settled_part = 0.01;
 
 void tell_dynamic_buckling(MPI_Comm comm, double factor) {
   if (!(factor < BucklingEstimate::low)) return;
-  log::finding(
-      parallel::comm_rank(comm),
-      {.id = "buckling",
-       .number = factor,
-       .limit = BucklingEstimate::low,
-       .sentence = fmt::format(
-           "buckling: load factor at most {:.3g} (limit {:g}) of the last state: {}", factor,
-           BucklingEstimate::low,
-           factor < 1
-               ? "under these loads, where they last, the body buckles, which linear theory does not show"
-               : "linear theory neglects the softening by these loads"),
-       .advice = "use 'kinematics: finite-strain'"});
+  log::finding(parallel::comm_rank(comm),
+               {.id = "buckling",
+                .number = factor,
+                .limit = BucklingEstimate::low,
+                .sentence = fmt::format(
+                    "buckling: load factor at most {:.3g} (limit {:g}) of the last state: {}", factor,
+                    BucklingEstimate::low,
+                    factor < 1 ? "if these loads last, the body buckles; linear theory does not show it"
+                               : "linear theory neglects the softening by these loads"),
+                .advice = "use 'kinematics: finite-strain'"});
 }
 
 void tell_buckling(MPI_Comm comm, double factor, const char* how) {

@@ -3,11 +3,13 @@
 import pathlib
 
 SQUARE = (pathlib.Path(__file__).parent / "square.msh").read_text(encoding="utf-8")
-COLUMN = """Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Point(3) = {1, 0.01, 0}; Point(4) = {0, 0.01, 0};
-Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
-Curve Loop(1) = {1:4}; Plane Surface(1) = {1};
-Transfinite Curve {1, 3} = 81; Transfinite Curve {2, 4} = 5; Transfinite Surface {1}; Recombine Surface {1};
-Physical Curve("bottom") = {1}; Physical Curve("right") = {2}; Physical Curve("top") = {3}; Physical Curve("left") = {4}; Physical Surface("body") = {1};
+def bar(height, along, across):
+    """A rectangle of length 1 in `along` by `across` cells."""
+    return f"""Point(1) = {{0, 0, 0}}; Point(2) = {{1, 0, 0}}; Point(3) = {{1, {height}, 0}}; Point(4) = {{0, {height}, 0}};
+Line(1) = {{1, 2}}; Line(2) = {{2, 3}}; Line(3) = {{3, 4}}; Line(4) = {{4, 1}};
+Curve Loop(1) = {{1:4}}; Plane Surface(1) = {{1}};
+Transfinite Curve {{1, 3}} = {along + 1}; Transfinite Curve {{2, 4}} = {across + 1}; Transfinite Surface {{1}}; Recombine Surface {{1}};
+Physical Curve("bottom") = {{1}}; Physical Curve("right") = {{2}}; Physical Curve("top") = {{3}}; Physical Curve("left") = {{4}}; Physical Surface("body") = {{1}};
 """
 SHARED = SQUARE.replace("\n12\n1 1 2 3 1 1 2\n", "\n13\n1 1 2 3 1 1 2\n13 1 2 2 1 1 2\n")
 OPEN = """Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Point(3) = {1, 1, 0}; Point(4) = {0, 1, 0};
@@ -47,7 +49,10 @@ MISTAKES = [
     ("thermal strain forgotten at one temperature", "solid", [("poissons-ratio: 0.3", "poissons-ratio: 0.3\n      expansion: 1.2e-5"), ("    probes:", "    temperature: 400 degC\n    probes:")], "flagged",
      {"message": "a temperature change of 380 K would strain a free body with 1.2e-05 1/K by 0.0046", "run": True}),
     ("loads that buckle a slender body, in motion", "solid", [("square.msh", "column.geo"), ("analysis: static", "analysis: dynamic"), ("1 MPa, 0", "-20 MPa, 0"), ("[1, 1]", "[1, 0]")], "flagged",
-     {"message": "under these loads, where they last, the body buckles", "run": True, "files": {"column.geo": COLUMN}}),
+     {"message": "if these loads last, the body buckles", "run": True, "files": {"column.geo": bar(0.01, 80, 4)}}),
+    ("a coarse mesh beside a temperature that does nothing", "solid",
+     [("square.msh", "beam.geo"), ("1 MPa, 0", "0, -1 MPa"), ("    probes:", "    temperature: 20 degC\n    probes:"), ("[1, 1]", "[1, 0]")], "flagged",
+     {"message": "displacement not reliable; refine the mesh", "run": True, "files": {"beam.geo": bar(0.1, 10, 1)}}),
     ("an unusual value with --strict", "solid", [("density: 7850 kg/m^3", "density: 7.85e-9")], "refused",
      {"message": "questionable-key", "run": True, "twice": ["--strict"], "code": 1}),
     ("an unusual value that is accepted", "solid", [("density: 7850 kg/m^3", "density: 7.85e-9")], "flagged",

@@ -25,6 +25,12 @@ case.yaml:11:35: participants.fluid.boundaries.left.table.file: the file 'none.c
     fluid("line of a single point", """
 case.yaml:10:57: participants.fluid.output.samples.a.to: 'from' and 'to' coincide.
 """, ("    boundaries:\n", "    output: {samples: {a: {type: line, from: [0, 0, 0], to: [0, 0, 0]}}}\n    boundaries:\n")),
+    fluid("flow area between a patch and itself", """
+case.yaml:10:43: participants.fluid.output.flow-areas.a.to: 'from' and 'to' are the same patch.
+""", ("    boundaries:\n", "    output: {flow-areas: {a: {from: left, to: left}}}\n    boundaries:\n")),
+    fluid("flow area from a patch that is not there", """
+case.yaml:10:14: participants.fluid.output.flow-areas: 'lift' of 'a' is not a patch of the boundary; these are: bottom, left, right, top.
+""", ("    boundaries:\n", "    output: {flow-areas: {a: {from: lift, to: right}}}\n    boundaries:\n")),
     fluid("turbulence model that is not there", """
 case.yaml:10:18: participants.fluid.turbulence.model: 'smagorinski' is not one of: smagorinsky, wale. Did you mean 'smagorinsky'?
 """, ("    boundaries:\n", "    turbulence: {model: smagorinski}\n    boundaries:\n")),

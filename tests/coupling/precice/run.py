@@ -378,7 +378,7 @@ def ended(folder):
     check("checkpoints are refused", done.returncode == 2 and "simulation.checkpoint.interval: 1 s here, but 'Left'" in done.stderr, done.stderr[-500:])
     pages = Pages()
     frame = b"-" * 74 + b"\n"
-    text = b"a\n" + frame + b"mpirun noticed that process rank 2 with PID 7 on node n exited on\nsignal 9 (Killed).\n" + frame + frame + b"of a program\n" + frame + b"unfinished"
+    text = b"a\n" + frame + b"mpirun noticed that process rank 2 with PID 7 on node n exited on\nsignal 9 (Killed).\n" + frame + frame + b"MPI_ABORT was invoked on rank 2\n" + frame + frame + b"of a program\n" + frame + b"unfinished"
     seen = b"".join(pages.feed(text[i:i + 1]) for i in range(len(text))) + pages.feed(b"", last=True)
     check("of mpirun's pages only its own are taken out", seen == b"a\n" + frame + b"of a program\n" + frame + b"unfinished", seen)
     check("and the process is found in them", culprit(pages.killed, [("coupler", 1), ("Left", 2)]) == "'Left', rank 1, was ended by signal 9 (Killed)", pages.killed)

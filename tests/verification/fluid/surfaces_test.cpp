@@ -226,7 +226,8 @@ TEST(Fluxes, areas_between_patches_that_do_not_exist_are_refused) {
     const Written run(p, "no-such-patch", 1, squares(4, 4), 0.05);
     FAIL() << "accepted";
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("output.flow-areas.valve.to: there is no patch 'xmas'"));
+    EXPECT_THAT(error.what(),
+                ::testing::HasSubstr("output.flow-areas: the mesh has no faces in the patch 'xmas'"));
   }
 }
 

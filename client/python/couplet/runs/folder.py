@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The output folder of a job: who is at work in it, and how it was started."""
-import calendar
+import datetime
 import json
 import os
 import pathlib
@@ -8,7 +8,7 @@ import signal
 import sys
 import time
 
-LOCK, RECORD, STAMP = ".checkpoints.lock", "job.json", "%Y-%m-%dT%H:%M:%SZ"
+LOCK, RECORD = ".checkpoints.lock", "job.json"
 
 
 def fields_of(pid):
@@ -70,12 +70,18 @@ def wait_for_end(folder, seconds):
 
 
 def checkpoint(folder):
-    """Name of the complete checkpoint that has gone furthest; of those that the run on record wrote, or an earlier one that it continued;
-    None if there is none. Another run's, left in the folder, may belong to another case."""
+    """Name of the complete checkpoint that has gone furthest of those that the run on record wrote, or of the one that it began with; None
+    if there is none. Those of another run, left in the folder, may belong to another case."""
+    all_sets = pathlib.Path(folder).absolute() / "checkpoints"
+    sets = {file.parent.name: file.stat().st_mtime for file in all_sets.glob("step-*/set.txt")}
     record = read_record(folder)
-    began = 0 if "--restart" in record.get("flags", ()) else calendar.timegm(time.strptime(record["started"], STAMP)) if "started" in record else 0
-    sets = sorted(file.parent.name for file in (pathlib.Path(folder) / "checkpoints").glob("step-*/set.txt") if file.stat().st_mtime >= began)
-    return sets[-1] if sets else None
+    if "started" not in record:
+        return max(sets, default=None)
+    own = [name for name, written in sets.items() if written >= datetime.datetime.fromisoformat(record["started"]).timestamp()]
+    begun = pathlib.Path(record["flags"][record["flags"].index("--restart") + 1]) if "--restart" in record["flags"] else None
+    if not own and begun in (all_sets, all_sets.parent):
+        return max(sets, default=None)
+    return max(own, default=begun.name if begun and begun.parent == all_sets and begun.name in sets else None)
 
 
 def warn_if_older(file):

@@ -3,6 +3,7 @@
 and no process is left behind."""
 import collections
 import ctypes
+import datetime
 import os
 import pathlib
 import selectors
@@ -73,7 +74,7 @@ class Job:
 
     def record(self):
         return {"case": self.case.file.absolute(), "bin": self.case.build / "bin", "ranks": self.ranks, "sets": self.sets, "flags": self.flags, "alone": self.alone,
-                "with": self.played_by, "command": self.command, "started": time.strftime(folders.STAMP, time.gmtime(time.time() - (time.monotonic() - self.started)))}
+                "with": self.played_by, "command": self.command, "started": datetime.datetime.fromtimestamp(time.time() - (time.monotonic() - self.started), datetime.timezone.utc).isoformat()}
 
     # -- while it runs ------------------------------------------------------------------------------------------------
     def on_signal(self, number, _):

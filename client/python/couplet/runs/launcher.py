@@ -4,6 +4,7 @@ import re
 
 FRAME = re.compile(rb"-{40,}\s*")
 KILLED = re.compile(r"process rank (\d+) .*exited on signal (\d+)(?: \((.*?)\))?", re.S)
+OTHERS = ("Primary job terminated normally", "mpirun detected that one or more processes exited", "MPI_ABORT was invoked")  # a program ended the job, with a message of its own
 LONGEST = 40  # lines between two lines of dashes: a longer text is no page of mpirun's
 
 
@@ -37,7 +38,7 @@ class Pages:
         words = " ".join(text.decode(errors="replace").split())
         if found := KILLED.search(words):
             self.killed = self.killed or (int(found[1]), int(found[2]), found[3] or "")
-        return b"" if found or "Primary job terminated normally" in words or "mpirun detected that one or more processes exited" in words else text
+        return b"" if found or any(other in words for other in OTHERS) else text
 
 
 def culprit(killed, sizes):
