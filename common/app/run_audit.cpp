@@ -27,16 +27,16 @@ void RunAudit::accepted(double time, bool output) {
 }
 
 std::vector<std::string> RunAudit::closing_lines(bool with_sound) {
-  look();
+  look(true);
   std::vector<std::string> lines;
   for (const effects::EffectVerdict& verdict : trail_.worst())
     if (!(verdict.saves > 0) && (with_sound || !verdict.sound())) lines.push_back(effects::text(verdict));
   return lines;
 }
 
-void RunAudit::look() {
+void RunAudit::look(bool end) {
   const auto start = std::chrono::steady_clock::now();
-  for (const effects::EffectVerdict& verdict : trail_.news(participant_.audit()))
+  for (const effects::EffectVerdict& verdict : trail_.news(participant_.audit(), end))
     report(rank_, time_, verdict);
   log::timers().add("audit", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 }

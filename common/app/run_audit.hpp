@@ -26,7 +26,7 @@ class RunAudit {
   effects::ModelError model() const { return effects::model_error(trail_.worst()); }
 
  private:
-  void look();
+  void look(bool end = false);
 
   int rank_;
   const coupling::Participant& participant_;

@@ -74,11 +74,11 @@ std::string EffectVerdict::id() const {
   return id;
 }
 
-std::vector<EffectVerdict> AuditTrail::news(const std::vector<EffectVerdict>& verdicts) {
+std::vector<EffectVerdict> AuditTrail::news(const std::vector<EffectVerdict>& verdicts, bool end) {
   std::vector<EffectVerdict> result;
   for (const EffectVerdict& v : verdicts) {
     keep(v);
-    if (v.sound()) continue;
+    if (v.sound() || (v.cumulative && !end)) continue;
     const bool is_wrong = v.severity() == base::Severity::wrong;
     const bool known = std::ranges::count(told_, v.effect) > 0;
     if (known && (!is_wrong || std::ranges::count(wrong_, v.effect) > 0)) continue;
@@ -93,7 +93,8 @@ void AuditTrail::keep(const EffectVerdict& v) {
   const auto known = std::ranges::find(worst_, v.effect, &EffectVerdict::effect);
   if (known == worst_.end())
     worst_.push_back(v);
-  else if (!(v.number / v.threshold <= known->number / known->threshold))  // NaN is worse than any number
+  else if (known->cumulative ||
+           !(v.number / v.threshold <= known->number / known->threshold))  // NaN is worse than any number
     *known = v;
 }
 

@@ -20,6 +20,9 @@ struct EffectVerdict {
   std::string sentence;  ///< what the number is, with its unit, without verdict: "max |grad u| = 0.29"
   std::string recommendation{};  ///< what to switch on, or to do, where it was not sound
   bool left_out = true;          ///< false: a verdict on an effect that the scene has
+  /// The number is a mean over the run so far: only the last one counts, and nothing is told before the end (while a flow
+  /// starts, its pressures compress much and walls have hardly moved).
+  bool cumulative = false;
   /// From here on (or NaN) the answer is useless, not only questionable; infinite: never.
   double wrong_from = std::numeric_limits<double>::infinity();
   /// What that changes in the answer, as a share of it [1], good to a factor of two or so: its part of the error budget.
@@ -63,9 +66,10 @@ std::string without_advice(const EffectVerdict& verdict);
 /// long one does not hide its bad news until its end, and what was bad in its midst is still known there.
 class AuditTrail {
  public:
-  /// The verdicts that are unsound for the first time, or wrong for the first time.
-  std::vector<EffectVerdict> news(const std::vector<EffectVerdict>& verdicts);
-  /// Of each effect the verdict with the largest number so far, in the order of their first appearance.
+  /// The verdicts that are unsound for the first time, or wrong for the first time; cumulative ones only at the `end` of the run.
+  std::vector<EffectVerdict> news(const std::vector<EffectVerdict>& verdicts, bool end = false);
+  /// Of each effect the verdict with the largest number so far, or the last of a cumulative one, in the order of their first
+  /// appearance.
   const std::vector<EffectVerdict>& worst() const { return worst_; }
   bool all_sound() const { return told_.empty(); }
   /// Names of all that were unsound so far.

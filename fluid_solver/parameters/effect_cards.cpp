@@ -109,6 +109,7 @@ effects::EffectVerdict judge_compliance(const S& s, const E& e, const Sound& sou
       .recommendation =
           "the compliance of the fluid may change frequencies and stability of the coupled motion: add "
           "'compressibility'",
+      .cumulative = true,
       .share = share};
 }
 
@@ -122,6 +123,7 @@ effects::EffectVerdict judge_wave_time(const S&, const E& e, const Sound& sound)
               fmt::format("sound crosses {} in {:.2g} s = {:.2g} of 1/omega = {:.2g} s of the wall motion",
                           sound.of, e.size / sound.speed, phase, 1 / e.wall_rate),
           .recommendation = "pressure waves return while the walls move: add 'compressibility'",
+          .cumulative = true,
           .share = phase < 1 ? std::tan(phase) / std::max(phase, 1e-300) - 1 : 1};
 }
 

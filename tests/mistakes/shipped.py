@@ -9,6 +9,8 @@ import yaml
 
 # Second stages: what they read another case of the folder writes.
 NEEDS_A_RUN = {"bracket-modes/modal.yaml": "modes.file: the file 'out/bracket/modes.h5' does not exist"}
+# Benchmarks whose numbers are those of no real material.
+ARTIFICIAL = {"cavity-flexible-bottom/case.yaml": "membrane.material.density: waves would travel at 0.707 m/s"}
 
 
 def participants(case):
@@ -29,8 +31,9 @@ def main():
             result = subprocess.run([binaries / program, file.name, "--check", *words], cwd=file.parent, capture_output=True, text=True,
                                     timeout=60, check=False)
             tried += 1
-            second = NEEDS_A_RUN.get(str(file.relative_to(configs)))
-            if second and second in result.stderr and result.stderr.count("\n") == 1:
+            name = str(file.relative_to(configs))
+            known = NEEDS_A_RUN.get(name) or ARTIFICIAL.get(name)
+            if known and known in result.stderr and result.stderr.count("\n") == 1:
                 continue
             if result.returncode != 0 or "warning" in result.stderr:
                 bad.append(f"{file.relative_to(configs)} {' '.join([program, *words])}: {result.stderr.strip()[-400:]}")

@@ -1,0 +1,53 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""summary.py fsi1|fsi3 [FOLDER]: displacement of A, drag and lift of cylinder and plate beside Turek and Hron; summary(FOLDER) for
+scripts."""
+import csv
+import pathlib
+import sys
+
+here = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(here.parents[1] / "client/python"), str(here.parent / "cylinder")]
+import coefficients  # noqa: E402
+
+PATCHES = ["cylinder", "plate"]
+
+
+def summary(folder, last=1.2):
+    """Mean and amplitude (half of largest plus and minus least) over the last `last` s of displacement [m], drag and lift [N] and
+    the frequency of the displacement [1/s] (0 at rest)."""
+    folder, found = pathlib.Path(folder), {}
+    probes = coefficients.couplet.read_csv(folder / "solid" / "probes.csv")
+    forces = coefficients.couplet.read_csv(folder / "fluid" / "forces.csv")
+    for name, rows, values in (("ux", probes, probes["A x [m]"]), ("uy", probes, probes["A y [m]"]),
+                               ("drag", forces, coefficients.force(forces, PATCHES, "x")),
+                               ("lift", forces, coefficients.force(forces, PATCHES, "y"))):
+        t = rows["time [s]"]
+        end = t > t[-1] - last
+        high, low = coefficients.peak(t[end], values[end]), -coefficients.peak(t[end], -values[end])
+        found[f"{name}_mean"], found[f"{name}_amp"] = (high + low) / 2, (high - low) / 2
+        if name == "uy":
+            rises = coefficients.rises(t[end], values[end] - found["uy_mean"])
+            moves = len(rises) > 1 and found["uy_amp"] > 0.1 * abs(found["uy_mean"])
+            found["uy_f"] = (len(rises) - 1) / (rises[-1] - rises[0]) if moves else 0.0
+    return found
+
+
+def reference(case):
+    """Of Turek and Hron, 'FSI1' or 'FSI3'."""
+    with open(here / "reference" / "turek_hron.csv", newline="") as file:
+        rows = csv.DictReader(line for line in file if not line.startswith("#"))
+        row = next(r for r in rows if (r["case"], r["source"]) == (case, "FF"))
+    return {name: float(value) for name, value in row.items() if name not in ("case", "source") and value}
+
+
+if __name__ == "__main__":
+    case = sys.argv[1] if len(sys.argv) > 1 else ""
+    if case not in ("fsi1", "fsi3"):
+        sys.exit("usage: summary.py fsi1|fsi3 [FOLDER]")
+    out = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else here / f"out-{case}"
+    if not (out / "fluid" / "forces.csv").exists():
+        sys.exit(f"There is no result in {out}. Run the case first (see its README).")
+    wanted = reference(case.upper())
+    for name, value in summary(out).items():
+        print(f"{name} = {value:.5g}" + (f", Turek and Hron {wanted[name]:.5g}" if wanted.get(name) else ""))

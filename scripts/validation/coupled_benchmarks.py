@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bars of the coupled benchmarks: Turek and Hron's flags, Mok's cavity, vibration by vortices."""
+from validation.parts.benchmarks.cavity import CAVITY
+from validation.parts.benchmarks.flags import FLAGS
+from validation.parts.benchmarks.lock_in import LOCK_IN
+
+SOURCES = ("common/base", "common/parallel", "common/linalg", "common/mesh", "common/fv", "common/elasticity", "coupler",
+           "fluid_solver", "solid_solver", "mesh_mover")
+BARS = [
+    *FLAGS,
+    *CAVITY,
+    *LOCK_IN,
+]

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bars of vibration by vortices: an undamped cylinder on a spring, Re 150, m = 2 rho D^2, over reduced velocities U / (f_n D)."""
+import math
+import subprocess
+
+import numpy as np
+
+from validation.job import Bar
+
+HERE = "configs/spring-cylinder"
+AHN = 0.55  # amplitude over D at 4: Ahn and Kallinderis, J. Comput. Phys. 219 (2006)
+
+
+def response(job, reduced):
+    """Amplitude over D and frequency over that in vacuo, last 30 s of 120 s."""
+    def make():
+        out = job.scratch / f"lock-in-{reduced}"
+        out.mkdir()
+        stiffness = 2 * (2 * math.pi / reduced) ** 2
+        environment = {**job.environment, "COUPLET_BIN": str(job.build / "bin"), "COUPLET_BODY": f"2 0 {stiffness!r} 0.2"}
+        subprocess.run([job.root / HERE / "run", "vortices.yaml", "--set", f"simulation.output.folder={out}"], cwd=out, env=environment,
+                       check=True, capture_output=True, timeout=3600)
+        t, y = np.loadtxt(out / "body.csv", delimiter=",").T[:2]
+        end = t > t[-1] - 30
+        t, y = t[end], y[end] - y[end].mean()
+        rises = t[1:][(y[1:] > 0) & (y[:-1] <= 0)]
+        return (y.max() - y.min()) / 2, reduced * (len(rises) - 1) / (rises[-1] - rises[0])
+    return job.once(("lock-in", reduced), make)
+
+
+def at_four(job):
+    amplitude, ratio = response(job, 4)
+    return f"{amplitude:.3f} D: {100 * (amplitude / AHN - 1):+.1f} %, frequency {ratio:.3f} of that in vacuo", abs(amplitude / AHN - 1) <= 0.1
+
+
+def over_range(job):
+    return "; ".join("{:g}: {:.3f} D, {:.2f}".format(u, *response(job, u)) for u in (3, 4, 5, 7, 8)), None
+
+
+def is_locked(amplitude, ratio):
+    """The vortices follow the body: it oscillates near its own frequency, by more than a quarter of D."""
+    return amplitude > 0.25 and abs(ratio - 1) < 0.2
+
+
+def bracket(locked, free):
+    """Locked at one velocity; at the other the body follows the vortices, at a frequency that is not its own."""
+    def measure(job):
+        at = {u: response(job, u) for u in (locked, free)}
+        text = "; ".join(f"{u:g}: {a:.3f} D, frequency {f:.2f} of that in vacuo" for u, (a, f) in sorted(at.items()))
+        return text, is_locked(*at[locked]) and abs(at[free][1] - 1) > 0.2
+    return measure
+
+
+FREE = "amplitude above D/4 within 20 % of the body's frequency on one side, more than 20 % off it on the other"
+LOCK_IN = [
+    Bar("vibration by vortices, U/(f_n D) = 4: amplitude", "within 10 % of 0.55 D", at_four, long=True),
+    Bar("vibration by vortices, U/(f_n D) = 3, 4, 5, 7, 8: amplitude, frequency over that in vacuo", "reported", over_range, long=True,
+        but="one mesh and one step"),
+    Bar("lower limit of lock-in between U/(f_n D) = 3 and 4", FREE, bracket(4, 3), long=True, but="one mesh and one step"),
+    Bar("upper limit of lock-in between U/(f_n D) = 8 and 10", FREE, bracket(8, 10), long=True, but="one mesh and one step"),
+]
