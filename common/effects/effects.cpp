@@ -74,6 +74,13 @@ std::string EffectVerdict::id() const {
   return id;
 }
 
+namespace {
+/// By how far over its limit; NaN is worse than any number.
+bool exceeds(const EffectVerdict& a, const EffectVerdict& b) {
+  return !(a.number / a.threshold <= b.number / b.threshold);
+}
+}  // namespace
+
 std::vector<EffectVerdict> AuditTrail::news(const std::vector<EffectVerdict>& verdicts, bool end) {
   std::vector<EffectVerdict> result;
   for (const EffectVerdict& v : verdicts) {
@@ -90,12 +97,21 @@ std::vector<EffectVerdict> AuditTrail::news(const std::vector<EffectVerdict>& ve
 }
 
 void AuditTrail::keep(const EffectVerdict& v) {
-  const auto known = std::ranges::find(worst_, v.effect, &EffectVerdict::effect);
-  if (known == worst_.end())
-    worst_.push_back(v);
-  else if (known->cumulative ||
-           !(v.number / v.threshold <= known->number / known->threshold))  // NaN is worse than any number
-    *known = v;
+  if (!seen_.contains(v.effect)) order_.push_back(v.effect);
+  Seen& seen = seen_[v.effect];
+  if (v.cumulative)
+    seen.mean = v;
+  else if (!seen.largest || exceeds(v, *seen.largest))
+    seen.largest = v;
+}
+
+std::vector<EffectVerdict> AuditTrail::worst() const {
+  std::vector<EffectVerdict> result;
+  for (const std::string& effect : order_) {
+    const auto& [largest, mean] = seen_.at(effect);
+    result.push_back(mean && (!largest || exceeds(*mean, *largest)) ? *mean : *largest);
+  }
+  return result;
 }
 
 std::string summary(const std::vector<Effect>& effects) {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -68,18 +69,22 @@ class AuditTrail {
  public:
   /// The verdicts that are unsound for the first time, or wrong for the first time; cumulative ones only at the `end` of the run.
   std::vector<EffectVerdict> news(const std::vector<EffectVerdict>& verdicts, bool end = false);
-  /// Of each effect the verdict with the largest number so far, or the last of a cumulative one, in the order of their first
-  /// appearance.
-  const std::vector<EffectVerdict>& worst() const { return worst_; }
+  /// Of each effect the worst: of those of an instant the one with the largest number so far, of cumulative ones the last; in
+  /// the order of their first appearance.
+  std::vector<EffectVerdict> worst() const;
   bool all_sound() const { return told_.empty(); }
   /// Names of all that were unsound so far.
   const std::vector<std::string>& unsound() const { return told_; }
 
  private:
+  struct Seen {
+    std::optional<EffectVerdict> largest;  ///< of those of an instant
+    std::optional<EffectVerdict> mean;     ///< the last cumulative one
+  };
   void keep(const EffectVerdict& verdict);
 
-  std::vector<std::string> told_, wrong_;
-  std::vector<EffectVerdict> worst_;
+  std::vector<std::string> told_, wrong_, order_;
+  std::map<std::string, Seen> seen_;
 };
 
 }  // namespace couplet::effects

@@ -143,6 +143,8 @@ V judge_waves(const S& s, const E& e) {
     if (!worst || !(v.number / v.threshold <= worst->number / worst->threshold)) worst = std::move(v);
   };
   if (!std::isnan(e.pressure_range)) add(judge_density(s, e, *sound));
+  // What an instant has shown is told then; the means below count at the end only.
+  if (worst && !worst->sound()) return worst;
   if (!std::isnan(e.stroke)) {
     add(judge_compliance(s, e, *sound));
     add(judge_wave_time(s, e, *sound));

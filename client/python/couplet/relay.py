@@ -88,7 +88,10 @@ class OverSocket:
         data = bytearray(size)
         view = memoryview(data)
         while view:
-            n = self._socket.recv_into(view)
+            try:
+                n = self._socket.recv_into(view)
+            except OSError as error:  # "reset by peer", where the other side had not read all
+                raise ConnectionError(f"the connection was closed ({error.strerror})") from error
             if n == 0:
                 raise ConnectionError("the connection was closed")
             view = view[n:]
@@ -106,8 +109,11 @@ class OverSocket:
 
     def send(self, data, rank, tag):
         data = memoryview(data).cast("B")
-        self._socket.sendall(FRAME.pack(rank, tag, len(data)))
-        self._socket.sendall(data)
+        try:
+            self._socket.sendall(FRAME.pack(rank, tag, len(data)))
+            self._socket.sendall(data)
+        except OSError as error:
+            raise ConnectionError(f"sending failed ({error.strerror})") from error
 
     def leave(self):
         self.send(b"", 0, LEAVE)

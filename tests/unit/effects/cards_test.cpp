@@ -429,6 +429,22 @@ TEST(AuditTrail, a_mean_over_the_run_counts_at_its_end) {
   EXPECT_FALSE(trail.all_sound());
 }
 
+TEST(AuditTrail, a_mean_does_not_hide_what_an_instant_has_shown) {
+  AuditTrail trail;
+  const EffectVerdict instant{"waves of pressure", 0.6, 0.05, "density changes by 0.6"};
+  EffectVerdict mean{"waves of pressure", 0.3, 0.1, "compressed / displaced = 0.3"};
+  mean.cumulative = true;
+  EXPECT_EQ(trail.news({instant}).size(), 1u);
+  trail.news({mean});
+  mean.number = 1e-4;
+  trail.news({mean}, true);
+  ASSERT_EQ(trail.worst().size(), 1u);
+  EXPECT_EQ(trail.worst()[0].number, 0.6);
+  mean.number = 2;  // 20 times its limit, the instant 12 times
+  trail.news({mean}, true);
+  EXPECT_EQ(trail.worst()[0].number, 2);
+}
+
 TEST(AuditTrail, tells_bad_news_once) {
   AuditTrail trail;
   EffectVerdict v{"inertia", 0.003, 0.01, "", ""};
