@@ -20,10 +20,9 @@ def summary(folder, last=1):
     found = {}
     for name, axis in (("drag", "x"), ("lift", "y")):
         y = coefficients.force(rows, PATCHES, axis)[end]
-        high, low = coefficients.peak(t[end], y), -coefficients.peak(t[end], -y)
-        found[f"{name}_mean"], found[f"{name}_amp"] = (high + low) / 2, (high - low) / 2
-    z = coefficients.rises(t[end], coefficients.force(rows, PATCHES, "y")[end])
-    found["lift_f"] = (len(z) - 1) / (z[-1] - z[0]) if len(z) > 1 else 0.0
+        found[f"{name}_mean"], found[f"{name}_amp"] = coefficients.mean_and_amplitude(t[end], y)
+        if name == "lift":
+            found["lift_f"] = coefficients.frequency(t[end], y)
     return found
 
 

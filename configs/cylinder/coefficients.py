@@ -35,6 +35,18 @@ def peak(t, y):
     return float(c - b * b / (4 * a)) if a != 0 else float(c)
 
 
+def mean_and_amplitude(t, y):
+    """Of largest and least value: half of their sum and half of their difference."""
+    high, low = peak(t, y), -peak(t, -y)
+    return (high + low) / 2, (high - low) / 2
+
+
+def frequency(t, y):
+    """Of the rises of y through its mean [1/s]; 0 where there are fewer than two."""
+    z = rises(t, y)
+    return (len(z) - 1) / (z[-1] - z[0]) if len(z) > 1 else 0.0
+
+
 def steady(folder, mean_speed):
     """Last values: drag, lift, pressure difference between front and back [Pa]."""
     rows, probes = couplet.read_csv(folder / "forces.csv"), couplet.read_csv(folder / "probes.csv")

@@ -24,12 +24,9 @@ def summary(folder, last=1.2):
                                ("lift", forces, coefficients.force(forces, PATCHES, "y"))):
         t = rows["time [s]"]
         end = t > t[-1] - last
-        high, low = coefficients.peak(t[end], values[end]), -coefficients.peak(t[end], -values[end])
-        found[f"{name}_mean"], found[f"{name}_amp"] = (high + low) / 2, (high - low) / 2
+        mean, amplitude = found[f"{name}_mean"], found[f"{name}_amp"] = coefficients.mean_and_amplitude(t[end], values[end])
         if name == "uy":
-            rises = coefficients.rises(t[end], values[end] - found["uy_mean"])
-            moves = len(rises) > 1 and found["uy_amp"] > 0.1 * abs(found["uy_mean"])
-            found["uy_f"] = (len(rises) - 1) / (rises[-1] - rises[0]) if moves else 0.0
+            found["uy_f"] = coefficients.frequency(t[end], values[end]) if amplitude > 0.1 * abs(mean) else 0.0
     return found
 
 

@@ -5,7 +5,8 @@ from validation.parts.benchmarks.flags import FLAGS
 from validation.parts.benchmarks.lock_in import LOCK_IN
 
 SOURCES = ("common/base", "common/parallel", "common/linalg", "common/mesh", "common/fv", "common/elasticity", "coupler",
-           "fluid_solver", "solid_solver", "mesh_mover")
+           "fluid_solver", "solid_solver", "mesh_mover", "client", "configs/turek-hron", "configs/cfd3", "configs/cylinder",
+           "configs/cavity-flexible-bottom", "configs/spring-cylinder")
 BARS = [
     *FLAGS,
     *CAVITY,

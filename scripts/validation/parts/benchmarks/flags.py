@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bars of FSI1 and FSI3 of Turek and Hron."""
-import zlib
-
 from validation.job import Bar
 
 HERE = "configs/turek-hron"
@@ -12,8 +10,13 @@ FULL = {"fsi1": [*FINE, "coupling.scheme=implicit", "simulation.end-time=12 s"],
         "fsi3": [*FINE, "simulation.time-step=0.5 ms"]}
 
 
+variants = []  # in the order of their first run
+
+
 def run(job, case, *more):
-    result = job.coupled_run(job.root / HERE / FILES[case], f"{case}-{zlib.crc32(repr(more).encode()):x}", more, timeout=20000)
+    if more not in variants:
+        variants.append(more)
+    result = job.coupled_run(job.root / HERE / FILES[case], f"{case}-{variants.index(more)}", more, timeout=20000)
     return job.beside(f"{HERE}/summary.py").summary(result.folder), result.cost
 
 
@@ -36,13 +39,16 @@ def both_steps(job):
 
 FULL_MESH = "about 21 k fluid and 2.5 k solid cells"
 FLAGS = [
-    *(Bar(f"FSI1, {FULL_MESH}: {name}", f"within {100 * limit:g} %", beside("fsi1", name, limit, *FULL["fsi1"]), long=True)
+    *(Bar(f"FSI1, {FULL_MESH}, scheme: implicit, not the default: {name}", f"within {100 * limit:g} %",
+          beside("fsi1", name, limit, *FULL["fsi1"]), long=True)
       for name, limit in (("uy_mean", 0.02), ("ux_mean", 0.02), ("drag_mean", 0.003), ("lift_mean", 0.03))),
     *(Bar(f"FSI1, 4.8 k fluid cells: {name}", f"within {100 * limit:g} %", beside("fsi1", name, limit), long=True, but="coarse mesh")
       for name, limit in (("uy_mean", 0.02), ("drag_mean", 0.01))),
-    *(Bar(f"FSI3, coarse, ten minutes: {name}", f"within {100 * limit:g} %", beside("fsi3", name, limit), long=True)
-      for name, limit in (("uy_amp", 0.10), ("uy_f", 0.03), ("drag_mean", 0.01))),
-    Bar("FSI3, coarse, at steps of 2 and 1 ms", "reported", both_steps, long=True),
-    *(Bar(f"FSI3, {FULL_MESH}, dt 0.5 ms: {name}", f"within {100 * limit:g} %", beside("fsi3", name, limit, *FULL["fsi3"]), long=True)
+    Bar("FSI3, coarse, ten minutes, pseudo-solid: uy_amp", "within 10 %", beside("fsi3", "uy_amp", 0.10), long=True),
+    *(Bar(f"FSI3, coarse, ten minutes, pseudo-solid: {name}", f"within {100 * limit:g} %", beside("fsi3", name, limit), long=True,
+          but="limits of our own: nothing was asked for here")
+      for name, limit in (("uy_f", 0.03), ("drag_mean", 0.01))),
+    Bar("FSI3, coarse, pseudo-solid, at steps of 2 and 1 ms", "reported", both_steps, long=True),
+    *(Bar(f"FSI3, {FULL_MESH}, dt 0.5 ms, pseudo-solid: {name}", f"within {100 * limit:g} %", beside("fsi3", name, limit, *FULL["fsi3"]), long=True)
       for name, limit in (("uy_amp", 0.023), ("uy_f", 0.012), ("drag_mean", 0.01), ("lift_amp", 0.08))),
 ]

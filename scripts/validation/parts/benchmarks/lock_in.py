@@ -21,10 +21,8 @@ def response(job, reduced):
         subprocess.run([job.root / HERE / "run", "vortices.yaml", "--set", f"simulation.output.folder={out}"], cwd=out, env=environment,
                        check=True, capture_output=True, timeout=3600)
         t, y = np.loadtxt(out / "body.csv", delimiter=",").T[:2]
-        end = t > t[-1] - 30
-        t, y = t[end], y[end] - y[end].mean()
-        rises = t[1:][(y[1:] > 0) & (y[:-1] <= 0)]
-        return (y.max() - y.min()) / 2, reduced * (len(rises) - 1) / (rises[-1] - rises[0])
+        end, series = t > t[-1] - 30, job.beside("configs/cylinder/coefficients.py")
+        return series.mean_and_amplitude(t[end], y[end])[1], reduced * series.frequency(t[end], y[end])
     return job.once(("lock-in", reduced), make)
 
 
