@@ -24,7 +24,7 @@ struct ErrorParts {
   std::string omittable{};  ///< effects that do next to nothing, and what they cost, in words
   int dimension = 0;        ///< of the mesh, 0: not known
   bool known() const;
-  /// "mesh 0.0013 step 2e-05 model 0.1 | thermal strain is neglected: ... | ": the known ones, for messages; empty: none.
+  /// "mesh 0.0013 step 2e-05 model 0.1 | thermal strain neglected: ... | ": the known ones, for messages; empty: none.
   std::string text() const;
   /// Throws Error if it is no such text.
   static ErrorParts of(const std::string& text);

@@ -55,7 +55,7 @@ ModelError model_error(const std::vector<EffectVerdict>& verdicts) {
     model.sum = std::isnan(model.sum) ? v.share : model.sum + v.share;
     if (!(v.share > largest)) continue;
     largest = v.share;
-    model.largest = fmt::format("{}{}{}", v.effect, v.left_out ? " is neglected" : "",
+    model.largest = fmt::format("{}{}{}", v.effect, v.left_out ? " neglected" : "",
                                 v.sound() && v.share < 0.1 ? ", which is justified"
                                 : v.recommendation.empty() ? ""
                                                            : ": " + v.recommendation);

@@ -46,7 +46,7 @@ struct EffectVerdict {
 /// The part of the error that is the model's: what the verdicts make of the answer, each as a share of it.
 struct ModelError {
   double sum = std::numeric_limits<double>::quiet_NaN();  ///< NaN: nothing is known
-  std::string largest;    ///< "thermal strain is neglected: use 'thermal-expansion'"
+  std::string largest;    ///< "thermal strain neglected: use 'thermal-expansion'"
   std::string omittable;  ///< "turbulence model (... saves 44 %)": what could be omitted
 };
 /// Sum over the verdicts that know their share, and what could be omitted.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <map>
@@ -61,7 +62,11 @@ class MshCursor {
   /// Numbers: words of text or bytes, as the file is.
   int integer() { return binary ? raw<int>() : static_cast<int>(text_integer()); }
   std::size_t size() { return binary ? raw<std::size_t>() : static_cast<std::size_t>(text_integer()); }
-  double real() { return binary ? raw<double>() : text_real(); }
+  double real() {
+    const double value = binary ? raw<double>() : text_real();
+    if (!std::isfinite(value)) fail(fmt::format("Expected a finite number, found '{}'.", value));
+    return value;
+  }
   /// Numbers that are text in binary files too.
   long text_integer();
   double text_real();

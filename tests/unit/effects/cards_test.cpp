@@ -63,7 +63,7 @@ TEST(EffectCards, neglected_effects_say_what_share_of_the_answer_they_change) {
   EXPECT_DOUBLE_EQ(model({.inertia_over_load = 430}).sum, 1);
   const ModelError hot = model({.largest_gradient = 1e-6, .temperature_range = 75});
   EXPECT_NEAR(hot.sum, 750, 1e-9);
-  EXPECT_EQ(hot.largest, "thermal strain is neglected: use 'thermal-expansion'");
+  EXPECT_EQ(hot.largest, "thermal strain neglected: use 'thermal-expansion'");
   // The elastica: a cantilever with P L^2 / (E I) = 1 has a slope of 0.46 at its tip, which moves 9.5 % less than the linear one.
   EXPECT_NEAR(model({.largest_gradient = 0.46 * std::sqrt(2.)}).sum, 0.095, 0.02);
   EXPECT_DOUBLE_EQ(model({.largest_gradient = 1e-4, .buckling_factor = 1.5}).sum, 2);

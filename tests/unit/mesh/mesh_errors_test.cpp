@@ -125,6 +125,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"node_twice", head + "$Nodes\n2\n1 0 0 0\n1 1 0 0\n$EndNodes\n", ":7: Duplicate node 1."},
         BadFile{"not_a_number", head + "$Nodes\n1\n1 0 zero 0\n$EndNodes\n",
                 ":6: Expected a number, found 'zero'."},
+        BadFile{"not_finite", head + "$Nodes\n2\n1 0 0 0\n2 1 nan 0\n$EndNodes\n",
+                ":7: Expected a finite number, found 'nan'."},
         BadFile{"not_whole", head + "$Nodes\n1.5\n1 0 0 0\n$EndNodes\n",
                 ":5: Expected a whole number, found '1.5'."},
         BadFile{"truncated", head + "$Nodes\n2\n1 0 0 0\n",
