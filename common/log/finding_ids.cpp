@@ -82,6 +82,7 @@ constexpr std::array ids{
     FindingId{answer, "never-melted", "a phase-change filler that never melted"},
     FindingId{answer, "implicit-advection", "the time step smears the thermocline"},
     FindingId{answer, "work-of-pump-or-fan", "pump or fan consume a large share of the heat"},
+    FindingId{neglected, "mixing-of-inverted-fluid", "cold fluid above hot that would sink"},
     FindingId{neglected, "resolved-grains", "grains with a temperature gradient inside"},
     FindingId{neglected, "pressure-loss-of-the-bed", "the bed's pressure loss consumes a share of the heat"},
     FindingId{neglected, "yielding-of-the-wall", "the wall would yield"},

@@ -76,6 +76,17 @@ V judge_pressure(const P&, const E& e) {
       "add 'pump: {}', or check flow and grains: no real store is driven this hard", e.pumping_share);
 }
 
+// Cold fluid above hot sinks through the grains faster than any store is driven (docs/thermocline.md, inversions).
+V judge_mixing(const P&, const E& e) {
+  return effects::verdict(
+      e.inverted_share, 0.05,
+      fmt::format("fluid {:.3g} K colder than the fluid below it: {:.2g} of the run's range", e.inversion,
+                  e.inverted_share),
+      "it would sink: set 'bed.mix-inversions: true', or check the signs of the mass flows (upward above 0) and the inlet "
+      "temperatures",
+      e.inverted_share);
+}
+
 // A power block makes some 0.4 of the heat electricity, and pump or fan run in charge and in discharge: a tenth of the heat
 // is half of all that is sold.
 V judge_driving(const P&, const E& e) {
@@ -113,6 +124,12 @@ const std::array cards{
          "smearing of a front by the step, over the bed's height, 0.05",
          judge_implicit,
          true},
+    Card{"mixing of inverted fluid",
+         "`bed.mix-inversions`",
+         [](const P& p) { return when(p, p.tank.bed.mix_inversions, "bed.mix-inversions"); },
+         {},
+         "largest inversion over the run's range of temperatures, 0.05",
+         judge_mixing},
     Card{"pressure loss of the bed",
          "`pump`",
          [](const P& p) { return when(p, p.tank.pump.has_value(), "pump"); },

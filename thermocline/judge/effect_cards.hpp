@@ -24,6 +24,8 @@ struct Evidence {
   double pumping_share = unknown, pressure_loss = unknown;
   /// Of a scene with `pump`, for the largest flow: that power [W] and that heat [W].
   double driving_power = unknown, carried_heat = unknown;
+  /// Without mixing: how much colder fluid was than the fluid below it [K], at most, and that over the range of the run.
+  double inversion = unknown, inverted_share = unknown;
   double share_of_yield = unknown;  ///< largest equivalent stress of the wall over its yield strength
   /// The same with what bending would add at the wall's faces; both as looked at every two hours.
   double share_as_rings = unknown, share_with_bending = unknown;

@@ -46,10 +46,9 @@ void lumped_grains(const TankModel& m, Lines& lines) {
 void fluid(const TankModel& m, double peak_flow, Lines& lines) {
   if (m.inversion().depth > 0.01)
     lines.push_back(fmt::format(
-        "buoyancy: at t = {:.6g} s fluid at z = {:.3f} m was {:.2f} K colder than the fluid below it; {}",
+        "buoyancy: at t = {:.6g} s fluid at z = {:.3f} m was {:.2f} K colder than the fluid below it{}",
         m.inversion().time, m.inversion().z, m.inversion().depth,
-        m.setup().parameters.bed.mix_inversions ? "such fluid is mixed"
-                                                : "mixing (bed.mix-inversions) was neglected"));
+        m.setup().parameters.bed.mix_inversions ? "; such fluid is mixed" : ""));
   const Fluid& f = m.setup().fluid;
   const auto [cold, hot] = m.fluid_range();
   if (f.real && !f.real_density && hot > cold)

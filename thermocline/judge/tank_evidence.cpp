@@ -132,6 +132,11 @@ std::vector<effects::EffectVerdict> Tank::audit() const {
     evidence.implicit_spread = std::sqrt(part);
     evidence.implicit_step = 0.9 * 0.05 * 0.05 / part * peak_advance_ / peak_flow_;  // a tenth to spare
   }
+  const bool inverted = m.inversion().depth > 0.01 && !m.setup().parameters.bed.mix_inversions;
+  if (const auto [cold, hot] = range_to_come(m); inverted && hot > cold + 1) {
+    evidence.inversion = m.inversion().depth;
+    evidence.inverted_share = evidence.inversion / (hot - cold);
+  }
   if (m.bed().shells() == 1 && peak_flow_ > 0) evidence.largest_biot = largest_biot(m, peak_flow_);
   if (m.shell() && !m.stress().yield.empty()) {
     const WallStress& stress = m.stress();

@@ -366,6 +366,8 @@ TEST(EffectCards, tank_verdicts_turn_at_their_thresholds) {
       sound("specific heat of a gas by its temperature", {.capacity_error = 0.049, .mean_capacity = 1e3}));
   EXPECT_FALSE(
       sound("specific heat of a gas by its temperature", {.capacity_error = 0.051, .mean_capacity = 1e3}));
+  EXPECT_TRUE(sound("mixing of inverted fluid", {.inversion = 9, .inverted_share = 0.049}));
+  EXPECT_FALSE(sound("mixing of inverted fluid", {.inversion = 11, .inverted_share = 0.051}));
   EXPECT_TRUE(sound("pressure loss of the bed", {.pumping_share = 0.019, .pressure_loss = 1e4}));
   EXPECT_FALSE(sound("pressure loss of the bed", {.pumping_share = 0.021, .pressure_loss = 1e6}));
   EXPECT_TRUE(sound("compressible flow of a gas", {.largest_mach = 0.29}));
