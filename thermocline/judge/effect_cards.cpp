@@ -77,14 +77,15 @@ V judge_pressure(const P&, const E& e) {
 }
 
 // Cold fluid above hot sinks through the grains faster than any store is driven (docs/thermocline.md, inversions).
+// How far mixing would change the answer depends on flow and grains: no share of the error.
 V judge_mixing(const P&, const E& e) {
-  return effects::verdict(
-      e.inverted_share, 0.05,
+  if (std::isnan(e.inverted_share)) return {};
+  return effects::EffectVerdict{
+      "", e.inverted_share, 0.05,
       fmt::format("fluid {:.3g} K colder than the fluid below it: {:.2g} of the run's range", e.inversion,
                   e.inverted_share),
-      "it would sink: set 'bed.mix-inversions: true', or check the signs of the mass flows (upward above 0) and the inlet "
-      "temperatures",
-      e.inverted_share);
+      "it would sink: set 'bed.mix-inversions: true', or check the signs of the mass flows (upward above 0) "
+      "and the inlet temperatures"};
 }
 
 // A power block makes some 0.4 of the heat electricity, and pump or fan run in charge and in discharge: a tenth of the heat
