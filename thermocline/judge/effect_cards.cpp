@@ -76,8 +76,8 @@ V judge_pressure(const P&, const E& e) {
       "add 'pump: {}', or check flow and grains: no real store is driven this hard", e.pumping_share);
 }
 
-// Cold fluid above hot sinks through the grains faster than any store is driven (docs/thermocline.md, inversions).
-// How far mixing would change the answer depends on flow and grains: no share of the error.
+// Cold fluid above hot sinks (docs/thermocline.md, inversions). How far that changes the answer depends on flow and
+// grains: no share of the error.
 V judge_mixing(const P&, const E& e) {
   if (std::isnan(e.inverted_share)) return {};
   return effects::EffectVerdict{
