@@ -221,8 +221,11 @@ Inversion inversion_of(const PackedBed& bed) {
   const std::span<const double> fluid = bed.fluid();
   const BedGrid& grid = bed.grid();
   Inversion worst;
-  for (int i = 0; i + 1 < grid.size(); ++i)
-    if (fluid[i] - fluid[i + 1] > worst.depth) worst = {fluid[i] - fluid[i + 1], grid.z[i] + grid.dz[i] / 2};
+  double hottest_below = fluid[0];
+  for (int i = 1; i < grid.size(); ++i) {
+    if (hottest_below - fluid[i] > worst.depth) worst = {hottest_below - fluid[i], grid.z[i]};
+    hottest_below = std::max(hottest_below, fluid[i]);
+  }
   return worst;
 }
 

@@ -176,7 +176,7 @@ class PackedBed {
   } melt_;
 };
 
-/// Largest amount by which a cell is colder than the one below it, and where [K], [m].
+/// How much colder fluid is than the hottest fluid below it, at most [K], and where [m].
 struct Inversion {
   double depth = 0, z = 0;
 };

@@ -198,5 +198,19 @@ TEST(Inversion, mixing_keeps_the_heat_and_leaves_none) {
   EXPECT_LT(inversion_of(bed).depth, 1e-9);
 }
 
+TEST(Inversion, is_measured_against_the_hottest_fluid_below_however_fine_the_cells) {
+  for (const int n : {50, 500}) {
+    BedParameters p = plain_bed(n, 5, 0.3, 0.01);
+    PackedBed bed(p, constant_fluid(1800, 1500, 0.5), Filler{}, 1);
+    std::vector<double> t(n);
+    for (int i = 0; i < n; ++i) t[i] = 400 - 100. * i / (n - 1);  // hot at the bottom
+    bed.set_temperature(t);
+    EXPECT_NEAR(inversion_of(bed).depth, 100, 1e-9) << n;
+    std::ranges::reverse(t);
+    bed.set_temperature(t);
+    EXPECT_EQ(inversion_of(bed).depth, 0) << n;
+  }
+}
+
 }  // namespace
 }  // namespace couplet::thermocline
