@@ -3,12 +3,14 @@
 from validation.parts.benchmarks.cavity import CAVITY
 from validation.parts.benchmarks.flags import FLAGS
 from validation.parts.benchmarks.lock_in import LOCK_IN
+from validation.parts.benchmarks.tube import TUBE_ROWS
 
 SOURCES = ("common/base", "common/parallel", "common/linalg", "common/mesh", "common/fv", "common/elasticity", "coupler",
            "fluid_solver", "solid_solver", "mesh_mover", "client", "configs/turek-hron", "configs/cfd3", "configs/cylinder",
-           "configs/cavity-flexible-bottom", "configs/spring-cylinder")
+           "configs/cavity-flexible-bottom", "configs/spring-cylinder", "configs/tube-3d")
 BARS = [
     *FLAGS,
     *CAVITY,
     *LOCK_IN,
+    *TUBE_ROWS,
 ]
