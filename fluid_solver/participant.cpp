@@ -271,29 +271,6 @@ void FluidParticipant<D>::write_monitors(double time) {
   output_.write_series(time);
 }
 
-template <int D>
-std::vector<std::string> FluidParticipant<D>::finish() {
-  if (steps_unseen_ > 0) doubt_given_step(step_.dt / fluid_->statistics().sub_steps);
-  for (std::string& doubt : openings_->doubts())
-    log::finding(parallel::comm_rank(mesh_.comm),
-                 {.id = "flow-through-openings", .sentence = std::move(doubt)});
-  std::vector<std::string> sentences;
-  if (statistics_ && !(statistics_->duration() > 0))
-    sentences.push_back(
-        fmt::format("Running statistics start at t = {:g} s, but this run ended before: there are none.",
-                    fluid_->parameters().statistics->start));
-  if (steps_ > 0)
-    sentences.push_back(fmt::format(
-        "Semi-implicit coupling: the friction was recomputed with an updated wall velocity in {} of {} "
-        "steps; max error at the end of a step {:.2g} of the load{}",
-        renewed_steps_, steps_, largest_unseen_,
-        largest_unseen_ < near_limit
-            ? "."
-            : ": the scheme is near its limit, where friction drags more than a third of the moving mass; "
-              "use 'scheme: implicit' or a smaller step."));
-  return sentences;
-}
-
 template class FluidParticipant<2>;
 template class FluidParticipant<3>;
 

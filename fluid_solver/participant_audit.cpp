@@ -141,15 +141,40 @@ std::vector<effects::EffectVerdict> FluidParticipant<D>::audit() const {
   return couplet::effects::audit(fluid_effect_cards(), scene, evidence);
 }
 
+template <int D>
+std::vector<std::string> FluidParticipant<D>::finish() {
+  if (steps_unseen_ > 0) doubt_given_step(step_.dt / fluid_->statistics().sub_steps);
+  for (std::string& doubt : openings_->doubts())
+    log::finding(parallel::comm_rank(mesh_.comm),
+                 {.id = "flow-through-openings", .sentence = std::move(doubt)});
+  std::vector<std::string> sentences;
+  if (statistics_ && !(statistics_->duration() > 0))
+    sentences.push_back(
+        fmt::format("Running statistics start at t = {:g} s, but this run ended before: there are none.",
+                    fluid_->parameters().statistics->start));
+  if (steps_ > 0)
+    sentences.push_back(fmt::format(
+        "Semi-implicit coupling: the friction was recomputed with an updated wall velocity in {} of {} "
+        "steps; max error at the end of a step {:.2g} of the load{}",
+        renewed_steps_, steps_, largest_unseen_,
+        largest_unseen_ < near_limit
+            ? "."
+            : ": the scheme is near its limit, where friction drags more than a third of the moving mass; "
+              "use 'scheme: implicit' or a smaller step."));
+  return sentences;
+}
+
 template std::vector<Index> FluidParticipant<2>::moving_faces() const;
 template void FluidParticipant<2>::see_motion();
 template void FluidParticipant<2>::see_ringing();
 template void FluidParticipant<2>::add_motion(FluidEvidence&) const;
 template std::vector<effects::EffectVerdict> FluidParticipant<2>::audit() const;
+template std::vector<std::string> FluidParticipant<2>::finish();
 template std::vector<Index> FluidParticipant<3>::moving_faces() const;
 template void FluidParticipant<3>::see_motion();
 template void FluidParticipant<3>::see_ringing();
 template void FluidParticipant<3>::add_motion(FluidEvidence&) const;
 template std::vector<effects::EffectVerdict> FluidParticipant<3>::audit() const;
+template std::vector<std::string> FluidParticipant<3>::finish();
 
 }  // namespace couplet::fluid

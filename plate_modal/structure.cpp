@@ -16,19 +16,6 @@
 namespace couplet::plate {
 namespace {
 
-/// A seat in which the structure stands at the start has wound springs: energy that nobody asked for.
-void refuse_wound_springs(const Contact& contact, const Share& share, std::span<const double> q) {
-  double size = 0;
-  for (const Vec3& x : share.centres()) size = std::max(size, (x - share.centres().front()).norm());
-  const Contact::Place place = contact.deepest(q);
-  if (place.depth <= 1e-9 * couplet::parallel::max(share.comm(), size)) return;
-  throw Error(
-      "contact: initially the structure is {:.3g} m inside the seat, deepest at ({:g}, {:g}, {:g}). Lower "
-      "'height' (it counts from the origin along the direction; a side of a plate is half a thickness from "
-      "its mid-surface), or set 'starts-inside: true' if these springs are meant to push from the start.",
-      place.depth, place.centre.x(), place.centre.y(), place.centre.z());
-}
-
 /// A direction says where to, not how far.
 Parameters with_unit_directions(Parameters p) {
   p.placement.x.stableNormalize();
@@ -80,6 +67,12 @@ double rate_of_decay(std::span<const double> omega, std::span<const double> c, s
   return all > 0 ? lost / all : 0;
 }
 
+/// Kinetic, strain and contact energy without what the scheme made, or the work of the loads: whichever is more.
+double true_energy(const ModalState& state) {
+  const Energies& e = state.energies;
+  return std::max(e.kinetic + e.strain + e.contact - std::max(0.0, e.mismatch()), std::abs(e.load_work));
+}
+
 }  // namespace
 
 Structure::Structure(Parameters parameters, PlateContext context, const mesh::RawMesh* raw)
@@ -111,7 +104,7 @@ Structure::Structure(Parameters parameters, PlateContext context, const mesh::Ra
   oscillators_ =
       std::make_unique<Oscillators>(share_->omega(), damping(), gravity_, p.time_scheme, contact_.get());
   state_ = trial_ = initial_state();
-  if (contact_ && !p.contact->starts_inside) refuse_wound_springs(*contact_, *share_, state_.q);
+  if (contact_ && !p.contact->starts_inside) refuse_wound_springs();
   results_ = std::make_unique<PlateResults>(*this);
   find_rotations();
   mesh::on_root(context_.comm, [&] {
@@ -121,48 +114,6 @@ Structure::Structure(Parameters parameters, PlateContext context, const mesh::Ra
 }
 
 Structure::~Structure() = default;
-
-/// The seat, and what a step should be for it.
-void Structure::make_contact() {
-  const Parameters& p = parameters_;
-  contact_ = std::make_unique<Contact>(*share_, *p.contact, p.placement.normal(),
-                                       p.contact->stiffness ? 0 : seat_stiffness(p));
-  const double shortest = std::numbers::pi / std::sqrt(contact_->largest_stiffness());
-  if (parallel::comm_rank(context_.comm) != 0) return;
-  const double steps = shortest / context_.time_step;
-  const std::string text = fmt::format(
-      "contact: over all faces it lasts {:.3g} s (pi sqrt(m / kappa)), over part of them longer", shortest);
-  if (std::isnan(steps))
-    log::info("{}.", text);
-  else if (steps >= 10)
-    log::info("{}: {:.3g} steps of it.", text, steps);
-  else
-    log::warn(
-        "{}: {:.2g} steps of it. Twenty resolve the speed after it to 1 %: 'simulation.time-step: {:.2g} s'.",
-        text, steps, shortest / 20);
-}
-
-std::vector<double> Structure::damping() const {
-  const Damping d = parameters_.damping.value_or(Damping{});
-  std::vector<double> c;
-  for (const double omega : share_->omega())
-    c.push_back(2 * d.ratio * omega + d.mass + d.stiffness * omega * omega);
-  return c;
-}
-
-ModalState Structure::initial_state() const {
-  std::vector<double> q(share_->n_modes(), 0), v = share_->participation(parameters_.initial_velocity);
-  std::vector<double> largest(q.size(), 1);
-  if (std::ssize(parameters_.initial_amplitudes) > std::ssize(q))
-    throw Error("initial-amplitudes: {} are given for {} modes.", parameters_.initial_amplitudes.size(),
-                q.size());
-  if (parallel::comm_rank(context_.comm) == 0)
-    for (std::size_t m = 0; m < q.size(); ++m) largest[m] = modes::largest_displacement(built_.model, m);
-  mesh::broadcast(context_.comm, largest);
-  for (std::size_t m = 0; m < parameters_.initial_amplitudes.size(); ++m)
-    q[m] = parameters_.initial_amplitudes[m] / largest[m];
-  return oscillators_->start(std::move(q), std::move(v));
-}
 
 coupling::Interface Structure::initialise() {
   coupling::Interface interface = share_->describe();
@@ -174,12 +125,6 @@ coupling::Interface Structure::initialise() {
     interface.gives.push_back({"surface-density", "kg/m^2", coupling::Interface::Place::faces, 1});
   results_->write_start();
   return interface;
-}
-
-/// Kinetic, strain and contact energy without what the scheme made, or the work of the loads: whichever is more.
-double Structure::true_energy(const ModalState& state) const {
-  const Energies& e = state.energies;
-  return std::max(e.kinetic + e.strain + e.contact - std::max(0.0, e.mismatch()), std::abs(e.load_work));
 }
 
 /// A scheme that has made more energy than the structure ever had moves something else than the structure.

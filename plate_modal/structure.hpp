@@ -61,12 +61,12 @@ class Structure final : public coupling::Participant, public coupling::Estimates
   std::vector<double> damping() const;
   ModalState initial_state() const;
   void make_contact();
+  void refuse_wound_springs() const;
   void add_pressure(double t, std::span<double> load);
   void look_at_step();
   void find_rotations();
   void look_at_rotation();
   double in_plane_share() const;
-  double true_energy(const ModalState& state) const;
   void refuse_made_energy() const;
   void solve_static(double t, std::span<const double> fluid);
   std::vector<double> direct_deflection(double t) const;

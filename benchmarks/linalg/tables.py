@@ -21,7 +21,7 @@ HAND_WRITTEN = {
     "idr": ("our idr, mixed form", lambda name: "PETSc" in name, ("nu 0.4999",)),
 }
 # What else lies in that folder: PETSc's and MUMPS's own behind one call, LAPACK, what is no linear solver.
-NOT_SOLVERS = ("acceleration", "dense_eigenvalues", "dot", "linear_map", "linear_solver", "matrix", "petsc_check", "petsc_environment",
+NOT_SOLVERS = ("acceleration", "dense_eigenvalues", "dot", "linear_map", "linear_solver", "matrix", "petsc_check", "petsc_environment", "petsc_methods",
                "residual_projection", "symmetric_factors")
 BEGIN, END = "<!-- tables -->", "<!-- end of tables -->"
 
@@ -78,7 +78,7 @@ def problems(rows, folder=ROOT / "common/linalg"):
             found.append(f"{system}: the program's own solver is missing")
         found += [f"{system}: {word} is missing" for word in PETSC if not any(word in r["solver"] for r in here)]
         found += [f"{system}: nothing on {ranks} ranks" for ranks in ("1", "2") if not any(r["ranks"] == ranks for r in done)]
-    for file in sorted(folder.glob("*.hpp")):
+    for file in sorted(folder.rglob("*.hpp")):
         if file.stem in NOT_SOLVERS:
             continue
         if file.stem not in HAND_WRITTEN:

@@ -296,12 +296,4 @@ std::optional<Message> Reader::finding(const std::function<std::string()>& rule,
                  key.empty() ? frame.path : join_path(frame.path, key), text);
 }
 
-void Reader::check(const std::function<std::string()>& rule, std::string_view key) {
-  if (auto found = finding(rule, key)) messages_.push_back(std::move(*found));
-}
-
-void Reader::doubt(const std::function<std::string()>& rule, std::string_view key) {
-  if (auto found = finding(rule, key)) doubts_.push_back(std::move(*found));
-}
-
 }  // namespace couplet::config

@@ -34,8 +34,12 @@ class Reader final : public Visitor {
             const std::function<void(std::size_t, Section&)>& declare) override;
   void variant(const Facts& facts, const Cases& cases, const std::string& current,
                const std::function<void(const std::string&)>& set) override;
-  void check(const std::function<std::string()>& rule, std::string_view key) override;
-  void doubt(const std::function<std::string()>& rule, std::string_view key) override;
+  void check(const std::function<std::string()>& rule, std::string_view key) override {
+    if (auto found = finding(rule, key)) messages_.push_back(std::move(*found));
+  }
+  void doubt(const std::function<std::string()>& rule, std::string_view key) override {
+    if (auto found = finding(rule, key)) doubts_.push_back(std::move(*found));
+  }
 
  private:
   /// The mapping that is being read.

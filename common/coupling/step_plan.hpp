@@ -31,7 +31,6 @@ class StepPlan {
   /// True right after a nominal step was completed (outputs and checkpoints are made then).
   bool at_nominal_time() const { return tick_ == 0; }
   GlobalIndex steps_accepted() const { return accepted_; }
-  GlobalIndex nominal_step() const { return nominal_; }
   int halvings() const { return level(); }
 
   /// For checkpoints.

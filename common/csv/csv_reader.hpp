@@ -21,7 +21,6 @@ class CsvReader final {
 
   /// Cells of the first line; empty where it holds numbers.
   const std::vector<std::string>& names() const { return names_; }
-  int line_of_names() const { return line_of_names_; }
   std::string place_of_names() const;
 
   /// The next row. False at the end.

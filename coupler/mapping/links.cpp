@@ -172,6 +172,15 @@ class WallMaps {
   std::map<std::pair<std::size_t, std::size_t>, ConjugateMap> maps_;
 };
 
+/// What to report where two participants give the same datum at one place.
+std::string given_twice(const std::vector<std::string>& names, const std::string& taker, const Datum& wanted,
+                        const std::vector<Source>& sources) {
+  if (sources.size() < 2) return "";
+  return fmt::format(
+      "'{}' takes '{}', which both '{}' and '{}' give at the same location: only one of them may.", taker,
+      wanted.name, names[sources[0].giver], names[sources[1].giver]);
+}
+
 }  // namespace
 
 Links::Links(MPI_Comm comm, const std::vector<Side>& sides, const MappingParameters& mapping) : comm_(comm) {
@@ -190,14 +199,7 @@ Links::Links(MPI_Comm comm, const std::vector<Side>& sides, const MappingParamet
         check_same(wanted, sides[t], *given, sides[g]);
         from.push_back(sides[g].places_given(*given));
       }
-      const std::string both =
-          sources.size() < 2
-              ? ""
-              : fmt::format(
-                    "'{}' takes '{}', which both '{}' and '{}' give at the same location: only one of them "
-                    "may.",
-                    names_[t], wanted.name, names_[sources[0].giver], names_[sources[1].giver]);
-      const auto giver_of = nearest_of(comm, to, from, both);
+      const auto giver_of = nearest_of(comm, to, from, given_twice(names_, names_[t], wanted, sources));
       for (std::size_t s = 0; s < sources.size(); ++s) {
         const auto& [g, given] = sources[s];
         PointSet mine = from[s];

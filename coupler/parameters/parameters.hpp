@@ -90,5 +90,8 @@ struct CouplingParameters {
   }
 };
 void declare(config::Section& section, CouplingParameters& parameters);
+void declare(config::Section& section, AccelerationParameters& parameters);
+void declare(config::Section& section, ConvergenceParameters& parameters);
+void declare(config::Section& section, MappingParameters& parameters);
 
 }  // namespace couplet::coupler

@@ -77,6 +77,33 @@ std::vector<std::string> substances() {
   return names;
 }
 
+namespace {
+
+/// One of speed, substance and pressure.
+void check_source_of_sound(config::Section& s, const CompressibilityParameters& p) {
+  s.check(
+      [&p]() -> std::string {
+        if (p.substance.empty()) return p.temperature ? "'temperature' requires a 'substance'" : "";
+        const std::vector<std::string> known = substances();
+        if (std::ranges::count(known, p.substance) == 0)
+          return fmt::format("unknown substance '{}'. {}", p.substance,
+                             base::did_you_mean(p.substance, known, "substances"));
+        return p.speed_of_sound || p.pressure ? "give only one of 'speed-of-sound', 'substance' and "
+                                                "'pressure'"
+                                              : "";
+      },
+      "substance");
+  s.check(
+      [&p] {
+        return p.speed_of_sound && p.pressure ? "give only one of 'speed-of-sound', 'substance' and "
+                                                "'pressure'"
+                                              : "";
+      },
+      "pressure");
+}
+
+}  // namespace
+
 void declare(config::Section& s, CompressibilityParameters& p) {
   s.choice("scheme", p.scheme,
            {{"none", WaveScheme::none},
@@ -124,25 +151,7 @@ void declare(config::Section& s, CompressibilityParameters& p) {
       .doc(
           "fluid volume upstream of the inlets that is not meshed (a plenum, a cylinder), into which flows what the "
           "inlets prescribe; the pressure at the inlets compresses it. In 2-D per metre of depth");
-  s.check(
-      [&p]() -> std::string {
-        if (p.substance.empty()) return p.temperature ? "'temperature' requires a 'substance'" : "";
-        const std::vector<std::string> known = substances();
-        if (std::ranges::count(known, p.substance) == 0)
-          return fmt::format("unknown substance '{}'. {}", p.substance,
-                             base::did_you_mean(p.substance, known, "substances"));
-        return p.speed_of_sound || p.pressure ? "give only one of 'speed-of-sound', 'substance' and "
-                                                "'pressure'"
-                                              : "";
-      },
-      "substance");
-  s.check(
-      [&p] {
-        return p.speed_of_sound && p.pressure ? "give only one of 'speed-of-sound', 'substance' and "
-                                                "'pressure'"
-                                              : "";
-      },
-      "pressure");
+  check_source_of_sound(s, p);
 }
 
 std::optional<Sound> sound_of(const std::optional<CompressibilityParameters>& given, double density,

@@ -11,16 +11,8 @@
 namespace couplet::plate {
 namespace {
 
-void declare_body(config::Section& s, Parameters& p) {
-  s.value("mesh", p.mesh)
-      .doc("mid-surface: 2-D mesh of triangles or quadrilaterals (.msh, or .geo to be meshed by gmsh)");
-  s.value("mesh-scale", p.mesh_scale)
-      .positive()
-      .doc(
-          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimetres; positions in "
-          "keys remain in metres");
-  s.value("mesh-parameters", p.mesh_parameters)
-      .doc("values for names that the .geo defines with DefineConstant");
+/// What the plate is made of, and how thick it is.
+void declare_layers(config::Section& s, Parameters& p) {
   s.section(
       "material",
       [&](config::Section& m) {
@@ -64,6 +56,19 @@ void declare_body(config::Section& s, Parameters& p) {
             .doc("instead of the plate's");
       },
       "zone", "parts of the mesh (physical surfaces) that differ from the rest");
+}
+
+void declare_body(config::Section& s, Parameters& p) {
+  s.value("mesh", p.mesh)
+      .doc("mid-surface: 2-D mesh of triangles or quadrilaterals (.msh, or .geo to be meshed by gmsh)");
+  s.value("mesh-scale", p.mesh_scale)
+      .positive()
+      .doc(
+          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimetres; positions in "
+          "keys remain in metres");
+  s.value("mesh-parameters", p.mesh_parameters)
+      .doc("values for names that the .geo defines with DefineConstant");
+  declare_layers(s, p);
   s.map<Edge>(
       "boundaries", p.boundaries,
       [](config::Section& b, Edge& v) {
@@ -183,135 +188,7 @@ void declare_loads(config::Section& s, Parameters& p) {
       "a rigid seat under the structure, for dynamic analyses only");
 }
 
-/// What describes a plate says nothing about the modes of a file, which have their own surface, place and mass.
-void check_file_alone(config::Section& s, const Parameters& p) {
-  const auto of_no_use = [&](const char* key, const char* why, auto&& is_given) {
-    s.check(
-        [&p, why, is_given] {
-          return p.modes_file && !p.mesh && is_given()
-                     ? fmt::format("it has no effect with 'modes.file': {}", why)
-                     : "";
-        },
-        key);
-  };
-  const char* inside = "the modes include it already";
-  of_no_use("mesh-parameters", "there is no .geo", [&p] { return !p.mesh_parameters.empty(); });
-  of_no_use("mesh-scale", "the file is in metres", [&p] { return p.mesh_scale != 1; });
-  of_no_use("material", inside, [&p] {
-    const Material m;
-    return p.material.density != m.density || p.material.youngs_modulus != m.youngs_modulus ||
-           p.material.poissons_ratio != m.poissons_ratio;
-  });
-  of_no_use("thickness", inside, [&p] { return p.thickness > 0; });
-  of_no_use("zones", inside, [&p] { return !p.zones.empty(); });
-  of_no_use("boundaries", inside, [&p] { return !p.boundaries.empty(); });
-  of_no_use("placement", "the file defines the position of the surface", [&p] {
-    const Placement here;
-    return p.placement.origin != here.origin || p.placement.x != here.x || p.placement.y != here.y;
-  });
-  of_no_use("wetted", "the interface is the surface of the file", [&p] { return p.wetted != Wetted::both; });
-}
-
-void check_together(config::Section& s, Parameters& p) {
-  using Analysis = Parameters::Analysis;
-  s.check(
-      [&] {
-        return p.mesh.has_value() == p.modes_file.has_value()
-                   ? "give either 'mesh' (of the mid-surface) or 'modes.file' (modes of another program)"
-                   : "";
-      },
-      "mesh");
-  const auto needed = [&](const char* key, auto&& is_missing) {
-    s.check(
-        [&p, key, is_missing] {
-          return p.mesh && is_missing() ? fmt::format("a plate needs '{}' above 0", key) : "";
-        },
-        p.mesh ? "mesh" : "modes");
-  };
-  needed("thickness", [&p] { return !(p.thickness > 0); });
-  needed("material.density", [&p] { return !(p.material.density > 0); });
-  needed("material.youngs-modulus", [&p] { return !(p.material.youngs_modulus > 0); });
-  s.check(
-      [&] {
-        return p.contact && p.analysis != Analysis::dynamic ? "contact requires a dynamic analysis; remove it"
-                                                            : "";
-      },
-      "contact");
-  s.check(
-      [&] {
-        return p.contact && p.modes_file && !p.contact->stiffness
-                   ? "with 'modes.file' the material is unknown: give 'stiffness'"
-                   : "";
-      },
-      "contact");
-  s.check(
-      [&] {
-        return p.contact && p.contact->rule == ContactRule::conserving &&
-                       p.time_scheme.type != time::TimeScheme::trapezoidal
-                   ? "'rule: conserving' requires the trapezoidal time scheme; use 'rule: midpoint'"
-                   : "";
-      },
-      "contact");
-  s.check(
-      [&] {
-        return p.damping && p.analysis != Analysis::dynamic
-                   ? "damping has no effect in this analysis; remove it"
-                   : "";
-      },
-      "damping");
-  s.check(
-      [&] {
-        return p.mesh && std::ssize(p.initial_amplitudes) > p.n_modes()
-                   ? fmt::format("{} amplitudes are given, but there are {} modes",
-                                 p.initial_amplitudes.size(), p.n_modes())
-                   : "";
-      },
-      "initial-amplitudes");
-}
-
 }  // namespace
-
-void declare(config::Section& s, ContactParameters& c) {
-  s.value("height", c.height)
-      .unit("m")
-      .plausible(1e-9, 1e4)
-      .doc("height of the seat along 'direction', of x, y, z of the structure at rest");
-  s.value("where", c.where).doc("the seat exists where this expression of x, y, z is above 0");
-  s.value("direction", c.direction)
-      .size(3)
-      .doc("direction from the seat to the structure, of any length; absent: the plate's normal");
-  s.value("scale", c.scale).positive().doc("f_SI of thesis (4.33): kappa = f_SI K S / h");
-  s.value("stiffness", c.stiffness)
-      .unit("N/m^3")
-      .plausible(1, 1e16)
-      .positive()
-      .doc("force per area and penetration, instead of (4.33)");
-  s.value("starts-inside", c.starts_inside)
-      .doc(
-          "the structure may start inside the seat, whose springs then push from the start; false: an error");
-  s.choice("rule", c.rule, {{"conserving", ContactRule::conserving}, {"midpoint", ContactRule::midpoint}})
-      .doc(
-          "conserving: a bounce conserves the energy to rounding, with the trapezoidal time scheme only; "
-          "midpoint: the force where the scheme has equilibrium, with any scheme");
-  const auto problem = [](const config::ExpressionText& text) -> std::string {
-    if (std::string wrong = fv::problem_of(text); !wrong.empty()) return wrong;
-    return fv::Expression(text).uses_time() ? "the seat is at rest: use an expression of x, y, z, without t"
-                                            : "";
-  };
-  s.check(
-      [&] {
-        return c.stiffness && c.scale != 1 ? "it has no effect with 'stiffness': it scales (4.33) only" : "";
-      },
-      "scale");
-  s.check([&] { return problem(c.height); }, "height");
-  s.check([&] { return problem(c.where); }, "where");
-  s.check(
-      [&] {
-        const auto& d = c.direction;
-        return !d.empty() && !(std::hypot(d[0], d[1], d[2]) > 0) ? "a direction is needed, not 0" : "";
-      },
-      "direction");
-}
 
 void declare(config::Section& s, Parameters& p) {
   using Analysis = Parameters::Analysis;

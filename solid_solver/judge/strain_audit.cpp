@@ -31,6 +31,45 @@ elastic::FaceGradientScheme other_scheme(elastic::FaceGradientScheme scheme) {
                                                           : elastic::FaceGradientScheme::corrected;
 }
 
+/// Half of what the force on a face does on the way between the displacements on both sides of it.
+double work_on(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, const SolidState& state, Index f,
+               const Vec3& force) {
+  const Vec3& area = rows.geometry().face_area[f];
+  const Vec3 here = elastic::vector_at(state.cell_u, mesh.owner[f], mesh.dim);
+  if (f < mesh.n_interior)
+    return 0.5 * force.dot(elastic::vector_at(state.cell_u, mesh.neighbour[f], mesh.dim) - here);
+  if (rows.mirrored(f)) return -(0.5 * area.dot(force) * area.dot(here) / area.squaredNorm());
+  return 0.5 * force.dot(elastic::vector_at(state.face_u, f - mesh.n_interior, mesh.dim) - here);
+}
+
+/// Thermal strain would count as a variation; a temperature that neither strains nor softens the body changes nothing.
+bool is_strained(const SolidBody& body) {
+  return std::ranges::any_of(body.effects(), [&](const auto& effect) {
+    return body.parameters().expansion.has_value() || !effect->stiffness().empty();
+  });
+}
+
+/// What varies within the cells, where that can be told.
+struct WithinCells {
+  std::optional<InnerVariation> variation;
+  std::optional<SmoothEnergy> smooth;
+  void add(Index f, const Tensor3& gradient) {
+    if (variation) variation->add(f, 0.5 * (gradient + gradient.transpose()));
+    if (smooth) smooth->add(f, gradient);
+  }
+};
+
+WithinCells within_cells(const mesh::Mesh& mesh, const SolidBody& body) {
+  WithinCells within;
+  if (!body.kernel().is_symmetric() || is_strained(body)) return within;
+  const elastic::ElasticOperator& rows = body.elastic();
+  if (InnerVariation::is_needed(mesh, rows)) within.variation.emplace(mesh, rows);
+  // In the plane high modes would decide.
+  if ((mesh.dim == 3 || !body.is_dynamic()) && SmoothEnergy::is_of_use(mesh))
+    within.smooth.emplace(mesh, rows);
+  return within;
+}
+
 }  // namespace
 
 double StrainAudit::missed_by_mesh(int dim) const {
@@ -82,38 +121,19 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
   const std::vector<double> unknowns = body_.unknowns_of(state.cell_u, state.face_u);
   const std::vector<double> known = body_.known_of({state.cell_u, state.face_u, points});
   const elastic::ElasticOperator& rows = body_.elastic();
-  // Thermal strain would count as a variation; a temperature that neither strains nor softens the body changes nothing.
-  const bool strained = std::ranges::any_of(body_.effects(), [&](const auto& effect) {
-    return body_.parameters().expansion.has_value() || !effect->stiffness().empty();
-  });
-  std::optional<InnerVariation> variation;
-  if (compare && body_.kernel().is_symmetric() && !strained && InnerVariation::is_needed(mesh_, rows))
-    variation.emplace(mesh_, rows);
-  std::optional<SmoothEnergy> smooth;
-  if (compare && body_.kernel().is_symmetric() && !strained && (dim == 3 || !body_.is_dynamic()) &&
-      SmoothEnergy::is_of_use(mesh_))  // in the plane high modes would decide
-    smooth.emplace(mesh_, rows);
+  WithinCells within = compare ? within_cells(mesh_, body_) : WithinCells{};
   const auto is_mine = [&](Index f) { return mesh_.owner[f] < mesh_.cells.n_owned(); };
   const auto volume = [&](Index f) {
     return std::abs(geometry_.face_area[f].dot(line_of(mesh_, geometry_, f))) / dim;
   };
   double energy = 0, work = 0, difference = 0, size = 0;
   const auto own = [&](Index f, const Tensor3& gradient) {
-    if (variation) variation->add(f, 0.5 * (gradient + gradient.transpose()));
-    if (smooth) smooth->add(f, gradient);
+    within.add(f, gradient);
     if (!is_mine(f)) return;  // another rank's
     const Index owner = mesh_.owner[f];
     const Tensor3 stress = rows.stress(owner, gradient);
     energy += 0.5 * volume(f) * contraction(stress, gradient);
-    Vec3 force = stress * geometry_.face_area[f];
-    const Vec3 here = elastic::vector_at(state.cell_u, owner, dim);
-    if (f < mesh_.n_interior)
-      work += 0.5 * force.dot(elastic::vector_at(state.cell_u, mesh_.neighbour[f], dim) - here);
-    else if (rows.mirrored(f))
-      work -= 0.5 * geometry_.face_area[f].dot(force) * geometry_.face_area[f].dot(here) /
-              geometry_.face_area[f].squaredNorm();
-    else
-      work += 0.5 * force.dot(elastic::vector_at(state.face_u, f - mesh_.n_interior, dim) - here);
+    work += work_on(mesh_, rows, state, f, stress * geometry_.face_area[f]);
     if (!compare) return;
     const Tensor3 symmetric = 0.5 * (gradient + gradient.transpose());
     size += volume(f) * rows.lame(owner).mu * symmetric.squaredNorm();
@@ -145,8 +165,8 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
   }
   audit.strain_energy = parallel::sum(mesh_.comm, energy);
   audit.stress_work = parallel::sum(mesh_.comm, work);
-  if (variation) audit.inner_variation = variation->missed();
-  if (smooth) audit.smooth_difference = smooth->missed(points);
+  if (within.variation) audit.inner_variation = within.variation->missed();
+  if (within.smooth) audit.smooth_difference = within.smooth->missed(points);
   if (size > 0) audit.gradient_difference = std::sqrt(difference / size);
   return audit;
 }

@@ -46,6 +46,11 @@ constexpr double rounding = 1e-14;
 // Left of a load by rounding: told.
 constexpr double drowned = 0.01;
 
+/// As exactly as the last step deserves, no more than what is `wanted` in the end.
+double forcing(double ratio, double wanted) {
+  return std::max(std::clamp(0.9 * ratio * ratio, tightest, loosest), std::min(wanted, loosest));
+}
+
 }  // namespace
 
 FiniteStrain::FiniteStrain(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
@@ -243,10 +248,8 @@ linalg::SolveStatistics FiniteStrain::iterate(const Load& load, std::span<double
           "(tolerance {:.0e}). {}",
           statistics.iterations, std::max(now.residual, whole_) / scale, tolerance_, where_worst());
     const double ratio = statistics.iterations == 0 ? 1 : now.residual / before;
-    const double wanted = 0.5 * tolerance_ * scale / now.residual;
-    const double inexact =
-        std::max(std::clamp(0.9 * ratio * ratio, tightest, loosest), std::min(wanted, loosest));
-    const double eta = load.is_conserving ? conserving : inexact;
+    const double eta =
+        load.is_conserving ? conserving : forcing(ratio, 0.5 * tolerance_ * scale / now.residual);
     solver.follow(statistics.iterations % 2 == 0);
     now.linear = solver.solve(r_, du_, is_carried_ ? with_pressures : eta, most_linear_).iterations;
     if (is_carried_) kernel_->predict_pressures(du_, {});
@@ -288,57 +291,9 @@ double FiniteStrain::judge_rounding(const Load& load, double scale, double left)
   return left / loads;
 }
 
-std::string FiniteStrain::text() const {
-  std::string residuals;
-  int linear = 0;
-  for (const NewtonIterate& i : iterates_) {
-    residuals += fmt::format("{}{:.1e}", residuals.empty() ? "" : " ", i.residual);
-    linear += i.linear;
-  }
-  return fmt::format("Newton: residuals {}, {} linear iterations, smallest det F {:.3g}", residuals, linear,
-                     iterates_.empty() ? 1.0 : iterates_.back().ratio);
-}
-
-std::vector<double> FiniteStrain::forces(std::span<const double> unknowns, std::span<const double> known) {
-  std::vector<double> rows(rows_.n_unknowns());
-  kernel_->linearise(unknowns, known, 0, rows);
-  return rows;
-}
-
 void FiniteStrain::set_pressure(std::vector<double> of_faces) {
   presses_ = parallel::any(mesh_.comm, std::ranges::any_of(of_faces, [](double p) { return p != 0; }));
   kernel_->set_pressure(of_faces);
-}
-
-double FiniteStrain::energy(std::span<const double> unknowns, std::span<const double> known) {
-  kernel_->forget_start();
-  kernel_->set_own_pressures(false);
-  forces(unknowns, known);
-  return parallel::sum(mesh_.comm, kernel_->energy());
-}
-
-double FiniteStrain::softness(std::span<const double> unknowns, std::span<const double> known) {
-  const double strain = energy(unknowns, known);
-  std::vector<double> inner = forces(unknowns, known);
-  double work = 0;
-  for (std::size_t i = 0; i < inner.size(); ++i) work += unknowns[i] * inner[i];
-  work = parallel::sum(mesh_.comm, work);
-  const double size = norm(mesh_.comm, unknowns);
-  if (!(strain > 0) || !(size > 0)) return 1;
-  TangentSolver& solver = solver_for(0, {});
-  solver.forget_factors();
-  solver.follow(true);
-  std::vector<double> change(inner.size());
-  constexpr double tolerance = 1e-2;
-  solver.solve(inner, change, tolerance, most_linear_);
-  const double loaded = std::min(1.0, std::abs(work) / (2 * strain));
-  return loaded * norm(mesh_.comm, change) / size + 1 - loaded;
-}
-
-void FiniteStrain::visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) {
-  kernel_->forget_start();
-  forces(unknowns, known);
-  kernel_->visit(take);
 }
 
 }  // namespace couplet::solid

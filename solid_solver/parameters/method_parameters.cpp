@@ -5,13 +5,11 @@
 
 namespace couplet::solid {
 
-void declare(config::Section& s, MethodParameters& m) {
+namespace {
+
+void declare_equations(config::Section& s, MethodParameters& m) {
   using Type = MethodParameters::Type;
   using FaceGradient = MethodParameters::FaceGradient;
-  using LinearSolver = MethodParameters::LinearSolver;
-  using Preconditioner = MethodParameters::Preconditioner;
-  using Acceleration = MethodParameters::Acceleration;
-  using Predictor = MethodParameters::Predictor;
   s.choice("type", m.type,
            {{"auto", Type::automatic},
             {"block-coupled", Type::block_coupled},
@@ -33,6 +31,11 @@ void declare(config::Section& s, MethodParameters& m) {
           "in bending with few or elongated cells; corrected: the same with second-order corrections, free "
           "of locking, but undamped motion grows sooner with short steps; auto: symmetric, but thesis with "
           "'zero-normal-gradient', 'type: segregated' or 'block-coupled'");
+}
+
+void declare_volume_strain(config::Section& s, MethodParameters& m) {
+  using Type = MethodParameters::Type;
+  using FaceGradient = MethodParameters::FaceGradient;
   using VolumeStrain = MethodParameters::VolumeStrain;
   s.choice("volume-strain", m.volume_strain,
            {{"auto", VolumeStrain::automatic},
@@ -56,6 +59,11 @@ void declare(config::Section& s, MethodParameters& m) {
                    : "";
       },
       "volume-strain");
+}
+
+void declare_linear_solver(config::Section& s, MethodParameters& m) {
+  using LinearSolver = MethodParameters::LinearSolver;
+  using Preconditioner = MethodParameters::Preconditioner;
   s.choice("linear-solver", m.linear_solver,
            {{"auto", LinearSolver::automatic},
             {"direct", LinearSolver::direct},
@@ -75,6 +83,11 @@ void declare(config::Section& s, MethodParameters& m) {
           "of one size; mixed: for the symmetric gradient with one volume strain per cell, with the mean "
           "stresses as additional unknowns, so that nu close to 0.5 takes hardly more iterations than 0.3; "
           "auto: factors for small bodies, otherwise mixed from nu = 0.49, otherwise multigrid");
+}
+
+void declare_iteration(config::Section& s, MethodParameters& m) {
+  using Acceleration = MethodParameters::Acceleration;
+  using Predictor = MethodParameters::Predictor;
   s.choice(
        "acceleration", m.acceleration,
        {{"none", Acceleration::none}, {"aitken", Acceleration::aitken}, {"anderson", Acceleration::anderson}})
@@ -105,6 +118,15 @@ void declare(config::Section& s, MethodParameters& m) {
       .doc(
           "maximum number of iterations; beyond it a "
           "step fails");
+}
+
+}  // namespace
+
+void declare(config::Section& s, MethodParameters& m) {
+  declare_equations(s, m);
+  declare_volume_strain(s, m);
+  declare_linear_solver(s, m);
+  declare_iteration(s, m);
 }
 
 }  // namespace couplet::solid

@@ -51,22 +51,8 @@ void check_updated_lagrangian(config::Section& s, SolidParameters& p) {
       "(or 'auto')");
 }
 
-}  // namespace
-
-void check_together(config::Section& s, SolidParameters& p) {
-  const auto check_components = [&](const char* key, const std::vector<config::ExpressionText>& texts) {
-    s.check([&] { return texts.empty() ? std::string() : fv::problem_of(texts, p.dimension); }, key);
-  };
-  check_components("body-force", p.body_force);
-  check_components("initial-velocity", p.initial_velocity);
-  s.check(
-      [&] {
-        return p.gravity.empty() || std::ssize(p.gravity) == p.dimension
-                   ? std::string()
-                   : fmt::format("{} components are given, but the {}-dimensional scene needs {}",
-                                 p.gravity.size(), p.dimension, p.dimension);
-      },
-      "gravity");
+/// What an analysis without inertia, or without a beginning, cannot have.
+void check_motion(config::Section& s, SolidParameters& p) {
   s.check(
       [&] {
         return p.damping && p.analysis == SolidParameters::Analysis::static_
@@ -89,6 +75,25 @@ void check_together(config::Section& s, SolidParameters& p) {
                    : "";
       },
       "initial-velocity");
+}
+
+}  // namespace
+
+void check_together(config::Section& s, SolidParameters& p) {
+  const auto check_components = [&](const char* key, const std::vector<config::ExpressionText>& texts) {
+    s.check([&] { return texts.empty() ? std::string() : fv::problem_of(texts, p.dimension); }, key);
+  };
+  check_components("body-force", p.body_force);
+  check_components("initial-velocity", p.initial_velocity);
+  s.check(
+      [&] {
+        return p.gravity.empty() || std::ssize(p.gravity) == p.dimension
+                   ? std::string()
+                   : fmt::format("{} components are given, but the {}-dimensional scene needs {}",
+                                 p.gravity.size(), p.dimension, p.dimension);
+      },
+      "gravity");
+  check_motion(s, p);
   s.check(
       [&] {
         return p.interface_data && p.analysis != SolidParameters::Analysis::thermal && !has_interface(p)

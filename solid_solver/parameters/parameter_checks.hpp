@@ -5,14 +5,17 @@
 
 namespace couplet::solid {
 
+/// Keys of the temperature: solved for, prescribed or received, and what follows from it.
+void declare_heat(config::Section& section, SolidParameters& parameters);
 /// Rules between the keys of a solid, each told at the key to change.
 void check_together(config::Section& section, SolidParameters& parameters);
 /// What finite strain cannot have.
 void check_finite_strain(config::Section& section, SolidParameters& parameters);
 /// What patches that move as rigid bodies cannot have.
 void check_rigid_patches(config::Section& section, SolidParameters& parameters);
-/// What the estimate of large strain cannot have.
+/// What buckling cannot have.
 void check_buckling(config::Section& section, SolidParameters& parameters);
+/// What the estimate of large strain cannot have.
 void check_large_strain_estimate(config::Section& section, SolidParameters& parameters);
 /// What an orthotropic material cannot have.
 void check_orthotropic(config::Section& section, SolidParameters& parameters);

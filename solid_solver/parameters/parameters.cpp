@@ -4,87 +4,12 @@
 #include <fmt/format.h>
 #include "common/io/surface_series.hpp"
 
-#include "common/fv/expression.hpp"
 #include "solid_solver/parameters/parameter_checks.hpp"
 
 namespace couplet::solid {
 namespace {
 
-bool takes_temperature(const SolidParameters& p) { return p.interface_data && p.interface_data->temperature; }
-
-void declare_heat(config::Section& s, SolidParameters& p) {
-  s.optional_section<HeatParameters>(
-      "heat", p.heat, [](config::Section& h, HeatParameters& v) { declare(h, v); },
-      "heat conduction; each step solves for the temperature before the displacement");
-  s.value("temperature", p.temperature)
-      .unit("K")
-      .plausible(70, 5000)
-      .doc("prescribed temperature, of x, y, z, t");
-  s.optional_section<ThermalExpansion>(
-      "thermal-expansion", p.expansion, [](config::Section& e, ThermalExpansion& v) { declare(e, v); },
-      "thermal strain; requires 'heat' or 'temperature', and 'expansion' of the material");
-  s.optional_section<InterfaceData>(
-      "interface", p.interface_data, [](config::Section& i, InterfaceData& v) { declare(i, v); },
-      "data that patches of type 'interface' receive from the coupler; absent: forces");
-  s.value("stiffness-tolerance", p.stiffness_tolerance)
-      .range(0, 0.1)
-      .doc(
-          "relative change of youngs-modulus-table and poissons-ratio-table at which the matrix is "
-          "reassembled");
-  s.value("thermoelastic-coupling", p.thermoelastic_coupling)
-      .doc("cooling by stretching: heat of the strain rate, thesis (2.27), lagged by one step");
-  s.check(
-      [&] {
-        return p.thermoelastic_coupling &&
-                       !(p.expansion && p.heat && p.heat->analysis == HeatParameters::Analysis::transient)
-                   ? "it requires a transient 'heat' and 'thermal-expansion'"
-                   : "";
-      },
-      "thermoelastic-coupling");
-  const auto needs = [&](std::optional<config::ExpressionText> HeatMaterial::*property, bool needed,
-                         const char* key, const char* by) {
-    s.check(
-        [&p, property, needed, key, by]() -> std::string {
-          for (const SolidMaterial& m : materials_of(p))
-            if (needed && !(m.heat.*property))
-              return fmt::format("'{}' of the material is missing; {} needs it", key, by);
-          return "";
-        },
-        p.materials.empty() ? "material" : "materials");
-  };
-  s.check([&] { return p.temperature ? fv::problem_of(*p.temperature) : ""; }, "temperature");
-  s.check(
-      [&] {
-        return takes_temperature(p) && (p.heat || p.temperature)
-                   ? "the temperature is received at the interface; remove 'heat' or 'temperature'"
-                   : "";
-      },
-      "interface");
-  s.check(
-      [&] { return p.heat && p.temperature ? "'heat' computes the temperature; remove one of the two" : ""; },
-      "temperature");
-  s.check(
-      [&] {
-        return p.expansion && !p.heat && !p.temperature && !takes_temperature(p)
-                   ? "thermal strain needs a temperature; add 'heat' or 'temperature'"
-                   : "";
-      },
-      "thermal-expansion");
-  s.check(
-      [&] {
-        return p.analysis == SolidParameters::Analysis::thermal && !p.heat ? "a thermal analysis needs 'heat'"
-                                                                           : "";
-      },
-      "analysis");
-  needs(&HeatMaterial::conductivity, p.heat.has_value(), "conductivity", "'heat'");
-  needs(&HeatMaterial::specific_heat, p.heat && p.heat->analysis == HeatParameters::Analysis::transient,
-        "specific-heat", "a transient 'heat'");
-  needs(&HeatMaterial::expansion, p.expansion.has_value(), "expansion", "'thermal-expansion'");
-}
-
-}  // namespace
-
-void declare(config::Section& s, SolidParameters& p) {
+void declare_scene(config::Section& s, SolidParameters& p) {
   using Analysis = SolidParameters::Analysis;
   using Plane = SolidParameters::Plane;
   s.value("mesh", p.mesh)
@@ -128,6 +53,9 @@ void declare(config::Section& s, SolidParameters& p) {
       .doc(
           "for dynamic finite strain with the trapezoidal rule: the work of the stress in a step equals the "
           "change of the strain energy, so energy and momenta are conserved");
+}
+
+void declare_materials(config::Section& s, SolidParameters& p) {
   const bool is_elastic = p.analysis != SolidParameters::Analysis::thermal;
   s.optional_section<bool>(
       "material", p.material_given,
@@ -144,6 +72,10 @@ void declare(config::Section& s, SolidParameters& p) {
                    : "give either 'material' (of the whole solid) or 'materials' (by zone of the mesh)";
       },
       "material");
+}
+
+/// What holds the solid and what acts on it.
+void declare_loads(config::Section& s, SolidParameters& p) {
   s.map<SolidBoundary>(
       "boundaries", p.boundaries, [&p](config::Section& b, SolidBoundary& v) { declare(b, v, p.dimension); },
       "patch", "one entry for each patch of the mesh");
@@ -162,6 +94,28 @@ void declare(config::Section& s, SolidParameters& p) {
       .unit("m/s")
       .plausible(1e-9, 1e4)
       .doc("initial velocity, one expression of x, y, z per component");
+}
+
+void declare_output(config::Section& s, SolidParameters& p) {
+  s.map<SolidProbe>(
+      "probes", p.probes, [](config::Section& q, SolidProbe& v) { declare(q, v); }, "probe",
+      "points whose displacement is written to probes.csv at each step");
+  s.section(
+      "output",
+      [&](config::Section& o) {
+        declare(o, p.output);
+        // Patches that conduct heat alone need no entry: SurfaceSeries looks at those.
+        if (!p.heat) o.check([&] { return io::wrong_surfaces(p.output.surfaces, p.boundaries); }, "surfaces");
+      },
+      "fields written at the output interval");
+}
+
+}  // namespace
+
+void declare(config::Section& s, SolidParameters& p) {
+  declare_scene(s, p);
+  declare_materials(s, p);
+  declare_loads(s, p);
   s.section(
       "time-scheme", [&](config::Section& t) { time::declare(t, p.time_scheme); },
       "time integration of a dynamic analysis");
@@ -176,17 +130,7 @@ void declare(config::Section& s, SolidParameters& p) {
   s.section(
       "solution-method", [&](config::Section& m) { declare(m, p.method); },
       "solution method for the equations of a step");
-  s.map<SolidProbe>(
-      "probes", p.probes, [](config::Section& q, SolidProbe& v) { declare(q, v); }, "probe",
-      "points whose displacement is written to probes.csv at each step");
-  s.section(
-      "output",
-      [&](config::Section& o) {
-        declare(o, p.output);
-        // Patches that conduct heat alone need no entry: SurfaceSeries looks at those.
-        if (!p.heat) o.check([&] { return io::wrong_surfaces(p.output.surfaces, p.boundaries); }, "surfaces");
-      },
-      "fields written at the output interval");
+  declare_output(s, p);
   check_together(s, p);
   check_finite_strain(s, p);
   check_orthotropic(s, p);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Holds the table of docs/architecture.md: who may include whom (among sub-folders: floors.py), the namespace of a folder (namespaces.py), how many files lie in a folder, which folder sees which third-party headers, an SPDX
-line in every source file, file lengths, one reader for each format (readers.py), member functions of a class, output of runs, the papers cited, links, and clang-format where it is installed.
+line in every source file, lengths of files, functions and classes (lengths.py), one reader for each format (readers.py), output of runs, the papers cited, links, and clang-format where it is installed.
 Usage: check_sources.py PROJECT_ROOT"""
 import pathlib
 import re
@@ -10,11 +10,10 @@ import subprocess
 import sys
 
 from floors import climbs, crowded
+from lengths import check_lengths
 from namespaces import check_namespaces
 from readers import check_readers
 
-LONGEST = 500
-MOST_MEMBERS = 40  # functions of one class: beyond it, the class does more than one thing
 PROGRAMS = ["solid_solver", "fluid_solver", "mesh_mover", "thermocline", "plate_modal", "coupler"]
 # Below which folders of common each folder of common stands.
 ALLOWED = {
@@ -111,44 +110,6 @@ def second_readers(path, text):
     return found
 
 
-def without_nested(text):
-    """`text` with each outermost {...} as {} and without <...>, comments and literals gone already."""
-    flat, depth = [], 0
-    for c in text:
-        depth -= c == "}"
-        if depth == 0:
-            flat.append(c)
-        depth += c == "{"
-    flat = "".join(flat).replace("<<", "").replace(">>=", "").replace("operator<", "operator").replace("->", "")
-    while True:
-        fewer = re.sub(r"<[^<>;{}]*>", "", flat)
-        if fewer == flat:
-            return flat
-        flat = fewer
-
-
-def members_of_classes(text):
-    """(name, line, member functions declared in the body) of each class and struct, nested ones apart."""
-    blank = lambda match: re.sub(r"[^\n]", " ", match.group())
-    text = re.sub(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'(?!\w)', blank, text, flags=re.S)
-    found = []
-    for match in re.finditer(r"\b(?:class|struct)\s+(?:\[\[\w+\]\]\s*)?([\w:]+)(?:\s+final)?\s*(?::[^:;{(][^;{(]*)?\{", text):
-        if re.search(r"\benum\s+$", text[:match.start()]):
-            continue
-        end, depth = match.end(), 1
-        while depth and end < len(text):
-            depth += {"{": 1, "}": -1}.get(text[end], 0)
-            end += 1
-        body = re.sub(r"\b(?:public|protected|private)\s*:", "", without_nested(text[match.end():end - 1]))
-        functions = 0
-        for statement in re.split(r";|\{\}", body):
-            head = re.split(r"(?<!operator)(?<!operator=)(?<!operator!)=", statement)[0]
-            skipped = re.match(r"\s*(?:using|typedef|friend|static_assert|template\s*friend)\b", head)
-            functions += not skipped and bool(re.search(r"(?:\w|operator\W{1,3})\s*\(", head))
-        found.append((match.group(1), text.count("\n", 0, match.start()) + 1, functions))
-    return found
-
-
 def check_text(path, text):
     """All that is wrong in one file; `path` is relative to the project."""
     trouble = []
@@ -157,8 +118,7 @@ def check_text(path, text):
         trouble.append(f"{path}: no SPDX line at the top")
     if path.suffix in (".cpp", ".hpp", ".py"):
         trouble += second_readers(path, text)
-    if len(lines) > LONGEST:
-        trouble.append(f"{path}: {len(lines)} lines, at most {LONGEST} are allowed")
+    trouble += check_lengths(path, text)
     if path.suffix in (".cpp", ".hpp"):
         trouble += check_namespaces(path.as_posix(), text)
         for number, line in enumerate(lines, 1):
@@ -166,10 +126,6 @@ def check_text(path, text):
             reason = match and wrong_include(path, match.group(1))
             if reason:
                 trouble.append(f"{path}:{number}: #include {match.group(1)}: {reason}")
-        for name, line, functions in members_of_classes(text):
-            if functions > MOST_MEMBERS:
-                trouble.append(f"{path}:{line}: {name} has {functions} member functions, at most {MOST_MEMBERS} are allowed: "
-                               "split it by what it does")
     return trouble
 
 

@@ -7,6 +7,7 @@ import sys
 
 from check_sources import check_findings, check_links, check_monitors, check_references, check_text, committed_output
 from floors import FLOORS, MOST_FILES, UPWARDS, crowded
+from lengths import LARGE_CLASSES, LONG_FILES, MOST_FOR_A_REASON
 from namespaces import EVERYBODYS, NAMESPACES
 from readers import READERS, check_readers
 
@@ -22,6 +23,11 @@ def class_of(n):
             "  double b_ = f(2) + g(3), c_{f(4)};\n", "  friend int f(A& a);\n", "  const char* t_ = \"int f(int x);\";\n",
             "  struct D { int f(); int g(); };\n", "  enum class E { a = sizeof(int), b };\n"]
     return "class A final : public B {\n public:\n" + "".join(kinds[i % len(kinds)] for i in range(n)) + "".join(none) + "};\n"
+
+
+def function_of(n):
+    """A function of n lines, within a namespace."""
+    return "namespace {\nint f(int x) {\n" + "  if (x > 0) { --x; }\n" * (n - 3) + "  return x;\n}\n}\n"
 
 
 WRONG = {
@@ -43,8 +49,11 @@ WRONG = {
     ("coupler/d.cpp", HEAD + "Unpacker in(bytes, 0);\n"): "a second reader",
     ("coupler/e.cpp", HEAD + "constexpr long mark = 0x434F4D4D;\n"): "a second reader",
     ("fluid_solver/e.cpp", HEAD + "MPI_Recv(at, n, MPI_BYTE, 0, 0, comm, MPI_STATUS_IGNORE);\n"): "a second reader",
-    ("common/base/a.cpp", HEAD + "\n" * 600): "601 lines",
-    ("common/base/a.hpp", HEAD + class_of(41)): "A has 41 member functions",
+    ("common/base/a.cpp", HEAD + "\n" * 300): "301 lines",
+    ("tests/unit/a.cpp", HEAD + "\n" * 500): "501 lines",
+    ("common/base/a.hpp", HEAD + class_of(26)): "A has 26 member functions",
+    ("plate_modal/structure.hpp", HEAD + class_of(41).replace("class A ", "class Structure ")): "Structure has 41 member functions",
+    ("coupler/f.cpp", HEAD + function_of(61)): "a function of 61 lines",
     ("coupler/a.hpp", HEAD + "namespace couplet {\nint a();\n}  // namespace couplet\n"): "stands in couplet::coupler",
     ("coupler/mapping/a.hpp", HEAD + "namespace couplet { struct A {}; }\n"): "stands in couplet::coupler",
     ("thermocline/bed/a.hpp", HEAD + "namespace couplet::fluid\n{\nclass A;\nint f(A&);\n}\n"): "stands in couplet::thermocline",
@@ -63,8 +72,11 @@ RIGHT = [
     ("coupler/a.cpp", HEAD + "namespace couplet {\nint f();\n}\n"),
     ("tests/unit/a.hpp", HEAD + "namespace couplet {\nint f();\n}\n"),
     ("common/base/types.hpp", HEAD + "namespace couplet {\nusing Index = int;\n}\n"),
-    ("common/base/a.hpp", HEAD + class_of(40)),
-    ("common/base/a.hpp", HEAD + class_of(40).replace("class A", "struct B {};\nstruct A")),
+    ("coupler/f.cpp", HEAD + function_of(60)),
+    ("tests/unit/a.cpp", HEAD + function_of(61) + "\n" * 400),
+    ("plate_modal/structure.hpp", HEAD + class_of(40).replace("class A ", "class Structure ")),
+    ("common/base/a.hpp", HEAD + class_of(25)),
+    ("common/base/a.hpp", HEAD + class_of(25).replace("class A", "struct B {};\nstruct A")),
 ]
 
 OUTPUT = ["body.csv", "configs/a/a.0f.vm.7.log", "configs/a/out/run.json", "configs/a/out-modal/a.h5", "configs/a/.checkpoints.lock", "configs/a/m.cache.msh"]
@@ -140,6 +152,9 @@ for text, wrong in SECOND_READERS.items():
         if len(found) != wrong * counts:
             print(f"readers: {path}: {text}: {wrong * counts} wrong, found {found}")
             failed += 1
+if len(LARGE_CLASSES) > 16 or len(LONG_FILES) > 1 or MOST_FOR_A_REASON > 40 or not all(len(reason) > 20 for reason in (*LARGE_CLASSES.values(), *LONG_FILES.values())):
+    print("lengths: no further exceptions, and each needs a reason")
+    failed += 1
 idle = check_readers([])[1]
 if len(idle) != len(READERS) or not all(len(reason) > 8 for reason in READERS.values()):
     print(f"readers: each entry needs a reason and a reader, found {idle}")

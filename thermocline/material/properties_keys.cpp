@@ -37,36 +37,38 @@ void declare_table(config::Section& s, const char* name, const char* unit, std::
   s.check([&] { return problem_of(temperature, values, true); }, name);
 }
 
+/// A fluid of constants and lists.
+void declare_custom(config::Section& s, FluidParameters& p) {
+  s.value("density", p.density)
+      .unit("kg/m^3")
+      .plausible(0.05, 25000)
+      .positive()
+      .required()
+      .doc("density, a constant");
+  s.value("specific-heat", p.specific_heat)
+      .unit("J/(kg K)")
+      .plausible(10, 1e5)
+      .positive()
+      .required()
+      .doc("a constant");
+  s.value("temperature", p.temperature)
+      .unit("K")
+      .plausible(70, 5000)
+      .required()
+      .doc("temperatures of the following lists");
+  declare_table(s, "conductivity", "W/(m K)", p.conductivity, p.temperature, "piecewise linear");
+  declare_table(s, "viscosity", "Pa s", p.viscosity, p.temperature, "piecewise linear");
+  s.value("lowest", p.lowest).unit("K").plausible(70, 5000).doc("freezing point: below it a warning");
+  s.value("highest", p.highest)
+      .unit("K")
+      .plausible(70, 1e4)
+      .doc("boiling or decomposition point: above it a warning");
+}
+
 }  // namespace
 
 void declare(config::Section& section, FluidParameters& p) {
   using Type = FluidParameters::Type;
-  const auto custom = [&p](config::Section& s) {
-    s.value("density", p.density)
-        .unit("kg/m^3")
-        .plausible(0.05, 25000)
-        .positive()
-        .required()
-        .doc("density, a constant");
-    s.value("specific-heat", p.specific_heat)
-        .unit("J/(kg K)")
-        .plausible(10, 1e5)
-        .positive()
-        .required()
-        .doc("a constant");
-    s.value("temperature", p.temperature)
-        .unit("K")
-        .plausible(70, 5000)
-        .required()
-        .doc("temperatures of the following lists");
-    declare_table(s, "conductivity", "W/(m K)", p.conductivity, p.temperature, "piecewise linear");
-    declare_table(s, "viscosity", "Pa s", p.viscosity, p.temperature, "piecewise linear");
-    s.value("lowest", p.lowest).unit("K").plausible(70, 5000).doc("freezing point: below it a warning");
-    s.value("highest", p.highest)
-        .unit("K")
-        .plausible(70, 1e4)
-        .doc("boiling or decomposition point: above it a warning");
-  };
   const auto known = [&p](config::Section& s) {
     s.value("real-density", p.real_density)
         .doc(
@@ -96,7 +98,7 @@ void declare(config::Section& section, FluidParameters& p) {
                         {{"solar-salt", Type::solar_salt, known},
                          {"caloria-ht43", Type::caloria_ht43, known},
                          {"air", Type::air, gas},
-                         {"custom", Type::custom, custom}},
+                         {"custom", Type::custom, [&p](config::Section& s) { declare_custom(s, p); }}},
                         "60 % NaNO3 + 40 % KNO3, the oil of Solar One, dry air (with bed.advection: "
                         "implicit), or the values given here",
                         true);

@@ -12,75 +12,77 @@
 
 namespace couplet::thermocline {
 
+namespace {
+
+void declare_row(config::Section& s, ScheduleRow& r) {
+  s.value("at", r.at).unit("s").plausible(1e-3, 1e11).not_negative().required().doc("start time of the row");
+  s.value("mass-flow", r.mass_flow)
+      .unit("kg/s")
+      .plausible(1e-6, 1e5)
+      .required()
+      .doc("upward (discharge) above 0, downward (charge) below 0");
+  s.value("inlet-temperature", r.inlet_temperature)
+      .unit("K")
+      .plausible(70, 5000)
+      .positive()
+      .doc("temperature of the inflow");
+  s.value("stop-above", r.stop_above)
+      .unit("K")
+      .plausible(70, 5000)
+      .doc("the flow stops when the outlet is hotter");
+  s.value("stop-below", r.stop_below)
+      .unit("K")
+      .plausible(70, 5000)
+      .doc("the flow stops when the outlet is colder");
+  s.check(
+      [&r] {
+        return r.mass_flow == 0 || r.inlet_temperature > 0
+                   ? ""
+                   : "is missing; specify the temperature of this inflow";
+      },
+      "inlet-temperature");
+}
+
+void declare_schedule(config::Section& s, FlowParameters& p) {
+  s.list<ScheduleRow>("rows", p.rows, declare_row,
+                      "each applies until the next one; at rest before the first");
+  s.value("file", p.file)
+      .doc(
+          "instead of rows: a CSV with the columns time [h], mass-flow [kg/s], inlet-temperature [degC] "
+          "and, optionally, stop-above and stop-below, each with its unit; may be compressed (.gz)");
+  s.optional_section<ScheduleRepeat>(
+      "repeat", p.repeat,
+      [](config::Section& q, ScheduleRepeat& r) {
+        q.value("from", r.from)
+            .unit("s")
+            .plausible(1e-3, 1e11)
+            .not_negative()
+            .required()
+            .doc("rows at or after this time ...");
+        q.value("every", r.every)
+            .unit("s")
+            .plausible(1, 1e9)
+            .positive()
+            .required()
+            .doc("... repeat with this period");
+      },
+      "the schedule repeats forever");
+  s.check(
+      [&p]() -> std::string {
+        if (!p.file.empty())
+          return p.rows.empty() ? "" : "are given together with a 'file' of rows; remove one of them";
+        return problem_of_rows(p);
+      },
+      "rows");
+}
+
+}  // namespace
+
 void declare(config::Section& section, FlowParameters& p) {
   using Type = FlowParameters::Type;
-  const auto row = [](config::Section& s, ScheduleRow& r) {
-    s.value("at", r.at)
-        .unit("s")
-        .plausible(1e-3, 1e11)
-        .not_negative()
-        .required()
-        .doc("start time of the row");
-    s.value("mass-flow", r.mass_flow)
-        .unit("kg/s")
-        .plausible(1e-6, 1e5)
-        .required()
-        .doc("upward (discharge) above 0, downward (charge) below 0");
-    s.value("inlet-temperature", r.inlet_temperature)
-        .unit("K")
-        .plausible(70, 5000)
-        .positive()
-        .doc("temperature of the inflow");
-    s.value("stop-above", r.stop_above)
-        .unit("K")
-        .plausible(70, 5000)
-        .doc("the flow stops when the outlet is hotter");
-    s.value("stop-below", r.stop_below)
-        .unit("K")
-        .plausible(70, 5000)
-        .doc("the flow stops when the outlet is colder");
-    s.check(
-        [&r] {
-          return r.mass_flow == 0 || r.inlet_temperature > 0
-                     ? ""
-                     : "is missing; specify the temperature of this inflow";
-        },
-        "inlet-temperature");
-  };
-  const auto schedule = [&p, row](config::Section& s) {
-    s.list<ScheduleRow>("rows", p.rows, row, "each applies until the next one; at rest before the first");
-    s.value("file", p.file)
-        .doc(
-            "instead of rows: a CSV with the columns time [h], mass-flow [kg/s], inlet-temperature [degC] "
-            "and, optionally, stop-above and stop-below, each with its unit; may be compressed (.gz)");
-    s.optional_section<ScheduleRepeat>(
-        "repeat", p.repeat,
-        [](config::Section& q, ScheduleRepeat& r) {
-          q.value("from", r.from)
-              .unit("s")
-              .plausible(1e-3, 1e11)
-              .not_negative()
-              .required()
-              .doc("rows at or after this time ...");
-          q.value("every", r.every)
-              .unit("s")
-              .plausible(1, 1e9)
-              .positive()
-              .required()
-              .doc("... repeat with this period");
-        },
-        "the schedule repeats forever");
-    s.check(
-        [&p]() -> std::string {
-          if (!p.file.empty())
-            return p.rows.empty() ? "" : "are given together with a 'file' of rows; remove one of them";
-          return problem_of_rows(p);
-        },
-        "rows");
-  };
   section.variant<Type>("type", p.type,
                         {{"rest", Type::rest, [](config::Section&) {}},
-                         {"schedule", Type::schedule, schedule},
+                         {"schedule", Type::schedule, [&p](config::Section& s) { declare_schedule(s, p); }},
                          {"plant", Type::plant, [&p](config::Section& s) { declare(s, p.plant); }}},
                         "flow through the tank");
 }

@@ -22,6 +22,57 @@ std::string problem_of_weekday(const PlantParameters& p) {
              : "";
 }
 
+/// When charging and discharging start and stop.
+void declare_control(config::Section& s, PlantParameters& p) {
+  s.value("cut-off", p.cut_off)
+      .unit("K difference")
+      .plausible(0.1, 500)
+      .positive()
+      .doc(
+          "charging stops when the inflow of the solar field (or the tank outlet, see cut-off-at) is this "
+          "much too warm, discharging when the inflow of the power block is this much too cold");
+  s.choice("cut-off-at", p.cut_off_at,
+           {{"mixed", PlantParameters::CutOffAt::mixed},
+            {"outlet", PlantParameters::CutOffAt::outlet},
+            {"field", PlantParameters::CutOffAt::field},
+            {"block", PlantParameters::CutOffAt::block}})
+      .doc(
+          "mixed: the cut-off applies to the inflow of field or block, where the tank's flow has been mixed "
+          "with that of the other; outlet: to the tank outlet; field: mixed for charging, outlet for "
+          "discharging; block: the other way round");
+  s.value("restart", p.restart)
+      .unit("K difference")
+      .plausible(0.1, 500)
+      .positive()
+      .doc(
+          "charging starts only if the bottom of the tank is at most this much too warm, discharging only if "
+          "its top is at "
+          "most this much too cold");
+}
+
+void check_plant(config::Section& s, const PlantParameters& p) {
+  s.check([&p] { return problem_of_day(p.load, true); }, "load");
+  s.check([&p] { return p.tariff.empty() ? "" : problem_of_day(p.tariff, false); }, "tariff");
+  s.check([&p] { return problem_of_weekday(p); }, "first-weekday");
+  s.check(
+      [&p] {
+        const bool priced = std::any_of(p.calendar.begin(), p.calendar.end(),
+                                        [](const CalendarRule& r) { return !r.tariff.empty(); });
+        return priced && p.tariff.empty() ? "is needed for the hours without a price in any rule of "
+                                            "'calendar'"
+                                          : "";
+      },
+      "tariff");
+  s.check([&p] { return p.hot > p.cold ? "" : "'hot' must be above 'cold'."; }, "hot");
+  s.check(
+      [&p] {
+        return p.cut_off < p.hot - p.cold ? ""
+                                          : "must be smaller than the difference between 'hot' and "
+                                            "'cold'.";
+      },
+      "cut-off");
+}
+
 }  // namespace
 
 void declare(config::Section& s, PlantParameters& p) {
@@ -55,30 +106,7 @@ void declare(config::Section& s, PlantParameters& p) {
       .plausible(70, 5000)
       .required()
       .doc("outlet temperature of the power block and, by design, of the discharged tank");
-  s.value("cut-off", p.cut_off)
-      .unit("K difference")
-      .plausible(0.1, 500)
-      .positive()
-      .doc(
-          "charging stops when the inflow of the solar field (or the tank outlet, see cut-off-at) is this "
-          "much too warm, discharging when the inflow of the power block is this much too cold");
-  s.choice("cut-off-at", p.cut_off_at,
-           {{"mixed", PlantParameters::CutOffAt::mixed},
-            {"outlet", PlantParameters::CutOffAt::outlet},
-            {"field", PlantParameters::CutOffAt::field},
-            {"block", PlantParameters::CutOffAt::block}})
-      .doc(
-          "mixed: the cut-off applies to the inflow of field or block, where the tank's flow has been mixed "
-          "with that of the other; outlet: to the tank outlet; field: mixed for charging, outlet for "
-          "discharging; block: the other way round");
-  s.value("restart", p.restart)
-      .unit("K difference")
-      .plausible(0.1, 500)
-      .positive()
-      .doc(
-          "charging starts only if the bottom of the tank is at most this much too warm, discharging only if "
-          "its top is at "
-          "most this much too cold");
+  declare_control(s, p);
   s.value("load", p.load)
       .doc("requested share of electric-power, one value or 24 for the hours of the day from 00:00");
   s.value("tariff", p.tariff)
@@ -88,26 +116,7 @@ void declare(config::Section& s, PlantParameters& p) {
   s.list<CalendarRule>(
       "calendar", p.calendar, [](config::Section& q, CalendarRule& r) { declare(q, r); },
       "days with another load or tariff; the first matching rule applies");
-  s.check([&] { return problem_of_day(p.load, true); }, "load");
-  s.check([&] { return p.tariff.empty() ? "" : problem_of_day(p.tariff, false); }, "tariff");
-  s.check([&] { return problem_of_weekday(p); }, "first-weekday");
-  s.check(
-      [&] {
-        const bool priced = std::any_of(p.calendar.begin(), p.calendar.end(),
-                                        [](const CalendarRule& r) { return !r.tariff.empty(); });
-        return priced && p.tariff.empty() ? "is needed for the hours without a price in any rule of "
-                                            "'calendar'"
-                                          : "";
-      },
-      "tariff");
-  s.check([&] { return p.hot > p.cold ? "" : "'hot' must be above 'cold'."; }, "hot");
-  s.check(
-      [&] {
-        return p.cut_off < p.hot - p.cold ? ""
-                                          : "must be smaller than the difference between 'hot' and "
-                                            "'cold'.";
-      },
-      "cut-off");
+  check_plant(s, p);
 }
 
 Plant::Plant(const PlantParameters& parameters, double specific_heat)

@@ -68,19 +68,14 @@ CommandLine::Strict strictness(const std::string& word) {
   throw CLI::ValidationError("--strict=" + word + ": use --strict or --strict=effects.");
 }
 
-}  // namespace
-
-std::string version_text() { return fmt::format("couplet {}", version); }
-
-ParsedCommandLine parse_command_line(int argc, const char* const* argv, const ProgramText& program) {
-  ParsedCommandLine result;
-  CommandLine& line = result.command_line;
+/// What the options set that the command line does not keep.
+struct Flags {
   bool check = false, docs = false, schema = false, print_config = false, explain = false, effects = false,
        verbose = false, quiet = false;
+  std::string strict;
+};
 
-  CLI::App app(program.description, program.name);
-  app.footer([&] { return footer(program); });
-  app.set_version_flag("--version", version_text());
+void add_options(CLI::App& app, CommandLine& line, Flags& flags) {
   app.add_option("case", line.case_file, "YAML file of the case")->type_name("case.yaml");
   app.add_option("--participant", line.participant,
                  "name under 'participants' in the YAML file; required if several participants use this "
@@ -96,9 +91,8 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv, const Pr
                "continue although keys that change the solution differ from those of the checkpoint");
   app.add_flag("--allow-commands", line.allow_commands,
                "allow a .geo to run commands and write files, with your permissions");
-  std::string strict;
   app.add_flag(
-      "--strict{answer}", strict,
+      "--strict{answer}", flags.strict,
       "exit with code 1 if the run warns about its own result; --strict=effects: also if it warns about "
       "neglected effects");
   app.add_option(
@@ -106,31 +100,59 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv, const Pr
          "accept a finding by its id (in brackets at the end of its line; docs/findings.md); repeatable")
       ->type_name("ID")
       ->allow_extra_args(false);
-  app.add_flag("--check", check, "only check the configuration; exit code 0 or 2");
-  app.add_flag("--docs", docs, "print the reference of all keys as Markdown");
-  app.add_flag("--schema", schema, "print the JSON schema of all keys, for editors");
-  app.add_flag("--print-config", print_config, "print all values in effect as YAML");
-  app.add_flag("--explain", explain,
+  app.add_flag("--check", flags.check, "only check the configuration; exit code 0 or 2");
+  app.add_flag("--docs", flags.docs, "print the reference of all keys as Markdown");
+  app.add_flag("--schema", flags.schema, "print the JSON schema of all keys, for editors");
+  app.add_flag("--print-config", flags.print_config, "print all values in effect as YAML");
+  app.add_flag("--explain", flags.explain,
                "print the effects of the scene, their costs and the launch line; runs nothing");
-  app.add_flag("--effects", effects, "print the list of all effects as Markdown");
-  app.add_flag("-v,--verbose", verbose, "every rank logs more");
-  app.add_flag("-q,--quiet", quiet, "log warnings and errors only");
+  app.add_flag("--effects", flags.effects, "print the list of all effects as Markdown");
+  app.add_flag("-v,--verbose", flags.verbose, "every rank logs more");
+  app.add_flag("-q,--quiet", flags.quiet, "log warnings and errors only");
+}
+
+void take_task(const Flags& flags, CommandLine& line) {
+  using Task = CommandLine::Task;
+  if (flags.check) line.task = Task::check;
+  if (flags.docs) line.task = Task::docs;
+  if (flags.schema) line.task = Task::schema;
+  if (flags.print_config) line.task = Task::print_config;
+  if (flags.explain) line.task = Task::explain;
+  if (flags.effects) line.task = Task::effects;
+  line.verbosity = flags.verbose ? log::Verbosity::verbose
+                   : flags.quiet ? log::Verbosity::quiet
+                                 : log::Verbosity::normal;
+}
+
+}  // namespace
+
+std::string version_text() { return fmt::format("couplet {}", version); }
+
+ParsedCommandLine parse_command_line(int argc, const char* const* argv, const ProgramText& program) {
+  ParsedCommandLine result;
+  CommandLine& line = result.command_line;
+  Flags flags;
+
+  CLI::App app(program.description, program.name);
+  app.footer([&] { return footer(program); });
+  app.set_version_flag("--version", version_text());
+  add_options(app, line, flags);
   // What is left over is told in our words, with the option that was meant.
   app.allow_extras();
   try {
     app.parse(argc, argv);
     if (const std::vector<std::string> rest = app.remaining(); !rest.empty())
       throw CLI::ExtrasError(explain_extra(app, rest.front()), CLI::ExitCodes::ExtrasError);
-    if (check + docs + schema + print_config + explain + effects > 1)
+    if (flags.check + flags.docs + flags.schema + flags.print_config + flags.explain + flags.effects > 1)
       throw CLI::ExcludesError(
           "Use only one of --check, --docs, --schema, --print-config, --explain and --effects.",
           CLI::ExitCodes::ExcludesError);
-    if (verbose && quiet)
+    if (flags.verbose && flags.quiet)
       throw CLI::ExcludesError("Use either --verbose or --quiet, not both.", CLI::ExitCodes::ExcludesError);
-    line.strict = strictness(strict);
+    line.strict = strictness(flags.strict);
     if (const std::string problem = log::unknown_ids(line.accept); !problem.empty())
       throw CLI::ValidationError("--accept: " + problem);
-    if (line.case_file.empty() && !docs && !schema && !effects)
+    if (line.case_file.empty() && !flags.docs && !flags.schema && !flags.effects)
       throw CLI::ValidationError("Give the YAML file of the case, for example: " + program.name +
                                  " case.yaml");
   } catch (const CLI::ParseError& error) {
@@ -139,14 +161,7 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv, const Pr
     result.output = out.str() + err.str();
     return result;
   }
-  using Task = CommandLine::Task;
-  if (check) line.task = Task::check;
-  if (docs) line.task = Task::docs;
-  if (schema) line.task = Task::schema;
-  if (print_config) line.task = Task::print_config;
-  if (explain) line.task = Task::explain;
-  if (effects) line.task = Task::effects;
-  line.verbosity = verbose ? log::Verbosity::verbose : quiet ? log::Verbosity::quiet : log::Verbosity::normal;
+  take_task(flags, line);
   return result;
 }
 

@@ -8,6 +8,38 @@
 
 namespace couplet::app {
 
+namespace {
+
+void declare_files(config::Section& section, SimulationParameters& p) {
+  section.section(
+      "output",
+      [&](config::Section& s) {
+        s.value("folder", p.output_folder)
+            .doc("folder in which each participant creates its own; relative to the folder of the YAML file");
+        s.value("interval", p.output_interval)
+            .unit("s")
+            .plausible(1e-12, 1e10)
+            .not_negative()
+            .doc("time between field outputs; 0: only start and end");
+        s.value("steps", p.output_steps)
+            .doc("steps.csv: step, iterations, error, energy and wall time of each accepted step");
+      },
+      "fields for visualisation");
+  section.section(
+      "checkpoint",
+      [&](config::Section& s) {
+        s.value("interval", p.checkpoint_interval)
+            .unit("s")
+            .plausible(1e-12, 1e10)
+            .not_negative()
+            .doc("time between checkpoints; 0: only at the end of the run");
+        s.value("keep", p.checkpoints_kept).range(1, 1000000).doc("number of latest checkpoints to keep");
+      },
+      "files for --restart");
+}
+
+}  // namespace
+
 void declare(config::Section& section, SimulationParameters& p) {
   section.value("name", p.name).doc("name of the case, shown at the start of a run");
   section.value("end-time", p.end_time)
@@ -48,31 +80,7 @@ void declare(config::Section& section, SimulationParameters& p) {
           "the job ends and names the culprit when one of its processes shows no sign of life for this long "
           "(an iteration of a solver, a phase of a step, or processor time during meshing, factorisation "
           "and file output); 0: never");
-  section.section(
-      "output",
-      [&](config::Section& s) {
-        s.value("folder", p.output_folder)
-            .doc("folder in which each participant creates its own; relative to the folder of the YAML file");
-        s.value("interval", p.output_interval)
-            .unit("s")
-            .plausible(1e-12, 1e10)
-            .not_negative()
-            .doc("time between field outputs; 0: only start and end");
-        s.value("steps", p.output_steps)
-            .doc("steps.csv: step, iterations, error, energy and wall time of each accepted step");
-      },
-      "fields for visualisation");
-  section.section(
-      "checkpoint",
-      [&](config::Section& s) {
-        s.value("interval", p.checkpoint_interval)
-            .unit("s")
-            .plausible(1e-12, 1e10)
-            .not_negative()
-            .doc("time between checkpoints; 0: only at the end of the run");
-        s.value("keep", p.checkpoints_kept).range(1, 1000000).doc("number of latest checkpoints to keep");
-      },
-      "files for --restart");
+  declare_files(section, p);
   section.check(
       [&]() -> std::string {
         if (p.time_step > p.end_time) return "the time step must not be longer than the run ('end-time')";

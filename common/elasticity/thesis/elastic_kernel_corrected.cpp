@@ -5,69 +5,12 @@
 #include <algorithm>
 #include <limits>
 
-#include "common/elasticity/elastic_nodes.hpp"
-#include "common/elasticity/elastic_rows.hpp"
-#include "common/elasticity/elastic_vertices.hpp"
 #include "common/elasticity/processor_clones.hpp"
-#include "common/elasticity/thesis/elastic_corrected_face.hpp"
-#include "common/elasticity/thesis/elastic_corrections.hpp"
+#include "common/elasticity/thesis/elastic_corrected_kernel.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::elastic {
-namespace {
-
-using namespace corrected;
-
-template <int D>
-class CorrectedKernel final : public ElasticKernel::Implementation {
- public:
-  CorrectedKernel(const mesh::Mesh& mesh, const ElasticOperator& rows);
-
-  void apply(std::span<const double> unknowns, std::span<const double> known,
-             std::span<double> result) override;
-  void face_gradients(std::span<const double> unknowns, std::span<const double> known,
-                      const ElasticKernel::TakeGradient& take, Index first, Index end) override;
-  void point_values(std::span<const double> unknowns, std::span<const double> known,
-                    std::span<double> points) override;
-
-  [[gnu::always_inline]] inline void find_cell_gradients();
-  [[gnu::always_inline]] inline void find_boundary_gradients();
-  [[gnu::always_inline]] inline void find_vertices(std::span<const Index> points);
-  [[gnu::always_inline]] inline void collect_forces(std::span<const double> known, std::span<double> result);
-
- private:
-  void prepare(std::span<const double> unknowns, std::span<const double> known);
-  void plain_vertices();
-  void mirror_vertex_gradients();
-  double* cell(Index node) { return records_.data() + std::size_t(node) * elastic::corrected::record<D>; }
-  double* vertex(Index point) { return points_.data() + std::size_t(point) * elastic::corrected::record<D>; }
-  [[gnu::always_inline]] inline elastic::corrected::Surface<D> around(Index f);
-  [[gnu::always_inline]] inline elastic::lanes::Lane<D> inner(Index f,
-                                                              const elastic::corrected::Rows<D>& grad);
-  [[gnu::always_inline]] inline elastic::lanes::Lane<D> outer(Index f,
-                                                              const elastic::corrected::Rows<D>& grad);
-  [[gnu::always_inline]] inline elastic::lanes::Lane<D> at_symmetry(Index f,
-                                                                    const elastic::corrected::Rows<D>& grad);
-  template <class Take>
-  [[gnu::always_inline]] inline void set_record(Index node, const Vec3& place, const Take& row);
-
-  const mesh::Mesh& mesh_;
-  const mesh::Geometry& geometry_;
-  const ElasticOperator& rows_;
-  ElasticNodes<D> nodes_;
-  ElasticRows boundary_;
-  ElasticVertices vertices_;
-  CellGradients gradients_;
-  std::vector<Index> open_points_, open_faces_;  // of traction faces; faces include the ghosts
-  std::vector<Index> plain_points_;              // whose value takes nothing from the gradients
-  std::vector<MirrorVertex> mirrors_;
-  FaceLames lame_;
-  std::vector<elastic::corrected::CorrectedFace> faces_;
-  Vec3 origin_ = Vec3::Zero();
-  // q = u - 1/2 x . G and G of the nodes; u and G of the vertices: sum w (u_i + 1/2 r_i . G_i) is then
-  // sum w q_i + 1/2 x_V . sum w G_i.
-  std::vector<double> records_, points_;
-};
+namespace corrected {
 
 template <int D>
 CorrectedKernel<D>::CorrectedKernel(const mesh::Mesh& mesh, const ElasticOperator& rows)
@@ -81,12 +24,11 @@ CorrectedKernel<D>::CorrectedKernel(const mesh::Mesh& mesh, const ElasticOperato
       plain_points_(plain_points(mesh, rows, vertices_.free)),
       mirrors_(mirror_vertices(mesh, rows, vertices_.free)),
       lame_(mesh, rows),
-      records_(elastic::corrected::record_space<D>(mesh.cells.n_local() + mesh.boundary.n_local()), 0.0),
-      points_(elastic::corrected::record_space<D>(mesh.points.n_local()), 0.0) {
+      records_(record_space<D>(mesh.cells.n_local() + mesh.boundary.n_local()), 0.0),
+      points_(record_space<D>(mesh.points.n_local()), 0.0) {
   const mesh::Geometry& geometry = rows.geometry();
   faces_.reserve(n_faces_with_force(mesh));
-  for (Index f = 0; f < n_faces_with_force(mesh); ++f)
-    faces_.push_back(elastic::corrected::make_face(mesh, geometry, f));
+  for (Index f = 0; f < n_faces_with_force(mesh); ++f) faces_.push_back(make_face(mesh, geometry, f));
   if constexpr (D == 3) {
     const std::vector<std::uint32_t> kinds = edge_kinds(mesh, rows);
     for (std::size_t f = 0; f < kinds.size(); ++f) faces_[f].edges = kinds[f];
@@ -107,194 +49,74 @@ CorrectedKernel<D>::CorrectedKernel(const mesh::Mesh& mesh, const ElasticOperato
   }
 }
 
-/// Gradient rows and q of a node at `place`.
-template <int D>
-template <class Take>
-inline void CorrectedKernel<D>::set_record(Index node, const Vec3& place, const Take& row) {
-  elastic::lanes::Lane<D> q = elastic::corrected::load<D>(nodes_[node]);
-  elastic::corrected::Rows<D> gradient;
-  for (int i = 0; i < D; ++i) {
-    gradient.row[i] = row(i);
-    q -= 0.5 * (place[i] - origin_[i]) * gradient.row[i];
-  }
-  elastic::corrected::store_record<D>(cell(node), q, gradient);
-}
-
-template <int D>
-inline void CorrectedKernel<D>::find_cell_gradients() {
-  const Index* offset = gradients_.offset.data();
-  const Index* node = gradients_.node.data();
-  const float* weight = gradients_.weight.data();
-  const Vec3* centre = geometry_.cell_centre.data();
-  const Index n_cells = mesh_.cells.n_local();
-  const Vec3* outside = geometry_.face_centre.data() + mesh_.n_interior;
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    const elastic::lanes::Lane<D> here = elastic::corrected::load<D>(nodes_[c]);
-    elastic::corrected::Rows<D> sum;
-    for (Index i = offset[c]; i < offset[c + 1]; ++i) {
-      const elastic::lanes::Lane<D> difference =
-          weight[i] * (elastic::corrected::load<D>(nodes_[node[i]]) - here);
-      const Vec3& there = node[i] < n_cells ? centre[node[i]] : outside[node[i] - n_cells];
-      for (int a = 0; a < D; ++a) sum.row[a] += (there[a] - centre[c][a]) * difference;
-    }
-    const auto& m = gradients_.inverse[c];
-    elastic::corrected::Rows<D> g;
-    if constexpr (D == 2) {
-      g.row[0] = m[0] * sum.row[0] + m[1] * sum.row[1];
-      g.row[1] = m[1] * sum.row[0] + m[3] * sum.row[1];
-    } else {
-      g.row[0] = m[0] * sum.row[0] + m[1] * sum.row[1] + m[2] * sum.row[2];
-      g.row[1] = m[1] * sum.row[0] + m[3] * sum.row[1] + m[4] * sum.row[2];
-      g.row[2] = m[2] * sum.row[0] + m[4] * sum.row[1] + m[5] * sum.row[2];
-    }
-    set_record(
-        c, centre[c], [&](int a) __attribute__((always_inline)) { return g.row[a]; });
-  }
-  for (const auto& mirror : gradients_.mirrors) {
-    double* here = cell(mirror.cell);
-    const elastic::lanes::Lane<D> u = elastic::corrected::load<D>(nodes_[mirror.cell]);
-    double normal = 0, reach = 0;
-    for (int a = 0; a < D; ++a) {
-      normal += mirror.normal[a] * u[a];
-      reach += mirror.weight[a] * (geometry_.cell_centre[mirror.cell][a] - origin_[a]);
-    }
-    for (int b = 0; b < D; ++b) {
-      const double difference = -2 * normal * mirror.normal[b];
-      here[b] -= 0.5 * reach * difference;
-      for (int a = 0; a < D; ++a) here[(a + 1) * D + b] += mirror.weight[a] * difference;
-    }
-  }
-}
-
-template <int D>
-inline void CorrectedKernel<D>::find_vertices(std::span<const Index> points) {
-  for (const Index v : points) {
-    const auto index = rows_.vertices().nodes(v);
-    const auto weight = rows_.vertices().weights(v);
-    elastic::lanes::Lane<D> u = {};
-    elastic::corrected::Rows<D> g;
-    for (std::size_t i = 0; i < index.size(); ++i) {
-      const double* node = cell(index[i]);
-      const double w = weight[i];
-      u += w * elastic::corrected::load<D>(node);
-      for (int a = 0; a < D; ++a) g.row[a] += w * elastic::corrected::row_of<D>(node, a);
-    }
-    const Vec3& x = geometry_.points[v];
-    for (int a = 0; a < D; ++a) u += 0.5 * (x[a] - origin_[a]) * g.row[a];
-    elastic::corrected::store_record<D>(vertex(v), u, g);
-  }
-}
-
-// u = sum w u_i, exact for linear fields.
-template <int D>
-void CorrectedKernel<D>::plain_vertices() {
-  for (const Index v : plain_points_) {
-    const auto index = rows_.vertices().nodes(v);
-    const auto weight = rows_.vertices().weights(v);
-    elastic::lanes::Lane<D> u = {};
-    for (std::size_t i = 0; i < index.size(); ++i)
-      u += weight[i] * elastic::corrected::load<D>(nodes_[index[i]]);
-    lanes::store_components<D>(vertex(v), u);
-  }
-}
-
-// On a symmetry plane: the mean of the gradient and its mirror image, G - NG -
-// GN + 2 NGN with N = n n^T.
-template <int D>
-void CorrectedKernel<D>::mirror_vertex_gradients() {
-  for (const MirrorVertex& mirror : mirrors_) {
-    double* here = vertex(mirror.point);
-    for (const Vec3& normal : mirror.normals) {
-      const Vec<D> n = normal.head<D>();
-      Tensor<D> g;
-      for (int a = 0; a < D; ++a)
-        for (int b = 0; b < D; ++b) g(a, b) = here[(a + 1) * D + b];
-      const Vec<D> right = g * n, left = g.transpose() * n;
-      g += n * (2 * n.dot(right) * n - left).transpose() - right * n.transpose();
-      for (int a = 0; a < D; ++a)
-        for (int b = 0; b < D; ++b) here[(a + 1) * D + b] = g(a, b);
-    }
-  }
-}
-
 // The middle value lies L^2/8 u'' below the trapezoid, the mean L^2/12 u''.
 template <int D>
-inline elastic::corrected::Surface<D> CorrectedKernel<D>::around(Index f) {
-  const elastic::corrected::CorrectedFace& face = faces_[f];
+inline Surface<D> CorrectedKernel<D>::around(Index f) {
+  const CorrectedFace& face = faces_[f];
   const auto corners = mesh_.face_points[f];
-  const auto value = [&](int e, const elastic::lanes::Lane<D>& edge) __attribute__((always_inline)) {
+  const auto value = [&](int e, const Lane<D>& edge) __attribute__((always_inline)) {
     const double* first = vertex(corners[e]);
     if constexpr (D == 2) {
-      return elastic::corrected::load<D>(first);
+      return load<D>(first);
     } else {
       constexpr double below[]{0, 1.0 / 8, 1.0 / 12};
       const double* second = vertex(corners[e + 1 < std::ssize(corners) ? e + 1 : 0]);
-      elastic::lanes::Lane<D> here =
-          0.5 * (elastic::corrected::load<D>(first) + elastic::corrected::load<D>(second));
-      const elastic::lanes::Lane<D> part = below[(face.edges >> (2 * e)) & 3U] * edge;
-      for (int a = 0; a < D; ++a)
-        here -=
-            part[a] * (elastic::corrected::row_of<D>(second, a) - elastic::corrected::row_of<D>(first, a));
+      Lane<D> here = 0.5 * (load<D>(first) + load<D>(second));
+      const Lane<D> part = below[(face.edges >> (2 * e)) & 3U] * edge;
+      for (int a = 0; a < D; ++a) here -= part[a] * (row_of<D>(second, a) - row_of<D>(first, a));
       return here;
     }
   };
-  return elastic::corrected::surface<D>(face, corners, geometry_.points.data(), value);
+  return surface<D>(face, corners, geometry_.points.data(), value);
 }
 
 template <int D>
-inline elastic::lanes::Lane<D> CorrectedKernel<D>::inner(Index f, const elastic::corrected::Rows<D>& grad) {
-  const elastic::corrected::CorrectedFace& face = faces_[f];
+inline Lane<D> CorrectedKernel<D>::inner(Index f, const Rows<D>& grad) {
+  const CorrectedFace& face = faces_[f];
   const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
   const Vec3 &from = geometry_.cell_centre[p], &to = geometry_.cell_centre[n];
-  elastic::lanes::Lane<D> along =
-      elastic::corrected::load<D>(nodes_[n]) - elastic::corrected::load<D>(nodes_[p]);
+  Lane<D> along = load<D>(nodes_[n]) - load<D>(nodes_[p]);
   if (face.curved != 0) {
     const double *here = cell(p), *there = cell(n);
     const Vec3& centre = geometry_.face_centre[f];
     for (int i = 0; i < D; ++i)
-      along += (centre[i] - 0.5 * (from[i] + to[i])) *
-               (elastic::corrected::row_of<D>(there, i) - elastic::corrected::row_of<D>(here, i));
+      along += (centre[i] - 0.5 * (from[i] + to[i])) * (row_of<D>(there, i) - row_of<D>(here, i));
   }
-  return elastic::corrected::normal_derivative<D>(face, to - from, along, grad);
+  return normal_derivative<D>(face, to - from, along, grad);
 }
 
 // On the boundary d . grad u = 2 (u_B - u_P) - d . G_P.
 template <int D>
-inline elastic::lanes::Lane<D> CorrectedKernel<D>::outer(Index f, const elastic::corrected::Rows<D>& grad) {
+inline Lane<D> CorrectedKernel<D>::outer(Index f, const Rows<D>& grad) {
   const Index p = mesh_.owner[f];
   const Vec3 d = geometry_.face_centre[f] - geometry_.cell_centre[p];
-  const elastic::lanes::Lane<D> across =
-      elastic::corrected::load<D>(nodes_.of_face(f)) - elastic::corrected::load<D>(nodes_[p]);
-  return elastic::corrected::normal_derivative<D>(
-      faces_[f], d, 2 * across - elastic::corrected::contract<D>(d, cell(p) + D), grad);
+  const Lane<D> across = load<D>(nodes_.of_face(f)) - load<D>(nodes_[p]);
+  return normal_derivative<D>(faces_[f], d, 2 * across - contract<D>(d, cell(p) + D), grad);
 }
 
 // The mirrored difference is central already.
 template <int D>
-inline elastic::lanes::Lane<D> CorrectedKernel<D>::at_symmetry(Index f,
-                                                               const elastic::corrected::Rows<D>& grad) {
+inline Lane<D> CorrectedKernel<D>::at_symmetry(Index f, const Rows<D>& grad) {
   const Index p = mesh_.owner[f];
   const Vec3 d = geometry_.face_centre[f] - geometry_.cell_centre[p];
-  return elastic::corrected::normal_derivative<D>(faces_[f], d, -elastic::corrected::load<D>(nodes_[p]),
-                                                  grad);
+  return normal_derivative<D>(faces_[f], d, -load<D>(nodes_[p]), grad);
 }
 
 template <int D>
 inline void CorrectedKernel<D>::find_boundary_gradients() {
   for (const Index f : open_faces_) {
     if (f >= mesh_.n_flux_faces()) break;
-    const elastic::corrected::CorrectedFace& face = faces_[f];
+    const CorrectedFace& face = faces_[f];
     const auto point = mesh_.face_points[f];
     const auto n_points = static_cast<int>(point.size());
     // In 3-D means of the edges' end points.
-    const elastic::corrected::Surface<D> here = elastic::corrected::surface<D>(
-        face, point,
-        geometry_.points.data(), [&](int e, const elastic::lanes::Lane<D>&) __attribute__((always_inline)) {
-          const elastic::lanes::Lane<D> first = elastic::corrected::load<D>(vertex(point[e]));
+    const Surface<D> here = surface<D>(
+        face, point, geometry_.points.data(), [&](int e, const Lane<D>&) __attribute__((always_inline)) {
+          const Lane<D> first = load<D>(vertex(point[e]));
           if (D == 2) return first;
-          return 0.5 * (first + elastic::corrected::load<D>(vertex(point[e + 1 < n_points ? e + 1 : 0])));
+          return 0.5 * (first + load<D>(vertex(point[e + 1 < n_points ? e + 1 : 0])));
         });
-    const elastic::lanes::Lane<D> g = outer(f, here.grad);
+    const Lane<D> g = outer(f, here.grad);
     set_record(
         mesh_.cells.n_local() + f - mesh_.n_interior,
         geometry_.face_centre[f], [&](int a) __attribute__((always_inline)) {
@@ -307,24 +129,25 @@ template <int D>
 inline void CorrectedKernel<D>::collect_forces(std::span<const double> known, std::span<double> result) {
   nodes_.clear_forces();
   for (Index f = 0; f < mesh_.n_interior; ++f) {
-    const elastic::corrected::Surface<D> here = around(f);
-    const elastic::lanes::Lane<D> force =
-        elastic::corrected::force_on<D>(lame_[f], inner(f, here.grad), here);
+    const Surface<D> here = around(f);
+    const Lane<D> force = force_on<D>(lame_[f], inner(f, here.grad), here);
     lanes::add<D>(nodes_.force(mesh_.owner[f]), -force);
     lanes::add<D>(nodes_.force(mesh_.neighbour[f]), force);
   }
-  const auto slope = [&](Index f, const elastic::corrected::Rows<D>& grad) __attribute__((always_inline)) {
+  const auto slope = [&](Index f, const Rows<D>& grad) __attribute__((always_inline)) {
     return rows_.mirrored(f) ? at_symmetry(f, grad) : outer(f, grad);
   };
   boundary_.add_rows<D>(
       nodes_, known, result.data() + std::size_t(mesh_.cells.n_owned()) * D,
       [&](Index f) __attribute__((always_inline)) {
-        const elastic::corrected::Surface<D> here = around(f);
-        return elastic::corrected::force_on<D>(lame_[f], slope(f, here.grad), here);
+        const Surface<D> here = around(f);
+        return force_on<D>(lame_[f], slope(f, here.grad), here);
       },
       [&](Index f) __attribute__((always_inline)) { return slope(f, around(f).grad); });
   nodes_.take_forces(result);
 }
+
+namespace {
 
 // The loops for several generations of processors; the right one is picked when the program starts. Halo
 // exchanges stand between them.
@@ -346,6 +169,9 @@ COUPLET_PROCESSOR_CLONES void faces_pass(CorrectedKernel<2>& kernel, std::span<c
                                          std::span<double> result) {
   kernel.collect_forces(known, result);
 }
+
+}  // namespace
+
 /// All that stands before the faces: node records, vertices.
 template <int D>
 void CorrectedKernel<D>::prepare(std::span<const double> unknowns, std::span<const double> known) {
@@ -353,25 +179,22 @@ void CorrectedKernel<D>::prepare(std::span<const double> unknowns, std::span<con
   cells_pass(*this);
   const std::span<double> all(records_);
   const std::size_t n_cells = mesh_.cells.n_local();
-  mesh_.cells.update_ghosts(all.first(n_cells * elastic::corrected::record<D>),
-                            elastic::corrected::record<D>);
+  mesh_.cells.update_ghosts(all.first(n_cells * record<D>), record<D>);
   // Boundary nodes begin with their cell's gradient; its error is the same for neighbours where cells are.
   for (const Index f : open_faces_) {
     const double* owner = cell(mesh_.owner[f]);
     set_record(static_cast<Index>(n_cells) + f - mesh_.n_interior, geometry_.face_centre[f],
-               [&](int a) { return elastic::corrected::row_of<D>(owner, a); });
+               [&](int a) { return row_of<D>(owner, a); });
   }
   vertices_pass(*this, open_points_);
   plain_vertices();
-  vertices_.constrain<D>(points_, elastic::corrected::record<D>, known);
+  vertices_.constrain<D>(points_, record<D>, known);
   boundary_pass(*this);
   mesh_.boundary.update_ghosts(
-      all.subspan(n_cells * elastic::corrected::record<D>,
-                  std::size_t(mesh_.boundary.n_local()) * elastic::corrected::record<D>),
-      elastic::corrected::record<D>);
+      all.subspan(n_cells * record<D>, std::size_t(mesh_.boundary.n_local()) * record<D>), record<D>);
   vertices_pass(*this, vertices_.free);
   plain_vertices();
-  vertices_.constrain<D>(points_, elastic::corrected::record<D>, known);
+  vertices_.constrain<D>(points_, record<D>, known);
   mirror_vertex_gradients();
 }
 
@@ -387,10 +210,10 @@ void CorrectedKernel<D>::face_gradients(std::span<const double> unknowns, std::s
                                         const ElasticKernel::TakeGradient& take, Index first, Index end) {
   prepare(unknowns, known);
   for (Index f = first; f < end; ++f) {
-    const elastic::corrected::Surface<D> here = around(f);
-    const elastic::corrected::Rows<D>& grad = here.grad;
-    const elastic::lanes::Lane<D>& n = here.n;
-    elastic::lanes::Lane<D> g;
+    const Surface<D> here = around(f);
+    const Rows<D>& grad = here.grad;
+    const Lane<D>& n = here.n;
+    Lane<D> g;
     if (f < mesh_.n_interior)
       g = inner(f, grad);
     else if (rows_.mirrored(f))
@@ -411,12 +234,12 @@ void CorrectedKernel<D>::point_values(std::span<const double> unknowns, std::spa
   vertices_.visit([&](Index v) { std::copy_n(vertex(v), D, points.data() + std::size_t(v) * D); });
 }
 
-}  // namespace
+}  // namespace corrected
 
 std::unique_ptr<ElasticKernel::Implementation> make_corrected_kernel(const mesh::Mesh& mesh,
                                                                      const ElasticOperator& rows) {
-  if (mesh.dim == 2) return std::make_unique<CorrectedKernel<2>>(mesh, rows);
-  return std::make_unique<CorrectedKernel<3>>(mesh, rows);
+  if (mesh.dim == 2) return std::make_unique<corrected::CorrectedKernel<2>>(mesh, rows);
+  return std::make_unique<corrected::CorrectedKernel<3>>(mesh, rows);
 }
 
 }  // namespace couplet::elastic

@@ -88,40 +88,15 @@ def bare(job):
     return f"{len(rest)} of {len(headers)} headers, and {', '.join(excepted)} by a written exception", not rest
 
 
-def bodies(text):
-    """(first line, number of lines) of the outermost functions with a body; the text's literals and comments are blanked first."""
-    blank = lambda match: re.sub(r"[^\n]", " ", match.group())
-    text = re.sub(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'(?!\w)', blank, text, flags=re.S)
-    text = re.sub(r"^[ \t]*#[^\n]*", blank, text, flags=re.M)
-    found, stack, begin = [], [], 0
-    for k, c in enumerate(text):
-        if c == "{":
-            head = text[begin:k]
-            if "function" in stack or "other" in stack:
-                stack.append("other")
-            elif re.search(r"\)[^=;]*$", head) and not re.search(r"\b(?:namespace|enum)\b", head):
-                stack.append("function")
-                start = begin + len(head) - len(head.lstrip())
-            else:
-                stack.append("scope" if re.search(r"\b(?:namespace|class|struct|union|extern)\b", head) else "other")
-            begin = k + 1
-        elif c == "}":
-            if stack and stack.pop() == "function":
-                found.append((text.count("\n", 0, start) + 1, text.count("\n", start, k) + 1))
-            begin = k + 1
-        elif c == ";":
-            begin = k + 1
-    return found
-
-
 def long_functions(job):
+    bodies = checks(job, "lengths").bodies
     found = {f"{f}:{line}": n for f, text in texts(job).items() for line, n in bodies(text) if n > LONGEST_FUNCTION}
     total = sum(len(bodies(text)) for text in texts(job).values())
     return most(found, not found and total > 1000, f"{len(found)} of {total} functions")
 
 
 def large_classes(job):
-    members = checks(job, "check_sources").members_of_classes
+    members = checks(job, "lengths").members_of_classes
     found = {f"{name} ({f})": n for f, text in texts(job).items() for name, _, n in members(text) if n > MOST_MEMBERS}
     return most(found, len(found) <= 3, f"{len(found)} classes")
 
@@ -157,7 +132,7 @@ def comparison(job):
         sys.path.append(folder)
     tables = importlib.import_module("tables")
     rows = tables.read(job.root / "benchmarks/linalg/table.csv")
-    there = [n for n in tables.HAND_WRITTEN if (job.root / f"common/linalg/{n}.hpp").exists()]
+    there = [n for n in tables.HAND_WRITTEN if any((job.root / "common/linalg").rglob(f"{n}.hpp"))]
     gains = {n: tables.best(rows, n) for n in there}
     lacking = tables.problems(rows, job.root / "common/linalg")
     text = ", ".join(f"{n} {min(g[:2]):.2f} of PETSc's best ({g[2]['system']})" for n, g in gains.items() if g)

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the body answers in a given state: forces, energy, softness; the last solve in words.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/parallel/collective.hpp"
+#include "solid_solver/large_strain/finite_strain.hpp"
+#include "solid_solver/method/solution_method.hpp"
+
+namespace couplet::solid {
+
+std::vector<double> FiniteStrain::forces(std::span<const double> unknowns, std::span<const double> known) {
+  std::vector<double> rows(rows_.n_unknowns());
+  kernel_->linearise(unknowns, known, 0, rows);
+  return rows;
+}
+
+double FiniteStrain::energy(std::span<const double> unknowns, std::span<const double> known) {
+  kernel_->forget_start();
+  kernel_->set_own_pressures(false);
+  forces(unknowns, known);
+  return parallel::sum(mesh_.comm, kernel_->energy());
+}
+
+double FiniteStrain::softness(std::span<const double> unknowns, std::span<const double> known) {
+  const double strain = energy(unknowns, known);
+  std::vector<double> inner = forces(unknowns, known);
+  double work = 0;
+  for (std::size_t i = 0; i < inner.size(); ++i) work += unknowns[i] * inner[i];
+  work = parallel::sum(mesh_.comm, work);
+  const double size = norm(mesh_.comm, unknowns);
+  if (!(strain > 0) || !(size > 0)) return 1;
+  TangentSolver& solver = solver_for(0, {});
+  solver.forget_factors();
+  solver.follow(true);
+  std::vector<double> change(inner.size());
+  constexpr double tolerance = 1e-2;
+  solver.solve(inner, change, tolerance, most_linear_);
+  const double loaded = std::min(1.0, std::abs(work) / (2 * strain));
+  return loaded * norm(mesh_.comm, change) / size + 1 - loaded;
+}
+
+void FiniteStrain::visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) {
+  kernel_->forget_start();
+  forces(unknowns, known);
+  kernel_->visit(take);
+}
+
+std::string FiniteStrain::text() const {
+  std::string residuals;
+  int linear = 0;
+  for (const NewtonIterate& i : iterates_) {
+    residuals += fmt::format("{}{:.1e}", residuals.empty() ? "" : " ", i.residual);
+    linear += i.linear;
+  }
+  return fmt::format("Newton: residuals {}, {} linear iterations, smallest det F {:.3g}", residuals, linear,
+                     iterates_.empty() ? 1.0 : iterates_.back().ratio);
+}
+
+}  // namespace couplet::solid
