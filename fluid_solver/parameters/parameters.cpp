@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "common/base/text.hpp"
 #include "common/config/pairs.hpp"
+#include "common/fv/expression.hpp"
 #include "common/io/surface_series.hpp"
 #include "common/mesh/periodic_points.hpp"
 #include "fluid_solver/conditions/keys.hpp"
@@ -27,6 +30,22 @@ void declare_gap(config::Section& s, GapParameters& gap) {
       .positive()
       .required()
       .doc("cells where the walls are closer than this are blocked");
+  s.value("height", gap.height)
+      .unit("m")
+      .plausible(1e-9, 1e4)
+      .doc(
+          "height of the seat, the second wall, along 'direction', of x, y, z at rest: the mesh is refused if its wall is "
+          "elsewhere, and the 'contact' of a structure may name the gap; absent: where the mesh has it");
+  s.value("direction", gap.direction).doc("direction from the seat to the valve; absent: z, in 2-D y");
+  s.check([&gap] { return gap.height ? fv::problem_of(*gap.height) : std::string(); }, "height");
+  s.check(
+      [&gap] {
+        const auto& d = gap.direction;
+        const bool fits = d.empty() || ((d.size() == 2 || d.size() == 3) &&
+                                        std::hypot(d[0], d[1], d.size() > 2 ? d[2] : 0) > 0);
+        return fits ? std::string() : "two or three numbers are needed, not all 0";
+      },
+      "direction");
   s.check(
       [&gap] {
         const bool two = gap.between.size() == 2 && gap.between[0] != gap.between[1];

@@ -42,6 +42,9 @@ struct BodyParameters {
 struct GapParameters {
   std::vector<std::string> between;
   double opening = 0;  // [m]
+  std::optional<config::ExpressionText>
+      height;                     // of the seat, the second wall, along `direction` [m]; absent: not stated
+  std::vector<double> direction;  // from the seat to the other wall; empty: z, in 2-D y
 };
 
 /// Running means from a time on; absent: none.

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/parallel/collective.hpp"
+#include "fluid_solver/motion/seat_check.hpp"
 
 namespace couplet::fluid {
 
@@ -27,6 +28,7 @@ FractionalStep<D>::FractionalStep(const mesh::Mesh& mesh, const std::vector<Vec3
   if (parameters.rotating_frame) k_.frame.emplace(*parameters.rotating_frame);
   if (!parameters.bodies.empty()) k_.bodies = std::make_unique<ImmersedBodies<D>>(mesh, parameters);
   if (parameters.gaps.empty()) return;
+  check_seats(mesh, parameters, points_at_rest);
   k_.gaps = std::make_unique<Gaps<D>>(mesh, parameters);
   k_.pockets = std::make_unique<GapPockets<D>>(mesh, parameters);
 }

@@ -12,6 +12,16 @@ void declare(config::Section& s, ContactParameters& c) {
       .unit("m")
       .plausible(1e-9, 1e4)
       .doc("height of the seat along 'direction', of x, y, z of the structure at rest");
+  s.value("gap", c.gap)
+      .doc(
+          "gap of the coupled fluid whose seat this is: 'height', 'opening' and 'direction' are taken from there");
+  s.value("opening", c.opening)
+      .unit("m")
+      .plausible(1e-8, 10)
+      .not_negative()
+      .doc(
+          "opening below which the gap's cells are blocked: the structure lands half of it above the seat, so that they keep "
+          "a volume; with 'gap' that of the fluid's gap");
   s.value("where", c.where).doc("the seat exists where this expression of x, y, z is above 0");
   s.value("direction", c.direction)
       .size(3)

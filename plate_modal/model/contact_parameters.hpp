@@ -16,6 +16,8 @@ enum class ContactRule {
 /// A rigid seat without friction, thesis (4.32)-(4.33).
 struct ContactParameters {
   config::ExpressionText height;              ///< of the seat along `direction` [m], of x, y, z
+  std::string gap;                            ///< of the fluid, whose seat this is; empty: none
+  double opening = 0;                         ///< of that gap [m]: what lands stays half of it above the seat
   config::ExpressionText where{.text = "1"};  ///< of x, y, z: there is a seat where it is above 0
   std::vector<double> direction;              ///< from the seat to the structure; empty: the plate's normal
   double scale = 1;                           ///< f_SI of (4.33)

@@ -28,7 +28,7 @@ Contact::Contact(const Share& share, const ContactParameters& p, const Vec3& nor
     if (towards < least_cosine_to_seat * area.norm() || !(where(x, 0) > 0)) continue;
     faces.push_back(f);
     centre_.push_back(x);
-    gap_.push_back(x.dot(direction) - height(x, 0));
+    gap_.push_back(x.dot(direction) - height(x, 0) - 0.5 * p.opening);
     kappa_.push_back(p.stiffness.value_or(p.scale * stiffness) * towards);
     for (int m = 0; m < n_modes_; ++m) {
       double along = 0;

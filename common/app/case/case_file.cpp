@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "common/app/case/case_roles.hpp"
+#include "common/app/case/shared_seat.hpp"
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/fv/expression.hpp"
@@ -158,6 +159,7 @@ CaseFile read_case(const CommandLine& command_line, const ProgramKind& kind) {
     check_top_level(*result.document, result);
     list_expected(*result.document, result);
     if (result.coupled) append(result.errors, problems_of_roles(*result.document, result.expected));
+    append(result.errors, share_seats(*result.document));
     std::vector<std::string> doubts;
     append(result.errors,
            config::load(

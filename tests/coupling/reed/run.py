@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """The first steps of configs/reed-slice: from rest, where the volume upstream is all that acts, no step fails; the same on other ranks,
-and bit for bit after a restart. Usage: run.py PROJECT BIN MPIRUN..."""
+and bit for bit after a restart. Its one seat: what states another is refused. Usage: run.py PROJECT BIN MPIRUN..."""
 import csv
 import pathlib
 import shutil
@@ -32,10 +32,30 @@ def run(top, name, end, ranks=(1, 1, 1, 1), restart=None):
         return [(float(r["time [s]"]), float(r["tip z [m]"])) for r in csv.DictReader(rows)]
 
 
+def refused(top, claim, message, *sets, run_it=False):
+    """These settings end with this message."""
+    programs_of = ("coupler", "fluid_solver", "plate_modal", "mesh_mover") if run_it else ("plate_modal",)
+    line = list(mpirun) if run_it else []
+    for i, program in enumerate(programs_of):
+        line += [*([":"] if i else []), *(["-n", "1"] if run_it else []), str(programs / program), "case.yaml",
+                 *(f"--set={word}" for word in sets), *([] if run_it else ["--check"])]
+    done = subprocess.run(line, cwd=top, capture_output=True, text=True, timeout=100)
+    check(claim, done.returncode != 0 and message in done.stdout + done.stderr, (done.stdout + done.stderr)[-400:])
+
+
 with tempfile.TemporaryDirectory() as folder:
     top = pathlib.Path(folder)
     for file in ("case.yaml", "fluid.geo", "plate.geo"):
         shutil.copy(project / "configs/reed-slice" / file, top)
+    refused(top, "a contact's own height beside that of its gap is refused", "contact.height: it is that of the gap 'overlap'",
+            "participants.reed.contact.height=0.03 mm")
+    refused(top, "a contact's own opening beside that of its gap is refused", "contact.opening: it is that of the gap 'overlap'",
+            "participants.reed.contact.opening=0.05 mm")
+    refused(top, "an unknown gap is refused", "the fluid has no gap 'overlop'. Did you mean 'overlap'?", "participants.reed.contact.gap=overlop")
+    refused(top, "a contact beside a gap that states another seat is refused", "the gap 'overlap' of the fluid states a seat as well",
+            "participants.reed.contact.gap=~", "participants.reed.contact.height=0.03 mm")
+    refused(top, "a seat that the mesh has elsewhere is refused", "the seat is stated at 0.0001 m, but the mesh has its wall 'seat' 0.0001 m below it",
+            "participants.fluid.gaps.overlap.height=0.1 mm", run_it=True)
     whole = run(top, "whole", 4e-4)
     check("the reed lifts", len(whole) == 8 and all(b[1] > a[1] for a, b in zip(whole, whole[1:])) and whole[-1][1] > 1e-10, str(whole[-1:]))
     ranks = run(top, "ranks", 4e-4, (2, 3, 2, 3))

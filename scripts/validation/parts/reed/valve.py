@@ -91,6 +91,6 @@ VALVE = [
     Bar("valve, coarse, incompressible: frequency of the first cycle", f"56.3 Hz within 10 %; {SOURCE}", frequency, long=True, but=HALF),
     Bar("valve, coarse: energy of the reed against the work", "within 1 %", energy, long=True, but=HALF),
     Bar("valve, coarse: effective flow area (4.35) of the whole valve", "reported", loop, long=True),
-    Bar("slice with the plate, the modes of a solid, and a solid at large strain in its place", "gap and frequency within 5 % (not asked for in numbers)", swapped, long=True,
-        but="without contact in the solid: the reed does not reach the seat here"),
+    Bar("slice with the plate, the modes of a solid, and a solid at large strain in its place", "gap and frequency within 5 %", swapped, long=True,
+        but="the limit is ours; without contact in the solid: the reed does not reach the seat here"),
 ]
