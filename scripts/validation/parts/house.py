@@ -16,6 +16,7 @@ DEMO = ("coupler", "fluid_solver", "solid_solver", "mesh_mover")
 LONGEST_FUNCTION, MOST_MEMBERS = 60, 25
 # Of b350924, the commit that the plan was measured at.
 LINES_BEFORE, SCRIPT_LINES_BEFORE = 72600, 11437
+GROWN = ": the bar is of a tree with about half of the capabilities"
 
 
 def tracked(job, *folders):
@@ -98,7 +99,9 @@ def long_functions(job):
 def large_classes(job):
     members = checks(job, "lengths").members_of_classes
     found = {f"{name} ({f})": n for f, text in texts(job).items() for name, _, n in members(text) if n > MOST_MEMBERS}
-    return most(found, len(found) <= 3, f"{len(found)} classes")
+    reasons = checks(job, "lengths").LARGE_CLASSES
+    unexplained = sum(key.split()[0] not in reasons for key in found)
+    return most(found, len(found) <= 3 and not unexplained, f"{len(found)} classes, {unexplained} without a reason in tests/architecture/lengths.py")
 
 
 def long_files(job):
@@ -112,12 +115,12 @@ def lines_of(job, files):
 
 def mass(job):
     n = lines_of(job, tracked(job, *HOUSE))
-    return f"{n} lines, {100 * n / LINES_BEFORE:.0f} % of {LINES_BEFORE}", n <= 0.95 * LINES_BEFORE
+    return f"{n} lines, {100 * n / LINES_BEFORE:.0f} % of {LINES_BEFORE}{GROWN}", n <= 0.95 * LINES_BEFORE
 
 
 def script_mass(job):
     n = lines_of(job, [*tracked(job, "scripts"), *(f for f in tracked(job, "client/python") if not f.endswith(("participant.py", "transports.py"))), *(f for f in tracked(job, "tests/verification", "benchmarks") if f.endswith((".py", ".sh")))])
-    return f"{n} lines, {100 * n / SCRIPT_LINES_BEFORE:.0f} % of {SCRIPT_LINES_BEFORE}", n <= 0.85 * SCRIPT_LINES_BEFORE
+    return f"{n} lines, {100 * n / SCRIPT_LINES_BEFORE:.0f} % of {SCRIPT_LINES_BEFORE}{GROWN}", n <= 0.85 * SCRIPT_LINES_BEFORE
 
 
 def glossary(job):
