@@ -25,6 +25,12 @@ fv::Property property(const std::optional<config::ExpressionText>& text, const s
   return fv::Property(*text, "material." + key);
 }
 
+/// 3 K; in plane stress from the effective constants.
+double three_bulk(elastic::LameConstants lame, bool plane_stress) {
+  if (plane_stress) lame.lambda = 2 * lame.lambda * lame.mu / (2 * lame.mu - lame.lambda);  // the true one
+  return 3 * lame.lambda + 2 * lame.mu;
+}
+
 }  // namespace
 
 std::unique_ptr<Heat> make_heat(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
@@ -73,6 +79,7 @@ ThermalStrain::ThermalStrain(const mesh::Mesh& mesh, const elastic::ElasticOpera
     varies_ = varies_ || m.heat.youngs_modulus || m.heat.poissons_ratio;
   }
   plane_stress_ = mesh.dim == 2 && parameters.plane == SolidParameters::Plane::stress;
+  is_large_ = has_finite_strain(parameters);
   if (coupled_) dilation_.assign(mesh.cells.n_owned(), 0), dilation_rate_ = dilation_;
   if (varies_) lame_ = lame_trial_ = lame_at(cell_temperature(0, false));
   // What is given at the interface comes later: see set_interface().
@@ -91,12 +98,6 @@ double ThermalStrain::modulus(Index cell) const {
 double ThermalStrain::face_modulus(Index face) const {
   const double here = modulus(mesh_->owner[face]);
   return face < mesh_->n_interior ? 0.5 * (here + modulus(mesh_->neighbour[face])) : here;
-}
-
-double ThermalStrain::three_bulk(Index cell) const {
-  elastic::LameConstants lame = elastic_->lame(cell);
-  if (plane_stress_) lame.lambda = 2 * lame.lambda * lame.mu / (2 * lame.mu - lame.lambda);  // the true one
-  return 3 * lame.lambda + 2 * lame.mu;
 }
 
 std::vector<double> ThermalStrain::cell_temperature(double t, bool trial) const {
@@ -224,8 +225,8 @@ void ThermalStrain::begin_step(const coupling::Step& step) {
     for (std::size_t c = 0; c < source.size(); ++c) {
       const double temperature = heat_->accepted().cells[c];
       const auto cell = static_cast<Index>(c);
-      source[c] = -three_bulk(cell) * expansion_[mesh_->material_of(cell)](temperature) * temperature *
-                  dilation_rate_[c];
+      source[c] = -three_bulk(elastic_->lame(cell), plane_stress_) *
+                  expansion_[mesh_->material_of(cell)](temperature) * temperature * dilation_rate_[c];
     }
     heat_->solve(step, source);
   }
@@ -237,19 +238,20 @@ void ThermalStrain::add_loads(double t, const elastic::ElasticKernel& kernel, st
   if (expands()) kernel.add_pressure(pressure(t), rhs);
 }
 
+std::vector<double> ThermalStrain::expansion(double t) {
+  if (expansion_.empty()) return {};
+  if (prescribed_) return strain(face_temperature(t, true));
+  // After the step has been accepted `start_` is its end.
+  const double part = t > time_ ? (t - step_.time) / step_.dt : 0;
+  std::vector<double> temperature = start_;
+  if (part > 0)
+    for (std::size_t f = 0; f < temperature.size(); ++f) temperature[f] += part * (end_[f] - start_[f]);
+  return strain(temperature);
+}
+
 std::vector<double> ThermalStrain::pressure(double t) {
   if (!expands()) return {};
-  std::vector<double> temperature;
-  if (prescribed_) {
-    temperature = face_temperature(t, true);
-  } else {
-    // After the step has been accepted `start_` is its end.
-    const double part = t > time_ ? (t - step_.time) / step_.dt : 0;
-    temperature = start_;
-    if (part > 0)
-      for (std::size_t f = 0; f < temperature.size(); ++f) temperature[f] += part * (end_[f] - start_[f]);
-  }
-  std::vector<double> pressure = stress_of(strain(temperature));
+  std::vector<double> pressure = stress_of(expansion(t));
   pressure.resize(mesh_->n_faces());
   mesh_->boundary.update_ghosts(std::span(pressure).subspan(mesh_->n_interior));
   return pressure;
@@ -311,7 +313,8 @@ void ThermalStrain::add_cell_stress(std::span<Tensor3> stress) const {
 void ThermalStrain::take_stress(std::span<const Tensor3> stress) {
   const std::vector<double> strain = cell_strain();
   for (std::size_t c = 0; c < stress.size(); ++c) {
-    const double now = stress[c].trace() / three_bulk(static_cast<Index>(c)) + 3 * strain[c];
+    const double now =
+        stress[c].trace() / three_bulk(elastic_->lame(static_cast<Index>(c)), plane_stress_) + 3 * strain[c];
     dilation_rate_[c] = (now - dilation_[c]) / step_.dt;
     dilation_[c] = now;
   }
@@ -322,7 +325,7 @@ void ThermalStrain::take_stress(std::span<const Tensor3> stress) {
 double ThermalStrain::coupling_number() const {
   double most = 0;
   const double temperature = parallel::max(mesh_->comm, highest_);
-  for (std::size_t i = 0; heat_ && expands() && i < materials_.size(); ++i) {
+  for (std::size_t i = 0; heat_ && !expansion_.empty() && i < materials_.size(); ++i) {
     const SolidMaterial& m = materials_[i];
     if (!m.heat.specific_heat) continue;
     const double e = m.youngs_modulus, nu = m.poissons_ratio;
@@ -408,7 +411,7 @@ void ThermalStrain::load(io::CheckpointReader& file) {
 }
 
 void ThermalStrain::collect_errors() {
-  if (heat_ && expands()) errors_.emplace(*mesh_, *geometry_, parameters_.heat.value());
+  if (heat_ && !expansion_.empty()) errors_.emplace(*mesh_, *geometry_, parameters_.heat.value());
 }
 
 coupling::ErrorParts ThermalStrain::error_parts() const {
