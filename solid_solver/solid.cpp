@@ -107,6 +107,7 @@ void Solid::load(io::CheckpointReader& file) {
   stepper_.load_state(file);
   judge_.load(file);
   for (const auto& effect : body_.effects()) effect->load(file);
+  body_.place_expansion(stepper_.state().time);
   stepper_.load_guesses(file);
   const std::vector<double> errors = file.read("errors-and-drift");
   if (errors_) errors_->restore(errors);

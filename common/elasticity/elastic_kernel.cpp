@@ -8,7 +8,8 @@ namespace couplet::elastic {
 ElasticKernel::ElasticKernel(const mesh::Mesh& mesh, const ElasticOperator& rows, FaceGradientScheme scheme)
     : rows_(&rows),
       scheme_(scheme),
-      implementation_(scheme == FaceGradientScheme::thesis      ? make_thesis_kernel(mesh, rows)
+      implementation_(is_axisymmetric(rows)                     ? make_axisymmetric_kernel(mesh, rows)
+                      : scheme == FaceGradientScheme::thesis    ? make_thesis_kernel(mesh, rows)
                       : scheme == FaceGradientScheme::corrected ? make_corrected_kernel(mesh, rows)
                                                                 : make_symmetric_kernel(mesh, rows)) {}
 

@@ -50,6 +50,8 @@ std::unique_ptr<ElasticKernel::Implementation> make_corrected_kernel(const mesh:
                                                                      const ElasticOperator& rows);
 std::unique_ptr<ElasticKernel::Implementation> make_symmetric_kernel(const mesh::Mesh& mesh,
                                                                      const ElasticOperator& rows);
+std::unique_ptr<ElasticKernel::Implementation> make_axisymmetric_kernel(const mesh::Mesh& mesh,
+                                                                        const ElasticOperator& rows);
 
 /// Lame's constants of a face: the owner's where cells have their own, the mean of both across an interior
 /// face.

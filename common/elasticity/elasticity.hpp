@@ -24,6 +24,7 @@ struct ElasticBody {
   std::vector<LameConstants> lame;
   std::vector<int> material_of_cell;
   VolumeStrain volume_strain = VolumeStrain::faces;  ///< of the symmetric gradient
+  bool axisymmetric = false;  ///< of revolution, x being the radius; symmetric gradient
   /// Symmetric gradient: stress by matrices of its own in place of `lame`, which is then their isotropic mean. Empty:
   /// none. `matrix_of_cell`: which of them, per local cell; empty when there is one.
   std::vector<ElasticMatrix> matrix{};
@@ -82,6 +83,7 @@ class ElasticOperator {
   VolumeStrain volume_strain() const { return body_.volume_strain; }
   /// Cells have a volume strain of their own, on which some or all of the bulk modulus acts.
   bool volume_by_cells() const { return body_.volume_strain != VolumeStrain::faces; }
+  friend bool is_axisymmetric(const ElasticOperator& rows) { return rows.body_.axisymmetric; }
   /// One pair of constants for all cells.
   bool is_uniform() const { return body_.lame.size() == 1; }
   const LameConstants& lame(Index cell) const { return body_.lame[body_.lame.size() == 1 ? 0 : cell]; }

@@ -36,7 +36,8 @@ elastic::FaceGradientScheme scheme_for(const mesh::Mesh& mesh, const SolidParame
   const elastic::FaceGradientScheme scheme = face_gradient_scheme(parameters);
   const bool free_to_choose = parameters.method.face_gradient == MethodParameters::FaceGradient::automatic &&
                               !has_finite_strain(parameters) && !has_orthotropic(parameters) &&
-                              !elastic.volume_by_cells() && !has_rigid_patch(parameters);
+                              !is_axisymmetric(parameters) && !elastic.volume_by_cells() &&
+                              !has_rigid_patch(parameters);
   if (free_to_choose && scheme == elastic::FaceGradientScheme::symmetric &&
       parallel::any(mesh.comm, has_loose_vertex(mesh, elastic)))
     return elastic::FaceGradientScheme::thesis;
@@ -77,6 +78,7 @@ SolidBody::SolidBody(mesh::LoadedMesh body, SolidParameters parameters)
 void SolidBody::check_supports() const {
   check_mesh(mesh_, geometry_, elastic_.vertices());
   check_symmetry(parameters_, mesh_, elastic_);
+  if (is_axisymmetric(elastic_)) check_axis(mesh_, elastic_);
   if (!parameters_.gravity.empty() && std::ssize(parameters_.gravity) != mesh_.dim)
     throw Error("gravity: {} components are given, but the {}-dimensional scene needs {}.",
                 parameters_.gravity.size(), mesh_.dim, mesh_.dim);
@@ -120,6 +122,13 @@ bool SolidBody::apply_stiffness() {
     find_mass();
   }
   return changed;
+}
+
+void SolidBody::place_expansion(double t) const {
+  if (equilibrium_->is_linear()) return;
+  for (const auto& effect : effects_)
+    if (std::vector<double> strain = effect->expansion(t); !strain.empty())
+      equilibrium_->set_expansion(std::move(strain));
 }
 
 std::vector<double> SolidBody::body_forces(double t) const {

@@ -67,6 +67,8 @@ class SolidBody final {
   void place_pressures(double t) const {
     if (equilibrium_->takes_pressure()) equilibrium_->set_pressure(boundaries_.pressures(t));
   }
+  /// It knows the thermal strains at time t that it takes itself: large strain. Collective.
+  void place_expansion(double t) const;
   bool has_body_forces() const { return !body_force_.empty() || !parameters_.gravity.empty(); }
   /// Body forces and weight of the owned cells at time t [N], `dim` values each; empty: none.
   std::vector<double> body_forces(double t) const;

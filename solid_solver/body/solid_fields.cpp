@@ -118,7 +118,7 @@ DiscreteStress SolidFields::discrete_stress(std::span<const double> points) cons
 
 std::vector<double> SolidFields::point_stress(std::span<const double> points,
                                               std::span<const std::uint8_t> wanted) const {
-  if (!body_.equilibrium().is_linear()) {
+  if (!body_.equilibrium().is_linear() || is_axisymmetric(elastic_)) {
     const std::vector<Tensor3> faces = face_stress(mesh_.n_interior, mesh_.boundary.n_owned(), points);
     return point_tensors().interpolate(cell_stress(points), faces);
   }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -64,6 +65,34 @@ void check_mesh(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
         "at {} vertices, the first at {}, the adjacent cells and faces do not span all directions: values "
         "there are plain means of the neighbours, exact for constant fields only",
         inexact->count, text_of(inexact->first, mesh.dim));
+}
+
+void check_axis(const mesh::Mesh& mesh, const elastic::ElasticOperator& elastic) {
+  const mesh::Geometry& geometry = elastic.geometry();
+  double size = 0;
+  for (const Vec3& x : geometry.points) size = std::max(size, x.norm());
+  const double none = 1e-9 * parallel::max(mesh.comm, size);
+  std::vector<Index> behind, open, oblique;
+  for (Index v = 0; v < mesh.points.n_local(); ++v)
+    if (geometry.points[v][0] < -none) behind.push_back(v);
+  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
+    const bool on_axis = std::abs(geometry.face_centre[f][0]) <= none;
+    if (on_axis && !elastic.mirrored(f)) open.push_back(mesh.face_points[f][0]);
+    const Vec3 n = geometry.face_area[f].normalized();
+    if (elastic.mirrored(f) && !on_axis && std::abs(n[0]) > 1e-6) oblique.push_back(mesh.face_points[f][0]);
+  }
+  if (const auto at = find_any(mesh, geometry, behind))
+    throw Error("plane: axisymmetric: x is the radius and must not be negative; the mesh has a point at {}.",
+                text_of(at->first, mesh.dim));
+  if (const auto at = find_any(mesh, geometry, open))
+    throw Error(
+        "boundaries: plane: axisymmetric: the patch on the axis x = 0 needs 'type: symmetry' (at {}).",
+        text_of(at->first, mesh.dim));
+  if (const auto at = find_any(mesh, geometry, oblique))
+    throw Error(
+        "boundaries: plane: axisymmetric: a 'symmetry' must be the axis x = 0 or a plane y = constant; the "
+        "patch at {} is neither. Use 'frictionless' to slide along a surface.",
+        text_of(at->first, mesh.dim));
 }
 
 }  // namespace couplet::solid

@@ -166,8 +166,13 @@ std::string describe(const Motion& motion, const Body& body, int dim) {
   return screw ? about + " with a translation along it" : about;
 }
 
-std::vector<std::string> free_modes(const Body& body, int dim) {
+std::vector<std::string> free_modes(const Body& body, int dim, bool axisymmetric) {
   Resistance resistance = body.resistance;
+  // Of a body of revolution only the motion along its axis is without strain.
+  if (axisymmetric)
+    return resistance(1, 1) > resisted * std::max(resistance.trace(), std::numeric_limits<double>::min())
+               ? std::vector<std::string>()
+               : std::vector<std::string>{"translation along y, the axis"};
   // In 2-D the other three motions do not exist.
   if (dim == 2)
     for (const int i : {2, 3, 4}) {
@@ -203,7 +208,7 @@ std::vector<FreeMotion> free_motions(const mesh::Mesh& mesh, const elastic::Elas
   std::vector<FreeMotion> result;
   for (Index b = 0; b < n_bodies; ++b) {
     bodies[b].resistance = Eigen::Map<const Resistance>(sums.data() + 36 * b);
-    result.push_back({bodies[b].centre, free_modes(bodies[b], mesh.dim)});
+    result.push_back({bodies[b].centre, free_modes(bodies[b], mesh.dim, is_axisymmetric(elastic))});
   }
   return result;
 }

@@ -101,6 +101,7 @@ V judge_yield(const P& p, const E& e) {
 
 V judge_incompressibility(const P& p, const E&) {
   if (!is_elastic(p) || has_volume_strain_of_cells(p)) return {};
+  if (p.dimension == 2 && p.plane == P::Plane::stress) return {};  // its thickness is free: no locking
   const double nu = std::max(0.0, largest_poissons_ratio(p));
   return effects::verdict(
       nu, 0.45, fmt::format("max Poisson's ratio = {:g}", nu),

@@ -138,7 +138,7 @@ double SolidErrorEstimate::finite_mesh_error() const {
 
 /// At least `known`. Energies are no measure of it where heat strains the body; one in motion need not be held, so that nothing is known.
 double SolidErrorEstimate::thermal_mesh_error(double known) const {
-  if (body_.is_dynamic()) return coupling::ErrorParts::unknown;
+  if (body_.is_dynamic() || is_axisymmetric(body_.elastic())) return coupling::ErrorParts::unknown;
   const SolidState& state = stepper_.state();
   std::vector<double> pressure(std::size_t(body_.mesh().n_faces()), 0);
   for (const auto& effect : body_.effects()) {

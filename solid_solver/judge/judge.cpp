@@ -125,7 +125,9 @@ void SolidJudge::estimate_large_strain() {
 
 void SolidJudge::see_buckling() {
   SolutionMethod* method = stepper_.method();
-  if (!method || !body_.kernel().is_symmetric() || body_.parameters().output.buckling > 0) return;
+  if (!method || !body_.kernel().is_symmetric() || is_axisymmetric(body_.elastic()) ||
+      body_.parameters().output.buckling > 0)
+    return;
   const BucklingEstimate found =
       estimate_buckling(body_, fields_, stepper_.state().time, *method, compression_seen_);
   if (found.factor > 0) buckling_factor_ = std::min(buckling_factor_, found.factor);

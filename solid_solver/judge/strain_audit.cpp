@@ -142,6 +142,7 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
   const auto other = [&](Index f, const Tensor3& gradient) {
     if (!is_mine(f)) return;
     PackedTensor gap = pack(0.5 * (gradient + gradient.transpose()));
+    if (is_axisymmetric(rows)) gap[2] = strains[f - first][2];  // it knows no hoop strain
     for (std::size_t i = 0; i < gap.size(); ++i) gap[i] -= strains[f - first][i];
     difference += volume(f) * rows.lame(mesh_.owner[f]).mu * unpack(gap).squaredNorm();
   };

@@ -62,7 +62,8 @@ FiniteStrain::FiniteStrain(const mesh::Mesh& mesh, const elastic::ElasticOperato
   std::vector<const elastic::FiniteLaw*> all;
   for (const SolidMaterial& material : materials_of(parameters)) {
     const laws::Entry& law = *laws::of(material.law);
-    laws_.push_back(law.make(lame_constants(parameters, material), material.law_coefficients));
+    laws_.push_back(law.make(lame_constants(material.youngs_modulus, material.poissons_ratio),
+                             material.law_coefficients));
     all.push_back(laws_.back().get());
     if (rows.volume_by_cells() && !laws_.back()->has_bulk())
       throw Error(
@@ -70,7 +71,7 @@ FiniteStrain::FiniteStrain(const mesh::Mesh& mesh, const elastic::ElasticOperato
           "cell; use 'volume-strain: faces' or another law.",
           law.name);
   }
-  kernel_ = elastic::make_finite_kernel(mesh, rows, all);
+  kernel_ = elastic::make_finite_kernel(mesh, rows, all, parameters.plane == SolidParameters::Plane::stress);
   using Preconditioner = MethodParameters::Preconditioner;
   const GlobalIndex cells = mesh.cells.n_global();
   const bool is_small = cells <= (mesh.dim == 2 ? tangent_factors_up_to_2d : tangent_factors_up_to_3d);
@@ -294,6 +295,17 @@ double FiniteStrain::judge_rounding(const Load& load, double scale, double left)
 void FiniteStrain::set_pressure(std::vector<double> of_faces) {
   presses_ = parallel::any(mesh_.comm, std::ranges::any_of(of_faces, [](double p) { return p != 0; }));
   kernel_->set_pressure(of_faces);
+}
+
+/// theta = 1 + the integral of alpha dT: lengths of the body as it was at the reference temperature.
+void FiniteStrain::set_expansion(std::vector<double> of_faces) {
+  double least = 1;
+  for (double& strain : of_faces) least = std::min(least, strain += 1);
+  if (!(parallel::min(mesh_.comm, least) > 0))
+    throw Error(
+        "thermal-expansion: a thermal strain of -1 or less leaves nothing of the body; check "
+        "'material.expansion' and the temperatures.");
+  kernel_->set_stretch(of_faces);
 }
 
 }  // namespace couplet::solid

@@ -42,6 +42,7 @@ class FiniteStrain final : public LargeStrain {
   using Load = EquilibriumLoad;
   linalg::SolveStatistics solve(const Load& load, std::span<double> u) override;
   void set_pressure(std::vector<double> of_faces) override;
+  void set_expansion(std::vector<double> of_faces) override;
   std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;
   double energy(std::span<const double> unknowns, std::span<const double> known) override;
   void visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) override;

@@ -116,7 +116,8 @@ elastic::VolumeStrain volume_strain_of(const SolidParameters& p) {
   if (p.method.volume_strain == Chosen::cells) return elastic::VolumeStrain::cells;
   if (p.method.volume_strain == Chosen::shared) return elastic::VolumeStrain::shared;
   const bool plane_stress = p.dimension == 2 && p.plane == SolidParameters::Plane::stress;
-  if (plane_stress || has_orthotropic(p) || largest_poissons_ratio(p) < nearly_incompressible)
+  if (plane_stress || is_axisymmetric(p) || has_orthotropic(p) ||
+      largest_poissons_ratio(p) < nearly_incompressible)
     return elastic::VolumeStrain::faces;
   const bool has_bulk =
       !has_finite_strain(p) || std::ranges::all_of(materials_of(p), [](const SolidMaterial& m) {
@@ -132,6 +133,7 @@ elastic::ElasticBody elastic_body(const SolidParameters& p, const mesh::Mesh& me
   elastic::ElasticBody body{{}, mesh.cell_material, volume_strain_of(p)};
   if (mesh.cell_material.empty()) body.lame = {of_material.front()};
   for (const int material : mesh.cell_material) body.lame.push_back(of_material[material]);
+  body.axisymmetric = is_axisymmetric(p);
   if (has_orthotropic(p)) add_matrices(p, mesh, geometry, body);
   return body;
 }

@@ -118,6 +118,8 @@ class Equilibrium {
                                   const linalg::LinearMap& /*elastic*/, std::vector<double> /*start*/) {
     return 1;
   }
+  /// Thermal strains that the stress does not see, one a local flux face, until others are given: of large strain.
+  virtual void set_expansion(std::vector<double> /*of_faces*/) {}
 };
 
 }  // namespace couplet::solid

@@ -88,7 +88,8 @@ std::string decide(const SolidProblem& problem, MethodParameters& parameters) {
           "'corrected'.");
     if (parameters.preconditioner == Preconditioner::automatic) {
       const bool mixed = wants_mixed_form(problem);
-      const bool direct = mixed ? small : factors_pay(problem, easy, small);
+      const bool direct =
+          is_axisymmetric(problem.elastic) || (mixed ? small : factors_pay(problem, easy, small));
       parameters.preconditioner = direct  ? Preconditioner::factors
                                   : mixed ? Preconditioner::mixed
                                           : Preconditioner::multigrid;

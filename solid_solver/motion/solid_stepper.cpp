@@ -21,6 +21,7 @@ SolidStepper::SolidStepper(SolidBody& body)
       ledger_(body) {
   apply_stiffness();
   start_from_rest();
+  body_.place_expansion(0);
 }
 
 void SolidStepper::start_from_rest() {
@@ -143,6 +144,7 @@ void SolidStepper::accept_step() {
     if (linalg::ResidualProjection* projection = work.system->projection()) projection->accept();
   body_.equilibrium().accept();
   std::swap(state_, trial_);
+  body_.place_expansion(state_.time);
 }
 
 void SolidStepper::release_solver() {

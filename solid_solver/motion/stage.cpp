@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/elasticity/symmetric/axisymmetric_faces.hpp"
 #include "common/log/log.hpp"
 #include "common/log/timer.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
@@ -111,7 +112,11 @@ void SolidStepper::add_body_forces(double t, std::span<double> rhs) {
   if (forces.empty()) return;
   kernel_.add_cell_forces(forces, rhs);
   last_.body_force.setZero();
-  for (std::size_t i = 0; i < forces.size(); ++i) last_.body_force[Index(i % mesh_.dim)] += forces[i];
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    const Vec3& centre = geometry_.cell_centre[i / std::size_t(mesh_.dim)];
+    const double ring = is_axisymmetric(elastic_) ? elastic::circumference(centre[0]) : 1;
+    last_.body_force[Index(i % mesh_.dim)] += ring * forces[i];
+  }
 }
 
 void SolidStepper::solve_stage(const StageWork& work, bool first) {
@@ -157,6 +162,7 @@ void SolidStepper::solve_stage(const StageWork& work, bool first) {
 /// A static guess stands where the known displacements were; a dynamic one has gone on with its own velocity.
 linalg::SolveStatistics SolidStepper::find_equilibrium(const StageWork& work) {
   body_.place_pressures(work.place_time);
+  body_.place_expansion(work.place_time);
   EquilibriumLoad load{last_.rhs, work.known, {}, work.system->mass_factor, parameters_.energy_momentum};
   if (!body_.is_dynamic() && !work.known.empty()) load.before = state_.known;
   const std::vector<double> accepted = body_.unknowns_of(state_.cell_u, state_.face_u);

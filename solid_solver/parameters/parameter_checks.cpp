@@ -42,6 +42,9 @@ void check_updated_lagrangian(config::Section& s, SolidParameters& p) {
   refuse("materials", p.materials.size() > 1,
          "'solution-method: {type: segregated}' at finite strain supports one material only; use 'type: "
          "newton-krylov' (or 'auto')");
+  refuse("thermal-expansion", p.expansion.has_value(),
+         "'solution-method: {type: segregated}' at finite strain has no thermal strain; use 'type: "
+         "newton-krylov' (or 'auto')");
   refuse("energy-momentum", p.energy_momentum,
          "'solution-method: {type: segregated}' at finite strain has no energy-momentum stress; use 'type: "
          "newton-krylov'");
@@ -125,6 +128,42 @@ void check_together(config::Section& s, SolidParameters& p) {
       "time-step-control");
 }
 
+/// What a sheet in plane stress cannot have at finite strain.
+void check_finite_sheet(config::Section& s, SolidParameters& p) {
+  const auto refuse = [&](const char* key, const auto& is_wrong, const char* why) {
+    s.check(
+        [&p, is_wrong, why] {
+          const bool is_sheet =
+              has_finite_strain(p) && p.dimension == 2 && p.plane == SolidParameters::Plane::stress;
+          return is_sheet && is_wrong(p) ? std::string(why) : std::string();
+        },
+        key);
+  };
+  refuse("plane", is_updated_lagrangian,
+         "'solution-method: {type: segregated}' at finite strain supports plane strain only; use 'type: "
+         "newton-krylov' (or 'auto')");
+  refuse(
+      "solution-method",
+      [](const SolidParameters& q) {
+        return q.method.volume_strain == MethodParameters::VolumeStrain::cells;
+      },
+      "plane stress at finite strain has the volume strain of the faces, which does not lock there; use "
+      "'volume-strain: faces' (or 'auto')");
+  refuse(
+      "energy-momentum", [](const SolidParameters& q) { return q.energy_momentum; },
+      "its stress supports plane strain only; model the sheet in 3-D, or remove it");
+  refuse(
+      "boundaries",
+      [](const SolidParameters& q) {
+        return any_condition(q, [](const SolidCondition& c) {
+          return c.type == SolidCondition::Type::pressure ||
+                 c.type == SolidCondition::Type::hydrostatic_pressure;
+        });
+      },
+      "a pressure on the edge of a sheet in plane stress at finite strain would act on its present "
+      "thickness, which is not supported; use 'traction' (per undeformed area), or model the sheet in 3-D");
+}
+
 /// What finite strain cannot have, each with the key to change.
 void check_finite_strain(config::Section& s, SolidParameters& p) {
   using Method = MethodParameters;
@@ -140,9 +179,14 @@ void check_finite_strain(config::Section& s, SolidParameters& p) {
       "solution-method", p.method.preconditioner == MethodParameters::Preconditioner::mixed,
       "'preconditioner: mixed' is for small strain; at finite strain Newton's method uses cell pressures by "
       "itself from nu = 0.48");
-  refuse("plane", p.dimension == 2 && p.plane == SolidParameters::Plane::stress,
-         "finite strain supports plane strain only; model the sheet in 3-D");
-  refuse("thermal-expansion", p.expansion.has_value(), "finite strain does not support thermal strain");
+  check_finite_sheet(s, p);
+  const bool expands = p.expansion.has_value();
+  refuse("thermoelastic-coupling", p.thermoelastic_coupling,
+         "finite strain has thermal strain, but not the heat of deformation; use small-strain, or remove it");
+  refuse("energy-momentum", expands && p.energy_momentum,
+         "its stress conserves energy at constant temperature only; remove it, or 'thermal-expansion'");
+  refuse("output", expands && p.output.energies,
+         "'energies' at finite strain does not count the work of thermal strain; remove it");
   refuse("damping", is_dynamic && p.damping && p.damping->stiffness > 0,
          "'stiffness' damps rigid rotations at finite strain; use 'mass', or the dissipation of "
          "'time-scheme'");

@@ -23,11 +23,12 @@ void declare_scene(config::Section& s, SolidParameters& p) {
   s.value("mesh-parameters", p.mesh_parameters)
       .doc("values for names that the .geo defines with DefineConstant: {n: 8}");
   s.value("dimension", p.dimension).range(2, 3).doc("2: cells in the plane z = 0, unit depth; 3");
-  s.choice("plane", p.plane, {{"strain", Plane::strain}, {"stress", Plane::stress}})
-      .doc("assumption of a 2-D scene");
+  s.choice("plane", p.plane,
+           {{"strain", Plane::strain}, {"stress", Plane::stress}, {"axisymmetric", Plane::axisymmetric}})
+      .doc("assumption of a 2-D scene; axisymmetric: a body of revolution about the y axis, x is the radius");
   s.check(
       [&p] {
-        return p.dimension == 3 && p.plane == Plane::stress ? "only for 2-dimensional scenes; remove this key"
+        return p.dimension == 3 && p.plane != Plane::strain ? "only for 2-dimensional scenes; remove this key"
                                                             : "";
       },
       "plane");
@@ -134,6 +135,7 @@ void declare(config::Section& s, SolidParameters& p) {
   check_together(s, p);
   check_finite_strain(s, p);
   check_orthotropic(s, p);
+  check_axisymmetric(s, p);
   check_rigid_patches(s, p);
   check_buckling(s, p);
   check_large_strain_estimate(s, p);

@@ -20,7 +20,7 @@ namespace couplet::solid {
 
 struct SolidParameters {
   enum class Analysis { static_, dynamic, thermal, buckling };  // buckling: static_ once it is read
-  enum class Plane { strain, stress };
+  enum class Plane { strain, stress, axisymmetric };
   enum class Kinematics { small_strain, finite_strain };
   std::string mesh;
   std::map<std::string, double> mesh_parameters;
@@ -64,6 +64,11 @@ elastic::LameConstants lame_constants(double youngs_modulus, double poissons_rat
 elastic::LameConstants lame_constants(const SolidParameters& parameters, const SolidMaterial& material);
 inline elastic::LameConstants lame_constants(const SolidParameters& parameters) {
   return lame_constants(parameters, parameters.material);
+}
+
+/// A body of revolution, x being the radius.
+inline bool is_axisymmetric(const SolidParameters& p) {
+  return p.dimension == 2 && p.plane == SolidParameters::Plane::axisymmetric;
 }
 
 /// Large strain by the thesis's own method.

@@ -62,6 +62,9 @@ class SolidEffect {
   virtual coupling::ErrorParts error_parts() const { return {}; }
   /// For Participant::finish(), beside the verdicts of the cards.
   virtual void judge(std::vector<std::string>& /*sentences*/) const {}
+  /// The strain of the free body that it stands for at time t, one a local flux face; where the equilibrium takes it so
+  /// (large strain): add_loads() and the stresses have nothing of it then. Empty: none.
+  virtual std::vector<double> expansion(double /*t*/) { return {}; }
 };
 
 /// The effects the parameters ask for; none: an empty list.

@@ -72,6 +72,7 @@ ThermalStrain::ThermalStrain(const mesh::Mesh& mesh, const elastic::ElasticOpera
     varies_ = varies_ || m.heat.youngs_modulus || m.heat.poissons_ratio;
   }
   plane_stress_ = mesh.dim == 2 && parameters.plane == SolidParameters::Plane::stress;
+  is_large_ = has_finite_strain(parameters);
   if (coupled_) dilation_.assign(mesh.cells.n_owned(), 0), dilation_rate_ = dilation_;
   if (varies_) lame_ = lame_trial_ = lame_at(cell_temperature(0, false));
   // What is given at the interface comes later: see set_interface().
@@ -174,8 +175,8 @@ void ThermalStrain::begin_step(const coupling::Step& step) {
     for (std::size_t c = 0; c < source.size(); ++c) {
       const double temperature = heat_->accepted().cells[c];
       const auto cell = static_cast<Index>(c);
-      source[c] = -three_bulk(cell) * expansion_[mesh_->material_of(cell)](temperature) * temperature *
-                  dilation_rate_[c];
+      source[c] = -three_bulk(elastic_->lame(cell), plane_stress_) *
+                  expansion_[mesh_->material_of(cell)](temperature) * temperature * dilation_rate_[c];
     }
     heat_->solve(step, source);
   }
@@ -187,19 +188,20 @@ void ThermalStrain::add_loads(double t, const elastic::ElasticKernel& kernel, st
   if (expands()) kernel.add_pressure(pressure(t), rhs);
 }
 
+std::vector<double> ThermalStrain::expansion(double t) {
+  if (expansion_.empty()) return {};
+  if (prescribed_) return strain(face_temperature(t, true));
+  // After the step has been accepted `start_` is its end.
+  const double part = t > time_ ? (t - step_.time) / step_.dt : 0;
+  std::vector<double> temperature = start_;
+  if (part > 0)
+    for (std::size_t f = 0; f < temperature.size(); ++f) temperature[f] += part * (end_[f] - start_[f]);
+  return strain(temperature);
+}
+
 std::vector<double> ThermalStrain::pressure(double t) {
   if (!expands()) return {};
-  std::vector<double> temperature;
-  if (prescribed_) {
-    temperature = face_temperature(t, true);
-  } else {
-    // After the step has been accepted `start_` is its end.
-    const double part = t > time_ ? (t - step_.time) / step_.dt : 0;
-    temperature = start_;
-    if (part > 0)
-      for (std::size_t f = 0; f < temperature.size(); ++f) temperature[f] += part * (end_[f] - start_[f]);
-  }
-  std::vector<double> pressure = stress_of(strain(temperature));
+  std::vector<double> pressure = stress_of(expansion(t));
   pressure.resize(mesh_->n_faces());
   mesh_->boundary.update_ghosts(std::span(pressure).subspan(mesh_->n_interior));
   return pressure;
@@ -262,7 +264,7 @@ void ThermalStrain::load(io::CheckpointReader& file) {
 }
 
 void ThermalStrain::collect_errors() {
-  if (heat_ && expands()) errors_.emplace(*mesh_, *geometry_, parameters_.heat.value());
+  if (heat_ && !expansion_.empty()) errors_.emplace(*mesh_, *geometry_, parameters_.heat.value());
 }
 
 coupling::ErrorParts ThermalStrain::error_parts() const {

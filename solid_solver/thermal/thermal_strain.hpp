@@ -19,6 +19,9 @@ namespace couplet::solid {
 std::unique_ptr<Heat> make_heat(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                                 const SolidParameters& parameters);
 
+/// 3 K of (effective, in plane stress) constants [Pa].
+double three_bulk(elastic::LameConstants lame, bool plane_stress);
+
 /// Temperature in the solid, solved for or prescribed, and the stress it makes, thesis (2.21), (2.60):
 ///   sigma = sigma(grad u) - B epsilon I,   epsilon = integral of alpha dT from T_ref on,   B = 3 lambda + 2 mu
 /// (plane stress: B = 2 lambda + 2 mu with the effective lambda). alpha is the instantaneous coefficient: 3 K
@@ -37,6 +40,7 @@ class ThermalStrain final : public SolidEffect {
   void stiffness_changed() override;
   void add_loads(double t, const elastic::ElasticKernel& kernel, std::span<double> rhs) override;
   std::vector<double> pressure(double t) override;
+  std::vector<double> expansion(double t) override;
   void accept_step() override;
   bool wants_temperature() const override { return given_; }
   void set_interface(const std::vector<Vec3>& face_centres) override;
@@ -62,7 +66,7 @@ class ThermalStrain final : public SolidEffect {
 
  private:
   enum Places { at_faces, at_points, at_cells };  // groups of interface_
-  bool expands() const { return !expansion_.empty(); }
+  bool expands() const { return !expansion_.empty() && !is_large_; }
   /// Temperatures of the flux faces of the mesh at an end of the step: T^{n+1} of the trial, or accepted.
   std::vector<double> face_temperature(double t, bool trial) const;
   std::vector<double> given_at(Places places, bool trial) const;
@@ -75,7 +79,6 @@ class ThermalStrain final : public SolidEffect {
   bool by_cells() const { return elastic_->volume_by_cells() && !plane_stress_; }
   double modulus(Index cell) const;  // B
   double face_modulus(Index face) const;
-  double three_bulk(Index cell) const;  // 3 K
   /// Means over the faces by the pyramids on them, as the displacement gradient of a cell is; owned cells.
   std::vector<double> pyramid_means(const std::vector<double>& of_faces) const;
   std::vector<double> cell_strain() const;  // thermal, of owned cells at the accepted time
@@ -96,7 +99,7 @@ class ThermalStrain final : public SolidEffect {
   std::vector<double> given_accepted_, given_trial_;  // at its faces that are needed here [K]
   std::vector<fv::Property> expansion_;               // one a material; none: no thermal strain
   double reference_ = 0;                              // [K]
-  bool plane_stress_ = false;
+  bool plane_stress_ = false, is_large_ = false;      // is_large_: the equilibrium takes expansion()
   SolidParameters parameters_;
   std::vector<std::optional<fv::Property>> youngs_modulus_, poissons_ratio_;  // one a material
   bool varies_ = false;                                                       // some of them

@@ -19,9 +19,8 @@ double ThermalStrain::face_modulus(Index face) const {
   return face < mesh_->n_interior ? 0.5 * (here + modulus(mesh_->neighbour[face])) : here;
 }
 
-double ThermalStrain::three_bulk(Index cell) const {
-  elastic::LameConstants lame = elastic_->lame(cell);
-  if (plane_stress_) lame.lambda = 2 * lame.lambda * lame.mu / (2 * lame.mu - lame.lambda);  // the true one
+double three_bulk(elastic::LameConstants lame, bool plane_stress) {
+  if (plane_stress) lame.lambda = 2 * lame.lambda * lame.mu / (2 * lame.mu - lame.lambda);  // the true one
   return 3 * lame.lambda + 2 * lame.mu;
 }
 
@@ -99,7 +98,8 @@ void ThermalStrain::add_cell_stress(std::span<Tensor3> stress) const {
 void ThermalStrain::take_stress(std::span<const Tensor3> stress) {
   const std::vector<double> strain = cell_strain();
   for (std::size_t c = 0; c < stress.size(); ++c) {
-    const double now = stress[c].trace() / three_bulk(static_cast<Index>(c)) + 3 * strain[c];
+    const double now =
+        stress[c].trace() / three_bulk(elastic_->lame(static_cast<Index>(c)), plane_stress_) + 3 * strain[c];
     dilation_rate_[c] = (now - dilation_[c]) / step_.dt;
     dilation_[c] = now;
   }
@@ -110,7 +110,7 @@ void ThermalStrain::take_stress(std::span<const Tensor3> stress) {
 double ThermalStrain::coupling_number() const {
   double most = 0;
   const double temperature = parallel::max(mesh_->comm, highest_);
-  for (std::size_t i = 0; heat_ && expands() && i < materials_.size(); ++i) {
+  for (std::size_t i = 0; heat_ && !expansion_.empty() && i < materials_.size(); ++i) {
     const SolidMaterial& m = materials_[i];
     if (!m.heat.specific_heat) continue;
     const double e = m.youngs_modulus, nu = m.poissons_ratio;

@@ -13,7 +13,7 @@ FLOORS = {
     "thermocline": ["base", "material", "weather", "plant", "bed", "wall", "economics", "model", "judge", "."],
     "mesh_mover": [".", "barrier"],
     "plate_modal": ["model", "motion", "."],
-    "common/elasticity": [".", "thesis", "symmetric", "prestress", "tied", "finite", "solve"],
+    "common/elasticity": [".", "thesis", "symmetric", "axisymmetric", "prestress", "tied", "finite", "solve"],
     "common/mesh": [".", "msh", "inp", "gmsh"],
     "common/app": ["watch", "loop", "case", "."],
     "common/io": [".", "probes"],

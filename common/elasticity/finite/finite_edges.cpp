@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "common/elasticity/finite/finite_stretch.hpp"
+
 namespace couplet::elastic {
 namespace {
 
@@ -35,7 +37,7 @@ FiniteEdges::FiniteEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, st
     for (std::size_t i = 0; i < faces.size(); ++i)
       for (const Index e : edges_.edges_of(i)) material[e] = mesh.material_of(mesh.owner[faces[i]]);
   for (std::size_t m = 0; m < laws.size(); ++m) {
-    Group group{laws[m], {}, {}, {}, {}};
+    Group group{laws[m], {}, {}, {}, {}, {}};
     Index last = -1;  // filling stands in the same block
     std::size_t n = 0;
     const auto add = [&](Index e, double of_edge) {
@@ -55,6 +57,18 @@ FiniteEdges::FiniteEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, st
   }
 }
 
+void FiniteEdges::take_stretch() {
+  for (Group& group : groups_) {
+    group.stretch.resize(group.edges.size());
+    for (std::size_t i = 0; i < group.edges.size(); ++i)
+      for (int k = 0; k < 4; ++k) group.stretch[i][k] = 1 + at(group.edges[i][std::size_t(k)])[0];
+  }
+}
+
+void FiniteEdges::forget_stretch() {
+  for (Group& group : groups_) group.stretch.clear();
+}
+
 double FiniteEdges::to_stress(bool with_bulk, double& energy) {
   double least = 1;
   std::ranges::copy(value_, kept_.begin());
@@ -62,12 +76,14 @@ double FiniteEdges::to_stress(bool with_bulk, double& energy) {
     for (std::size_t i = 0; i < group.edges.size(); ++i) {
       finite::State& state = group.states[i];
       gather(kept_.data(), group.edges[i], false, state.f);
-      const Invariants at = finite::invariants(state.f);
+      Invariants at = finite::invariants(state.f);
       for (int k = 0; k < 4; ++k)
         if (!(at.j[k] >= least)) least = at.j[k];
       if (!(least > 0)) return least;
       Energy e;
-      group.law->evaluate({&at, 1}, with_bulk, {&e, 1});
+      const std::span<const Four> stretch(group.stretch.data() + (group.stretch.empty() ? 0 : i),
+                                          group.stretch.empty() ? 0 : 1);
+      finite::evaluate(*group.law, {&at, 1}, stretch, with_bulk, {&e, 1});
       finite::keep(e, state);
       for (int k = 0; k < 4; ++k) energy += group.volume[i][k] * e.w[k];
       Four p[3][3];

@@ -21,6 +21,7 @@ class FiniteEdges {
     std::vector<std::array<double, 4>> volume;  ///< of edges that this rank owns; 0: another rank counts them
     std::vector<finite::State> states;
     std::vector<finite::Start> start;
+    std::vector<Four> stretch;  ///< thermal; empty: none
   };
 
   /// `faces`: the three-cornered flux faces, this rank's first; `volume`: V_f of this rank's, 0 of the others;
@@ -33,6 +34,9 @@ class FiniteEdges {
   void clear() { std::fill(value_.begin(), value_.end(), 0.0); }
   /// The sums become means over all ranks. Collective.
   void finish_means() { edges_.finish_gradients(value_); }
+  /// The means that stand at [0] are thermal stretches, less 1; or there are none any more.
+  void take_stretch();
+  void forget_stretch();
   /// From means to stresses P of the states there. Gives the smallest det F, and whether the law was evaluated (it
   /// is not from an edge on that is inside out); adds to the energy.
   double to_stress(bool with_bulk, double& energy);

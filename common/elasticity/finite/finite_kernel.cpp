@@ -68,8 +68,8 @@ void add_face(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f, std:
 
 template <int D>
 FiniteKernelOf<D>::FiniteKernelOf(const mesh::Mesh& mesh, const ElasticOperator& rows,
-                                  std::vector<const FiniteLaw*> laws)
-    : mesh_(mesh), rows_(rows), space_(mesh, rows), laws_(std::move(laws)) {
+                                  std::vector<const FiniteLaw*> laws, bool plane_stress)
+    : mesh_(mesh), rows_(rows), space_(mesh, rows), laws_(std::move(laws)), is_sheet_(plane_stress) {
   const mesh::Geometry& geometry = rows.geometry();
   std::vector<Index> edge_index;
   make_edges(edge_index);
@@ -88,7 +88,7 @@ FiniteKernelOf<D>::FiniteKernelOf(const mesh::Mesh& mesh, const ElasticOperator&
 /// Faces of one material, those that share with edges or the others.
 template <int D>
 void FiniteKernelOf<D>::make_group(std::size_t material, bool shares, std::span<const Index> edge_index) {
-  finite::Group<D> group{laws_[material], {}, {}, {}, shares ? 1 - SharedEdges::share : 1, {}};
+  finite::Group<D> group{laws_[material], {}, {}, {}, {}, {}, 0, shares ? 1 - SharedEdges::share : 1, {}};
   Index last = -1;
   std::size_t n = 0;
   const auto add = [&](Index f, bool is_filling) {
@@ -106,6 +106,10 @@ void FiniteKernelOf<D>::make_group(std::size_t material, bool shares, std::span<
   }
   while (n % 4 != 0) add(last, true);
   group.states.resize(group.blocks.size());
+  if (is_sheet_) {
+    group.sheet.resize(group.blocks.size());
+    group.thinning = finite::thinning(*group.law);
+  }
   groups_.push_back(std::move(group));
 }
 
@@ -157,14 +161,19 @@ void FiniteKernelOf<D>::deform(finite::Group<D>& group) {
   for (std::size_t first = 0; first < group.blocks.size(); first += chunk) {
     const std::size_t n = std::min(chunk, group.blocks.size() - first);
     const std::span<const finite::FiniteBlock<D>> here(group.blocks.data() + first, n);
+    const std::span<const Four> stretch(group.stretch.data() + (group.stretch.empty() ? 0 : first),
+                                        group.stretch.empty() ? 0 : n);
     deform_pass(here, values(), group.states.data() + first, found.data());
+    if (!group.sheet.empty())
+      finite::relax(*group.law, group.thinning, stretch, {found.data(), n}, group.states.data() + first);
     for (std::size_t i = 0; i < n; ++i)
       for (int k = 0; k < 4; ++k)
         if (!(found[i].j[k] >= worst_.ratio)) worst_ = {found[i].j[k], here[i].face[k]};
     if (!(worst_.ratio > 0)) continue;  // laws know logarithms and roots
-    group.law->evaluate({found.data(), n}, of_cells_.empty(), {energy.data(), n});
+    finite::evaluate(*group.law, {found.data(), n}, stretch, of_cells_.empty(), {energy.data(), n});
     for (std::size_t i = 0; i < n; ++i) {
       finite::keep(energy[i], group.states[first + i]);
+      if (!group.sheet.empty()) group.sheet[first + i] = finite::sheet_of(group.states[first + i]);
       for (int k = 0; k < 4; ++k) energy_ += group.own * here[i].volume[k] * energy[i].w[k];
     }
   }
@@ -267,9 +276,11 @@ template class FiniteKernelOf<2>;
 template class FiniteKernelOf<3>;
 
 std::unique_ptr<FiniteKernel> make_finite_kernel(const mesh::Mesh& mesh, const ElasticOperator& rows,
-                                                 std::vector<const FiniteLaw*> of_materials) {
-  if (mesh.dim == 2) return std::make_unique<FiniteKernelOf<2>>(mesh, rows, std::move(of_materials));
-  return std::make_unique<FiniteKernelOf<3>>(mesh, rows, std::move(of_materials));
+                                                 std::vector<const FiniteLaw*> of_materials,
+                                                 bool plane_stress) {
+  if (mesh.dim == 2)
+    return std::make_unique<FiniteKernelOf<2>>(mesh, rows, std::move(of_materials), plane_stress);
+  return std::make_unique<FiniteKernelOf<3>>(mesh, rows, std::move(of_materials), false);
 }
 
 }  // namespace couplet::elastic

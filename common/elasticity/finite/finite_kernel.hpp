@@ -82,11 +82,16 @@ class FiniteKernel {
   /// As ElasticKernel::holding_forces(), of displacements `unknowns`. Collective.
   virtual std::vector<Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
                                              const ElasticLoads& loads) = 0;
+  /// Thermal stretches theta of the local flux faces, until other ones are given: F = F_e theta, the energy is that of F_e
+  /// (finite_stretch.hpp), one volume ratio a cell sees the mean of theta^3. Empty: none. Collective.
+  virtual void set_stretch(std::span<const double> of_faces) = 0;
 };
 
-/// `of_materials`: one law a material of the mesh (one: of all); kept by reference like mesh and rows.
-/// Collective.
+/// `of_materials`: one law a material of the mesh (one: of all); kept by reference like mesh and rows. `plane_stress`: of a
+/// sheet in two dimensions, whose stretch across it each face finds by itself (finite_sheet.hpp): without one volume ratio a
+/// cell, pressures that follow and set_start(). Collective.
 std::unique_ptr<FiniteKernel> make_finite_kernel(const mesh::Mesh& mesh, const ElasticOperator& rows,
-                                                 std::vector<const FiniteLaw*> of_materials);
+                                                 std::vector<const FiniteLaw*> of_materials,
+                                                 bool plane_stress = false);
 
 }  // namespace couplet::elastic

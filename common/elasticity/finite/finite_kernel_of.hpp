@@ -17,13 +17,15 @@ namespace couplet::elastic {
 template <int D>
 class FiniteKernelOf final : public FiniteKernel {
  public:
-  FiniteKernelOf(const mesh::Mesh& mesh, const ElasticOperator& rows, std::vector<const FiniteLaw*> laws);
+  FiniteKernelOf(const mesh::Mesh& mesh, const ElasticOperator& rows, std::vector<const FiniteLaw*> laws,
+                 bool plane_stress);
 
   void set_start(std::span<const double> unknowns, std::span<const double> known) override;
   void forget_start() override { has_start_ = false; }
   void set_pressure(std::span<const double> of_faces) override {
     pressure_.set(mesh_, rows_.geometry(), of_faces);
   }
+  void set_stretch(std::span<const double> of_faces) override;
   bool has_pressure() const override { return !pressure_.empty(); }
   Vec3 pressure_force() const override { return pressure_force_; }
   void set_density(std::span<const double> of_cells) override {
@@ -54,6 +56,7 @@ class FiniteKernelOf final : public FiniteKernel {
  private:
   void make_group(std::size_t material, bool shares, std::span<const Index> edge_index);
   void make_elsewhere();
+  void stretch_edges();
   void make_edges(std::vector<Index>& edge_index);
   void internal_forces();
   void deform(finite::Group<D>& group);
@@ -70,6 +73,7 @@ class FiniteKernelOf final : public FiniteKernel {
   const ElasticOperator& rows_;
   SymmetricSpace<D> space_;
   std::vector<const FiniteLaw*> laws_;
+  bool is_sheet_;
   std::vector<finite::Group<D>> groups_;
   finite::Group<D>
       elsewhere_;  // faces of owned cells that belong to other ranks: F alone; one volume ratio a cell
@@ -80,6 +84,7 @@ class FiniteKernelOf final : public FiniteKernel {
   double energy_ = 0;
   Worst worst_;
   std::vector<double> of_cells_, volume_;  // of nodes: sums, then pressures; of owned cells; empty: faces'
+  std::vector<double> swelling_;           // mean theta^3 of owned cells; empty: 1
   std::vector<double> modulus_;            // U'' / V of owned cells at the last linearise()
   std::vector<double> pressures_;          // of nodes there; with edges that share
   // Of owned cells: U'(J) at the last linearise(), and of pressures of their own p and its change.

@@ -7,6 +7,7 @@
 
 #include "common/elasticity/finite/discrete_gradient.hpp"
 #include "common/elasticity/finite/finite_edges.hpp"
+#include "common/elasticity/finite/finite_sheet.hpp"
 #include "common/elasticity/finite/finite_strain.hpp"
 #include "common/elasticity/symmetric/symmetric_blocks.hpp"
 
@@ -28,8 +29,11 @@ struct Group {
   const FiniteLaw* law;
   std::vector<FiniteBlock<D>> blocks;
   std::vector<State> states;
-  std::vector<Start> start;  ///< of the step; empty: its stress is that of the states
-  double own = 1;            ///< share of their energy that is not the edges'
+  std::vector<Start> start;   ///< of the step; empty: its stress is that of the states
+  std::vector<Four> stretch;  ///< thermal, of each block; empty: none
+  std::vector<Sheet> sheet;   ///< plane stress; empty: none
+  double thinning = 0;        ///< of the law, plane stress
+  double own = 1;             ///< share of their energy that is not the edges'
   std::vector<std::array<std::array<Index, 3>, 4>> edges;  ///< of each block; empty: they share nothing
 };
 
@@ -138,6 +142,7 @@ template <int D, bool HasSecond>
     deformation<D>(block, block.inverse, at.nodes, at.points, true, df);
     const Four dpressure = at.of_cells ? between<D>(block, at.of_cells) / group.own : Four{};
     tangent<HasSecond>(group.states[i], df, dpressure, dp);
+    if (D == 2 && !group.sheet.empty()) condense(group.sheet[i], df, dp);
     push_stress<D>(block, dp, group.own, at.forces, at.point_forces);
   }
 }

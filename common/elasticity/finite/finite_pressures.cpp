@@ -23,11 +23,12 @@ void FiniteKernelOf<D>::find_pressures() {
   const std::span<double> cells = std::span(of_cells_).first(std::size_t(mesh_.cells.n_local()));
   mesh_.cells.add_to_owners(cells);
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    const BulkOf<double> bulk = law_of(c).bulk(cells[c] / volume_[c]);
+    const double swelling = swelling_.empty() ? 1 : swelling_[c];
+    const BulkOf<double> bulk = law_of(c).bulk(cells[c] / (volume_[c] * swelling));
     cells[c] = bulk_pressure_[c] = bulk.pressure;
     if (!own_pressure_.empty()) cells[c] = own_pressure_[c] + fraction_ * pressure_change_[c];
-    modulus_[c] = bulk.modulus / volume_[c];
-    energy_ += volume_[c] * bulk.u;
+    modulus_[c] = bulk.modulus / (volume_[c] * swelling);
+    energy_ += volume_[c] * swelling * bulk.u;
   }
   mesh_.cells.update_ghosts(cells);
   if (edges_) pressures_ = of_cells_;

@@ -18,6 +18,7 @@ void FiniteKernelOf<D>::visit_tangents(const std::function<void(const FaceTangen
       for (int column = 0; column < 9; ++column) {
         df[column / 3][column % 3] = Four{1, 1, 1, 1};
         finite::tangent<true>(state, df, Four{}, dp);
+        if (D == 2 && !group.sheet.empty()) finite::condense(group.sheet[i], df, dp);
         df[column / 3][column % 3] = Four{};
         for (int k = 0; k < 4; ++k)
           for (int row = 0; row < 9; ++row) of[k].stiffness(row, column) = dp[row / 3][row % 3][k];

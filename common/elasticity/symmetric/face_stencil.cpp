@@ -57,6 +57,18 @@ const std::vector<FaceStencil::Term>& FaceStencil::of(const SymmetricFace<D>& fa
   return terms_;
 }
 
+const std::vector<FaceStencil::Term>& FaceStencil::of_revolution(const AxisymmetricFace& face, Index f) {
+  const auto of = [&](std::size_t i) { return Vec3(face.b[i][0], face.b[i][1], face.hoop[i]); };
+  terms_.clear();
+  take(mesh_.owner[f], of(0), Tensor3::Identity());
+  if (f < mesh_.n_interior)
+    take(mesh_.neighbour[f], of(1), Tensor3::Identity());
+  else if (face.has_shear)
+    take_boundary(f, of(1));
+  for (std::size_t i = 0; i < 2; ++i) take_point(face.point[i], of(i + 2));
+  return terms_;
+}
+
 template <int D>
 const std::vector<FaceStencil::Term>& FaceStencil::of_mean(Index f) {
   terms_.clear();

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/elasticity/elasticity.hpp"
+#include "common/elasticity/symmetric/axisymmetric_faces.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 
 namespace couplet::elastic {
@@ -25,6 +26,8 @@ class FaceStencil {
   /// Of a flux face; valid until the next call.
   template <int D>
   const std::vector<Term>& of(const SymmetricFace<D>& face, Index f);
+  /// Of a body of revolution: b is (d/dr, d/dz, hoop); without shear at a plane of symmetry.
+  const std::vector<Term>& of_revolution(const AxisymmetricFace& face, Index f);
   /// Of the mean displacement on a boundary face by the trial functions, u = sum_i b_x T_i u_i; valid until the next call.
   template <int D>
   const std::vector<Term>& of_mean(Index f);

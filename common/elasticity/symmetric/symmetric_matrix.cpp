@@ -53,6 +53,25 @@ void add_face(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f, Node
     }
 }
 
+/// The same with the hoop strain, V B_i^T C B_j.
+void add_ring(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f, NodeAssembly& to) {
+  const AxisymmetricFace face = axisymmetric_face(mesh, rows, f);
+  const std::vector<FaceStencil::Term>& terms = to.stencil().of_revolution(face, f);
+  const LameConstants lame = face_lame(mesh, rows, f);
+  const double mu = face.volume * lame.mu, lambda = face.volume * lame.lambda,
+               shear = face.has_shear ? mu : 0;
+  for (const FaceStencil::Term& i : terms)
+    for (const FaceStencil::Term& j : terms) {
+      const double r = i.b[0] + i.b[2], z = i.b[1], other = j.b[0] + j.b[2];
+      Tensor3 block = Tensor3::Zero();
+      block(0, 0) = lambda * r * other + 2 * mu * (i.b[0] * j.b[0] + i.b[2] * j.b[2]) + shear * z * j.b[1];
+      block(0, 1) = lambda * r * j.b[1] + shear * z * j.b[0];
+      block(1, 0) = lambda * z * other + shear * i.b[0] * j.b[1];
+      block(1, 1) = (lambda + 2 * mu) * z * j.b[1] + shear * i.b[0] * j.b[0];
+      to.add_block(i.node, j.node, i.turn.transpose() * block * j.turn);
+    }
+}
+
 }  // namespace
 
 linalg::SparseMatrix symmetric_matrix(const mesh::Mesh& mesh, const ElasticOperator& rows,
@@ -61,7 +80,9 @@ linalg::SparseMatrix symmetric_matrix(const mesh::Mesh& mesh, const ElasticOpera
   NodeAssembly assembly(mesh, rows);
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
     if (mesh.owner[f] >= mesh.cells.n_owned() && !rows.volume_by_cells()) continue;
-    if (mesh.dim == 2)
+    if (is_axisymmetric(rows))
+      add_ring(mesh, rows, f, assembly);
+    else if (mesh.dim == 2)
       add_face<2>(mesh, rows, f, assembly);
     else
       add_face<3>(mesh, rows, f, assembly);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/elasticity/processor_clones.hpp"
+#include "common/elasticity/symmetric/axisymmetric_faces.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -75,6 +76,13 @@ inline void SymmetricSpace<D>::to_nodes_loop() {
 }
 
 namespace {
+
+/// Of a body of revolution what makes the two halves of the force on a pyramid that on a ring, together by its mean radius.
+std::array<double, 2> around(const ElasticOperator& rows, Index f, double tip) {
+  if (!is_axisymmetric(rows)) return {1, 1};
+  const double base = rows.geometry().face_centre[f][0];
+  return {circumference(0.5 * (tip + base)), circumference((tip + 5 * base) / 6)};
+}
 
 // The loops for several generations of processors; the right one is picked when the program starts.
 COUPLET_PROCESSOR_CLONES void vertices_pass(SymmetricSpace<3>& space) { space.interpolate_free(); }
@@ -190,13 +198,23 @@ void SymmetricSpace<D>::spread_over_base(Index f, const Vec3& force_on_base) {
     add(point_force(points[i]), part * shares[i] * force_on_base);
 }
 
+/// Around a body of revolution: as the integral of r over the two halves of the face gives it to its node and points.
+template <int D>
+void SymmetricSpace<D>::spread_around(Index f, const Vec3& force_on_base) {
+  const double middle = geometry_.face_centre[f][0];
+  add(force(node_of_face(f)), 0.5 * circumference(middle) * force_on_base);
+  for (const Index v : mesh_.face_points[f])
+    add(point_force(v), circumference(2 * geometry_.points[v][0] + middle) / 12 * force_on_base);
+}
+
 template <int D>
 void SymmetricSpace<D>::spread_face_forces(std::span<const double> forces) {
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
     Vec3 here = vector(forces.data() + std::size_t(f - mesh_.n_interior) * D);
     if (here.isZero(0)) continue;
     here -= (rows_.at(f).passing * here).eval();
-    if (!here.isZero(0) && !rows_.mirrored(f)) spread_over_base(f, here);
+    if (here.isZero(0) || rows_.mirrored(f)) continue;
+    is_axisymmetric(rows_) ? spread_around(f, here) : spread_over_base(f, here);
   }
 }
 
@@ -205,8 +223,9 @@ void SymmetricSpace<D>::spread_cell_forces(std::span<const double> forces) {
   const auto add_pyramid = [&](Index f, Index c, double volume) {
     if (c >= mesh_.cells.n_owned()) return;
     const Vec3 here = volume / volume_[c] * vector(forces.data() + std::size_t(c) * D);
-    add(force(c), here / D);
-    spread_over_base(f, (1 - 1.0 / D) * here);
+    const auto [of_cell, of_base] = around(rows_, f, geometry_.cell_centre[c][0]);
+    add(force(c), of_cell / D * here);
+    spread_over_base(f, of_base * (1 - 1.0 / D) * here);
   };
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
     const auto [here, there] = pyramids(mesh_, geometry_, f);
@@ -257,7 +276,8 @@ Vec3 SymmetricSpace<D>::acting(std::span<const double> forces) const {
   Vec3 total = Vec3::Zero();
   for (const Index f : rows_.unknown_faces()) {
     const Vec3 here = vector(forces.data() + std::size_t(f - mesh_.n_interior) * D);
-    total += here - rows_.at(f).passing * here;
+    const double ring = is_axisymmetric(rows_) ? circumference(geometry_.face_centre[f][0]) : 1;
+    total += ring * (here - rows_.at(f).passing * here);
   }
   return total;
 }

@@ -86,6 +86,7 @@ class SymmetricSpace {
   void constrain_point_forces();
   void points_to_nodes();
   void spread_over_base(Index f, const Vec3& force_on_base);
+  void spread_around(Index f, const Vec3& force_on_base);
   void held_at_points(std::span<const Index> patch_of, bool moved, std::vector<Wrench>& result);
   Vec3 place_of(const double* force, bool moved) const;
   /// Force k (u - g) of the springs on the mean of the trace of a face, in which its node has the part 1/dim

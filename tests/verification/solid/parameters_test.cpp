@@ -191,10 +191,53 @@ TEST(SolidParameters, finite_strain_says_what_it_cannot_have) {
       Contains(HasSubstr("plane strain only")));
   EXPECT_THAT(read(start + estimate + "analysis: static\nmaterial: {" + body + "}\n", sound),
               ::testing::IsEmpty());
+  const std::string warm = "thermal-expansion: {}\ntemperature: 300\n",
+                    expanding = "material: {" + body + ", expansion: 1e-5}\n";
+  SolidParameters heated;
+  EXPECT_THAT(read(start + large + warm + expanding, heated), ::testing::IsEmpty());
+  told(thesis + warm + expanding, "at finite strain has no thermal strain");
+  told(large + "energy-momentum: true\n" + warm + expanding, "conserves energy at constant temperature only");
+  told(large + "output: {energies: true}\n" + warm + expanding, "does not count the work of thermal strain");
+  told(large + "thermoelastic-coupling: true\n" + warm + expanding, "not the heat of deformation");
   const std::string facing =
       "mesh: a.msh\nboundaries: {root: {type: fixed-displacement, value: [0, 0, 0]}, wet: {type: interface}}\n" +
       large + "interface: {load: pressure}\nmaterial: {" + body + "}\n";
   EXPECT_THAT(read(facing, good), Contains(HasSubstr("would not follow the surface")));
+}
+
+TEST(SolidParameters, a_large_sheet_says_what_it_cannot_have) {
+  const std::string start =
+      "mesh: a.msh\ndimension: 2\nplane: stress\nkinematics: finite-strain\n"
+      "material: {density: 1, youngs-modulus: 1, poissons-ratio: 0.499}\n";
+  const std::string held = "boundaries: {root: {type: fixed-displacement, value: [0, 0]}";
+  SolidParameters good, p;
+  EXPECT_THAT(read(start + held + "}\n", good), ::testing::IsEmpty());
+  const auto told = [&](const std::string& text, const std::string& wanted) {
+    SolidParameters q;
+    EXPECT_THAT(read(start + text, q), Contains(HasSubstr(wanted))) << text;
+  };
+  told(held + ", side: {type: pressure, value: 1}}\n", "would act on its present thickness");
+  told(held + "}\nsolution-method: {volume-strain: cells}\n", "which does not lock there");
+  told(held + "}\nsolution-method: {type: segregated}\n", "supports plane strain only");
+  told(held + "}\nenergy-momentum: true\n", "its stress supports plane strain only");
+}
+
+TEST(SolidParameters, a_body_of_revolution_says_what_it_cannot_have) {
+  const std::string start = "mesh: a.msh\ndimension: 2\nplane: axisymmetric\nanalysis: static\n" + material;
+  const std::string held = "boundaries: {root: {type: fixed-displacement, value: [0, 0]}";
+  SolidParameters good;
+  EXPECT_THAT(read(start + held + "}\n", good), ::testing::IsEmpty());
+  const auto told = [&](const std::string& text, const std::string& wanted) {
+    SolidParameters q;
+    EXPECT_THAT(read(start + text, q), Contains(HasSubstr(wanted))) << text;
+  };
+  told(held + "}\nkinematics: finite-strain\n", "supports small strain only");
+  told(held + ", side: {type: spring, stiffness: 1}}\n", "'frictionless', 'roller' and 'free'");
+  told(held + "}\nsolution-method: {face-gradient: thesis}\n", "is solved with 'face-gradient: symmetric'");
+  told(held + "}\nsolution-method: {volume-strain: cells}\n", "is solved with 'face-gradient: symmetric'");
+  told(held + "}\noutput: {modes: 3}\n", "supports none of 'spectrum', 'modes'");
+  told(held + "}\nheat: {}\n", "does not conduct heat");
+  told(held + "}\ninterface: {}\n", "does not couple");
 }
 
 TEST(SolidParameters, plane_stress_has_the_stiffness_of_a_thin_sheet) {

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/elasticity/finite/finite_sheet.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace couplet::elastic::finite {
+namespace {
+
+// Newton's method in the stretch; a step changes it at most by this factor.
+constexpr int most_steps = 60;
+constexpr double largest_step = 2, converged = 1e-13;
+
+/// Invariants of F from in-plane F : F and det F.
+Invariants with(const Four& square, const Four& area, const Four& l) {
+  Invariants at;
+  at.i1 = square + l * l;
+  at.i2 = area * area + l * l * square;
+  at.j = area * l;
+  return at;
+}
+
+/// One step from l; the largest relative change.
+double step(const Energy& e, const Four& square, const Four& area, Four& l) {
+  const Four a1 = 2.0 * l, a2 = 2.0 * l * square;
+  const Four slope = a1 * e.w1 + a2 * e.w2 + area * e.wj;
+  const Four bend = 2.0 * e.w1 + 2.0 * square * e.w2 + a1 * a1 * e.w11 + a2 * a2 * e.w22 +
+                    area * area * e.wjj + 2.0 * (a1 * a2 * e.w12 + a1 * area * e.w1j + a2 * area * e.w2j);
+  double change = 0;
+  for (int k = 0; k < 4; ++k) {
+    const double newton =
+        bend[k] > 0 ? l[k] - slope[k] / bend[k] : l[k] * (slope[k] > 0 ? 1 / largest_step : largest_step);
+    const double next = std::clamp(newton, l[k] / largest_step, l[k] * largest_step);
+    change = std::max(change, std::abs(next - l[k]) / l[k]);
+    if (l[k] > thinnest) l[k] = next;  // one that is lost stays where it is
+  }
+  return change;
+}
+
+}  // namespace
+
+double thinning(const FiniteLaw& law) {
+  State state{};
+  for (int a = 0; a < 3; ++a) state.f[a][a] = Four{} + 1.0;
+  const Invariants at = invariants(state.f);
+  Energy e;
+  law.evaluate({&at, 1}, true, {&e, 1});
+  keep(e, state);
+  const Sheet sheet = sheet_of(state);
+  return sheet.d[0][0][0] / sheet.c[0];
+}
+
+void relax(const FiniteLaw& law, double thinning, std::span<const Four> stretch, std::span<Invariants> at,
+           State* states) {
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const Four square = at[i].i1 - 1.0, area = at[i].j;
+    const std::span<const Four> theta = stretch.empty() ? stretch : stretch.subspan(i, 1);
+    Four l;
+    bool is_sound = true;
+    for (int k = 0; k < 4; ++k) {
+      is_sound = is_sound && area[k] > 0;
+      const double free = theta.empty() ? 1 : theta[0][k];
+      l[k] = area[k] > 0 ? free * std::pow(area[k] / (free * free), -thinning) : 1;
+    }
+    if (!is_sound) continue;  // the step is shortened for it
+    double change = std::numeric_limits<double>::infinity();
+    for (int n = 0; n < most_steps && change > converged; ++n) {
+      Invariants here = with(square, area, l);
+      Energy e;
+      evaluate(law, {&here, 1}, theta, true, {&e, 1});
+      change = step(e, square, area, l);
+    }
+    at[i] = with(square, area, l);
+    for (int k = 0; k < 4; ++k)
+      if (!(l[k] > thinnest) || !(change <= 1e3 * converged)) at[i].j[k] = 0;
+    states[i].f[2][2] = l;
+  }
+}
+
+Sheet sheet_of(const State& state) {
+  Four across[3][3] = {}, dp[3][3];
+  across[2][2] = Four{} + 1.0;
+  tangent<true>(state, across, Four{}, dp);
+  Sheet sheet;
+  for (int a = 0; a < 2; ++a)
+    for (int b = 0; b < 2; ++b) sheet.d[a][b] = dp[a][b];
+  sheet.c = dp[2][2];
+  return sheet;
+}
+
+}  // namespace couplet::elastic::finite
