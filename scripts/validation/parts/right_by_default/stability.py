@@ -53,7 +53,7 @@ BARS = [
     Bar("column at large strain: 2.6 times Euler's load is flagged as unstable from 1/2.6 of it on; 0.85 times, in tension and with a "
         "lateral load it is not", "passed", passes("verification_solid_buckling", "Equilibrium.*")),
     Bar("snap-through, Lee's frame by arc length: first limit load", "18.5 within 2 %, no warning", snap,
-        but="in plane strain with E (1 - nu^2), so that E I is that of the frame of beams; 1.2 m for 120"),
+        but="in plane strain with E (1 - nu^2), so that E I is that of the frame of beams; E 720 is in t/cm^2, L 120 in cm, the load in kN"),
     Bar("snap-through, shallow arch: path and both limit loads of the closed form, dead load and pressure", "path within 3 %, limit loads within 2 %",
         passes("verification_solid_arc_length", "ArcLength.follows*:ArcLength.scales_a_pressure*")),
 ]
