@@ -51,6 +51,7 @@ coupling::StepReport Solid::accept_step() {
   if (!body_.is_dynamic()) {
     judge_.look();
     judge_.see_buckling();
+    judge_.follow_path();
   }
   stepper_.release_solver();
   for (const auto& effect : body_.effects())
@@ -76,6 +77,7 @@ std::vector<std::string> Solid::finish() {
   if (chosen.buckling > 0) output_->write_buckling();
   if (chosen.modes > 0 && !body_.is_dynamic()) output_->write_preloaded_modes();
   std::vector<std::string> sentences = judge_.sentences();
+  judge_.finish_path(sentences);
   for (const auto& effect : body_.effects()) effect->judge(sentences);
   return sentences;
 }

@@ -48,6 +48,7 @@ constexpr std::array ids{
     FindingId{answer, "heat-swing", "the temperature oscillates from step to step"},
     FindingId{answer, "buckling", "the loads of a linear static run are near or above the buckling loads"},
     FindingId{answer, "unstable-equilibrium", "the computed equilibrium is unstable"},
+    FindingId{answer, "limit-load", "a run by arc length passed a maximum or minimum of the load"},
     FindingId{neglected, "inertia", "a static run under a load that inertia would resist"},
     FindingId{neglected, "geometric-non-linearity", "large displacement gradients in a linear run"},
     FindingId{neglected, "yielding", "the stress exceeds the yield strength"},

@@ -131,6 +131,20 @@ void SolidBody::place_expansion(double t) const {
       equilibrium_->set_expansion(std::move(strain));
 }
 
+std::vector<double> SolidBody::scaled(std::vector<double> values) const {
+  if (load_factor_ != 1)
+    for (double& v : values) v *= load_factor_;
+  return values;
+}
+
+void SolidBody::add_scaled_loads(double t, std::span<double> forces) const {
+  const bool with_pressure = !equilibrium_->takes_pressure();
+  if (load_factor_ == 1) return boundaries_.add_forces(t, forces, with_pressure);
+  std::vector<double> whole(forces.size(), 0);
+  boundaries_.add_forces(t, whole, with_pressure);
+  for (std::size_t i = 0; i < whole.size(); ++i) forces[i] += load_factor_ * whole[i];
+}
+
 std::vector<double> SolidBody::body_forces(double t) const {
   if (!has_body_forces()) return {};
   const int dim = mesh_.dim;
@@ -141,7 +155,7 @@ std::vector<double> SolidBody::body_forces(double t) const {
       if (!parameters_.gravity.empty()) force += density(c) * parameters_.gravity[a];
       forces[std::size_t(c) * dim + a] = force * geometry_.volume[c];  // (2.59)
     }
-  return forces;
+  return scaled(std::move(forces));
 }
 
 std::vector<double> SolidBody::known_acceleration(double start, double dt) const {

@@ -60,12 +60,12 @@ class SolidBody final {
   /// use any more. Collective.
   bool apply_stiffness();
   /// Adds the loads of the boundaries at time t that the equilibrium does not take as pressures, as SolidBoundaries does.
-  void add_dead_loads(double t, std::span<double> forces) const {
-    boundaries_.add_forces(t, forces, !equilibrium_->takes_pressure());
-  }
+  void add_dead_loads(double t, std::span<double> forces) const { add_scaled_loads(t, forces); }
+  /// By which all loads but prescribed displacements are multiplied from here on.
+  void set_load_factor(double factor) { load_factor_ = factor; }
   /// It knows the pressures at time t that follow the surface. Collective.
   void place_pressures(double t) const {
-    if (equilibrium_->takes_pressure()) equilibrium_->set_pressure(boundaries_.pressures(t));
+    if (equilibrium_->takes_pressure()) equilibrium_->set_pressure(scaled(boundaries_.pressures(t)));
   }
   /// It knows the thermal strains at time t that it takes itself: large strain. Collective.
   void place_expansion(double t) const;
@@ -96,6 +96,8 @@ class SolidBody final {
  private:
   void check_supports() const;
   void find_mass();
+  void add_scaled_loads(double t, std::span<double> forces) const;
+  std::vector<double> scaled(std::vector<double> values) const;
 
   const mesh::Mesh mesh_;
   const mesh::Geometry geometry_;
@@ -106,6 +108,7 @@ class SolidBody final {
   elastic::ElasticKernel kernel_;
   std::unique_ptr<Equilibrium> equilibrium_;
   bool has_mass_ = false;
+  double load_factor_ = 1;
   PrescribedDisplacement prescribed_;
   RigidPatches rigid_;
   std::vector<fv::Expression> body_force_;

@@ -183,7 +183,7 @@ void SolidJudge::save(io::CheckpointWriter& file) const {
 
 void SolidJudge::load(io::CheckpointReader& file) {
   latest_.reset();
-  equilibrium_.forget();
+  equilibrium_.forget(body_);
   energy_audit_.scale = file.read_scalar("audit-scale");
   largest_gradient_ = file.read_scalar("largest-gradient");
   inertia_over_load_ = file.read_scalar("inertia-over-load");

@@ -79,8 +79,9 @@ FiniteStrain::FiniteStrain(const mesh::Mesh& mesh, const elastic::ElasticOperato
   const bool is_dynamic = parameters.analysis == SolidParameters::Analysis::dynamic;
   const bool is_slender = !is_dynamic && (mesh.dim == 2 || cells <= slender_up_to_3d) &&
                           slenderness(mesh, geometry) > (mesh.dim == 2 ? slender_2d : slender_3d);
-  const bool wants_factors =
-      is_slender ||
+  const bool follows_path = parameters.load_stepping.type == LoadStepping::Type::arc_length;
+  const bool wants_factors =  // past a limit point the tangent is indefinite
+      is_slender || follows_path ||
       (rows.volume_by_cells() && ratio >= (is_dynamic ? factors_from_dynamic : factors_from_ratio));
   if (parameters.method.preconditioner == Preconditioner::factors ||
       (parameters.method.preconditioner == Preconditioner::automatic && is_small && wants_factors))
@@ -90,6 +91,7 @@ FiniteStrain::FiniteStrain(const mesh::Mesh& mesh, const elastic::ElasticOperato
   trial_ = du_ = r_;
   noise_ = rounding_of_forces(mesh, rows);
   noise_of_motion_ = rounding_of_motion(mesh, rows);
+  if (follows_path) path_.emplace(mesh, geometry, parameters.load_stepping);
 }
 
 std::string FiniteStrain::name() const {
@@ -213,6 +215,7 @@ double FiniteStrain::scale_of(const Load& load, std::span<const double> u, doubl
 }
 
 linalg::SolveStatistics FiniteStrain::solve(const Load& load, std::span<double> u) {
+  if (path_) return follow_path(load, u);
   if (load.is_conserving) kernel_->set_start(load.accepted, load.accepted_known);
   const linalg::SolveStatistics statistics = iterate(load, u);
   kernel_->forget_start();
@@ -295,6 +298,7 @@ double FiniteStrain::judge_rounding(const Load& load, double scale, double left)
 void FiniteStrain::set_pressure(std::vector<double> of_faces) {
   presses_ = parallel::any(mesh_.comm, std::ranges::any_of(of_faces, [](double p) { return p != 0; }));
   kernel_->set_pressure(of_faces);
+  if (path_) whole_pressure_ = std::move(of_faces);
 }
 
 /// theta = 1 + the integral of alpha dT: lengths of the body as it was at the reference temperature.

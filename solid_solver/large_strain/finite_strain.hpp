@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "common/elasticity/finite/finite_kernel.hpp"
 #include "common/linalg/linear_map.hpp"
 #include "solid_solver/large_strain/large_strain.hpp"
+#include "solid_solver/large_strain/load_path.hpp"
 #include "solid_solver/method/tangent_solver.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
@@ -54,6 +56,9 @@ class FiniteStrain final : public LargeStrain {
                                               const elastic::ElasticLoads& loads) override {
     return kernel_->holding_forces(unknowns, known, loads);
   }
+  LoadPath* load_path() override { return path_ ? &*path_ : nullptr; }
+  void save(io::CheckpointWriter& file) const override;
+  void load(io::CheckpointReader& file, std::span<const double> unknowns, std::span<const double>) override;
   /// Of the last solve.
   const std::vector<NewtonIterate>& iterates() const { return iterates_; }
   /// "3 iterations of Newton's method, ...", of the last solve.
@@ -67,6 +72,13 @@ class FiniteStrain final : public LargeStrain {
   void follow_known(const Load& load, TangentSolver& solver, std::span<double> u);
   double scale_of(const Load& load, std::span<const double> u, double residual);
   linalg::SolveStatistics iterate(const Load& load, std::span<double> u);
+  struct PathSearch;
+  linalg::SolveStatistics follow_path(const Load& load, std::span<double> u);
+  void scale_loads(PathSearch& path, double factor);
+  void find_push(PathSearch& path, std::span<const double> u);
+  void search_path(PathSearch& path, std::span<double> u, double change, double most);
+  void leave(PathSearch& path, TangentSolver& solver, std::span<double> u);
+  void correct(PathSearch& path, TangentSolver& solver, std::span<double> u);
   /// Over the load what rounding ended the iteration with; much of it is said once, nothing is left of no load. Collective.
   double judge_rounding(const Load& load, double scale, double left);
   TangentSolver& solver_for(double mass_factor, std::span<const double> node_inertia);
@@ -84,6 +96,8 @@ class FiniteStrain final : public LargeStrain {
   std::unique_ptr<elastic::FiniteKernel> kernel_;
   std::vector<std::unique_ptr<TangentSolver>> solvers_;  // by size of the inertia, latest first
   std::vector<double> r_, trial_, du_;
+  std::optional<LoadPath> path_;        // none: the loads follow the time
+  std::vector<double> whole_pressure_;  // at load factor 1
   std::vector<NewtonIterate> iterates_;
 };
 

@@ -20,6 +20,8 @@ class CheckpointWriter;
 
 namespace couplet::solid {
 
+class LoadPath;
+
 /// What belongs to one size of the inertia term: factors and preconditioners are made once for it.
 struct SolidSystem {
   double mass_factor;                      ///< (d + alpha c) / s, see SolidStepper [1/s^2]; 0: static
@@ -43,6 +45,7 @@ struct EquilibriumLoad {
   std::span<const double> accepted{}, accepted_known{};  ///< the accepted state
   std::span<const double> inertia{};                     ///< per owned cell, m times mass; empty: static
   std::span<const double> node_inertia{};                ///< of the unknown nodes, of kernels with mass
+  double dt = 0;                                         ///< of the step [s]
 };
 
 /// A displacement, with what can be made of it. Calls are collective.
@@ -84,6 +87,9 @@ class Equilibrium {
   virtual void accept() {}
   virtual void save(io::CheckpointWriter&) const {}
   virtual void load(io::CheckpointReader&, std::span<const double>, std::span<const double>) {}
+
+  /// All loads are multiplied by its load factor, an unknown of find(); null: they are as they stand.
+  virtual LoadPath* load_path() { return nullptr; }
 
   /// Inner forces A(u), those of the pressure counted with the opposite sign.
   virtual std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) = 0;

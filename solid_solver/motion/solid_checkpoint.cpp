@@ -8,6 +8,7 @@
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/numbering.hpp"
+#include "solid_solver/large_strain/load_path.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
 
@@ -89,6 +90,7 @@ void SolidStepper::load_state(io::CheckpointReader& file) {
     state_.energies.initial_kinetic = work[1];
   }
   body_.equilibrium().load(file, body_.unknowns_of(state_.cell_u, state_.face_u), state_.known);
+  if (const LoadPath* path = body_.equilibrium().load_path()) body_.set_load_factor(path->factor());
 }
 
 void SolidStepper::save_guesses(io::CheckpointWriter& file) const {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "solid_solver/large_strain/load_path.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
 
 namespace couplet::solid {
@@ -22,6 +23,7 @@ SolidStepper::SolidStepper(SolidBody& body)
   apply_stiffness();
   start_from_rest();
   body_.place_expansion(0);
+  if (body.equilibrium().load_path()) body.set_load_factor(0);
 }
 
 void SolidStepper::start_from_rest() {
@@ -93,6 +95,7 @@ void SolidStepper::begin_step(const coupling::Step& step, bool has_loads) {
 void SolidStepper::prepare_loads() {
   const std::vector<time::Stage> stages = stages_of(step_.dt);
   stages_.resize(stages.size());
+  if (body_.equilibrium().load_path()) body_.set_load_factor(1);
   for (const auto& effect : body_.effects()) effect->begin_step(step_);
   apply_stiffness();
   for (std::size_t i = 0; i < stages.size(); ++i) {
@@ -143,6 +146,7 @@ void SolidStepper::accept_step() {
   for (const StageWork& work : stages_)
     if (linalg::ResidualProjection* projection = work.system->projection()) projection->accept();
   body_.equilibrium().accept();
+  if (LoadPath* path = body_.equilibrium().load_path()) path->accept(trial_.time);
   std::swap(state_, trial_);
   body_.place_expansion(state_.time);
 }

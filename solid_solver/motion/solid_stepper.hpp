@@ -70,6 +70,7 @@ class SolidStepper final {
   void add_body_forces(double t, std::span<double> rhs);
   void solve_stage(const StageWork& work, bool first);
   linalg::SolveStatistics find_equilibrium(const StageWork& work);
+  void scale_loads(const StageWork& work, double factor);
   void add_inertia(const StageWork& work, const SolidState& now);
   void add_kernel_inertia(const StageWork& work, const SolidState& now, const time::Levels& known);
   void add_face_forces(const StageWork& work);

@@ -6,6 +6,7 @@
 #include "common/elasticity/symmetric/axisymmetric_faces.hpp"
 #include "common/log/log.hpp"
 #include "common/log/timer.hpp"
+#include "solid_solver/large_strain/load_path.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
 #include "solid_solver/motion/history.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
@@ -161,8 +162,11 @@ void SolidStepper::solve_stage(const StageWork& work, bool first) {
 
 /// A static guess stands where the known displacements were; a dynamic one has gone on with its own velocity.
 linalg::SolveStatistics SolidStepper::find_equilibrium(const StageWork& work) {
+  LoadPath* path = body_.equilibrium().load_path();
+  if (path) body_.set_load_factor(1);
   body_.place_pressures(work.place_time);
   body_.place_expansion(work.place_time);
+  if (path) body_.set_load_factor(path->factor());
   EquilibriumLoad load{last_.rhs, work.known, {}, work.system->mass_factor, parameters_.energy_momentum};
   if (!body_.is_dynamic() && !work.known.empty()) load.before = state_.known;
   const std::vector<double> accepted = body_.unknowns_of(state_.cell_u, state_.face_u);
@@ -170,7 +174,19 @@ linalg::SolveStatistics SolidStepper::find_equilibrium(const StageWork& work) {
   load.accepted_known = state_.known;
   load.inertia = work.system->inertia;
   load.node_inertia = work.system->node_inertia;
-  return body_.equilibrium().find(load, *work.system, last_.unknowns);
+  load.dt = work.stage.dt;
+  const linalg::SolveStatistics found = body_.equilibrium().find(load, *work.system, last_.unknowns);
+  if (path) scale_loads(work, path->trial_factor());
+  return found;
+}
+
+/// The loads of the solve are those at a load factor.
+void SolidStepper::scale_loads(const StageWork& work, double factor) {
+  body_.set_load_factor(factor);
+  for (double& v : last_.rhs) v *= factor;
+  last_.body_force *= factor;
+  last_.face_force *= factor;
+  for (std::size_t i = 0; i < work.known.size(); ++i) trial_.known[i] = factor * work.known[i];
 }
 
 void SolidStepper::add_inertia(const StageWork& work, const SolidState& now) {

@@ -14,6 +14,7 @@
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/time/amplification.hpp"
+#include "solid_solver/large_strain/load_path.hpp"
 #include "solid_solver/material/stress.hpp"
 #include "solid_solver/output/field_list.hpp"
 #include "solid_solver/output/spectrum.hpp"
@@ -96,6 +97,7 @@ void SolidOutput::write_series(double time, std::span<const double> points) {
   if (!probes_.empty()) write_probes(time, points);
   write_reactions(time, points);
   write_effort(time);
+  write_path(time);
   if (body_.parameters().output.energies) write_energies(time, points);
 }
 
@@ -179,6 +181,18 @@ void SolidOutput::write_reactions(double time, std::span<const double> points) {
     reaction_series_.emplace(context_.output_folder / "reactions.csv", columns, context_.restart_time);
   }
   reaction_series_->row(row);
+}
+
+void SolidOutput::write_path(double time) {
+  const LoadPath* path = body_.equilibrium().load_path();
+  if (!path || parallel::comm_rank(body_.mesh().comm) != 0) return;
+  if (!path_series_)
+    path_series_.emplace(context_.output_folder / "path.csv",
+                         std::vector<std::string>{"time [s]", "load factor [1]", "length [m]",
+                                                  "lowest stiffness [1]", "stable [1]"},
+                         context_.restart_time);
+  path_series_->row(
+      std::array{time, path->factor(), path->length(), path->stiffness(), path->stiffness() > 0 ? 1.0 : 0.0});
 }
 
 void SolidOutput::write_effort(double time) {

@@ -43,6 +43,7 @@ class SolidOutput {
   void write_probes(double time, std::span<const double> points);
   void write_reactions(double time, std::span<const double> points);
   void write_effort(double time);
+  void write_path(double time);
   void write_energies(double time, std::span<const double> points);
 
   const SolidFields& derived_;
@@ -54,7 +55,7 @@ class SolidOutput {
   std::optional<io::FieldWriter> fields_;
   std::optional<SolidSurfaces> surfaces_;
   // On rank 0.
-  std::optional<io::Series> probe_series_, reaction_series_, solver_series_, energy_series_;
+  std::optional<io::Series> probe_series_, reaction_series_, path_series_, solver_series_, energy_series_;
 };
 
 }  // namespace couplet::solid

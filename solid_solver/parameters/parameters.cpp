@@ -129,6 +129,9 @@ void declare(config::Section& s, SolidParameters& p) {
       "halves steps ('simulation.time-step' is the longest, 'max-step-halvings' limits) where the estimated "
       "error of the time scheme requires it; dynamic analysis only");
   s.section(
+      "load-stepping", [&](config::Section& l) { declare(l, p.load_stepping); },
+      "steps of a static analysis at large strain");
+  s.section(
       "solution-method", [&](config::Section& m) { declare(m, p.method); },
       "solution method for the equations of a step");
   declare_output(s, p);
@@ -137,6 +140,7 @@ void declare(config::Section& s, SolidParameters& p) {
   check_orthotropic(s, p);
   check_axisymmetric(s, p);
   check_rigid_patches(s, p);
+  check_load_stepping(s, p);
   check_buckling(s, p);
   check_large_strain_estimate(s, p);
 }

@@ -11,6 +11,7 @@
 #include "solid_solver/parameters/boundary_parameters.hpp"
 #include "solid_solver/parameters/heat_parameters.hpp"
 #include "solid_solver/parameters/interface_data.hpp"
+#include "solid_solver/parameters/load_stepping.hpp"
 #include "solid_solver/parameters/material_parameters.hpp"
 #include "solid_solver/parameters/method_parameters.hpp"
 #include "solid_solver/parameters/output_parameters.hpp"
@@ -39,6 +40,7 @@ struct SolidParameters {
   std::vector<double> gravity;                           // [m/s^2]; empty: none
   std::vector<config::ExpressionText> initial_velocity;  // [m/s]; empty: at rest
   time::TimeSchemeParameters time_scheme;
+  LoadStepping load_stepping;
   std::optional<SolidDamping> damping;
   std::optional<HeatParameters> heat;
   std::optional<config::ExpressionText> temperature;  // prescribed [K]; none: solved for or not known

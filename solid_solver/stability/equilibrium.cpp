@@ -5,6 +5,7 @@
 
 #include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/large_strain/load_path.hpp"
 #include "solid_solver/stability/prestress.hpp"
 
 namespace couplet::solid {
@@ -16,6 +17,7 @@ void EquilibriumWatch::see(const SolidBody& body, const SolidStepper& stepper, c
       stepper.last_solve().unknowns, now.known,
       [&](std::span<const double> x, std::span<double> y) { body.kernel().apply(x, {}, y); },
       any_start(body));
+  if (LoadPath* path = body.equilibrium().load_path()) return path->set_stiffness(stiffness);
   const Vec3 load = fields.total_load();
   if (stiffness >= 0) {
     time_ = now.time, stiffness_ = stiffness, load_ = load;
@@ -45,6 +47,51 @@ void EquilibriumWatch::see(const SolidBody& body, const SolidStepper& stepper, c
        .advice =
            "a small lateral load or imperfection leads to the stable equilibrium; 'analysis: buckling' of "
            "the linear body gives load factors and shapes"});
+}
+
+void EquilibriumWatch::forget(const SolidBody& body) {
+  stiffness_ = 0;
+  if (const LoadPath* path = body.equilibrium().load_path()) limits_told_ = path->limits().size();
+}
+
+void EquilibriumWatch::follow(const SolidBody& body, const SolidFields& fields) {
+  const LoadPath* path = body.equilibrium().load_path();
+  if (!path || path->limits().size() <= limits_told_) return;
+  limits_told_ = path->limits().size();
+  const LimitPoint& limit = path->limits().back();
+  const double load = fields.total_load().norm();
+  std::string force;
+  if (load > 0 && path->factor() != 0)
+    force = fmt::format(", a total load of about {:.4g} N", load * std::abs(limit.factor / path->factor()));
+  log::finding(
+      parallel::comm_rank(body.mesh().comm),
+      {.id = "limit-load",
+       .severity = base::Severity::note,
+       .number = limit.factor,
+       .sentence = fmt::format("t = {:g} s: load path: {} of the load factor = {:.5g}{}: limit point passed",
+                               limit.time, limit.is_maximum ? "maximum" : "minimum", limit.factor, force)});
+}
+
+void EquilibriumWatch::finish(const SolidBody& body, std::vector<std::string>& sentences) const {
+  const LoadPath* path = body.equilibrium().load_path();
+  if (!path) return;
+  std::string found;
+  for (const LimitPoint& l : path->limits())
+    found += fmt::format("{}{:.5g} ({})", found.empty() ? "" : ", ", l.factor,
+                         l.is_maximum ? "maximum" : "minimum");
+  sentences.push_back(fmt::format("load path: load factor {:.5g} at the end; limit points: {}.",
+                                  path->factor(), found.empty() ? "none" : found));
+  if (path->stiffness() > 0) return;  // 0: not surely negative of a slender body
+  log::finding(
+      parallel::comm_rank(body.mesh().comm),
+      {.id = "unstable-equilibrium",
+       .severity = base::Severity::warning,
+       .number = path->stiffness(),
+       .limit = 0,
+       .sentence = fmt::format("stability of the last equilibrium: min stiffness loaded / unloaded = {:.2g} "
+                               "(limit 0): unstable, on the load path between limit points",
+                               path->stiffness()),
+       .advice = "a later 'end-time' follows the path to a stable one"});
 }
 
 }  // namespace couplet::solid

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "solid_solver/body/solid_fields.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
 
@@ -13,13 +16,18 @@ class EquilibriumWatch {
   /// Of the step between solve and acceptance. Tells an equilibrium that does not hold once, with the load at which stability was
   /// lost. Collective.
   void see(const SolidBody& body, const SolidStepper& stepper, const SolidFields& fields);
+  /// After acceptance, of a run by arc length: limit points of load that it has passed. Collective.
+  void follow(const SolidBody& body, const SolidFields& fields);
+  /// At its end: whether the last equilibrium holds; the limit loads of the path in words.
+  void finish(const SolidBody& body, std::vector<std::string>& sentences) const;
   /// A restart: what was before is not known.
-  void forget() { stiffness_ = 0; }
+  void forget(const SolidBody& body);
 
  private:
   double time_ = 0, stiffness_ = 1;  // of the last equilibrium that held; 0: not known
   Vec3 load_ = Vec3::Zero();
   bool is_told_ = false;
+  std::size_t limits_told_ = 0;
 };
 
 }  // namespace couplet::solid

@@ -240,6 +240,30 @@ TEST(SolidParameters, a_body_of_revolution_says_what_it_cannot_have) {
   told(held + "}\ninterface: {}\n", "does not couple");
 }
 
+TEST(SolidParameters, arc_length_says_what_it_cannot_scale) {
+  const std::string start =
+      "mesh: a.msh\nanalysis: static\nmaterial: {density: 1, youngs-modulus: 1, poissons-ratio: 0.3}\n"
+      "load-stepping: {type: arc-length}\n";
+  const std::string held = "boundaries:\n  root: {type: fixed-displacement, value: [0, 0, 0]}\n";
+  const auto read_all = [&](const std::string& text) {
+    SolidParameters p;
+    return read(start + text, p);
+  };
+  const std::string large = "kinematics: finite-strain\n";
+  EXPECT_THAT(read_all(large + held + "  tip: {type: traction, value: [1, 0, 0]}\n"), ::testing::IsEmpty());
+  EXPECT_THAT(read_all(held),
+              Contains(HasSubstr("requires 'analysis: static', 'kinematics: finite-strain'")));
+  EXPECT_THAT(read_all(large + held + "  tip: {type: traction, value: [2*t, 0, 0]}\n"),
+              Contains(HasSubstr("'2*t' of patch 'tip' depends on t")));
+  EXPECT_THAT(read_all(large + held + "  tip: {type: pressure, value: sin(t)}\n"),
+              Contains(HasSubstr("'sin(t)'")));
+  EXPECT_THAT(read_all(large + held + "  tip: {type: interface}\n"),
+              Contains(HasSubstr("takes its load from the coupler")));
+  EXPECT_THAT(read_all(large + held + "body-force: [0, t, 0]\n"), Contains(HasSubstr("'t' depends on t")));
+  EXPECT_THAT(read_all(large + held + "output: {energies: true}\n"),
+              Contains(HasSubstr("'energies' is not available")));
+}
+
 TEST(SolidParameters, plane_stress_has_the_stiffness_of_a_thin_sheet) {
   SolidParameters p;
   p.material = {1, 1, 0.3};

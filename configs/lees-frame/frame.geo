@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lee's frame: a column and a beam, L long each between hinges and corner (centre lines), h deep, rigidly joined; n (odd) cells across, m along each.
+DefineConstant [ n = 5, m = 60, L = 1.2, h = 0.02 ];
+a = h / 2;
+Point(1) = {-a, 0, 0}; Point(2) = {a, 0, 0};
+Point(3) = {-a, L - a, 0}; Point(4) = {a, L - a, 0};
+Point(5) = {-a, L + a, 0}; Point(6) = {a, L + a, 0};
+Point(7) = {L / 5 - a, L - a, 0}; Point(8) = {L / 5 - a, L + a, 0};
+Point(9) = {L / 5 + a, L - a, 0}; Point(10) = {L / 5 + a, L + a, 0};
+Point(11) = {L, L - a, 0}; Point(12) = {L, L + a, 0};
+Line(1) = {1, 2}; Line(2) = {2, 4}; Line(3) = {4, 3}; Line(4) = {3, 1};
+Line(5) = {4, 6}; Line(6) = {6, 5}; Line(7) = {5, 3};
+Line(8) = {4, 7}; Line(9) = {7, 8}; Line(10) = {8, 6};
+Line(11) = {7, 9}; Line(12) = {9, 10}; Line(13) = {10, 8};
+Line(14) = {9, 11}; Line(15) = {11, 12}; Line(16) = {12, 10};
+Transfinite Curve{1, 3, 5, 6, 7, 9, 12, 15} = n + 1;
+Transfinite Curve{2, 4} = m + 1;
+Transfinite Curve{8, 10} = m / 5 + 1;
+Transfinite Curve{11, 13} = 2 + 1;
+Transfinite Curve{14, 16} = 4 * m / 5 + 1;
+Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1};
+Curve Loop(2) = {-3, 5, 6, 7}; Plane Surface(2) = {2};
+Curve Loop(3) = {8, 9, 10, -5}; Plane Surface(3) = {3};
+Curve Loop(4) = {11, 12, 13, -9}; Plane Surface(4) = {4};
+Curve Loop(5) = {14, 15, 16, -12}; Plane Surface(5) = {5};
+Transfinite Surface{1:5}; Recombine Surface{1:5};
+Physical Curve("base") = {1};
+Physical Curve("end") = {15};
+Physical Curve("load") = {11, 13};
+Physical Curve("sides") = {2, 4, 6, 7, 8, 10, 14, 16};
+Physical Surface("frame") = {1:5};
