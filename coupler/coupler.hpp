@@ -67,6 +67,8 @@ class Coupler {
   long iterations() const { return iterations_; }
   /// The budget of the whole job, once it has ended well.
   const coupling::ErrorParts& errors() const { return found_; }
+  /// Where the job stands on the maps of the coupling.
+  std::vector<effects::Coordinate> position() const;
   /// What each has given in the last pass, in the order of the schedule's everyone().
   const std::vector<coupling::Exchange>& given() const { return given_; }
   const coupling::Exchange& given_by(const std::string& name) const { return given_[index_of(name)]; }

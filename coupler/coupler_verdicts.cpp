@@ -85,6 +85,15 @@ void Coupler::finalise(const std::string& problem) {
   audit_->tell_at_end(parameters_, problem.empty());
   std::vector<coupling::NamedErrors> parts = finalise_all(everyone(), problem);
   if (simulation_.error_estimate && problem.empty()) tell_errors(std::move(parts));
+  if (const std::string where = effects::position_sentence(position()); !where.empty())
+    log::info("{}", where);
+}
+
+std::vector<effects::Coordinate> Coupler::position() const {
+  if (!schedule_.iterates) return audit_->position(parameters_);
+  if (!(steps() > 0)) return {};
+  return {{"passes per step", double(iterations()) / double(steps()),
+           double(parameters_.convergence.max_iterations), "strong-robin"}};
 }
 
 void Coupler::tell_work() const {

@@ -10,6 +10,7 @@
 #include "common/coupling/interface_map.hpp"
 #include "common/coupling/mesh_motion.hpp"
 #include "common/coupling/participant.hpp"
+#include "common/effects/position.hpp"
 #include "fluid_solver/boundary/openings.hpp"
 #include "fluid_solver/judge/compliance.hpp"
 #include "fluid_solver/judge/error_estimate.hpp"
@@ -39,7 +40,9 @@ using MotionLink = std::function<std::unique_ptr<coupling::MeshMotionSource>(con
 ///   implicit, explicit every solve() moves the mesh and starts from level n
 ///   standalone         interfaces are walls at rest; bodies move as the case prescribes, in every scheme
 template <int D>
-class FluidParticipant final : public coupling::Participant, public coupling::EstimatesError {
+class FluidParticipant final : public coupling::Participant,
+                               public coupling::EstimatesError,
+                               public effects::KnowsItsPlace {
  public:
   FluidParticipant(mesh::LoadedMesh loaded, const FluidParameters& parameters, FluidContext context,
                    const MotionLink& link);
@@ -54,6 +57,8 @@ class FluidParticipant final : public coupling::Participant, public coupling::Es
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
   std::vector<effects::EffectVerdict> audit() const override;
+  /// Of a step, or what it was cut into: Courant number, or nu dt/h^2 where friction limits it.
+  std::vector<effects::Coordinate> position() const override;
   std::vector<std::string> finish() override;
   void collect_errors() override { errors_.emplace(*fluid_); }
   coupling::ErrorParts error_parts() const override {
@@ -84,6 +89,7 @@ class FluidParticipant final : public coupling::Participant, public coupling::Es
   coupling::Exchange forces() const;
   void tell_sub_steps();
   void see_given_step();
+  double rate_of(GlobalIndex cell, bool friction) const;
   std::vector<Index> moving_faces() const;
   void see_motion();
   void see_ringing();

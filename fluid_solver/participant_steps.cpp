@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/log/finding.hpp"
 #include "common/log/log.hpp"
@@ -76,6 +77,41 @@ void FluidParticipant<D>::tell_sub_steps() {
         100 * fluid_->parameters().safety_factor);
 }
 
+/// sum |phi - dV/dt| / (2 V) of a cell, a Courant number over the step, or with `friction` its sum nu g / (2 D V), which is nu/h^2 of
+/// a cube [1/s]. Collective.
+template <int D>
+double FluidParticipant<D>::rate_of(GlobalIndex cell, bool friction) const {
+  const State<D>& s = fluid_->state();
+  const double nu = fluid_->parameters().viscosity / fluid_->parameters().density;
+  double rate = 0;
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    const bool inside = f < mesh_.n_interior;
+    const Index c = mesh_.cell_id[mesh_.owner[f]] == cell                 ? mesh_.owner[f]
+                    : inside && mesh_.cell_id[mesh_.neighbour[f]] == cell ? mesh_.neighbour[f]
+                                                                          : -1;
+    if (c < 0 || c >= mesh_.cells.n_owned()) continue;
+    const double flux = std::abs(s.phi[f] - (s.mesh_flux.empty() ? 0.0 : s.mesh_flux[f]));
+    rate += (friction ? nu * s.placement->conductance[f] / (2 * D) : flux / 2) / s.placement->volume[c];
+  }
+  return parallel::sum(mesh_.comm, rate);
+}
+
+template <int D>
+std::vector<effects::Coordinate> FluidParticipant<D>::position() const {
+  // What the first step sets in motion could not limit it.
+  if (step_.number == 0 && !fluid_->parameters().time_step) return {};
+  const StepLimiter by = fluid_->sizes().limiter(fluid_->state());
+  if (!std::isfinite(by.limit)) return {};
+  const double size = step_.dt / std::max(1, fluid_->statistics().sub_steps);
+  const double rate = rate_of(by.cell, by.friction);
+  return {{by.friction ? "nu dt/h^2" : "Courant number", size * rate, by.limit * rate,
+           by.friction ? "fluid-diffusion" : "fluid-convection"}};
+}
+
+template double FluidParticipant<2>::rate_of(GlobalIndex, bool) const;
+template double FluidParticipant<3>::rate_of(GlobalIndex, bool) const;
+template std::vector<effects::Coordinate> FluidParticipant<2>::position() const;
+template std::vector<effects::Coordinate> FluidParticipant<3>::position() const;
 template void FluidParticipant<2>::see_given_step();
 template void FluidParticipant<2>::doubt_given_step(double);
 template void FluidParticipant<2>::tell_sub_steps();

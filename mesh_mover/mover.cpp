@@ -272,12 +272,19 @@ void Mover::load(io::CheckpointReader& file) {
 
 void Mover::write_monitors(double time) {
   const MeshState now = state();
+  const double jacobian = now.worst[MeshState::scaled_jacobian].value;
+  least_jacobian_ = std::min(least_jacobian_.value_or(jacobian), jacobian);
   if (!quality_) return;
   std::vector<double> row{time};
   for (const Worst& worst : now.worst) row.push_back(worst.value);
   const Worst& worst = now.worst[MeshState::scaled_jacobian];
   row.insert(row.end(), {double(worst.cell), worst.place.x(), worst.place.y(), worst.place.z()});
   quality_->row(row);
+}
+
+std::vector<effects::Coordinate> Mover::position() const {
+  if (!least_jacobian_) return {};
+  return {{"least scaled Jacobian", *least_jacobian_, 0, "mover-rotation", true}};
 }
 
 void Mover::write_output(double time, int) {

@@ -10,6 +10,7 @@
 #include "common/coupling/interface_map.hpp"
 #include "common/coupling/mesh_motion.hpp"
 #include "common/coupling/participant.hpp"
+#include "common/effects/position.hpp"
 #include "common/fv/prescribed_motion.hpp"
 #include "common/io/field_writer.hpp"
 #include "common/io/series.hpp"
@@ -25,7 +26,7 @@ namespace couplet::mesh_mover {
 /// case prescribes, and sends the displacement of every point to the fluid, rank to rank. Alone it writes the
 /// moved mesh. In the total form the motion depends on the given displacement alone, so there is no state but
 /// the last accepted motion (a warm start); in the incremental form each step starts from the accepted mesh.
-class Mover final : public coupling::Participant {
+class Mover final : public coupling::Participant, public effects::KnowsItsPlace {
  public:
   Mover(const Parameters& parameters, const app::ParticipantContext& context);
 
@@ -37,6 +38,7 @@ class Mover final : public coupling::Participant {
   void load(io::CheckpointReader& file) override;
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
+  std::vector<effects::Coordinate> position() const override;
 
   const mesh::Mesh& mesh() const { return mesh_; }
   /// Of the points as read.
@@ -82,6 +84,7 @@ class Mover final : public coupling::Participant {
   bool placed_ = false;  // the next one is that of displacement_
   mesh::Geometry moved_;
   std::unique_ptr<io::Series> quality_;
+  std::optional<double> least_jacobian_;     // of the run
   std::unique_ptr<io::FieldWriter> fields_;  // alone only
 };
 

@@ -36,8 +36,10 @@ std::vector<std::string> RunAudit::closing_lines(bool with_sound) {
 
 void RunAudit::look(bool end) {
   const auto start = std::chrono::steady_clock::now();
-  for (const effects::EffectVerdict& verdict : trail_.news(participant_.audit(), end))
-    report(rank_, time_, verdict);
+  const std::vector<effects::EffectVerdict> verdicts = participant_.audit();
+  for (const effects::EffectVerdict& verdict : trail_.news(verdicts, end)) report(rank_, time_, verdict);
+  effects::keep_nearest(position_, effects::coordinates_of(verdicts));
+  if (placed_ && steps_ > 0) effects::keep_nearest(position_, placed_->position());
   log::timers().add("audit", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/coupling/participant.hpp"
+#include "common/effects/position.hpp"
 
 namespace couplet::app {
 
@@ -15,7 +16,10 @@ void report(int rank, double time, const effects::EffectVerdict& verdict);
 /// at once.
 class RunAudit {
  public:
-  RunAudit(int rank, const coupling::Participant& participant) : rank_(rank), participant_(participant) {}
+  RunAudit(int rank, const coupling::Participant& participant)
+      : rank_(rank),
+        participant_(participant),
+        placed_(dynamic_cast<const effects::KnowsItsPlace*>(&participant)) {}
   /// After an accepted step. Asks at outputs, after 1, 2, 4, 8 ... steps and after each hundredth: a part of a
   /// per cent of a run, and early where it matters most. Collective.
   void accepted(double time, bool output);
@@ -24,15 +28,19 @@ class RunAudit {
   std::vector<std::string> closing_lines(bool with_sound = true);
   /// What that makes of the answer, by the worst of the run: for the error budget.
   effects::ModelError model() const { return effects::model_error(trail_.worst()); }
+  /// Where the run stands on the maps of its physics, the nearest to each limit that was seen.
+  const std::vector<effects::Coordinate>& position() const { return position_; }
 
  private:
   void look(bool end = false);
 
   int rank_;
   const coupling::Participant& participant_;
+  const effects::KnowsItsPlace* placed_;  // null: by its verdicts alone
   long steps_ = 0;
   double time_ = 0;
   effects::AuditTrail trail_;
+  std::vector<effects::Coordinate> position_;
 };
 
 }  // namespace couplet::app

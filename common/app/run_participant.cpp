@@ -130,6 +130,8 @@ void closing_words(const Job& job, coupling::Participant& participant, RunAudit&
     sentences.push_back(std::move(line));
     if (!closing.is_alone) break;
   }
+  if (std::string where = effects::position_sentence(audit.position()); !where.empty())
+    sentences.push_back(std::move(where));
   if (closing.is_alone)
     if (const auto finding = errors.worthless()) log::finding(job.rank, *finding);
   const double mine = RunReport::peak_memory();
@@ -245,7 +247,7 @@ int run_alone(const Job& job, coupling::Participant& participant) {
   const std::string problem = loop.run(actions);
   job.enter(Phase::finalise);
   closing_words(job, participant, audit, errors, {.has_failed = !problem.empty()}, console.seconds());
-  run.finish(console.seconds(), problem, errors.parts());
+  run.finish(console.seconds(), problem, errors.parts(), audit.position());
   if (job.rank == 0) log::tell_where(job.output_folder.string(), job.name + ".log");
   if (problem.empty()) return 0;
   if (job.rank == 0) log::error("{}", problem);
@@ -266,7 +268,7 @@ int run_coupled(const Job& job, MPI_Comm coupler, coupling::Participant& partici
     if (command.op != coupling::Op::finalise) return;
     closing_words(job, participant, audit, errors, {.is_alone = false, .has_failed = !command.folder.empty()},
                   seconds_since(start));
-    run.finish(seconds_since(start), "", errors.parts());
+    run.finish(seconds_since(start), "", errors.parts(), audit.position());
   };
   observer.last_word = [&] { return errors.parts().text(); };
   observer.done = [&](const coupling::Command& command) { books.done(command); };

@@ -51,6 +51,15 @@ std::string json(const coupling::ErrorParts& e) {
       words(e.model_by), words(e.omittable));
 }
 
+std::string json(const std::vector<effects::Coordinate>& position) {
+  std::string out;
+  for (const effects::Coordinate& c : position)
+    out += fmt::format(
+        "{}\n    {{\"quantity\": {}, \"value\": {:.6g}, \"limit\": {:.6g}, \"floor\": {}, \"map\": {}}}",
+        out.empty() ? "" : ",", quoted(c.quantity), c.value, c.limit, c.floor, quoted(c.map));
+  return "[" + out + (out.empty() ? "]" : "\n  ]");
+}
+
 }  // namespace
 
 double RunReport::processor_seconds() {
@@ -88,7 +97,8 @@ void RunReport::accepted(double time, coupling::StepReport report) {
       std::array{time, report.dt, double(report.iterations), report.error, report.energy, report.seconds});
 }
 
-void RunReport::finish(double wall, const std::string& problem, const coupling::ErrorParts& errors) {
+void RunReport::finish(double wall, const std::string& problem, const coupling::ErrorParts& errors,
+                       const std::vector<effects::Coordinate>& position) {
   const double cpu = parallel::sum(job_.comm, processor_seconds()),
                working = parallel::sum(job_.comm, working_);
   const double most = parallel::max(job_.comm, peak_memory()), all = parallel::sum(job_.comm, peak_memory());
@@ -99,10 +109,10 @@ void RunReport::finish(double wall, const std::string& problem, const coupling::
       "  \"state\": \"{}\",\n  \"reason\": {},\n  \"time\": {:.17g},\n  \"steps\": {},\n"
       "  \"iterations\": {},\n  \"wall\": {:.6g},\n  \"processor\": {:.6g},\n  \"processor-working\": "
       "{:.6g},\n  \"memory-most\": {:.6g},\n"
-      "  \"memory-all\": {:.6g},\n  \"errors\": {},\n  \"findings\": {},\n  \"phases\": {}\n}}\n",
+      "  \"memory-all\": {:.6g},\n  \"errors\": {},\n  \"atlas\": {},\n  \"findings\": {},\n  \"phases\": {}\n}}\n",
       quoted(job_.name), quoted(version_text()), parallel::comm_size(job_.comm),
       problem.empty() ? "ended" : "failed", quoted(problem), time_, count_, iterations_, wall, cpu, working,
-      most, all, json(errors), log::findings_as_json(), phases());
+      most, all, json(errors), json(position), log::findings_as_json(), phases());
 }
 
 }  // namespace couplet::app

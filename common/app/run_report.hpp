@@ -9,6 +9,7 @@
 
 #include "common/coupling/error_parts.hpp"
 #include "common/coupling/participant.hpp"
+#include "common/effects/position.hpp"
 #include "common/io/series.hpp"
 
 namespace couplet::app {
@@ -19,7 +20,8 @@ struct Job;
 ///   steps.csv  a row an accepted step: time and dt [s], iterations of linear solvers, estimated time error
 ///              of the step [1], energy [J], seconds; what was not computed is nan. Off with output.steps.
 ///   run.json   at the end: how it ended, wall and processor seconds, memory, steps, iterations, phases,
-///              estimated parts of the error (null: not known), findings with their ids.
+///              estimated parts of the error (null: not known), where the run stands on the atlas, findings with
+///              their ids.
 /// Written by rank 0. The file of an earlier run is removed at the start: a run.json speaks of this run.
 class RunReport {
  public:
@@ -38,7 +40,8 @@ class RunReport {
     time_ = time, count_ = steps, iterations_ = iterations;
   }
   /// Collective over job.comm. `wall` [s]; `problem`: why the run ended early, empty if it did not.
-  void finish(double wall, const std::string& problem, const coupling::ErrorParts& errors);
+  void finish(double wall, const std::string& problem, const coupling::ErrorParts& errors,
+              const std::vector<effects::Coordinate>& position);
 
   /// User and system seconds of this process since it began.
   static double processor_seconds();

@@ -15,6 +15,9 @@ namespace {
 
 // Of the largest part: less buys nothing.
 constexpr double nothing = 0.1;
+// From here on the answer is questionable: estimates are good to a factor, and this one may stand for a fifth, beyond which the
+// atlas calls an answer wrong.
+constexpr double questionable_error = 0.15;
 
 struct Kind {
   const char* name;
@@ -144,10 +147,19 @@ double total_error(const std::vector<NamedErrors>& participants) {
 
 std::optional<log::Finding> worthless(const std::vector<NamedErrors>& participants) {
   const double total = total_error(participants);
-  if (!(total >= as_large_as_the_solution)) return {};
+  if (!(total >= questionable_error)) return {};
   double largest = 0;
   for (const Part& p : largest_parts(participants))
     if (!p.is(&ErrorParts::model)) largest = std::max(largest, p.value);
+  if (total < as_large_as_the_solution)
+    return log::Finding{
+        .id = "error-estimate",
+        .severity = base::Severity::warning,
+        .number = total,
+        .limit = questionable_error,
+        .sentence = fmt::format("estimated error: {:.2g} of the solution (limit {:g}): result questionable",
+                                total, questionable_error),
+        .advice = "refine the dominant part"};
   return log::Finding{
       .id = "error-estimate",
       .severity = largest >= as_large_as_the_solution ? base::Severity::wrong : base::Severity::warning,

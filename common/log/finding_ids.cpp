@@ -11,7 +11,7 @@ constexpr auto answer = FindingId::About::answer, neglected = FindingId::About::
 // Of an effect's card: its name in lower case with hyphens. docs/findings.md lists them all (tests/architecture).
 constexpr std::array ids{
     // all programs
-    FindingId{answer, "error-estimate", "the estimated error is as large as the solution"},
+    FindingId{answer, "error-estimate", "the estimated error is more than 0.15 of the solution"},
     FindingId{answer, "questionable-key", "a value of the case is far outside the usual range"},
     FindingId{answer, "questionable-mesh-scale", "the size of the mesh does not fit the scene"},
     // coupler

@@ -69,9 +69,9 @@ void CouplingAudit::loads(const std::vector<coupling::Exchange>& given) {
   for (const Force& force : forces_)
     if (const auto found = given[force.giver].find(force.name); found != given[force.giver].end())
       for (const double value : found->second) size[force.taken] += value * value;
-  const double lost = std::sqrt(parallel::sum(comm_, size[0])),
-               taken = std::sqrt(parallel::sum(comm_, size[1]));
-  if (taken > 0) evidence_.lost_load = std::fmax(evidence_.lost_load, lost / taken);
+  lost_ += parallel::sum(comm_, size[0]);
+  taken_ += parallel::sum(comm_, size[1]);
+  if (taken_ > 0) evidence_.lost_load = std::sqrt(lost_ / taken_);
 }
 
 void CouplingAudit::tell(const CouplingParameters& parameters, double time) {
@@ -83,6 +83,12 @@ void CouplingAudit::tell(const CouplingParameters& parameters, double time) {
 void CouplingAudit::tell_at_end(const CouplingParameters& parameters, bool with_sound) const {
   for (const effects::EffectVerdict& v : effects::audit(coupling_effect_cards(), parameters, evidence_))
     if (!(v.saves > 0) && (with_sound || !v.sound())) log::info("{}", effects::text(v));
+}
+
+std::vector<effects::Coordinate> CouplingAudit::position(const CouplingParameters& parameters) const {
+  const double returned = std::isnan(evidence_.returned) ? at_start_ : evidence_.returned;
+  if (std::isnan(returned)) return {};
+  return {{"added mass over mass", returned, limit_of_one_pass(parameters), "coupling-mass"}};
 }
 
 coupling::ErrorParts CouplingAudit::parts(const CouplingParameters& parameters) const {

@@ -9,6 +9,7 @@
 
 #include "common/base/types.hpp"
 #include "common/coupling/error_parts.hpp"
+#include "common/effects/position.hpp"
 #include "common/effects/verdict.hpp"
 #include "coupler/acceleration/unknown.hpp"
 #include "coupler/mapping/links.hpp"
@@ -42,6 +43,8 @@ class CouplingAudit {
   void loads(const std::vector<coupling::Exchange>& given);
 
   const CouplingEvidence& evidence() const { return evidence_; }
+  /// Of a change of the motion what one pass returns, and what the scheme bears; without evidence that of the start.
+  std::vector<effects::Coordinate> position(const CouplingParameters& parameters) const;
   /// The verdicts that the coupling's cards give; those that turn bad are told once.
   void tell(const CouplingParameters& parameters, double time);
   /// `with_sound`: else only those that were not: what a failed run saw until then proves nothing sound.
@@ -57,6 +60,8 @@ class CouplingAudit {
   };
   MPI_Comm comm_;
   std::vector<Force> forces_;  // of sides of which one is not taken
+  double lost_ = 0,
+         taken_ = 0;  // sums of their squares over the run, where nobody takes them and where somebody does
   CouplingEvidence evidence_;
   double at_start_ = CouplingEvidence::unknown;
   effects::AuditTrail trail_;

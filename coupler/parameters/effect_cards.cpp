@@ -42,7 +42,8 @@ std::optional<effects::EffectVerdict> judge_one_pass(const P& p, const CouplingE
 std::optional<effects::EffectVerdict> judge_lost_load(const P&, const CouplingEvidence& e) {
   return effects::verdict(
       e.lost_load, 0.02, fmt::format("fluid forces not taken / taken by the structure = {:.2g}", e.lost_load),
-      "let the structure take 'viscous-force' as well ('interface: {load: forces}' of a solid)", e.lost_load);
+      "let the structure take 'viscous-force' as well ('interface: {load: forces}' of a solid)",
+      e.lost_load / (1 + e.lost_load));  // of all forces
 }
 
 const std::array cards{

@@ -16,7 +16,7 @@ struct CouplingEvidence {
   double returned =
       unknown;  ///< of a change of the motion: what the next pass makes of it, |H(H(x)) - H(x)| / |H(x) - x|
   double lost_load =
-      unknown;  ///< forces at faces that nobody takes, over those taken (norms over the faces, largest of all steps)
+      unknown;  ///< forces at faces that nobody takes, over those taken (root mean squares over faces and steps)
 };
 /// Share of a change of the motion that one pass a step bears to have returned by the next pass.
 double limit_of_one_pass(const CouplingParameters& parameters);

@@ -5,12 +5,13 @@ Usage: run.py BIN CONFIGS quick|all|SCENE"""
 import csv
 import json
 import math
+import os
 import pathlib
 import subprocess
 import sys
 import tempfile
 
-programs, configs, kind = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3]
+programs, configs, kind = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), sys.argv[3]
 
 
 def run(job, case, sets, folder):
@@ -64,6 +65,68 @@ def closed(job, case, sets, truth):
     return measure
 
 
+def together(members, folder, files):
+    """A coupled job of (program and its words); the coupler's budget."""
+    folder.mkdir(parents=True)
+    for name, text in files.items():
+        (folder / name).write_text(text)
+    line = ["mpirun", "--oversubscribe"]
+    for i, words in enumerate(members):
+        line += [":"] * (i > 0) + ["-n", "1", *map(str, words)]
+    environment = {**os.environ, "PYTHONPATH": str(configs.parent / "client/python")}
+    done = subprocess.run(line, cwd=folder, env=environment, capture_output=True, text=True, timeout=600)
+    if done.returncode not in (0, 4):
+        sys.exit(f"FAILED: {folder} ended with exit code {done.returncode}\n{done.stdout[-1500:]}{done.stderr[-1500:]}")
+    return json.loads((folder / "out/coupler/run.json").read_text())["errors"]
+
+
+def column(file, at):
+    with open(file, newline="") as rows:
+        return [float(r[at]) for r in csv.reader(rows) if r and r[0][0] in "-0123456789"]
+
+
+def apart(without, with_it):
+    n = min(len(without), len(with_it))
+    return max(abs(a - b) for a, b in zip(without[:n], with_it[:n])) / max(map(abs, without))
+
+
+# A mass on a spring in a fluid of two thirds of its mass, twenty steps per period.
+LIGHT = """simulation: {{end-time: 5 s, time-step: 0.25 s, output: {{folder: out}}}}
+participants:
+  fluid: {{program: toy_piston, vertices: 3, added-mass: 1 kg, driving-force: 1 N}}
+  solid: {{program: toy_spring, vertices: 3, mass: 1.125 kg, stiffness: 3 N/m}}
+coupling:
+  scheme: {scheme}
+  fluid: {{participant: fluid}}
+  structure: {{participant: solid}}
+  predictor: {{order: 1}}
+  convergence: {{relative: 1e-8, max-iterations: 200}}
+  on-divergence: warn
+"""
+
+
+def light(folder):
+    members = [(programs / "coupler", "case.yaml"), (programs / "tests/toy_piston", "case.yaml"), (programs / "tests/toy_spring", "case.yaml")]
+    parts, motion = {}, {}
+    for scheme in ("explicit", "implicit"):
+        parts[scheme] = together(members, folder / scheme, {"case.yaml": LIGHT.format(scheme=scheme)})
+        motion[scheme] = column(folder / scheme / "out/fluid/motion.csv", 1)
+    return parts["explicit"], apart(motion["explicit"], motion["implicit"])
+
+
+def rough(folder):
+    """The cylinder on its spring in a viscous fluid (configs/spring-cylinder), let go, with a structure that does not ask for friction."""
+    case, client = configs / "spring-cylinder", (configs.parent / "client/examples/spring_cylinder.py").read_text()
+    sets = ["--set=simulation.end-time=3 s", "--set=participants.fluid.viscosity=0.1 Pa s"]
+    parts, motion = {}, {}
+    for word, text in {"without": client.replace('job.takes("viscous-force", "N", "faces")\n', "").replace(' + job.read("viscous-force")[:, 1].sum()', ""), "with": client}.items():
+        members = [(programs / p, "case.yaml", *sets) for p in ("coupler", "fluid_solver", "mesh_mover")] + [("/usr/bin/python3", "body.py", "body", 2, 0, 4, 0.01)]
+        files = {"case.yaml": (case / "case.yaml").read_text(), "ring.geo": (case / "ring.geo").read_text(), "body.py": text}
+        parts[word] = together(members, folder / word, files)
+        motion[word] = column(folder / word / "body.csv", 1)
+    return parts["without"], apart(motion["without"], motion["with"])
+
+
 HEAT = [S + "material.conductivity=50 W/(m K)", S + "material.expansion=1.2e-5",
         S + "heat={analysis: steady, boundaries: {root: {type: temperature, value: 20 degC}, tip: {type: temperature, value: 95 degC}, sides: {type: adiabatic}}}"]
 CYLINDER = [F + "mesh-parameters={n: 8}", "simulation.end-time=1 s", "simulation.time-step=0.01 s"]
@@ -83,6 +146,8 @@ SCENES = {  # what is neglected: how it is measured, the effect that the budget 
                                         1 / math.sqrt(1 - 0.16) - 1), "compressibility"),
     # Wieselsberger's drag of a cylinder at Re 1e5 is 1.2; a coarse laminar run gives half as much again and more.
     "Re 1e5 without a turbulence model": (closed(FLUID, "cylinder", [*CYLINDER, F + "viscosity=1e-6 Pa s"], 0.5), "turbulence model"),
+    "light solid coupled explicitly": (light, "iteration of pressure and structure"),
+    "friction forgotten": (rough, "viscous coupling load"),
 }
 IDLE = {  # an effect that does nothing: what the run says could be omitted
     "slow ramp as dynamic": (SOLID, "cantilever", [*DYNAMIC, pull('[0, "125*t/2000", 0]'), "simulation.end-time=2000 s", "simulation.time-step=40 s"], "inertia"),

@@ -23,8 +23,12 @@ TEST(ErrorPartsTest, its_text_is_read_again) {
   EXPECT_THROW(ErrorParts::of("mesh much"), Error);
 }
 
-TEST(ErrorPartsTest, one_part_as_large_as_the_solution_proves_an_answer_useless_a_sum_of_parts_warns) {
-  EXPECT_FALSE(worthless({{"solid", {.mesh = 0.6, .step = 0.3}}}).has_value());
+TEST(ErrorPartsTest, one_part_as_large_as_the_solution_proves_an_answer_useless_less_warns) {
+  EXPECT_FALSE(worthless({{"solid", {.mesh = 0.1, .step = 0.04}}}).has_value());
+  const auto some = worthless({{"solid", {.mesh = 0.1, .step = 0.06}}});
+  ASSERT_TRUE(some.has_value());
+  EXPECT_EQ(some->severity, base::Severity::warning);
+  EXPECT_DOUBLE_EQ(some->limit, 0.15);
   const auto sum = worthless({{"solid", {.mesh = 0.6, .step = 0.5}}});
   ASSERT_TRUE(sum.has_value());
   EXPECT_EQ(sum->severity, base::Severity::warning);

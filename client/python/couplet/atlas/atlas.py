@@ -5,6 +5,7 @@ import dataclasses
 import itertools
 import math
 import pathlib
+import re
 import subprocess
 import threading
 from concurrent.futures import ThreadPoolExecutor
@@ -12,8 +13,9 @@ from typing import Callable
 
 from couplet.runs import environment
 
-# How a square came out. RED is what must not be: a wrong answer with exit code 0 and no warning.
-HOLDS, POOR, WARNED, REFUSED, RED = "holds", "inaccurate", "warned", "refused", "wrong, exit code 0"
+# How a square came out. RED is what must not be: more than 20 % off with exit code 0 and no warning.
+HOLDS, POOR, WARNED, REFUSED, RED = "within 5 %", "within 20 %", "warned", "stopped", "silent"
+GOOD, BOUND = 0.05, 0.2
 
 
 @dataclasses.dataclass
@@ -31,9 +33,8 @@ class Map:
     x: Axis
     y: Axis
     panels: list              # names
-    run: Callable             # (panel, x, y, Runner) -> (number, exit code, doubted)
-    holds: Callable           # (number) -> True: the criterion is met
-    accurate: Callable = lambda number: True   # of those that hold
+    run: Callable             # (panel, x, y, Runner) -> (number, exit code, doubted) and, where it is not of the number alone, the error
+    error: Callable = None    # (number) -> how far the answer is off, as a share of it
     theory: list = dataclasses.field(default_factory=list)   # [(panels or None, label, [(x, y)])]
     about: str = ""           # mechanism, failing neighbour, what the picture shows
 
@@ -41,7 +42,9 @@ class Map:
 @dataclasses.dataclass
 class Square:
     number: float
+    error: float
     code: int
+    doubted: bool
     outcome: str
 
 
@@ -89,22 +92,28 @@ class Runner:
             return 124, False
         text = result.stdout + result.stderr
         (folder / "run.log").write_text(text)
-        if result.returncode == 2 and " is beyond " not in text:  # what a program says of values that it cannot compute with
+        if result.returncode == 2 and not any(word in text for word in (" is beyond ", " exceeds ")):  # what a program says of values that it cannot compute with
             raise RuntimeError(f"{folder}: the case is wrong: {text.strip().splitlines()[-1]}")
         told = ("--strict: the result is questionable", "The result is useless (")
-        failed = any("error:" in line and not any(t in line for t in told) for line in text.splitlines())
+        failed = any(re.search(r"(^|\] )error:", line) and not any(t in line for t in told) for line in text.splitlines())
         strict = result.returncode in (1, 4) and any(t in text for t in told) and not failed
         # That a mesh does not resolve turbulence is no word about the scheme.
         words = [line for line in text.splitlines() if "warning:" in line and "turbulence model neglected" not in line]
         return (0 if strict else result.returncode), strict and bool(words)
 
 
-def outcome(map_, number, code, doubted):
+def outcome(error, code, doubted):
     if code != 0:
         return REFUSED
-    if math.isfinite(number) and map_.holds(number):
-        return HOLDS if map_.accurate(number) else POOR
+    if error <= BOUND:  # False for NaN
+        return HOLDS if error <= GOOD else POOR
     return WARNED if doubted else RED
+
+
+def judged(map_, number, code, doubted, error=None):
+    if error is None:
+        error = map_.error(number) if code == 0 and math.isfinite(number) else math.nan
+    return Square(number, error, code, doubted, outcome(error, code, doubted))
 
 
 def read(file):
@@ -112,33 +121,29 @@ def read(file):
     if not file.exists():
         return {}
     with open(file, newline="") as rows:
-        return {(r["panel"], float(r["x"]), float(r["y"])): Square(float(r["number"]), int(r["exit code"]), r["outcome"])
+        return {(r["panel"], float(r["x"]), float(r["y"])): Square(float(r["number"]), float(r["error"]), int(r["exit code"]), r["warned"] == "yes", r["outcome"])
                 for r in csv.DictReader(rows)}
 
 
 def write(file, map_, squares):
     with open(file, "w", newline="") as out:
         rows = csv.writer(out, lineterminator="\n")
-        rows.writerow(["panel", "x", "y", "number", "exit code", "outcome"])
+        rows.writerow(["panel", "x", "y", "number", "error", "exit code", "warned", "outcome"])
         for panel in map_.panels:
             for y in map_.y.values:
                 for x in map_.x.values:
                     if s := squares.get((panel, float(x), float(y))):
-                        rows.writerow([panel, f"{x:g}", f"{y:g}", f"{s.number:.4g}", s.code, s.outcome])
+                        rows.writerow([panel, f"{x:g}", f"{y:g}", f"{s.number:.4g}", f"{s.error:.3g}", s.code, "yes" if s.doubted else "no", s.outcome])
 
 
 def make(map_, file, runner, fresh=False, workers=1):
-    """Runs the squares that the table does not have; it is written after each row of them. Gives all squares."""
-    squares = {} if fresh else read(file)
-    for square in squares.values():  # the criterion may have become another one
-        if square.code == 0 and math.isfinite(square.number) and map_.holds(square.number):
-            square.outcome = HOLDS if map_.accurate(square.number) else POOR
+    """Runs the squares that the table does not have and those that are red; it is written after each row of them. Gives all squares."""
+    squares = {} if fresh else {k: s for k, s in read(file).items() if s.outcome != RED}
     wanted = [(p, float(x), float(y)) for p in map_.panels for y in map_.y.values for x in map_.x.values]
     missing = [k for k in wanted if k not in squares]
 
     def one(key):
-        number, code, doubted = map_.run(*key, runner)
-        return key, Square(number, code, outcome(map_, number, code, doubted))
+        return key, judged(map_, *map_.run(*key, runner))
 
     with ThreadPoolExecutor(workers) as pool:
         for i, (key, square) in enumerate(pool.map(one, missing)):

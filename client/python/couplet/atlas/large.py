@@ -29,7 +29,7 @@ LOAD = 1 / 12 / 100  # of K = 1: E I / L^2 for a unit of depth
 
 def bent(runner, key, K, step, **what):
     """Deflection of the tip under K t, t to 1, over the length; exit code; warnings."""
-    given = dict(end=1, dt=step, halvings=0, n=20, m=2, analysis="static", nu=0.3, law="neo-hookean", method="type: auto",
+    given = dict(end=1, dt=step, halvings=10, n=20, m=2, analysis="static", nu=0.3, law="neo-hookean", method="type: auto",
                  tip=f"traction, value: ['0', '{K * LOAD!r}*t']", more="")
     folder = runner.folder("bent", *key)
     code, doubted = runner.alone("solid_solver", folder, {"beam.geo": BEAM, "case.yaml": CASE.format(**{**given, **what})})
@@ -62,7 +62,7 @@ def swing(scheme, steps, speed, runner):
     folder = runner.folder("swing", scheme, steps, speed)
     more = f"{SCHEMES[scheme]}\n    initial-velocity: ['0', '{speed!r}*x^2/100']\n    output: {{energies: true}}"
     code, doubted = runner.alone("solid_solver", folder, {
-        "beam.geo": BEAM, "case.yaml": CASE.format(end=PERIODS * PERIOD, dt=dt, halvings=0, n=10, m=1, analysis="dynamic", nu=0.3,
+        "beam.geo": BEAM, "case.yaml": CASE.format(end=PERIODS * PERIOD, dt=dt, halvings=10, n=10, m=1, analysis="dynamic", nu=0.3,
                                                    law="neo-hookean", method="type: auto", tip="free", more=more)})
     if code != 0:
         return float("nan"), code, doubted
@@ -87,19 +87,19 @@ def cut_back(panel, step, halvings, runner):
 MAPS = [
     Map("large-nu", "Large strain: near incompressibility", "tip deflection at K = 2 over the converged one",
         Axis("Poisson's ratio", [0.3, 0.4, 0.45, 0.49, 0.499, 0.4999], log=False), Axis("cells across", [1, 2, 4, 8]), list(NU), poisson,
-        lambda r: 0 < r < 1.15, lambda r: r > 0.9,
+        lambda r: abs(r - 1),
         about="""Mechanism: as at small strain: one volume ratio per face locks as nu approaches 1/2; one per cell does not, with its pressures as
 unknowns of Newton's method from nu = 0.48. The neighbours: one per face, and the least-squares gradient with the segregated method, whose iterations also stop
-converging. A beam 10:1 bent to 0.4 of its length. Locking at large strain is stable but too stiff; it gives no warning (pale)."""),
+converging. A beam 10:1 bent to 0.4 of its length. Locking at large strain is stable but too stiff."""),
     Map("large-swing", "Large strain: energy of free oscillations over 50 periods", "largest change of the energy in parts of the first",
         Axis("steps per period", [10, 20, 40, 80]), Axis("first velocity of the tip", [0.05, 0.2, 0.5]), list(SCHEMES), swing,
-        lambda g: g < 0.1, lambda g: abs(g) < 0.01,
+        abs,
         about="""Mechanism: a scheme that conserves the energy of linear bodies need not conserve that of a nonlinear law: the trapezoidal rule
 gains or loses energy with large rotations in long steps, until Newton's method fails or the energy guard ends the run. The energy-momentum stress
 (`energy-momentum: true`) conserves it to the solver's tolerance; Bathe, generalised-alpha and Euler dissipate. Beam 10:1 of ten cells."""),
     Map("large-load", "Large strain: load step and cut-back", "tip deflection at K = 10 over that of small load steps",
         Axis("load step in parts of K", [0.5, 1, 2, 5, 10]), Axis("halvings that are allowed", [0, 1, 2, 4, 8], log=False), list(LAWS), cut_back,
-        lambda r: abs(r - 1) < 1e-3,
+        lambda r: abs(r - 1),
         about="""Mechanism: from too far away Newton's method inverts cells; a failed step is halved up to
 `simulation.max-step-halvings` times. Without halving a long load step fails; with it the same result is found: equilibria do not depend on the path.
 The segregated method's answer depends on the load steps a little, since its geometry is updated after each."""),

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Maps of meshes that move far: mesh_mover alone, and gaps of fluid_solver that close."""
+import math
+
 import numpy as np
 
 from couplet import series
@@ -8,7 +10,7 @@ from couplet.places import ROOT
 from .atlas import Axis, Map
 
 CONFIGS = ROOT / "configs"
-MOVE = """simulation: {{name: turn, end-time: 1, time-step: 0.05, output: {{folder: out, interval: 1}}, max-step-halvings: 0}}
+MOVE = """simulation: {{name: turn, end-time: 1, time-step: 0.05, output: {{folder: out, interval: 1}}}}
 participants:
   mover:
     program: mesh_mover
@@ -49,7 +51,7 @@ def closed(panel, left, limit, runner):
     text = text.replace("time-step: 0.02 s", "time-step: 0.04 s").replace("-0.99*y", f"-{1 - left:g}*y").replace("0.01 Pa s", "0.01 Pa s\n    mesh-parameters: {n: 6}")
     text = text.replace("opening: 0.02 m", f"opening: {0.5 * limit:g} m") if limit > 0 else "\n".join(
         line for line in text.split("\n") if "slot: {between" not in line and line.strip() != "gaps:")
-    text = text.replace("viscosity:", f"viscous: {panel}\n    viscosity:").replace("simulation:\n", "simulation:\n  max-step-halvings: 0\n", 1)
+    text = text.replace("viscosity:", f"viscous: {panel}\n    viscosity:")
     folder = runner.folder("closed", panel, left, limit)
     code, doubted = runner.alone("fluid_solver", folder, {"slot.geo": (CONFIGS / "closing-gap" / "slot.geo").read_text(), "case.yaml": text})
     if code != 0:
@@ -62,12 +64,12 @@ def closed(panel, left, limit, runner):
 MAPS = [
     Map("mover-rotation", "Mesh mover: a plate turned in a square", "least scaled Jacobian at the end of 20 steps",
         Axis("angle [degrees]", [15, 30, 45, 60, 90, 120], log=False), Axis("stiffening chi", [0, 1, 2], log=False), list(METHODS), turned,
-        lambda j: j > 0, lambda j: j > 0.05,
+        lambda j: 0 if j > 0.05 else 0.1 if j > 0 else math.inf,
         about="""Mechanism: cells at the plate's ends are turned by the plate and held by what is around them. Stiffening by volume lets the small cells
-follow; the rotations method turns the surroundings with the plate and does not ask chi for it. The guard refuses the mesh that turns over."""),
+follow; the rotations method turns the surroundings with the plate and does not ask chi for it. The guard refuses the mesh that turns over. Pale: above 0 and below 0.05."""),
     Map("fluid-gap", "Fluid: a channel that closes", "sub-steps of a step while it is shut",
         Axis("share of the height that is left", [0.003, 0.01, 0.03, 0.1, 0.3]), Axis("blocked below this share (0: never)", [0, 0.02, 0.04, 0.08], log=False),
-        ["implicit"], closed, lambda n: n > 0, lambda n: n <= 10,
+        ["implicit"], closed, lambda n: 0 if n <= 10 else 0.1,
         about="""Mechanism: in a film the cells become thin, and the step of convection falls with the speed of
-what is pressed out (an explicit viscous one with the square of their height: hours). Blocked cells ask for no step. The failing neighbour is the row 'never'."""),
+what is pressed out (an explicit viscous one with the square of their height: hours). Blocked cells ask for no step. The failing neighbour is the row 'never'. Pale: over ten sub-steps."""),
 ]

@@ -11,7 +11,7 @@ Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
 Transfinite Curve {1:4} = 5; Curve Loop(1) = {1:4}; Plane Surface(1) = {1}; Transfinite Surface {1};
 Physical Curve("rim") = {1:4}; Physical Surface("sheet") = {1};
 """
-CASE = """simulation: {{name: bounce, end-time: {end}, time-step: {dt}, output: {{folder: out}}, max-step-halvings: 0}}
+CASE = """simulation: {{name: bounce, end-time: {end}, time-step: {dt}, output: {{folder: out}}}}
 participants:
   sheet:
     program: plate_modal
@@ -42,7 +42,7 @@ KAPPAS = [1e4, 1e5, 1e6, 1e7, 1e8]
 MAPS = [
     Map("plate-contact", "Plate: bounces on a seat", "energy that the scheme made or lost in 60 bounces, over the start's",
         Axis("stiffness of the seat [N/m^3]", KAPPAS), Axis("step [s]", [3e-4, 1e-3, 3e-3, 1e-2]), ["conserving", "midpoint"], bounce,
-        lambda v: v < 0.01,
+        lambda v: v,
         theory=[(None, "one step a contact", [(k, np.pi * np.sqrt(10 / k)) for k in np.geomspace(1e4, 1e8, 60)])],
         about="""Mechanism: the seat's spring is met and left within a step; a rule that does not know where adds or takes energy each time. The
 conserving rule keeps it whatever the step; the midpoint rule wants fifty steps a contact. 1000 bounces of the same: `configs/plate-drop/stability.py`."""),

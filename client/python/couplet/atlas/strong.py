@@ -35,7 +35,7 @@ def wall(panel, inverse, dt, runner):
     folder = runner.folder("wall", panel, inverse, dt)
     here = ROOT / "tests" / "coupling" / "string"
     text = changed((here / "case.yaml").read_text(), (r"end-time: .*", f"end-time: {WALL_STEPS * dt}"), (r"time-step: .*", f"time-step: {dt}"),
-                   (r"pulse-duration: .*", f"pulse-duration: {WALL_STEPS * dt}"), (r"surface-density: .*", f"surface-density: {MU * inverse}"),
+                   (r"  max-step-halvings: 0\n", ""), (r"pulse-duration: .*", f"pulse-duration: {WALL_STEPS * dt}"), (r"surface-density: .*", f"surface-density: {MU * inverse}"),
                    (r"scheme: implicit", "scheme: semi-implicit"), (r"order: 1", "order: 2"), (r"on-divergence: warn", "on-divergence: stop"),
                    (r"acceleration: .*", accelerated(kind, 1 if share else inverse / (1 + inverse))))
     if share:
@@ -51,11 +51,11 @@ LID_STEPS = 8
 
 
 def lid(panel, modulus, dt, runner):
-    """Passes per step; infinite where the volume is not held."""
+    """Passes per step; the error is that of the volume."""
     level, kind = LID[panel]
     folder = runner.folder("lid", panel, modulus, dt)
     case = ROOT / "configs" / "closed-cavity"
-    text = changed((case / "case.yaml").read_text(), (r"end-time: .*", f"end-time: {LID_STEPS * dt}\n  max-step-halvings: 0"),
+    text = changed((case / "case.yaml").read_text(), (r"end-time: .*", f"end-time: {LID_STEPS * dt}"),
                    (r"time-step: .*", f"time-step: {dt}"), (r"youngs-modulus: [^,]*", f"youngs-modulus: {modulus}"),
                    (r"0\.15 \* sin\(2 \* pi \* t\)", f"0.001 / {dt} * sin(2 * pi * t / {16 * dt})"), (r"volume-level: \w+", f"volume-level: {level}"),
                    (r"acceleration: .*", accelerated(kind, 0.5)), (r"mesh: fluid.geo", "mesh: fluid.geo\n    mesh-parameters: {n: 8}"),
@@ -66,19 +66,18 @@ def lid(panel, modulus, dt, runner):
     if code != 0:
         return math.nan, code, doubted
     volume = series.read_csv(folder / "out" / "coupler" / "volume.csv")
-    held = abs(volume["fluid volume error [m^3]"]).max() < 1e-3 * volume["fluid inflow [m^3]"].max()
-    return (series.passes_a_step(folder / "out") if held else math.inf), code, doubted
+    return series.passes_a_step(folder / "out"), code, doubted, float(abs(volume["fluid volume error [m^3]"]).max() / volume["fluid inflow [m^3]"].max())
 
 
 MAPS = [
     Map("strong-robin", "Strong coupling: Robin interface, mass of the wall and step", "passes per step",
-        Axis("rho_s h / (rho_f mu_1)", [0.05, 0.3, 1, 5, 20]), Axis("step [s]", [1e-4, 1e-3, 1e-2]), list(WALL)[:4], wall, math.isfinite,
-        accurate=lambda k: k <= 4.5,
+        Axis("rho_s h / (rho_f mu_1)", [0.05, 0.3, 1, 5, 20]), Axis("step [s]", [1e-4, 1e-3, 1e-2]), list(WALL)[:4], wall,
+        lambda k: 0 if k <= 4.5 else 0.1,
         about="""Mechanism: the pressure equation foresees what the wall will answer, with its mass per area; what is left over is what springs and neighbours
 change in that. The neighbours: Aitken without it, whose passes grow with the added mass, and a mass that is given four times too large: above the true
-one the error is thrown over, and with much added mass it grows. Pale squares hold but take over 4.5 passes; first steps, with nothing learnt, count."""),
+one the error is thrown over, and with much added mass it grows. Pale squares hold but take over 4.5 passes; first steps, with nothing learnt, count; each step converged."""),
     Map("strong-cavity", "Strong coupling: closed box, stiffness of its lid and step", "passes per step",
-        Axis("Young's modulus of the lid [Pa]", [1e5, 1e7, 1e9]), Axis("step [s]", [2e-3, 2e-2, 2e-1]), list(LID), lid, math.isfinite, accurate=lambda k: k <= 6,
+        Axis("Young's modulus of the lid [Pa]", [1e5, 1e7, 1e9]), Axis("step [s]", [2e-3, 2e-2, 2e-1]), list(LID), lid,
         about="""Mechanism: nothing but the lid can give way to what is pumped in. The pressure level that makes it do so is found from its answer to a pressure;
-what is iterated then keeps the volume. Without the level the fluid refuses to start. Pale: over 6 passes."""),
+what is iterated then keeps the volume (colours: its error over the inflow). Without the level the fluid refuses to start."""),
 ]

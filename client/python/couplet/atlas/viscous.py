@@ -24,7 +24,7 @@ def zigzag(x):
 def run(panel, ratio, dt, runner):
     """Zigzag of the tip. `ratio`: rho_s / mu."""
     folder = runner.folder("viscous", panel, ratio, dt)
-    text = changed((CASE / "case.yaml").read_text(), (r"end-time: .*", f"end-time: {STEPS * dt}\n  max-step-halvings: 0"),
+    text = changed((CASE / "case.yaml").read_text(), (r"end-time: .*", f"end-time: {STEPS * dt}"),
                    (r"time-step: .*", f"time-step: {dt}"), (r"interval: 0.05 s", "interval: 1000 s"), (r"interval: 1 s", "interval: 1000 s"),
                    (r"density: 3000 kg/m\^3", f"density: {ratio * VISCOSITY}"), (r"scheme: semi-implicit", f"scheme: {PANELS[panel]}"),
                    (r"inlet, velocity: \[10 m/s, 0 m/s\]", f"inlet, velocity: [1 m/s, 0 m/s], ramp: {STEPS * dt}"),
@@ -39,12 +39,12 @@ def run(panel, ratio, dt, runner):
 
 MAPS = [
     Map("coupling-viscous", "Coupling: a light structure in a viscous fluid", "zigzag of the tip: third over first differences",
-        Axis("rho_s / mu [s/m^2]", [1, 10, 100, 1000, 10000]), Axis("step [s]", [1e-4, 1e-3, 1e-2]), list(PANELS), run, lambda v: v < 2,
-        accurate=lambda v: v < 1,
+        Axis("rho_s / mu [s/m^2]", [1, 10, 100, 1000, 10000]), Axis("step [s]", [1e-4, 1e-3, 1e-2]), list(PANELS), run,
+        lambda v: 0 if v < 1 else 0.1 if v < 2 else np.inf,
         about="""Mechanism: friction drags a layer of fluid along with the wall, of the thickness sqrt(nu dt) at most that of a cell. What takes it at a guessed
 velocity (explicit, and semi-implicit before its friction followed the wall's velocity of the pass) oscillates with a period of two steps
 where that layer weighs more than the wall: light structures, viscous fluids; a smaller step is no cure. Criterion: below 2 no oscillation from
-step to step (one that turns round in each has 4); from 1 up it is inaccurate. rho_f = 1, mu = 1. In short steps the explicit scheme ends
+step to step (one that turns round in each has 4); from 1 up it is pale. rho_f = 1, mu = 1. In short steps the explicit scheme ends
 whatever the density: between the wall and the first cell's centre lies half a cell h of solid without mass, which gives way at once, and
 rho_f L h/(2 (lambda + 2 mu_s) dt^2) takes the place of the mass ratio (the run measures 2.3 at 1e-4 s and 1e4 s/m^2)."""),
 ]

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bars of the atlas: its squares as committed, and where runs between its squares say that they stand."""
+import json
+import pathlib
+import tempfile
+
+from validation.job import Bar
+
+# Of each map: its panels, places between its squares, and the quantity whose number is the map's own axis (by a factor).
+BETWEEN = [
+    ("fluid-diffusion", ["explicit, Adams-Bashforth", "explicit, Runge-Kutta"], [0.07, 0.11, 0.13, 0.2, 0.35], [0.25, 0.75]),
+    ("fluid-convection", ["explicit, Adams-Bashforth", "implicit viscous term", "explicit, Runge-Kutta"], [0.3, 0.7, 1.2, 1.7], [0.25, 0.75]),
+    ("coupling-mass", ["explicit, predictor 1", "explicit, predictor 2"], [0.5, 0.8, 1.5, 5], [0.05]),
+]
+
+
+def colours(job):
+    from couplet.atlas import atlas
+    from couplet.atlas.main import AGAIN, MAPS
+    squares = {m.name: atlas.read(job.root / f"docs/stability/{m.name}.csv") for m in MAPS}
+    whole = [m for m in MAPS if len(squares[m.name]) == len(m.panels) * len(m.x.values) * len(m.y.values)]
+    counts = {o: sum(s.outcome == o for table in squares.values() for s in table.values()) for o in (atlas.HOLDS, atlas.POOR, atlas.WARNED, atlas.REFUSED, atlas.RED)}
+    silent = [f"{m.name} {sum(s.outcome == atlas.RED for s in squares[m.name].values())}" for m in MAPS if any(s.outcome == atlas.RED for s in squares[m.name].values())]
+    return (f"{len(whole)} of {len(MAPS)} maps; {', '.join(f'{n} {o}' for o, n in counts.items())}{' (' + ', '.join(silent) + ')' if silent else ''}; "
+            f"{'; '.join(f'{name}: {why}' for name, why in AGAIN.items()) or 'all drawn again'}"), len(whole) == len(MAPS) and counts[atlas.RED] == 0 and not AGAIN
+
+
+def placed(folder):
+    """Largest share of the way to a limit in any run.json of the folder; None without one."""
+    found = [c for file in pathlib.Path(folder).glob("out/*/run.json") for c in json.loads(file.read_text()).get("atlas", []) if c["map"] != "strong-robin"]
+    return max(((1 - c["value"]) / (1 - c["limit"]) if c["floor"] else c["value"] / c["limit"] for c in found), default=None)
+
+
+def positions(job):
+    from couplet.atlas import atlas
+    from couplet.atlas.main import MAPS
+    maps = {m.name: m for m in MAPS}
+    right, early, wrong = 0, 0, []
+    with tempfile.TemporaryDirectory(prefix="couplet-atlas-") as scratch:
+        for name, panels, xs, ys in BETWEEN:
+            for panel, x, y in ((p, x, y) for p in panels for x in xs for y in ys):
+                runner = atlas.Runner(job.build, pathlib.Path(scratch) / f"{name}-{panels.index(panel)}-{x}-{y}".replace(" ", ""))
+                square = atlas.judged(maps[name], *maps[name].run(panel, x, y, runner))
+                used = placed(next(runner.scratch.iterdir()))
+                held = square.outcome in (atlas.HOLDS, atlas.POOR)
+                if used is not None and held == (used <= 1):
+                    right += 1
+                elif used is not None and held and used <= 1.5:
+                    early += 1  # a bound on the eigenvalues is beyond them on oblique cells
+                else:
+                    wrong.append(f"{name} {panel} {x:g}, {y:g}: {used if used is None else round(used, 2)} of the way, {square.outcome}")
+    total = right + early + len(wrong)
+    return f"{right} of {total} agree, {early} hold up to 1.5 times the limit" + (f"; not: {'; '.join(wrong)}" if wrong else ""), total >= 50 and not wrong
+
+
+BARS = [
+    Bar("atlas: default settings in all maps, squares more than 20 % off without a warning", "0", colours),
+    Bar("atlas: runs between squares, their printed position inside or beyond the limit as the run holds or not", "50 of 50", positions, long=True,
+        but="a run that holds up to 1.5 times the printed limit counts: the limits are bounds"),
+]
