@@ -191,14 +191,17 @@ TEST(SolidParameters, finite_strain_says_what_it_cannot_have) {
       Contains(HasSubstr("plane strain only")));
   EXPECT_THAT(read(start + estimate + "analysis: static\nmaterial: {" + body + "}\n", sound),
               ::testing::IsEmpty());
-  const std::string warm = "thermal-expansion: {}\ntemperature: 300\n",
+  const std::string warm = "thermal-expansion: {}\ntemperature: 300 K\n",
                     expanding = "material: {" + body + ", expansion: 1e-5}\n";
   SolidParameters heated;
   EXPECT_THAT(read(start + large + warm + expanding, heated), ::testing::IsEmpty());
   told(thesis + warm + expanding, "at finite strain has no thermal strain");
   told(large + "energy-momentum: true\n" + warm + expanding, "conserves energy at constant temperature only");
   told(large + "output: {energies: true}\n" + warm + expanding, "does not count the work of thermal strain");
-  told(large + "thermoelastic-coupling: true\n" + warm + expanding, "not the heat of deformation");
+  told(large +
+           "thermoelastic-coupling: true\nthermal-expansion: {}\nheat: {analysis: transient}\nmaterial: {" +
+           body + ", expansion: 1e-5, conductivity: 50, specific-heat: 500}\n",
+       "not the heat of deformation");
   const std::string facing =
       "mesh: a.msh\nboundaries: {root: {type: fixed-displacement, value: [0, 0, 0]}, wet: {type: interface}}\n" +
       large + "interface: {load: pressure}\nmaterial: {" + body + "}\n";
@@ -236,8 +239,14 @@ TEST(SolidParameters, a_body_of_revolution_says_what_it_cannot_have) {
   told(held + "}\nsolution-method: {face-gradient: thesis}\n", "is solved with 'face-gradient: symmetric'");
   told(held + "}\nsolution-method: {volume-strain: cells}\n", "is solved with 'face-gradient: symmetric'");
   told(held + "}\noutput: {modes: 3}\n", "supports none of 'spectrum', 'modes'");
-  told(held + "}\nheat: {}\n", "does not conduct heat");
-  told(held + "}\ninterface: {}\n", "does not couple");
+  told(held + ", wet: {type: interface}}\n", "'frictionless', 'roller' and 'free'");
+  SolidParameters heated;
+  EXPECT_THAT(
+      read("mesh: a.msh\ndimension: 2\nplane: axisymmetric\nanalysis: static\n" + held +
+               "}\nheat: {analysis: steady}\nmaterial: {density: 1, youngs-modulus: 1, poissons-ratio: "
+               "0.3, conductivity: 50}\n",
+           heated),
+      Contains(HasSubstr("does not conduct heat")));
 }
 
 TEST(SolidParameters, arc_length_says_what_it_cannot_scale) {
