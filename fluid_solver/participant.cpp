@@ -26,6 +26,8 @@ namespace {
 // At the end of a step: what a growing oscillation reaches.
 constexpr double near_limit = 0.1;
 
+bool holds_volume(const FluidParameters& p) { return p.volume_level == VolumeLevelBy::structure; }
+
 }  // namespace
 
 template <int D>
@@ -104,7 +106,7 @@ coupling::Interface FluidParticipant<D>::initialise() {
     if (fluid_->boundary().asks_for_mass())
       description.takes.push_back({"surface-density", "kg/m^2", Place::faces, 1});
   }
-  if (holds_volume()) description.gives.push_back({"inflow", "m^3/s", Place::faces, 2});
+  if (holds_volume(fluid_->parameters())) description.gives.push_back({"inflow", "m^3/s", Place::faces, 2});
   return description;
 }
 
@@ -126,7 +128,7 @@ void FluidParticipant<D>::tell_impulse() const {
 
 template <int D>
 void FluidParticipant<D>::begin_step(const coupling::Step& step) {
-  if (step.number == 0 || holds_volume()) check_cavity(*fluid_, step.scheme);
+  if (step.number == 0 || holds_volume(fluid_->parameters())) check_cavity(*fluid_, step.scheme);
   step_ = step;
   if (step.number == 0) tell_impulse();
   predicted_ = renewed_now_ = false;
@@ -163,7 +165,7 @@ coupling::Exchange FluidParticipant<D>::forces() const {
       wall[i] = fluid_->boundary_pressure()[faces[i] - mesh_.n_interior] * interface_area_[i];
     out["own-wall-force"] = interface_->gather_faces(wall, 1);
   }
-  if (holds_volume())
+  if (holds_volume(fluid_->parameters()))
     out["inflow"] = interface_->gather_faces(inflow_shares(*fluid_, faces, step_.time, step_.dt), 2);
   return out;
 }

@@ -78,7 +78,6 @@ class FluidParticipant final : public coupling::Participant,
   bool yields() const { return interface_ && fluid_->boundary().yields(); }
   double wall_displacement(const coupling::Exchange& in) const;
   bool stands_still() const { return interface_ && !motion_ && step_.scheme != coupling::Scheme::standalone; }
-  bool holds_volume() const { return fluid_->parameters().volume_level == VolumeLevelBy::structure; }
   double answer() const;
   void prepare(const Vectors<D>& w);
   void set_up_motion();
@@ -89,7 +88,6 @@ class FluidParticipant final : public coupling::Participant,
   coupling::Exchange forces() const;
   void tell_sub_steps();
   void see_given_step();
-  double rate_of(GlobalIndex cell, bool friction) const;
   std::vector<Index> moving_faces() const;
   void see_motion();
   void see_ringing();

@@ -18,6 +18,25 @@ constexpr double most_times_as_many = 2;
 constexpr double far_above = 2;
 constexpr int steps_between_looks = 10;
 
+/// sum |phi - dV/dt| / (2 V) of a cell, a Courant number over the step, or with `friction` its sum nu g / (2 D V), which is nu/h^2 of
+/// a cube [1/s]. Collective.
+template <int D>
+double rate_of(const mesh::Mesh& mesh, const Fluid<D>& fluid, GlobalIndex cell, bool friction) {
+  const State<D>& s = fluid.state();
+  const double nu = fluid.parameters().viscosity / fluid.parameters().density;
+  double rate = 0;
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    const bool inside = f < mesh.n_interior;
+    const Index c = mesh.cell_id[mesh.owner[f]] == cell                 ? mesh.owner[f]
+                    : inside && mesh.cell_id[mesh.neighbour[f]] == cell ? mesh.neighbour[f]
+                                                                        : -1;
+    if (c < 0 || c >= mesh.cells.n_owned()) continue;
+    const double flux = std::abs(s.phi[f] - (s.mesh_flux.empty() ? 0.0 : s.mesh_flux[f]));
+    rate += (friction ? nu * s.placement->conductance[f] / (2 * D) : flux / 2) / s.placement->volume[c];
+  }
+  return parallel::sum(mesh.comm, rate);
+}
+
 }  // namespace
 
 /// A step that is given is kept, also where it is too long for the implicit term on cells with few faces (StepSize). Looked at where
@@ -77,25 +96,6 @@ void FluidParticipant<D>::tell_sub_steps() {
         100 * fluid_->parameters().safety_factor);
 }
 
-/// sum |phi - dV/dt| / (2 V) of a cell, a Courant number over the step, or with `friction` its sum nu g / (2 D V), which is nu/h^2 of
-/// a cube [1/s]. Collective.
-template <int D>
-double FluidParticipant<D>::rate_of(GlobalIndex cell, bool friction) const {
-  const State<D>& s = fluid_->state();
-  const double nu = fluid_->parameters().viscosity / fluid_->parameters().density;
-  double rate = 0;
-  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    const bool inside = f < mesh_.n_interior;
-    const Index c = mesh_.cell_id[mesh_.owner[f]] == cell                 ? mesh_.owner[f]
-                    : inside && mesh_.cell_id[mesh_.neighbour[f]] == cell ? mesh_.neighbour[f]
-                                                                          : -1;
-    if (c < 0 || c >= mesh_.cells.n_owned()) continue;
-    const double flux = std::abs(s.phi[f] - (s.mesh_flux.empty() ? 0.0 : s.mesh_flux[f]));
-    rate += (friction ? nu * s.placement->conductance[f] / (2 * D) : flux / 2) / s.placement->volume[c];
-  }
-  return parallel::sum(mesh_.comm, rate);
-}
-
 template <int D>
 std::vector<effects::Coordinate> FluidParticipant<D>::position() const {
   // What the first step sets in motion could not limit it.
@@ -103,13 +103,11 @@ std::vector<effects::Coordinate> FluidParticipant<D>::position() const {
   const StepLimiter by = fluid_->sizes().limiter(fluid_->state());
   if (!std::isfinite(by.limit)) return {};
   const double size = step_.dt / std::max(1, fluid_->statistics().sub_steps);
-  const double rate = rate_of(by.cell, by.friction);
+  const double rate = rate_of(mesh_, *fluid_, by.cell, by.friction);
   return {{by.friction ? "nu dt/h^2" : "Courant number", size * rate, by.limit * rate,
            by.friction ? "fluid-diffusion" : "fluid-convection"}};
 }
 
-template double FluidParticipant<2>::rate_of(GlobalIndex, bool) const;
-template double FluidParticipant<3>::rate_of(GlobalIndex, bool) const;
 template std::vector<effects::Coordinate> FluidParticipant<2>::position() const;
 template std::vector<effects::Coordinate> FluidParticipant<3>::position() const;
 template void FluidParticipant<2>::see_given_step();

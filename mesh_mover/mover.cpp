@@ -282,11 +282,6 @@ void Mover::write_monitors(double time) {
   quality_->row(row);
 }
 
-std::vector<effects::Coordinate> Mover::position() const {
-  if (!least_jacobian_) return {};
-  return {{"least scaled Jacobian", *least_jacobian_, 0, "mover-rotation", true}};
-}
-
 void Mover::write_output(double time, int) {
   if (!fields_) return;
   place();

@@ -58,4 +58,9 @@ void Mover::leave_laplacian(const coupling::Exchange& in) {
   placed_ = false;
 }
 
+std::vector<effects::Coordinate> Mover::position() const {
+  if (!least_jacobian_) return {};
+  return {{"least scaled Jacobian", *least_jacobian_, 0, "mover-rotation", true}};
+}
+
 }  // namespace couplet::mesh_mover

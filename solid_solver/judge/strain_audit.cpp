@@ -130,13 +130,12 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
   const auto own = [&](Index f, const Tensor3& gradient) {
     within.add(f, gradient);
     if (!is_mine(f)) return;  // another rank's
-    const Index owner = mesh_.owner[f];
-    const Tensor3 stress = rows.stress(owner, gradient);
+    const Tensor3 stress = rows.stress(mesh_.owner[f], gradient);
     energy += 0.5 * volume(f) * contraction(stress, gradient);
     work += work_on(mesh_, rows, state, f, stress * geometry_.face_area[f]);
     if (!compare) return;
     const Tensor3 symmetric = 0.5 * (gradient + gradient.transpose());
-    size += volume(f) * rows.lame(owner).mu * symmetric.squaredNorm();
+    size += volume(f) * rows.lame(mesh_.owner[f]).mu * symmetric.squaredNorm();
     std::ranges::copy(pack(symmetric), strains[f - first].begin());
   };
   const auto other = [&](Index f, const Tensor3& gradient) {

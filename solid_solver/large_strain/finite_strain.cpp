@@ -295,21 +295,4 @@ double FiniteStrain::judge_rounding(const Load& load, double scale, double left)
   return left / loads;
 }
 
-void FiniteStrain::set_pressure(std::vector<double> of_faces) {
-  presses_ = parallel::any(mesh_.comm, std::ranges::any_of(of_faces, [](double p) { return p != 0; }));
-  kernel_->set_pressure(of_faces);
-  if (path_) whole_pressure_ = std::move(of_faces);
-}
-
-/// theta = 1 + the integral of alpha dT: lengths of the body as it was at the reference temperature.
-void FiniteStrain::set_expansion(std::vector<double> of_faces) {
-  double least = 1;
-  for (double& strain : of_faces) least = std::min(least, strain += 1);
-  if (!(parallel::min(mesh_.comm, least) > 0))
-    throw Error(
-        "thermal-expansion: a thermal strain of -1 or less leaves nothing of the body; check "
-        "'material.expansion' and the temperatures.");
-  kernel_->set_stretch(of_faces);
-}
-
 }  // namespace couplet::solid

@@ -27,6 +27,7 @@ LARGE_CLASSES = {
     "SymmetricSpace": "trial functions: values, forces, loads, mass and springs act on the same arrays",
     "FiniteKernelOf": "implements FiniteKernel, whose calls are those of Newton's method",
     "FiniteStrain": "implements LargeStrain; the iteration's parts share its vectors",
+    "Equilibrium": "what a body is asked at small and at large strain, by its motion, its fields and its judge",
     "ConductionOperator": "hands out unknowns, known values and conditions of the faces",
 }
 

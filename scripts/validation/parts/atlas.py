@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of the atlas: its squares as committed, and where runs between its squares say that they stand."""
+"""Bars of the atlas: its squares as committed, and the positions that runs between its squares report."""
 import json
 import pathlib
 import tempfile
