@@ -27,7 +27,7 @@ const double limit = load_at(2), lower_limit = load_at(-2);
 
 /// The left half; y from the centre line.
 RawMesh arch(int along) {
-  RawMesh raw = make_box(BoxCells::quadrilaterals, {along, 3, 1}, Vec3(0, -thickness / 2, 0),
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {along, 5, 1}, Vec3(0, -thickness / 2, 0),
                          Vec3(span_length / 2, thickness / 2, 0));
   for (Vec3& x : raw.points) x.y() += 4 * gyration * std::sin(pi * x.x() / span_length);
   return raw;
