@@ -9,7 +9,7 @@ START = 0.3e-3  # lift at rest [m]
 SOURCE = "[thesis] 4.5: 3.89 mm, 56.3 Hz (incompressible, 2.2 million cells)"
 
 POINTS = ("; where the source's control points lie is unknown: its instants at a lift of 0.08 d = 2.79 mm at point 2 rule out that 3.89 mm is the tip and point 2 the centre, "
-          "for the first mode lifts the tip 1.59 times as far as the centre; mesh, chamber and start are not separated")
+          "for the first mode lifts the tip 1.59 times as far as the centre; the cause is not known: a finer mesh lifts the reed further")
 
 
 def columns(run, file, *names):
@@ -42,7 +42,7 @@ def frequency(job):
     t, z = columns(valve(job), "reed/probes.csv", "point-1 z [m]")
     _, top, least, end = first_cycle(t, z)
     f = 1 / end
-    return f"{f:.1f} Hz ({100 * (f / 56.3 - 1):+.0f} %): open widest at {1000 * top:.1f} ms, least lift {1000 * (least + START):.2f} mm at {1000 * end:.1f} ms; mesh, chamber and start (the drawing is missing) are not separated", abs(f / 56.3 - 1) <= 0.1
+    return f"{f:.1f} Hz ({100 * (f / 56.3 - 1):+.0f} %): open widest at {1000 * top:.1f} ms, least lift {1000 * (least + START):.2f} mm at {1000 * end:.1f} ms; chamber and start are assumptions (the drawing is missing)", abs(f / 56.3 - 1) <= 0.1
 
 
 def energy(job):
