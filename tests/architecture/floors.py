@@ -17,6 +17,7 @@ FLOORS = {
     "common/mesh": [".", "msh", "inp", "gmsh"],
     "common/app": ["watch", "loop", "case", "."],
     "common/io": [".", "probes"],
+    "common/linalg": ["lazy", "."],
 }
 
 # Functions of a class above, written where their subject is.
