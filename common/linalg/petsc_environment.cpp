@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/linalg/petsc_environment.hpp"
 
-#include <petscsys.h>
-
 #include <exception>
 
-#include "common/base/error.hpp"
+#include "common/linalg/lazy/petsc_calls.hpp"
+#include "common/parallel/collective.hpp"
+
+// Stands in petsc_calls.S; null where programs are linked to PETSc.
+extern "C" [[gnu::weak]] const char couplet_petsc_is_lazy;
 
 namespace couplet::linalg {
 
 PetscEnvironment::PetscEnvironment(MPI_Comm program) {
-  PETSC_COMM_WORLD = program;
-  if (PetscInitializeNoArguments() != 0) throw Error("PETSc could not be initialised.");
-  PetscPopSignalHandler();
-  // Errors become exceptions (see linalg/petsc_check.hpp); PETSc itself stays silent.
-  PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
+  start_petsc_when_called(program);
+  // On several ranks at once: starting is collective, and a mesh is cut by one rank alone.
+  if (&couplet_petsc_is_lazy == nullptr || parallel::comm_size(program) > 1) start_petsc();
 }
 
 PetscEnvironment::~PetscEnvironment() {
   // PetscFinalize is collective: never during unwinding.
-  if (std::uncaught_exceptions() == 0) PetscFinalize();
+  if (std::uncaught_exceptions() == 0) stop_petsc();
 }
 
 std::shared_ptr<void> petsc_environment(MPI_Comm program) {

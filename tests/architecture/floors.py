@@ -17,7 +17,7 @@ FLOORS = {
     "common/mesh": [".", "msh", "inp", "gmsh"],
     "common/app": ["watch", "loop", "case", "."],
     "common/io": [".", "probes"],
-    "common/linalg": [".", "multigrid"],
+    "common/linalg": ["lazy", ".", "multigrid"],
 }
 
 # Functions of a class above, written where their subject is.

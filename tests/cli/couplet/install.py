@@ -87,7 +87,14 @@ def deb(folder, home):
     for program in sorted((root / "bin").iterdir()):
         if program.name != "couplet":
             libraries = subprocess.run(["ldd", program], capture_output=True, text=True).stdout
-            check(f"libraries of {program.name}", "not found" not in libraries and str(build) not in libraries and ("libmpi" if program.name == "relay" else "libpetsc") in libraries, libraries[:200])
+            check(f"libraries of {program.name}", "not found" not in libraries and str(build) not in libraries and "libmpi" in libraries, libraries[:200])
+    # PETSc is loaded where it is used: not by each start of a program.
+    loaded = subprocess.run(["ldd", root / "bin/coupler"], capture_output=True, text=True).stdout
+    module = root / "lib/couplet/libcouplet_petsc.so"
+    behind = subprocess.run(["ldd", module if "libpetsc" not in loaded else root / "bin/coupler"], capture_output=True, text=True).stdout
+    check("libraries of PETSc", "not found" not in behind and str(build) not in behind and "libpetsc" in behind, behind[:200])
+    needs = subprocess.run(["dpkg-deb", "-f", package, "Depends"], capture_output=True, text=True).stdout
+    check("the package names them", "libpetsc" in needs and "libslepc" in needs, needs)
     named = [f for f in root.rglob("*") if f.is_file() and str(build).encode() in f.read_bytes()]
     check("no file names the place where it was built", not named, named)
     outside = [f for f in (folder / "root").rglob("*") if f.is_file() and f.relative_to(root).parts[0] not in ("bin", "share", "lib", "include")]
