@@ -152,7 +152,7 @@ for text, wrong in SECOND_READERS.items():
         if len(found) != wrong * counts:
             print(f"readers: {path}: {text}: {wrong * counts} wrong, found {found}")
             failed += 1
-if len(LARGE_CLASSES) > 16 or len(LONG_FILES) > 1 or MOST_FOR_A_REASON > 40 or not all(len(reason) > 20 for reason in (*LARGE_CLASSES.values(), *LONG_FILES.values())):
+if len(LARGE_CLASSES) > 17 or len(LONG_FILES) > 1 or MOST_FOR_A_REASON > 40 or not all(len(reason) > 20 for reason in (*LARGE_CLASSES.values(), *LONG_FILES.values())):
     print("lengths: no further exceptions, and each needs a reason")
     failed += 1
 idle = check_readers([])[1]
