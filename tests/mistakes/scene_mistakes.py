@@ -33,7 +33,7 @@ MISTAKES = [
     ("plane stress in three dimensions", "solid", SPATIAL, "refused", {"message": "plane: only for 2-dimensional scenes; remove this key."}),
     ("plane strain for plane stress", "solid", [("plane: stress", "plane: strain")], "right",
      {"message": "both are scenes; --explain names the one in force"}),
-    ("plane as a word of another program", "solid", [("plane: stress", "plane: plane-stress")], "refused", {"message": "'plane-stress' is not one of: strain, stress."}),
+    ("plane as a word of another program", "solid", [("plane: stress", "plane: plane-stress")], "refused", {"message": "'plane-stress' is not one of: strain, stress, axisymmetric."}),
     ("restart into the output folder of the first run", "solid", [], "right",
      {"message": "a run continues its own results", "run": True, "twice": ["--restart", "out/checkpoints", "--set", "simulation.end-time=2 s"]}),
     ("restart of another material", "solid", [], "refused",
