@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fluid_solver/pressure/viscous_solver.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
 #include "fluid_solver/pressure/largest_entry.hpp"
 
 namespace couplet::fluid {
@@ -12,98 +14,103 @@ namespace {
 
 constexpr int most_iterations = 2000;
 
-template <std::size_t N>
-void sum_all(MPI_Comm comm, std::array<double, N>& values) {
-  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(N), MPI_DOUBLE, MPI_SUM, comm);
-}
-
 }  // namespace
 
+/// Without the boundary in a_->diagonal, with it in inverse_diagonal_.
 template <int D>
-void ViscousSolver<D>::multiply(Vectors<D>& x, Vectors<D>& y) const {
+void ViscousSolver<D>::set_diagonal() {
   const Placement<D>& at = *at_;
-  const double beta = beta_;
-  mesh_.cells.update_ghosts(flat<D>(x), D);
-  for (Index c = 0; c < mesh_.cells.n_local(); ++c) y[c] = at.volume[c] * x[c];
-  for (Index f = 0; f < mesh_.n_interior; ++f) {
-    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
-    const Vec<D> part = beta * at.conductance[f] * (x[p] - x[n]);
-    y[p] += part;
-    y[n] -= part;
-  }
-  for (const BoundaryRow& row : rows_) y[row.cell] += row.times(x[row.cell]);
-}
-
-template <int D>
-void ViscousSolver<D>::prepare(const Placement<D>& at, double beta) {
-  at_ = &at;
-  beta_ = beta;
-  inverse_diagonal_.assign(at.volume.begin(), at.volume.end());
-  for (Index f = 0; f < mesh_.n_interior; ++f) {
-    const double a = beta * at.conductance[f];
-    inverse_diagonal_[mesh_.owner[f]] += a;
-    inverse_diagonal_[mesh_.neighbour[f]] += a;
-  }
-  rows_.clear();
+  std::copy_n(at.volume.begin(), a_->size(), a_->diagonal.begin());
+  for (Index f = 0; f < mesh_.n_interior; ++f)
+    for (const Index c : {mesh_.owner[f], mesh_.neighbour[f]})
+      if (c < a_->size()) a_->diagonal[c] += beta_ * at.conductance[f];
+  inverse_diagonal_ = a_->diagonal;
+  boundary_rows_.clear();
   const FaceRows& given = boundary_.rows();
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
     const Index b = f - mesh_.n_interior;
-    const double a = beta * at.conductance[f], t = given.friction(at, b, f);
+    const double a = beta_ * at.conductance[f], t = given.friction(at, b, f);
     inverse_diagonal_[mesh_.owner[f]] += a;
-    rows_.push_back({mesh_.owner[f], a * t, a * (1 - given.pressure[b] - t), at.area[f].normalized()});
+    boundary_rows_.push_back(
+        {mesh_.owner[f], a * t, a * (1 - given.pressure[b] - t), at.area[f].normalized()});
   }
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) inverse_diagonal_[c] = 1 / inverse_diagonal_[c];
+  for (double& value : inverse_diagonal_) value = 1 / value;
 }
 
 template <int D>
-void ViscousSolver<D>::add_boundary(const Vectors<D>& w, Vectors<D>& b) const {
-  for (std::size_t face = 0; face < rows_.size(); ++face) b[rows_[face].cell] += rows_[face].times(w[face]);
+void ViscousSolver<D>::set_entries() {
+  scale_.resize(mesh_.cells.n_local());
+  for (Index c = 0; c < a_->size(); ++c) {
+    scale_[c] = std::sqrt(inverse_diagonal_[c]);
+    a_->diagonal[c] *= inverse_diagonal_[c];
+  }
+  mesh_.cells.update_ghosts(scale_);
+  std::size_t e = 0;
+  for (Index c = 0; c < a_->size(); ++c)
+    for (const std::size_t end = e + a_->width; e < end; ++e)
+      if (const Index f = a_->face[e]; f >= 0)
+        a_->value[e] = -beta_ * at_->conductance[f] * scale_[c] * scale_[a_->column[e]];
+}
+
+template <int D>
+void ViscousSolver<D>::prepare(std::shared_ptr<const Placement<D>> at, double beta) {
+  if (at == at_ && beta == beta_) return;  // on all ranks alike: each step of a mesh that moves has its own
+  at_ = std::move(at);
+  beta_ = beta;
+  if (!a_) a_ = std::make_unique<ViscousRows>(mesh_);
+  set_diagonal();
+  set_entries();
+}
+
+/// Returns x.y of this rank.
+template <int D>
+double ViscousSolver<D>::apply(Vectors<D>& x, Vectors<D>& y) const {
+  mesh_.cells.update_ghosts(flat<D>(x), D);
+  double sum = multiply(*a_, x, y);
+  for (const BoundaryRow& row : boundary_rows_) {
+    const Vec<D> part = inverse_diagonal_[row.cell] * row.times(x[row.cell]);
+    y[row.cell] += part;
+    sum += part.dot(x[row.cell]);
+  }
+  return sum;
 }
 
 template <int D>
 int ViscousSolver<D>::solve(const Vectors<D>& w, double tolerance, Vectors<D>& b, Vectors<D>& u) {
   const Index owned = mesh_.cells.n_owned();
-  r_.resize(u.size());
-  q_.resize(u.size());
-  search_.assign(u.size(), Vec<D>::Zero());
-  add_boundary(w, b);
-  multiply(u, q_);
-  std::array<double, 2> sums{};  // b.D^-1 b, r.D^-1 r
+  for (Vectors<D>* each : {&x_, &r_, &q_, &search_}) each->resize(u.size());
+  for (std::size_t face = 0; face < boundary_rows_.size(); ++face)
+    b[boundary_rows_[face].cell] += boundary_rows_[face].times(w[face]);
+  for (Index c = 0; c < owned; ++c) x_[c] = u[c] / scale_[c];
+  apply(x_, q_);
+  double sums[2] = {};  // b.D^-1 b, r.D^-1 r
   for (Index c = 0; c < owned; ++c) {
-    r_[c] = b[c] - q_[c];
-    search_[c] = inverse_diagonal_[c] * r_[c];
-    sums[0] += inverse_diagonal_[c] * b[c].squaredNorm();
-    sums[1] += r_[c].dot(search_[c]);
+    const Vec<D> scaled = scale_[c] * b[c];
+    search_[c] = r_[c] = scaled - q_[c];
+    sums[0] += scaled.squaredNorm();
+    sums[1] += r_[c].squaredNorm();
   }
-  sum_all(mesh_.comm, sums);
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
   const double goal = tolerance * tolerance * sums[0];
-  double rz = sums[1];
+  const std::size_t n = static_cast<std::size_t>(owned) * D;
+  double rr = sums[1];
   int iterations = 0;
-  while (rz > goal && iterations < most_iterations) {
+  while (rr > goal && iterations < most_iterations) {
     ++iterations;
-    multiply(search_, q_);
-    std::array<double, 1> curvature{};
-    for (Index c = 0; c < owned; ++c) curvature[0] += search_[c].dot(q_[c]);
-    sum_all(mesh_.comm, curvature);
-    if (!(curvature[0] > 0)) break;
-    const double alpha = rz / curvature[0];
-    std::array<double, 1> next{};
-    for (Index c = 0; c < owned; ++c) {
-      u[c] += alpha * search_[c];
-      r_[c] -= alpha * q_[c];
-      next[0] += inverse_diagonal_[c] * r_[c].squaredNorm();
-    }
-    sum_all(mesh_.comm, next);
-    const double gamma = next[0] / rz;
-    rz = next[0];
-    for (Index c = 0; c < owned; ++c) search_[c] = inverse_diagonal_[c] * r_[c] + gamma * search_[c];
+    const double curvature = parallel::sum(mesh_.comm, apply(search_, q_));
+    if (!(curvature > 0)) break;
+    const double next =
+        parallel::sum(mesh_.comm, advance(rr / curvature, flat<D>(search_).first(n), flat<D>(q_).first(n),
+                                          flat<D>(x_).first(n), flat<D>(r_).first(n)));
+    turn(next / std::exchange(rr, next), flat<D>(r_).first(n), flat<D>(search_).first(n));
   }
   // The round-off of b itself is all that can be asked for: a little above it counts as solved.
-  if (!(rz <= std::max(goal, 1e-26 * sums[0])))
+  if (!(rr <= std::max(goal, 1e-26 * sums[0])))
     throw SolveFailure(
         "The implicit viscous solve did not converge: residual {:.3e} of {:.3e} after {} iterations. {}",
-        std::sqrt(rz), std::sqrt(sums[0]), iterations,
+        std::sqrt(rr), std::sqrt(sums[0]), iterations,
         largest_entry<D>(mesh_, *at_, [&](Index c) { return b[c].norm(); }));
+  for (Index c = 0; c < owned; ++c) u[c] = scale_[c] * x_[c];
   mesh_.cells.update_ghosts(flat<D>(u), D);
   return iterations;
 }

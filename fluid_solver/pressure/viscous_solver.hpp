@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
+
 #include "fluid_solver/boundary/boundary.hpp"
+#include "fluid_solver/pressure/viscous_rows.hpp"
 #include "fluid_solver/state/placement.hpp"
 
 namespace couplet::fluid {
 
-/// Solves  V u + beta sum_f g (u_P - u_f) = b  for all components at once: CG with Jacobi, no matrix, so that
-/// a mesh that moves costs nothing extra. beta = a nu dt [m^2]. The system is well conditioned wherever
-/// convection limits the step.
+/// Solves  A u = V u + beta sum_f g (u_P - u_f) = b  for all components at once, by CG on D^(-1/2) A D^(-1/2), which is CG with
+/// Jacobi's preconditioner [hestenes1952]. beta = a nu dt [m^2]. The system is well conditioned wherever convection limits the step.
 template <int D>
 class ViscousSolver {
  public:
   ViscousSolver(const mesh::Mesh& mesh, const Boundary<D>& boundary) : mesh_(mesh), boundary_(boundary) {}
-  /// The system of the solves that follow. `at` has to stay.
-  void prepare(const Placement<D>& at, double beta);
-  /// Of its diagonal, per owned cell.
+  /// The system of the solves that follow. Collective.
+  void prepare(std::shared_ptr<const Placement<D>> at, double beta);
+  /// Of its diagonal D, per owned cell.
   const std::vector<double>& inverse_diagonal() const { return inverse_diagonal_; }
   /// `b`: per local cell (owned ones count) without boundary parts; `w`: given velocity per boundary face;
   /// `u`: guess on entry, with ghosts current on exit. Returns the iterations; throws SolveFailure.
@@ -30,15 +32,18 @@ class ViscousSolver {
     Vec<D> n;
     Vec<D> times(const Vec<D>& x) const { return both * x + normal * x.dot(n) * n; }
   };
-  void add_boundary(const Vectors<D>& w, Vectors<D>& b) const;
-  void multiply(Vectors<D>& x, Vectors<D>& y) const;
+  void set_diagonal();
+  void set_entries();
+  double apply(Vectors<D>& x, Vectors<D>& y) const;
   const mesh::Mesh& mesh_;
   const Boundary<D>& boundary_;
-  const Placement<D>* at_ = nullptr;
+  std::shared_ptr<const Placement<D>> at_;
   double beta_ = 0;
-  Vectors<D> r_, q_, search_;
+  std::unique_ptr<ViscousRows> a_;  // D^(-1/2) A D^(-1/2), but for boundary_rows_
+  std::vector<BoundaryRow> boundary_rows_;
   std::vector<double> inverse_diagonal_;
-  std::vector<BoundaryRow> rows_;  // per boundary face
+  std::vector<double> scale_;      // D^(-1/2), per local cell
+  Vectors<D> x_, r_, q_, search_;  // of the scaled system
 };
 
 }  // namespace couplet::fluid

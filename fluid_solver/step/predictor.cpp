@@ -199,7 +199,7 @@ void Predictor<D>::guess_velocity(const State<D>& from, double a) {
 
 template <int D>
 void Predictor<D>::solve_viscous(const State<D>& from, const Vectors<D>& w, double a) {
-  viscous_solver_.prepare(*k_.step.to, a * k_.nu * k_.step.dt);
+  viscous_solver_.prepare(k_.step.to, a * k_.nu * k_.step.dt);
   guess_velocity(from, a);
   if (k_.oblique)
     solve_oblique_viscous(w, a);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "common/elasticity/processor_clones.hpp"
+#include "common/base/processor_clones.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::elastic {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/processor_clones.hpp"
 #include "common/elasticity/finite/finite_kernel_of.hpp"
-#include "common/elasticity/processor_clones.hpp"
 
 namespace couplet::elastic {
 namespace {

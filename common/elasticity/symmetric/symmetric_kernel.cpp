@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "common/elasticity/processor_clones.hpp"
+#include "common/base/processor_clones.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::elastic {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "common/elasticity/processor_clones.hpp"
+#include "common/base/processor_clones.hpp"
 #include "common/elasticity/symmetric/axisymmetric_faces.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/parallel/collective.hpp"

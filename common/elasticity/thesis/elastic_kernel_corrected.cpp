@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "common/elasticity/processor_clones.hpp"
+#include "common/base/processor_clones.hpp"
 #include "common/elasticity/thesis/elastic_corrected_kernel.hpp"
 #include "common/parallel/collective.hpp"
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 
+#include "common/base/processor_clones.hpp"
 #include "common/elasticity/elastic_nodes.hpp"
 #include "common/elasticity/elastic_rows.hpp"
 #include "common/elasticity/elastic_vertices.hpp"
-#include "common/elasticity/processor_clones.hpp"
 #include "common/elasticity/thesis/elastic_thesis_face.hpp"
 
 namespace couplet::elastic {
