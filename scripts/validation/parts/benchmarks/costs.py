@@ -58,6 +58,6 @@ def places(job):
 
 
 COSTS = [
-    Bar("every case on its own mesh, 10 steps: memory of all programs, work of a step and what it is for", "reported", costs),
+    Bar("every case on its own mesh, 5 steps: memory of all programs, work of a step and what it is for", "reported", costs),
     Bar("every case: its place on a map of the atlas", "each prints one", places),
 ]
