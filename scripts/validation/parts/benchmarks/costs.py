@@ -10,7 +10,7 @@ WORDS = {"fluid_solver": "fluid", "mesh_mover": "moving mesh", "coupler": "coupl
 
 
 def reports(job, entry):
-    """{participant: its run.json} of a short run on the case's own mesh; of an external program there is none."""
+    """{participant: its run.json} of a short run on the mesh of the case; of an external program there is none."""
     folder = job.once(("costs", entry.name), lambda: gallery.run(job, entry, "own-mesh", coarse=False))
     return {f.parent.name: json.loads(f.read_text()) for f in sorted(folder.glob("*/run.json"))}
 
