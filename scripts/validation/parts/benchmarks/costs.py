@@ -34,7 +34,7 @@ def costs(job):
         for name, report in found.items():
             shares[effect(programs[name])] = shares.get(effect(programs[name]), 0) + report["processor-working"]
         total = sum(shares.values())
-        parts = ", ".join(f"{what} {100 * share / total:.0f} %" for what, share in sorted(shares.items(), key=lambda pair: -pair[1]))
+        parts = ", ".join(f"{what} {100 * share / total:.0f} %" for what, share in sorted(shares.items(), key=lambda pair: -pair[1]) if share > 0)
         texts.append(f"{entry.name}: {sum(r['memory-all'] for r in found.values()):.0f} MB, {total / entry.steps:.2g} processor s per step ({parts})")
     return "; ".join(texts), None
 
