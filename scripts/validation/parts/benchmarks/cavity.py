@@ -18,7 +18,8 @@ def extremes(job, name, *more):
 def band(which, low, high):
     def measure(job):
         value = extremes(job, "case")[which]
-        return f"{value:.4f}", low <= value <= high
+        cost = job.coupled_run(job.root / CASE, "mok-case").cost  # of the run just made
+        return f"{value:.4f} ({cost.cpu / 60:.1f} processor minutes)", low <= value <= high
     return measure
 
 

@@ -51,7 +51,7 @@ def compared(kind):
 
 
 CLOSED = [
-    *(Bar(f"{kind} box, 32 x 32 cells, 5 ms: height of the lid's middle at 0.4 s", "within 2 % of its own extrapolation", extrapolation(kind), long=True)
+    *(Bar(f"{kind} box, 32 x 32 cells, 5 ms: height of the lid's middle at 0.4 s", "within 2 % of its own extrapolation", extrapolation(kind))
       for kind in FILES),
-    *(Bar(f"{kind} box, 16 x 16 cells, 10 ms: passes and cost of three schemes", "reported", compared(kind), long=True) for kind in FILES),
+    *(Bar(f"{kind} box, 16 x 16 cells, 10 ms: passes and cost of three schemes", "reported", compared(kind)) for kind in FILES),
 ]
