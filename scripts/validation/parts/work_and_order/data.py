@@ -4,6 +4,6 @@ from validation.job import Bar
 from validation.parts.trust.runs import gtests
 
 BARS = [
-    Bar("a participant that does not answer a changed input", "flagged by name", gtests("unit_coupler", "names_the_participant_that_did_not_answer")),
-    Bar("a velocity that is not the rate of the displacement beside it", "flagged by name", gtests("unit_coupler", "not_the_rate_of_the_displacement")),
+    Bar("a participant that does not answer a changed input", "flagged by name", gtests("coupled_toy", "names_the_participant_that_did_not_answer")),
+    Bar("a velocity that is not the rate of the displacement beside it", "flagged by name", gtests("coupled_toy", "not_the_rate_of_the_displacement")),
 ]
