@@ -22,7 +22,7 @@ linalg::SolveStatistics FiniteStrain::solve(const Load& load, std::span<double> 
     return statistics;
   } catch (const SolveFailure& failure) {
     kernel_->forget_start();
-    if (load.accepted.empty()) throw;
+    if (!parallel::any(mesh_.comm, !load.accepted.empty())) throw;
     // What of the accepted state may be why no other is found.
     kernel_->set_own_pressures(false);
     kernel_->linearise(load.accepted, load.accepted_known, 0, trial_);
