@@ -214,14 +214,6 @@ double FiniteStrain::scale_of(const Load& load, std::span<const double> u, doubl
   return std::max(inner, residual);
 }
 
-linalg::SolveStatistics FiniteStrain::solve(const Load& load, std::span<double> u) {
-  if (path_) return follow_path(load, u);
-  if (load.is_conserving) kernel_->set_start(load.accepted, load.accepted_known);
-  const linalg::SolveStatistics statistics = iterate(load, u);
-  kernel_->forget_start();
-  return statistics;
-}
-
 linalg::SolveStatistics FiniteStrain::iterate(const Load& load, std::span<double> u) {
   TangentSolver& solver = solver_for(load.mass_factor, load.node_inertia);
   solver.forget_factors();

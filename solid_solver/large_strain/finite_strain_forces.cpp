@@ -8,9 +8,30 @@
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/large_strain/finite_strain.hpp"
+#include "solid_solver/large_strain/folded_support.hpp"
 #include "solid_solver/method/solution_method.hpp"
 
 namespace couplet::solid {
+
+linalg::SolveStatistics FiniteStrain::solve(const Load& load, std::span<double> u) {
+  if (path_) return follow_path(load, u);
+  if (load.is_conserving) kernel_->set_start(load.accepted, load.accepted_known);
+  try {
+    const linalg::SolveStatistics statistics = iterate(load, u);
+    kernel_->forget_start();
+    return statistics;
+  } catch (const SolveFailure& failure) {
+    kernel_->forget_start();
+    if (!parallel::any(mesh_.comm, !load.accepted.empty())) throw;
+    // What of the accepted state may be why no other is found.
+    kernel_->set_own_pressures(false);
+    kernel_->linearise(load.accepted, load.accepted_known, 0, trial_);
+    const std::string fold =
+        folded_support(mesh_, rows_, [this](Index node) { return kernel_->displacement(node); });
+    if (fold.empty()) throw;
+    throw SolveFailure("{} {}", failure.what(), fold);
+  }
+}
 
 std::vector<double> FiniteStrain::forces(std::span<const double> unknowns, std::span<const double> known) {
   std::vector<double> rows(rows_.n_unknowns());

@@ -64,6 +64,14 @@ void add_face(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f, std:
   block.face[k] = is_filling ? -1 : f;
 }
 
+/// dW/dJ of a sheet from P_33 = 0: without the rounding of det F times the bulk modulus.
+void balance(finite::State& state) {
+  const finite::Tensor4& f = state.f;
+  const Four square = f[0][0] * f[0][0] + f[0][1] * f[0][1] + f[1][0] * f[1][0] + f[1][1] * f[1][1];
+  const Four area = f[0][0] * f[1][1] - f[0][1] * f[1][0];
+  state.wj = -2.0 * f[2][2] * (state.w1 + square * state.w2) / area;
+}
+
 }  // namespace
 
 template <int D>
@@ -173,7 +181,10 @@ void FiniteKernelOf<D>::deform(finite::Group<D>& group) {
     finite::evaluate(*group.law, {found.data(), n}, stretch, of_cells_.empty(), {energy.data(), n});
     for (std::size_t i = 0; i < n; ++i) {
       finite::keep(energy[i], group.states[first + i]);
-      if (!group.sheet.empty()) group.sheet[first + i] = finite::sheet_of(group.states[first + i]);
+      if (!group.sheet.empty()) {
+        balance(group.states[first + i]);
+        group.sheet[first + i] = finite::sheet_of(group.states[first + i]);
+      }
       for (int k = 0; k < 4; ++k) energy_ += group.own * here[i].volume[k] * energy[i].w[k];
     }
   }

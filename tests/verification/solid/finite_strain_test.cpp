@@ -21,6 +21,7 @@ using namespace parallel;
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::ThrowsMessage;
 
 constexpr double E = 15.293e6, side = 0.2, length = 2;
@@ -279,6 +280,35 @@ TEST(FiniteStrain, tangent_is_the_derivative_of_the_forces_on_all_cells) {
       kernel->set_pressure(pressure);
       compare();
     }
+}
+
+/// A quarter of a bonded rubber block, pressed to `squeezed` of its half height of 0.5 and then, in one step, to more than
+/// all of it: why that fails.
+std::string failure_of_block(double squeezed) {
+  SolidParameters p = box_parameters(2);
+  p.kinematics = SolidParameters::Kinematics::finite_strain;
+  p.material = {1000, 3e6, 0.4999};
+  p.material.law = "nearly-incompressible-neo-hookean";
+  p.boundaries["xmin"] = p.boundaries["ymin"] = boundary(Type::symmetry);
+  p.boundaries["ymax"] = boundary(Type::fixed_displacement, {"0", "-t"});
+  const auto solid = make(make_box(BoxCells::quadrilaterals, {8, 8, 1}, Vec3::Zero(), Vec3(0.5, 0.5, 0)), p);
+  const int n = int(std::lround(squeezed / 0.025));
+  for (int i = 0; i < n; ++i) step(*solid, 0.025);
+  solid->begin_step({squeezed, 0.6, coupling::Scheme::standalone, n});
+  try {
+    solid->solve({});
+  } catch (const SolveFailure& failure) {
+    return failure.what();
+  }
+  return "none";
+}
+
+TEST(FiniteStrain, a_step_that_fails_tells_of_a_surface_folded_onto_its_support) {
+  const std::string fold = "Beside 'ymax' the free surface has folded beyond the plane of the support";
+  EXPECT_THAT(failure_of_block(0.2), HasSubstr(fold));
+  const std::string upright = failure_of_block(0.025);
+  EXPECT_NE(upright, "none");
+  EXPECT_THAT(upright, Not(HasSubstr("folded")));
 }
 
 }  // namespace

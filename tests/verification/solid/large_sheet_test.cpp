@@ -204,6 +204,24 @@ TEST(LargeSheet, an_opened_disc_converges_to_its_differential_equation_in_second
   EXPECT_LT(fine, 2e-3);
 }
 
+/// Rounding of det F times the bulk modulus would be more than the tolerance of the forces.
+TEST(LargeSheet, rounding_stops_no_iteration_however_near_nu_is_to_one_half) {
+  for (const double nu : {0.499, 0.49999, 0.4999999}) {
+    RawMesh raw = make_box(BoxCells::quadrilaterals, {8, 8, 1}, Vec3(1, 0, 0), Vec3(2, std::acos(0.0), 0));
+    for (Vec3& x : raw.points) x = Vec3(x[0] * std::cos(x[1]), x[0] * std::sin(x[1]), 0);
+    SolidParameters p = sheet(*laws::find("nearly-incompressible-neo-hookean"), nu);
+    p.boundaries["xmin"] = boundary(Type::free);
+    p.boundaries["xmax"] = boundary(Type::fixed_displacement, {"0.5*t*x", "0.5*t*y"});
+    p.boundaries["ymax"] = boundary(Type::symmetry);
+    const auto solid = make_solid(raw, p);
+    for (int i = 0; i < 2; ++i) {
+      step(*solid, 0.5);
+      EXPECT_LT(solid->stepper().effort().residual, 1e-10) << nu;
+      EXPECT_LT(solid->stepper().effort().iterations, 10) << nu;
+    }
+  }
+}
+
 TEST(LargeSheet, condensed_tangent_is_the_derivative_of_the_forces_and_symmetric) {
   for (const laws::Entry& law : laws::all())
     for (const BoxCells cells : {BoxCells::quadrilaterals, BoxCells::triangles}) {

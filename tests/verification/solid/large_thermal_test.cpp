@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Thermal strain at large strain: free and held bodies, a ring against its ordinary differential equation, tangent,
 // ranks, restart.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "common/base/error.hpp"
 #include "common/elasticity/finite/finite_kernel.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/laws/laws.hpp"
@@ -17,6 +19,9 @@ namespace couplet::testing {
 using namespace mesh;
 using namespace parallel;
 namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 
 constexpr double E = 1e6, nu = 0.3, reference = 300;
 
@@ -245,6 +250,21 @@ TEST(LargeThermalStrain, tangent_is_the_derivative_of_the_forces) {
       EXPECT_NEAR((most - least) / (2 * h), sum(MPI_COMM_WORLD, work),
                   1e-5 * std::sqrt(sum(MPI_COMM_WORLD, forces) * double(n)));
     }
+}
+
+/// Half of its length may be left, not none.
+TEST(LargeThermalStrain, a_strain_of_minus_one_is_refused) {
+  const auto heat = [](const char* temperature) {
+    SolidParameters p = warm(2, *laws::find("neo-hookean"), temperature);
+    p.plane = SolidParameters::Plane::stress;
+    p.material.heat.expansion = config::ExpressionText{"-1e-3"};
+    const auto solid = make_solid(box(BoxCells::quadrilaterals), p);
+    for (int i = 0; i < 4; ++i) step(*solid, 0.25);
+    return growth_error(*solid, 0.5);
+  };
+  EXPECT_LT(heat("300 + 500*t"), 1e-6);
+  EXPECT_THAT([&] { heat("300 + 1000*t"); },
+              ThrowsMessage<Error>(HasSubstr("a thermal strain of -1 or less leaves nothing of the body")));
 }
 
 TEST(LargeThermalStrain, restart_goes_on_bit_for_bit_with_conduction) {
