@@ -42,22 +42,6 @@ def pairs(job):
     return f"{len(both)} effects", passed and len(both) >= 12
 
 
-# -- prices -----------------------------------------------------------------------------------------------------------
-def price(job, scene):
-    """Processor seconds and memory of the scene, and what each effect adds to it."""
-    from couplet.atlas import prices
-    (_, seconds, memory, processes), *effects = prices.measure(next(s for s in prices.SCENES if s.name == scene), job.build, job.scratch)
-    return "; ".join([f"{seconds:.2f} s, {memory:.0f} MB, {processes} process{'es' if processes > 1 else ''}",
-                      *(f"{n} {s:+.2f} s {m:+.0f} MB" + (f" {p:+d} process" if p else "") for n, s, m, p in effects)]), None
-
-
-def priced(job):
-    from couplet.atlas import prices
-    table, folder = prices.read(job.root / "docs/stability/prices.csv"), job.root / "docs/stability"
-    there = [s.name for s in prices.SCENES if len(table.get(s.name, ())) == 1 + len(s.adds) + len(s.lacks)]
-    return f"{len(there)} scenes, {sum(len(r) - 1 for r in table.values())} effects", len(there) == 5 and (folder / "prices.png").exists()
-
-
 # -- two dimensions against one cell of three --------------------------------------------------------------------------
 def solid_2d(job):
     return component_ratio(job, "solid", 0.5)
@@ -221,9 +205,6 @@ BARS = [
         tests("verification_plate_effects", "Effects")),
     *effects_off.BARS,
     *effects_cost.BARS,
-    Bar("prices: five scenes as a table and a picture", "all", priced),
-    *[Bar(f"price: {scene}", "reported: processor seconds, memory and processes, and what each effect adds", lambda job, s=scene: price(job, s),
-          long=True) for scene in ("static bracket", "vibrating beam", "channel", "flap", "tank")],
     Bar("effects: auto chooses as an expert would, a reason each", "15 scenes", tests("unit_effects", "scene_[0-9]+_", 15)),
     Bar("two components against three, one cell thick: solid", "at most 0.5 of the time", solid_2d, but="seconds in 'solve', the less of three runs"),
     Bar("two components against three, one cell thick: solid, newton-krylov with multigrid in both", "at most 0.5 of the time",

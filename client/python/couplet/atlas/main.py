@@ -6,7 +6,7 @@ import pathlib
 import tempfile
 import time
 
-from couplet.atlas import atlas, cases, coupling, draw, fluid, large, moving, periodic, plate, prices, solid, strong, tank, viscous
+from couplet.atlas import atlas, cases, coupling, draw, fluid, large, moving, periodic, plate, solid, strong, tank, viscous
 from couplet.places import ROOT, build
 from couplet.runs import expect
 
@@ -49,19 +49,7 @@ def page(maps, folder):
             text += f"\n*{AGAIN[m.name][0].upper()}{AGAIN[m.name][1:]}.*\n"
     if lost := cases.missing(ROOT):
         raise SystemExit(f"hard cases without their test in tests/stability: {', '.join(lost)}")
-    text += cases.page()
-    table = prices.read(folder / "prices.csv")
-    return text + ("\n" + prices.page(table) if table else "")
-
-
-def price(out, programs):
-    table = {}
-    for scene in prices.SCENES:
-        with tempfile.TemporaryDirectory(prefix="couplet-prices-") as scratch:
-            table[scene.name] = prices.measure(scene, programs, scratch)
-        print(f"{scene.name}: " + "; ".join(f"{n or 'itself'} {s:+.2f} s {m:+.0f} MB" for n, s, m, _ in table[scene.name]), flush=True)
-        prices.write(out / "prices.csv", table)
-    prices.picture(table, out / "prices.png")
+    return text + cases.page()
 
 
 def declare(parser):
@@ -70,7 +58,6 @@ def declare(parser):
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs" / "stability", metavar="FOLDER", help="where tables and pictures go (docs/stability)")
     parser.add_argument("--fresh", action="store_true", help="reruns every square; otherwise only missing ones")
     parser.add_argument("--list", action="store_true", help="lists the maps")
-    parser.add_argument("--prices", action="store_true", help="instead of maps: cost of each effect in five scenes; on a quiet machine")
     parser.add_argument("--page", action="store_true", help="no runs: only docs/stability.md, from existing tables")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="number of concurrent runs")
 
@@ -83,9 +70,7 @@ def run(arguments):
         return 0
     arguments.out.mkdir(parents=True, exist_ok=True)
     red = []
-    if arguments.prices:
-        price(arguments.out, arguments.build.resolve())
-    for m in MAPS if not (arguments.prices or arguments.page) else ():
+    for m in MAPS if not arguments.page else ():
         if arguments.maps and m.name not in arguments.maps:
             continue
         start = time.monotonic()

@@ -105,6 +105,7 @@ def declare(parser):
     parser.add_argument("--for-error", metavar="SHARE", help="predicts from few cheap runs the cheapest setting that meets this error (1%%), runs it, and reports the accuracy of the prediction")
     parser.add_argument("--quantity", metavar="NAME", help="of --for-error and --parts")
     parser.add_argument("--parts", action="store_true", help="what the error at the setting of the section `sources` is made of, and which part dominates")
+    parser.add_argument("--quantities", action="store_true", help="errors of the study's quantities at the case as it stands, by differences: the case as it is, with a half and a quarter of the cells along each line, and with twice and four times the step")
     parser.add_argument("--optimise", action="store_true", help="the best of some variables in few runs")
 
 
@@ -117,6 +118,10 @@ def run(arguments):
         from couplet.study import optimise
         expect(len(cases) == 1, "--optimise: one case at a time.")
         return optimise.run(cases[0], arguments)
+    if arguments.quantities:
+        from couplet.study import interest
+        expect(len(cases) == 1, "--quantities: one case at a time.")
+        return interest.run(cases[0], arguments.out or cases[0].file.parent / "out" / "study", arguments, say)
     if all("axes" not in case.study for case in cases):
         expect(not arguments.peers, "--peers: the study needs 'axes' and 'quantities'.")
         expect(not arguments.for_error, "--for-error: the study needs 'axes', of which one has 'sizes'.")

@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""scripts/study --quantities: parts of the error from runs that are made up, what is made coarser in cases of several kinds, and, with
+a build, Cook's membrane beside its converged reference.  Usage: study_interest.py [BUILD]"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "client/python"))
+from couplet.runs import Case  # noqa: E402
+from couplet.study import interest  # noqa: E402
+from couplet.study.dominance import Source  # noqa: E402
+
+MESH = Source("mesh", None, False, 2, 2)
+
+
+def part(order, n=32, sign=1):
+    """Of values 5 + 3 n^-order at n, n/2 and n/4."""
+    own, coarser, coarsest = (5 + sign * 3 * m**-order for m in (n, n / 2, n / 4))
+    return interest.estimate(own, {"mesh": coarser}, {"mesh": coarsest}, [MESH])
+
+
+# -- the order is observed, so that the estimate is the true error; beyond the bounds it is that of the bound
+for order in (0.7, 1.0, 1.6, 2.0):
+    for sign in (1, -1):
+        parts, orders = part(order, sign=sign)
+        assert abs(orders["mesh"] - order) < 1e-6 and abs(parts["mesh"] - 3 * 32**-order) < 1e-9, (order, parts, orders)
+assert part(3.5)[1]["mesh"] == 2 and part(0.2)[1]["mesh"] == interest.LEAST_ORDER
+# -- no order where the values change direction or the coarsest run is missing: the formal one
+assert interest.estimate(1.0, {"mesh": 1.3}, {"mesh": 1.1}, [MESH]) == ({"mesh": 0.3 / 3}, {"mesh": 2}) or abs(interest.estimate(1.0, {"mesh": 1.3}, {"mesh": 1.1}, [MESH])[0]["mesh"] - 0.1) < 1e-12
+assert abs(interest.estimate(1.0, {"mesh": 1.3}, {"mesh": None}, [MESH])[0]["mesh"] - 0.1) < 1e-12
+# -- what is made coarser
+mesh, = interest.sources_of(Case(ROOT / "configs/cook/case.yaml"), "solid")
+assert mesh.name == "mesh" and mesh.changes(1) == {"mesh-parameters": "{n: 16, shape: 0}"} and mesh.changes(2) == {"mesh-parameters": "{n: 8, shape: 0}"}
+step, = interest.sources_of(Case(ROOT / "configs/vibrating-cantilever/case.yaml"), "solid")
+assert step.name == "step" and step.changes(2)["simulation.time-step"] == 2 * step.changes(1)["simulation.time-step"]
+
+if len(sys.argv) > 1:
+    with tempfile.TemporaryDirectory(prefix="couplet-interest-") as folder:
+        done = subprocess.run([sys.executable, ROOT / "scripts/study", ROOT / "configs/cook/case.yaml", "--quantities", "--out", folder, "--build", sys.argv[1]],
+                              capture_output=True, text=True, timeout=280)
+        assert done.returncode == 0, done.stdout + done.stderr
+        found = json.loads((pathlib.Path(folder) / "quantities/quantities.json").read_text())["displacement of the corner"]
+    true = 0.0323007 - found["value"]
+    print(f"Cook's corner: estimated error {found['error']:.3g} m, true {true:.3g} m")
+    assert 0.5 < found["error"] / true < 2
+print("ok")
