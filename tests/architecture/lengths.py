@@ -7,6 +7,8 @@ LONGEST, LONGEST_ELSEWHERE = 300, 500  # lines of a file of the programs and of 
 LONGEST_FUNCTION = 60
 MOST_MEMBERS, MOST_FOR_A_REASON = 25, 40  # functions of one class
 
+BRACE = re.compile("[{}]")
+
 LONG_FILES = {
     "common/io/checkpoint.cpp": "writer and reader share the layout of an array and its checksum",
 }
@@ -35,11 +37,11 @@ LARGE_CLASSES = {
 def without_nested(text):
     """`text` with each outermost {...} as {} and without <...>, comments and literals gone already."""
     flat, depth = [], 0
-    for c in text:
-        depth -= c == "}"
+    for part in re.findall(r"[{}]|[^{}]+", text):
+        depth -= part == "}"
         if depth == 0:
-            flat.append(c)
-        depth += c == "{"
+            flat.append(part)
+        depth += part == "{"
     flat = "".join(flat).replace("<<", "").replace(">>=", "").replace("operator<", "operator").replace("->", "")
     while True:
         fewer = re.sub(r"<[^<>;{}]*>", "", flat)
@@ -56,10 +58,12 @@ def members_of_classes(text):
     for match in re.finditer(r"\b(?:class|struct)\s+(?:\[\[\w+\]\]\s*)?([\w:]+)(?:\s+final)?\s*(?::[^:;{(][^;{(]*)?\{", text):
         if re.search(r"\benum\s+$", text[:match.start()]):
             continue
-        end, depth = match.end(), 1
-        while depth and end < len(text):
-            depth += {"{": 1, "}": -1}.get(text[end], 0)
-            end += 1
+        end, depth = len(text), 1
+        for brace in BRACE.finditer(text, match.end()):
+            depth += 1 if brace.group() == "{" else -1
+            if not depth:
+                end = brace.end()
+                break
         body = re.sub(r"\b(?:public|protected|private)\s*:", "", without_nested(text[match.end():end - 1]))
         functions = 0
         for statement in re.split(r";|\{\}", body):
@@ -76,7 +80,8 @@ def bodies(text):
     text = re.sub(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'(?!\w)', blank, text, flags=re.S)
     text = re.sub(r"^[ \t]*#[^\n]*", blank, text, flags=re.M)
     found, stack, begin = [], [], 0
-    for k, c in enumerate(text):
+    for match in re.finditer("[{};]", text):
+        k, c = match.start(), match.group()
         if c == "{":
             head = text[begin:k]
             if "function" in stack or "other" in stack:

@@ -5,6 +5,7 @@ elsewhere in a file changes nothing, and a part of a longer list is the beginnin
 Usage: generate.py ROOT [--sample N] [--seed S] [--files]   (prints the mutants drawn, or the files they are made of as CMake lists them)"""
 import argparse
 import dataclasses
+import functools
 import hashlib
 import math
 import pathlib
@@ -58,6 +59,7 @@ def of_file(root, file, kind):
     return found
 
 
+@functools.cache
 def everything(root):
     return [m for kind, files in FILES.items() for file in files for m in of_file(root, file, kind)]
 
@@ -82,9 +84,11 @@ def sample(root, count=SAMPLE, seed=SEED):
         counts[folder] = counts.get(folder, 0) + 1
         chosen.append(m)
     # So that any beginning of the list holds every folder.
-    rank = {}
+    rank, before = {}, {}
     for m in chosen:
-        rank[m.name] = (sum(1 for n in chosen[:chosen.index(m)] if folder_of(n.file) == folder_of(m.file)) + 0.5) / limit[folder_of(m.file)]
+        folder = folder_of(m.file)
+        rank[m.name] = (before.get(folder, 0) + 0.5) / limit[folder]
+        before[folder] = before.get(folder, 0) + 1
     return sorted(chosen, key=lambda m: (rank[m.name], m.name))[:count]
 
 

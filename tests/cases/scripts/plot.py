@@ -5,11 +5,17 @@ import subprocess
 import sys
 import tempfile
 
-PLOT = pathlib.Path(__file__).resolve().parents[3] / "scripts" / "plot"
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "tests/support"))
+from command import couplet  # noqa: E402
 
 
 def run(*arguments):
-    return subprocess.run([sys.executable, str(PLOT), *map(str, arguments)], capture_output=True, text=True)
+    return couplet("plot", *arguments)
+
+
+def by_its_own_name(*arguments):
+    return subprocess.run([sys.executable, str(ROOT / "scripts/plot"), *map(str, arguments)], capture_output=True, text=True)
 
 
 with tempfile.TemporaryDirectory() as name:
@@ -19,7 +25,7 @@ with tempfile.TemporaryDirectory() as name:
     (folder / "sample-a.csv").write_text(line + "".join(f"{t},{s / 4},0,0,{s},0,{s * t}\n" for t in (1, 2) for s in range(5)))
     (folder / "sample-b.csv").write_text(line + "".join(f"1,{s / 4},{r / 3},{s},{r},0,{s * r}\n" for s in range(5) for r in range(4)))
     (folder / "residuals.csv").write_text("time [s],iteration [-],relative residual [-]\n0.1,1,1e-2\n0.1,2,1e-5\n")
-    all_of_it = run(folder)
+    all_of_it = by_its_own_name(folder)
     assert all_of_it.returncode == 0, all_of_it.stderr
     (folder / "bed.csv").write_text("time [s],z [m],fluid [degC]\n" + "".join(f"{t},{z},{20 + t * z}\n" for t in (0, 1) for z in range(5)))
     assert run(folder / "bed.csv").returncode == 0 and (folder / "bed.png").stat().st_size > 2000

@@ -5,7 +5,6 @@ import contextlib
 import io
 import os
 import pathlib
-import subprocess
 import sys
 import tempfile
 import time
@@ -17,6 +16,7 @@ import yaml
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT / "client/python"), str(ROOT / "tests/support")]
 from checks import check, end  # noqa: E402
+from command import couplet  # noqa: E402
 from couplet import fields  # noqa: E402
 from couplet.plots.section import check as check_section  # noqa: E402
 from couplet.plots.sources import columns_of, points_of  # noqa: E402
@@ -69,7 +69,7 @@ def run_in(out):
 
 
 def plot(*words):
-    return subprocess.run([ROOT / "scripts/couplet", "plot", *map(str, words)], capture_output=True, text=True)
+    return couplet("plot", *words)
 
 
 def changed(path, value):
