@@ -110,6 +110,7 @@ std::vector<effects::EffectVerdict> FluidParticipant<D>::audit() const {
   for (const mesh::Patch& patch : mesh_.patches)
     if (is_wall(fluid_->parameters().boundaries.at(patch.name)))
       evidence.largest_yplus = std::max(evidence.largest_yplus, summarise_wall(*fluid_, patch).largest_yplus);
+  evidence.width = hydraulic_diameter(*fluid_);
   double speed = 0;
   for (const Vec<D>& u : fluid_->state().u) speed = std::max(speed, u.squaredNorm());
   evidence.largest_speed = std::sqrt(parallel::max(mesh_.comm, speed));

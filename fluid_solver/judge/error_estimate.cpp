@@ -14,8 +14,10 @@ namespace couplet::fluid {
 namespace {
 
 constexpr double adams_bashforth_error = 5. / 12;
-// Of what a clock drives: forces at mid-step 1/24, friction by the trapezoidal rule 1/12; hardly any convection, 5/12.
-constexpr double driven_error = 1. / 12;
+// Of what a clock drives: forces at mid-step 1/24, friction by the trapezoidal rule 1/12; hardly any convection, 5/12. Of a flow that
+// friction holds at rate r, u' = f - r u, r u'' dt^3/8 beside it, less by 1 + r dt/2, which that rule divides by; by Adams and
+// Bashforth's 5/12 + 1/24.
+constexpr double driven_error = 1. / 12, held_error = 1. / 8, held_explicitly = 11. / 24;
 constexpr double hardly = 0.1;   // share of convection in the rate of change of a flow that answers linearly
 constexpr double window = 0.25;  // "of late" is about this part of the time that has gone by
 
@@ -50,10 +52,8 @@ double FluidErrorEstimate<D>::size(const Vectors<D>& values) const {
   return whole > 0 ? std::sqrt(squares / whole) : 0;
 }
 
-/// Rate at which errors leave the flow [1/s]: with the outflow of all its volume, and by the friction that takes what work brings
-/// in. `outflow`: of the volume [1/s]. The flow's own decay is not in it: it takes the errors along with the solution.
 template <int D>
-double FluidErrorEstimate<D>::forgetting(double dt, double outflow) {
+void FluidErrorEstimate<D>::see_energy(double dt) {
   const EnergyLedger& ledger = fluid_.state().ledger;
   time_ += dt;
   const double share = std::min(1., dt / (window * time_));
@@ -62,9 +62,24 @@ double FluidErrorEstimate<D>::forgetting(double dt, double outflow) {
   gain_ += share * ((held - held_) / dt - gain_);
   energy_ += share * (held - energy_);
   work_ = ledger.work, held_ = held;
+}
+
+/// Rate at which it takes what work brings in [1/s]. The flow's own decay is not in it: it takes the errors along with the solution.
+template <int D>
+double FluidErrorEstimate<D>::friction() const {
   // What a flow gains takes no error away; of one that decays the work alone is more than the solution's own way.
   const double taken = std::max(0., std::min(power_, power_ - gain_));
-  return outflow + (energy_ > 0 ? taken / (2 * energy_) : 0);
+  return energy_ > 0 ? taken / (2 * energy_) : 0;
+}
+
+template <int D>
+auto FluidErrorEstimate<D>::weights(double dt, double apart) const -> Weights {
+  const double sub_step = dt / std::max(1, fluid_.statistics().sub_steps), held = friction();
+  const bool implicit = fluid_.state().implicit;
+  const double less = implicit ? 1 / (1 + 0.5 * held * sub_step) : 1;
+  return {.local = adams_bashforth_error * dt * sub_step * sub_step / apart,
+          .of_third = less * driven_error * dt * sub_step * sub_step / apart,
+          .of_second = less * (implicit ? held_error : held_explicitly) * held * dt * sub_step * sub_step};
 }
 
 // Divided differences of u at the ends of the last four steps, their lengths nearly alike: the rate over each step,
@@ -79,8 +94,7 @@ void FluidErrorEstimate<D>::accepted(double dt) {
   u_.resize(n, Vec<D>::Zero()), rate_.resize(n, Vec<D>::Zero()), rate_change_.resize(n, Vec<D>::Zero());
   // Of u, its rate, the change of that, the change of that; the volume; of what is left, outflow; of what is carried.
   std::array<double, 8> squares{};
-  const double cut = std::max(1, fluid_.statistics().sub_steps);
-  const double local = adams_bashforth_error * dt * dt * dt / (cut * cut) / apart;
+  const auto [local, of_third, of_second] = weights(dt, apart);
   if (driving_.is_possible()) left_.resize(n, Vec<D>::Zero());
   const Vectors<D>& carried = fluid_.state().rates_old.rate;  // times the volume; none of other schemes
   for (std::size_t c = 0; c < n && knows_rate; ++c) {
@@ -90,7 +104,7 @@ void FluidErrorEstimate<D>::accepted(double dt) {
     if (knows_third) {
       squares[3] += volume[c] * (change - rate_change_[c]).squaredNorm();
       if (!left_.empty()) {
-        left_[c] += (driven_error / adams_bashforth_error) * local * (change - rate_change_[c]);
+        left_[c] += of_third * (change - rate_change_[c]) + of_second * change;
         squares[5] += volume[c] * left_[c].squaredNorm();
         squares[7] += carried.empty() ? volume[c] * rate.squaredNorm() : carried[c].squaredNorm() / volume[c];
       }
@@ -108,7 +122,9 @@ void FluidErrorEstimate<D>::accepted(double dt) {
     MPI_Allreduce(MPI_IN_PLACE, squares.data(), int(squares.size()), MPI_DOUBLE, MPI_SUM, fluid_.mesh().comm);
     const auto mean = [&](int k) { return squares[4] > 0 ? std::sqrt(squares[k] / squares[4]) : 0; };
     const double highest = mean(3) / apart;
-    const double forgotten = forgetting(dt, squares[4] > 0 ? squares[6] / squares[4] : 0);
+    see_energy(dt);
+    // Errors leave the flow with the outflow of all its volume, and by friction.
+    const double forgotten = friction() + (squares[4] > 0 ? squares[6] / squares[4] : 0);
     for (Vec<D>& v : left_) v *= std::exp(-forgotten * dt);
     const double faded = std::exp(-dt / (window * time_));
     left_of_late_ = std::max(mean(5), left_of_late_ * faded);

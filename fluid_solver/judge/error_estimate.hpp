@@ -18,7 +18,8 @@ namespace couplet::fluid {
 ///           k sub-steps each k^-3. The flow forgets at the rate at which it is renewed, outflow over volume, and at which
 ///           friction takes what work has brought in, (W' - E')/(2 E). Where a clock drives it
 ///           (Driving) and it answers linearly (convection is a small share of its rate of change) no error drifts: the sum
-///           of the local errors as vectors, which turn back with each half period, counts if it is less
+///           of the local errors as vectors, which turn back with each half period, counts if it is less; friction that holds the
+///           flow to its forces, r dt above 1, makes the force's time its own: (w dt)^2/8 of an oscillation
 ///   linear  what the pressure's solver leaves of the cells' net outflow against what passes through them, times the
 ///           square root of the number of cells across: an outflow that alternates moves its neighbours alone, one
 ///           that does not the whole field; this is the mean of the two in logarithms
@@ -38,7 +39,13 @@ class FluidErrorEstimate {
 
  private:
   double size(const Vectors<D>& values) const;
-  double forgetting(double dt, double outflow);
+  /// Of differences of the change of the rate, and of the change itself: local errors of a step, and of one that a clock drives.
+  struct Weights {
+    double local = 0, of_third = 0, of_second = 0;
+  };
+  Weights weights(double dt, double apart) const;
+  void see_energy(double dt);
+  double friction() const;
   double step_part() const;
   double recovered_difference() const;
   double net_outflow() const;

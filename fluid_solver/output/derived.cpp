@@ -3,7 +3,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "common/parallel/collective.hpp"
 
@@ -88,6 +90,21 @@ double through_moving_walls(const Fluid<D>& fluid) {
   return worst;
 }
 
+template <int D>
+double hydraulic_diameter(const Fluid<D>& fluid) {
+  const mesh::Mesh& mesh = fluid.mesh();
+  const Placement<D>& at = *fluid.state().placement;
+  std::array<double, 2> sums{};
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) sums[0] += at.volume[c];
+  for (const mesh::Patch& patch : mesh.patches)
+    if (is_wall(fluid.parameters().boundaries.at(patch.name)))
+      for (Index f = patch.first; f < patch.first + patch.count; ++f) sums[1] += at.area[f].norm();
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), int(sums.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
+  return sums[1] > 0 ? 4 * sums[0] / sums[1] : std::numeric_limits<double>::quiet_NaN();
+}
+
+template double hydraulic_diameter<2>(const Fluid<2>&);
+template double hydraulic_diameter<3>(const Fluid<3>&);
 template double through_moving_walls<2>(const Fluid<2>&);
 template double through_moving_walls<3>(const Fluid<3>&);
 

@@ -32,6 +32,10 @@ std::vector<std::array<double, 2>> wall_units(const Fluid<D>& fluid);
 template <int D>
 double through_moving_walls(const Fluid<D>& fluid);
 
+/// 4 volumes over the area of the walls [m]; NaN without walls. Collective.
+template <int D>
+double hydraulic_diameter(const Fluid<D>& fluid);
+
 /// Coefficients of drag, lift and moment: sum F.d / (q A), sum F.l / (q A), sum ((x - c) x F).a / (q A L) of
 /// the forces on some walls, means over the last step.
 struct Coefficients {

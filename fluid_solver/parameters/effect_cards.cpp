@@ -23,14 +23,16 @@ bool has_interface(const S& s) {
 }
 
 const std::array cards{
-    FluidCard{"turbulence model",
-              "`turbulence`",
-              [](const S& s) { return when(s.parameters.turbulence.has_value(), "turbulence"); },
-              {"an eddy viscosity per cell, a velocity gradient per step", 62, 0.78},
-              "max cell Reynolds number, 50, or 250 with resolved walls (y+ up to 1)",
-              judge_turbulence,
-              false,
-              spare_turbulence},
+    FluidCard{
+        "turbulence model",
+        "`turbulence`",
+        [](const S& s) { return when(s.parameters.turbulence.has_value(), "turbulence"); },
+        {"an eddy viscosity per cell, a velocity gradient per step", 62, 0.78},
+        "max cell Reynolds number, 50, or 250 with resolved walls (y+ up to 1); beyond that the flow's own by the hydraulic "
+        "diameter, 3450: laminar below",
+        judge_turbulence,
+        false,
+        spare_turbulence},
     FluidCard{"resolved walls",
               "`turbulence`",
               [](const S& s) { return when(s.parameters.turbulence.has_value(), "turbulence"); },

@@ -22,6 +22,7 @@ struct FluidEvidence {
   double largest_peclet = unknown;  ///< cell Reynolds number
   double largest_yplus = unknown;   ///< of walls; 0 without walls
   double largest_speed = unknown;   ///< [m/s]
+  double width = unknown;           ///< hydraulic diameter, 4 volumes over the area of the walls [m]
   double pressure_range = unknown;  ///< largest minus smallest pressure [Pa]
   /// Of walls that move: fluctuation (root mean square) of the volume that they sweep [m^3] and of pressure times volume [J],
   /// rate of their motion [1/s], and extent of the fluid [m].

@@ -13,6 +13,9 @@ using S = FluidScene;
 using E = FluidEvidence;
 using V = std::optional<effects::EffectVerdict>;
 
+// Ducts turn turbulent at 2300 by the mean speed; the largest of a plane laminar one is 3/2 of it.
+constexpr double laminar_below = 3450;
+
 std::optional<Sound> sound_in(const S& s) {
   return sound_of(s.parameters.compressibility, s.parameters.density, s.parameters.viscosity);
 }
@@ -68,8 +71,9 @@ effects::EffectVerdict judge_wave_time(const S&, const E& e, const Sound& sound)
 }  // namespace
 
 // Layers are as thin as where they begin: where the mesh resolves those at the walls (y+ up to 1) it resolves what they shed,
-// and the cell Reynolds number of the flow outside them says little.
-V judge_turbulence(const S&, const E& e) {
+// and the cell Reynolds number of the flow outside them says little. On whatever mesh, what passes walls so closely that ducts stay
+// laminar there has no turbulence to model: what such a mesh misses is in its estimated error.
+V judge_turbulence(const S& s, const E& e) {
   if (std::isnan(e.largest_peclet)) return {};
   const bool resolved_walls = e.largest_yplus > 0 && e.largest_yplus <= 1;
   const double limit = resolved_walls ? 250. : 50.;
@@ -77,6 +81,13 @@ V judge_turbulence(const S&, const E& e) {
       "", e.largest_peclet, limit,
       fmt::format("max cell Reynolds number = {:.3g}, max y+ = {:.3g}", e.largest_peclet, e.largest_yplus),
       "steep layers may be thinner than the mesh: refine it, or add 'turbulence' if the flow is turbulent"};
+  const double reynolds = s.parameters.density * e.largest_speed * e.width / s.parameters.viscosity;
+  if (e.largest_peclet > limit && reynolds < laminar_below) {
+    v.number = reynolds, v.threshold = laminar_below;
+    v.sentence = fmt::format("Reynolds number (max speed, hydraulic diameter) = {:.3g}: laminar; {}",
+                             reynolds, v.sentence);
+    return v;
+  }
   // Layers get thinner with the root of the number: what a mesh that is too coarse by that misses of them.
   v.share = e.largest_peclet > limit ? 1 - std::sqrt(limit / e.largest_peclet) : 0;
   return v;

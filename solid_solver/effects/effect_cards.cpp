@@ -81,14 +81,15 @@ V judge_geometry(const P& p, const E& e) {
                                 : fmt::format(" (last: strain {:.2g}, rotation {:.2g} degrees)",
                                               e.largest_strain, 57.29578 * e.largest_rotation);
   const std::string change = e.large_strain.empty() ? "" : "; " + e.large_strain;
-  return effects::verdict(
-      g, 0.02, fmt::format("max |grad u| = {:.2g}{}{}", g, parts, change),
-      e.buckling_factor < 3 ? "lateral motion grows as the load nears the buckling load: use 'kinematics: "
-                              "finite-strain'"
-      : g < 0.1             ? "expect errors of a few per cent"
-                            : "the result holds for linear theory, not for the body: use 'kinematics: "
-                              "finite-strain'",
-      share_of_geometry(e));
+  return effects::verdict(g, 0.02, fmt::format("max |grad u| = {:.2g}{}{}", g, parts, change),
+                          !std::isnan(e.buckling_factor)
+                              ? "lateral motion grows as the load nears the buckling load: use 'kinematics: "
+                                "finite-strain'"
+                          : g < 0.1
+                              ? "expect errors of a few per cent"
+                              : "the result holds for linear theory, not for the body: use 'kinematics: "
+                                "finite-strain'",
+                          share_of_geometry(e));
 }
 
 V judge_yield(const P& p, const E& e) {

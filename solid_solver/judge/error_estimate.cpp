@@ -11,6 +11,7 @@
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/judge/inner_variation.hpp"
+#include "solid_solver/judge/soft_motion.hpp"
 #include "solid_solver/judge/weighted_estimate.hpp"
 
 namespace couplet::solid {
@@ -130,7 +131,10 @@ double SolidErrorEstimate::finite_mesh_error() const {
   const double energy = missed_of_large_strain(state, unknowns);
   if (body_.is_dynamic()) return energy;
   try {
-    return energy * body_.equilibrium().softness(unknowns, state.known);
+    const std::vector<double> known =
+        body_.known_of({state.cell_u, state.face_u, fields_.point_displacement()});
+    return std::max(energy * body_.equilibrium().softness(unknowns, state.known),
+                    soft_mesh_error(body_, unknowns, known, judge_.softest()));
   } catch (const SolveFailure&) {
     return coupling::ErrorParts::unknown;
   }

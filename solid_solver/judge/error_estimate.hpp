@@ -26,7 +26,8 @@ namespace couplet::solid {
 /// Thermal strain: see weighted_mesh_error; in motion it makes the mesh's part unknown.
 /// Temperatures that are solved for add what they err by, over their distance from the reference, times the share of the strain energy
 /// that their strain makes. At finite strain the mesh's part is half the square of the difference of two gradients' Green strains, times
-/// how softly the deformed body follows a change of its stiffness (a static run: one linear solve with the tangent). Collective.
+/// how softly the deformed body follows a change of its stiffness (a static run: one linear solve with the tangent), or, if more,
+/// what its softest motion makes of it, see soft_mesh_error(). Collective.
 class SolidErrorEstimate {
  public:
   /// All by reference.

@@ -40,6 +40,15 @@ void InnerVariation::add(Index face, const Tensor3& strain) {
     add_to(mesh_.neighbour[face], there, strain);
 }
 
+double InnerVariation::energy() const {
+  double missed = 0;
+  for (std::size_t c = 0; c < energy_.size(); ++c)
+    if (mesh_.cell_type[c] == mesh::CellType::quadrilateral && volume_[c] > 0)
+      missed +=
+          (energy_[c] - volume_[c] * twice_energy(rows_, static_cast<Index>(c), strain_[c] / volume_[c])) / 3;
+  return parallel::sum(mesh_.comm, missed);
+}
+
 double InnerVariation::missed() const {
   double missed = 0, whole = 0;
   for (std::size_t c = 0; c < energy_.size(); ++c) {

@@ -22,6 +22,8 @@ class InnerVariation {
   void add(Index face, const Tensor3& strain);
   /// Over the strain energy of all cells; 0 where there is none. Collective.
   double missed() const;
+  /// What is missed of twice the strain energy [J]: a square of the strains. Collective.
+  double energy() const;
 
  private:
   void add_to(Index cell, double volume, const Tensor3& strain);

@@ -129,12 +129,13 @@ void SolidJudge::see_buckling() {
       body_.parameters().output.buckling > 0)
     return;
   const BucklingEstimate found =
-      estimate_buckling(body_, fields_, stepper_.state().time, *method, compression_seen_);
-  if (found.factor > 0) buckling_factor_ = std::min(buckling_factor_, found.factor);
-  if (body_.is_dynamic() && found.factor > 0) return tell_dynamic_buckling(mesh_.comm, found.factor);
-  if (found.factor > 0 && found.factor < buckling_told_) {
+      estimate_buckling(body_, fields_, stepper_.state(), *method, compression_seen_);
+  if (!found.matters()) return;
+  buckling_factor_ = std::min(buckling_factor_, found.factor);
+  if (body_.is_dynamic()) return tell_dynamic_buckling(mesh_.comm, found);
+  if (found.factor < buckling_told_) {
     buckling_told_ = found.factor >= 1 ? std::min(1.0, found.factor) : 0;
-    tell_buckling(mesh_.comm, found.factor, "at most ");
+    tell_buckling(mesh_.comm, found, "at most ");
   }
 }
 

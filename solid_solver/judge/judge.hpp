@@ -38,6 +38,7 @@ class SolidJudge final {
   void see_inertia();
   /// Of a static run at large strain, between solve and acceptance: whether its equilibrium holds.
   void see_equilibrium() { equilibrium_.see(body_, stepper_, fields_); }
+  const SoftMotion& softest() const { return equilibrium_.softest(); }
   /// Of a run by arc length, after acceptance and at its end.
   void follow_path() { equilibrium_.follow(body_, fields_); }
   void finish_path(std::vector<std::string>& sentences) const { equilibrium_.finish(body_, sentences); }

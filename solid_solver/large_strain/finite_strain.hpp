@@ -49,8 +49,8 @@ class FiniteStrain final : public LargeStrain {
   double energy(std::span<const double> unknowns, std::span<const double> known) override;
   void visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) override;
   double softness(std::span<const double> unknowns, std::span<const double> known) override;
-  double lowest_stiffness(std::span<const double> unknowns, std::span<const double> known,
-                          const linalg::LinearMap& elastic, std::vector<double> start) override;
+  SoftMotion lowest_stiffness(std::span<const double> unknowns, std::span<const double> known,
+                              const linalg::LinearMap& elastic, std::vector<double> start) override;
   Vec3 pressure_force() override { return kernel_->pressure_force(); }
   std::vector<elastic::Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
                                               const elastic::ElasticLoads& loads) override {
@@ -84,6 +84,7 @@ class FiniteStrain final : public LargeStrain {
   TangentSolver& solver_for(double mass_factor, std::span<const double> node_inertia);
   std::string where_worst() const;
   bool is_symmetric(std::span<const double> x, std::span<const double> y);
+  double stiffest_over(std::span<const double> x, const linalg::LinearMap& elastic) const;
 
   TangentSolver::By by_ = TangentSolver::By::frames;
   bool mixed_ = false;       // pressures of their own on the way to equilibrium

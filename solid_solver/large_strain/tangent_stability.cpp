@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether the equilibrium that was found holds.
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -16,15 +17,15 @@ constexpr double looked_for = 1e-3;
 constexpr int most_looks = 2000, most_refined = 12;
 // A stiffness below this is looked at more closely, by one more inverse iteration.
 constexpr double nearly_lost = 0.5;
-// Below it the tangent has a negative eigenvalue, and not one that is zero up to rounding.
-constexpr double surely_negative = -1e-4;
+// A negative stiffness of this part of the stiffest motion's may be rounding.
+constexpr double spectral_rounding = 1e-14;
 // Of x . K y against y . K x.
 constexpr double symmetric_part = 1e-7;
 
 }  // namespace
 
-double FiniteStrain::lowest_stiffness(std::span<const double> unknowns, std::span<const double> known,
-                                      const linalg::LinearMap& elastic, std::vector<double> start) {
+SoftMotion FiniteStrain::lowest_stiffness(std::span<const double> unknowns, std::span<const double> known,
+                                          const linalg::LinearMap& elastic, std::vector<double> start) {
   kernel_->forget_start();
   kernel_->set_own_pressures(false);
   kernel_->linearise(unknowns, known, 0, trial_);
@@ -39,23 +40,35 @@ double FiniteStrain::lowest_stiffness(std::span<const double> unknowns, std::spa
   solver.precondition(force, smooth);
   if (parallel::any(mesh_.comm, kernel_->has_pressure()) && !is_symmetric(force, smooth)) {
     solver.forget_factors();
-    return 1;
+    return {};
   }
-  const auto refined = [&](std::vector<double> x, int most) {
-    return modes::lowest_quotient(mesh_.comm, of, std::move(x), most,
-                                  [](const std::vector<double>&) { return false; })
-        .value;
-  };
+  modes::LowestQuotient softest;
   double least = 1;
   for (int look = 0; look < 2; ++look) {
     modes::Curvature found =
         modes::look_for_negative_curvature(mesh_.comm, of.a, of.precondition, force, looked_for, most_looks);
     if (!found.is_negative) elastic(found.x, force);
-    least = refined(std::move(found.x), found.is_negative ? most_refined : 1);
+    softest = modes::lowest_quotient(mesh_.comm, of, std::move(found.x), found.is_negative ? most_refined : 1,
+                                     [](const std::vector<double>&) { return false; });
+    least = softest.value;
     if (found.is_negative || least > nearly_lost) break;
   }
   solver.forget_factors();
-  return least < 0 && least > surely_negative ? 0 : least;
+  if (least < 0 && -least <= spectral_rounding * stiffest_over(softest.x, elastic)) least = 0;
+  return {least, std::move(softest.x)};
+}
+
+/// x . x of the stiffest motion there may be over that of `x`, each per x . K x, by a motion that turns round from row to row.
+double FiniteStrain::stiffest_over(std::span<const double> x, const linalg::LinearMap& elastic) const {
+  std::vector<double> force(x.size()), rough(x.size());
+  std::array<double, 4> sums{};
+  elastic(x, force);
+  for (std::size_t i = 0; i < x.size(); ++i) sums[0] += x[i] * x[i], sums[1] += x[i] * force[i];
+  for (std::size_t i = 0; i < x.size(); ++i) rough[i] = i / std::size_t(mesh_.dim) % 2 == 0 ? 1 : -1;
+  elastic(rough, force);
+  for (std::size_t i = 0; i < x.size(); ++i) sums[2] += rough[i] * rough[i], sums[3] += rough[i] * force[i];
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), int(sums.size()), MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  return sums[1] > 0 && sums[2] > 0 ? sums[0] / sums[1] * sums[3] / sums[2] : 0;
 }
 
 bool FiniteStrain::is_symmetric(std::span<const double> x, std::span<const double> y) {

@@ -57,6 +57,12 @@ struct Displaced {
   std::function<std::vector<Tensor3>()> cell_gradients;
 };
 
+/// The softest motion of a body about an equilibrium, see Equilibrium::lowest_stiffness().
+struct SoftMotion {
+  double stiffness = 1;
+  std::vector<double> shape{};  ///< by the rows of ElasticOperator; empty: not known
+};
+
 /// How a body resists, at small strain or at large, and how M m u + A(u) = b is solved for it. A state is the unknowns of
 /// ElasticOperator with its known columns. All but the first functions are collective.
 class Equilibrium {
@@ -120,9 +126,9 @@ class Equilibrium {
   /// The least x . K x over that of `elastic`, K being the tangent at a state of equilibrium: 1 of a body without load, negative where the
   /// equilibrium does not hold (an upper bound, hence a proof). Of pressures that follow a surface with a free rim, which
   /// have no energy, nothing can be said so: 1. `start`: forces without the symmetry of the body.
-  virtual double lowest_stiffness(std::span<const double> /*unknowns*/, std::span<const double> /*known*/,
-                                  const linalg::LinearMap& /*elastic*/, std::vector<double> /*start*/) {
-    return 1;
+  virtual SoftMotion lowest_stiffness(std::span<const double> /*unknowns*/, std::span<const double> /*known*/,
+                                      const linalg::LinearMap& /*elastic*/, std::vector<double> /*start*/) {
+    return {};
   }
   /// Thermal strains that the stress does not see, one a local flux face, until others are given: of large strain.
   virtual void set_expansion(std::vector<double> /*of_faces*/) {}

@@ -132,7 +132,7 @@ void SolidOutput::write_buckling() {
           "shapes in buckling.xdmf",
           found.factor.front(), found.factor.size());
   }
-  if (!found.factor.empty()) tell_buckling(mesh.comm, found.factor.front(), "");
+  if (!found.factor.empty()) tell_buckling(mesh.comm, {.factor = found.factor.front()}, "");
 }
 
 }  // namespace couplet::solid

@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <string>
 #include <utility>
 
 #include "common/log/finding.hpp"
@@ -16,10 +19,10 @@
 namespace couplet::solid {
 namespace {
 
-// Compressive strain times (L/t)^2: a clamped column reaches three times less than Euler's load at 0.07 (thickness by slenderness(): of a
-// square column half its own, hence a fourth), a plate or an arch far above.
-constexpr double least_strain = 0.015;
-// Of the solution in which a negative curvature of K + 3 K_sigma would show.
+// Compressive strain times (L/t)^2: a clamped column buckles at 0.2 (thickness by slenderness(): of a
+// square column half its own, hence a fourth, and a little less), a plate or an arch far above.
+constexpr double least_strain = 0.9 * 0.2 / 4 / BucklingEstimate::low;
+// Of the solution in which a negative curvature of K + low K_sigma would show.
 constexpr double shown_at = 1e-3;
 constexpr int most_searches = 2000, most_refinements = 40, settled = 6;
 // More compression than at the last look that makes another one worth while.
@@ -27,35 +30,64 @@ constexpr double more_compression = 1.1;
 // A factor that has changed by less than this part over the last refinements is told.
 constexpr double settled_part = 0.01;
 
+double limit_of(const BucklingEstimate& found) {
+  return found.factor < BucklingEstimate::imperfect ? BucklingEstimate::imperfect : BucklingEstimate::low;
+}
+
+std::string neglected(const BucklingEstimate& found) {
+  return "linear theory neglects the softening by these loads" +
+         (found.growth > BucklingEstimate::most_growth
+              ? fmt::format(", which adds {:.2g} of the displacement", found.growth)
+              : std::string());
+}
+
+/// |a x| / |u| / (factor - 1), root mean squares over the cells: modes are orthogonal by K, by which a is the part of u along x.
+double growth_of(const SolidBody& body, const std::vector<double>& u, const std::vector<double>& x,
+                 double factor) {
+  const mesh::Mesh& mesh = body.mesh();
+  if (!(factor > 1)) return std::numeric_limits<double>::infinity();
+  std::vector<double> force(x.size());
+  body.kernel().apply(x, {}, force);
+  std::array<double, 4> sums{};  // u.Kx, x.Kx, |u|^2, |x|^2
+  for (std::size_t i = 0; i < x.size(); ++i) sums[0] += u[i] * force[i], sums[1] += x[i] * force[i];
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    for (std::size_t i = std::size_t(c) * mesh.dim; i < std::size_t(c + 1) * mesh.dim; ++i) {
+      sums[2] += body.geometry().volume[c] * u[i] * u[i];
+      sums[3] += body.geometry().volume[c] * x[i] * x[i];
+    }
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), int(sums.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
+  if (!(sums[1] > 0) || !(sums[2] > 0)) return 0;
+  return std::abs(sums[0] / sums[1]) * std::sqrt(sums[3] / sums[2]) / (factor - 1);
+}
+
 }  // namespace
 
-void tell_dynamic_buckling(MPI_Comm comm, double factor) {
-  if (!(factor < BucklingEstimate::low)) return;
+void tell_dynamic_buckling(MPI_Comm comm, const BucklingEstimate& found) {
+  if (!found.matters()) return;
   log::finding(parallel::comm_rank(comm),
                {.id = "buckling",
-                .number = factor,
-                .limit = BucklingEstimate::low,
+                .number = found.factor,
+                .limit = limit_of(found),
                 .sentence = fmt::format(
-                    "buckling: load factor at most {:.3g} (limit {:g}) of the last state: {}", factor,
-                    BucklingEstimate::low,
-                    factor < 1 ? "if these loads last, the body buckles; linear theory does not show it"
-                               : "linear theory neglects the softening by these loads"),
+                    "buckling: load factor at most {:.3g} (limit {:g}) of the last state: {}", found.factor,
+                    limit_of(found),
+                    found.factor < 1 ? "if these loads last, the body buckles; linear theory does not show it"
+                                     : neglected(found)),
                 .advice = "use 'kinematics: finite-strain'"});
 }
 
-void tell_buckling(MPI_Comm comm, double factor, const char* how) {
-  if (!(factor < BucklingEstimate::low)) return;
-  const bool holds = factor >= 1;
+void tell_buckling(MPI_Comm comm, const BucklingEstimate& found, const char* how) {
+  if (!found.matters()) return;
+  const bool holds = found.factor >= 1;
+  const double limit = holds ? limit_of(found) : 1;
   log::finding(
       parallel::comm_rank(comm),
       {.id = "buckling",
        .severity = holds ? base::Severity::warning : base::Severity::wrong,
-       .number = factor,
-       .limit = holds ? BucklingEstimate::low : 1,
-       .sentence = fmt::format("buckling: load factor {}{:.3g} (limit {:g}): {}", how, factor,
-                               holds ? BucklingEstimate::low : 1,
-                               holds ? "linear theory neglects the softening by these loads"
-                                     : "the computed equilibrium is unstable"),
+       .number = found.factor,
+       .limit = limit,
+       .sentence = fmt::format("buckling: load factor {}{:.3g} (limit {:g}): {}", how, found.factor, limit,
+                               holds ? neglected(found) : "the computed equilibrium is unstable"),
        .advice =
            holds
                ? "use 'kinematics: finite-strain'; 'analysis: buckling' gives factors and shapes"
@@ -63,11 +95,11 @@ void tell_buckling(MPI_Comm comm, double factor, const char* how) {
                  "and shapes, 'kinematics: finite-strain' with a small lateral load the post-buckling state"});
 }
 
-BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fields, double time,
+BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fields, const SolidState& state,
                                    SolutionMethod& method, double& compression_seen) {
   const mesh::Geometry& geometry = body.geometry();
   const mesh::Mesh& mesh = body.mesh();
-  elastic::Prestress prestress = prestress_of(body, fields, time);
+  elastic::Prestress prestress = prestress_of(body, fields, state.time);
   double softest = 1e300;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
     const elastic::LameConstants lame = body.elastic().lame(c);
@@ -87,20 +119,31 @@ BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fie
       .b = [&](std::span<const double> x, std::span<double> y) { body.kernel().apply(x, {}, y); },
       .precondition = [&](std::span<const double> r,
                           std::span<double> z) { method.approximate_inverse(r, z); }};
-  const linalg::LinearMap loaded = [&](std::span<const double> x, std::span<double> y) {
-    of.b(x, y);
-    of.a(x, of_stress);
-    for (std::size_t i = 0; i < y.size(); ++i) y[i] += BucklingEstimate::low * of_stress[i];
+  const auto look = [&](double load) {
+    const linalg::LinearMap loaded = [&, load](std::span<const double> x, std::span<double> y) {
+      of.b(x, y);
+      of.a(x, of_stress);
+      for (std::size_t i = 0; i < y.size(); ++i) y[i] += load * of_stress[i];
+    };
+    return modes::look_for_negative_curvature(mesh.comm, loaded, of.precondition, force, shown_at,
+                                              most_searches);
   };
-  modes::Curvature found =
-      modes::look_for_negative_curvature(mesh.comm, loaded, of.precondition, force, shown_at, most_searches);
+  modes::Curvature found = look(BucklingEstimate::low);
   if (!found.is_negative) return {.factor = 0, .iterations = found.iterations};
+  // Under less load fewer motions are soft: one of them is nearer to the softest.
+  if (modes::Curvature closer = look(BucklingEstimate::imperfect); closer.is_negative) {
+    closer.iterations += found.iterations;
+    found = std::move(closer);
+  }
   const auto enough = [](const std::vector<double>& rho) {
     return rho.size() > settled && rho[rho.size() - 1 - settled] - rho.back() < settled_part * -rho.back();
   };
   const modes::LowestQuotient least =
       modes::lowest_quotient(mesh.comm, of, std::move(found.x), most_refinements, enough);  // -1 / lambda
-  return {-1 / least.value, found.iterations + least.iterations};
+  const double factor = -1 / least.value;
+  return {.factor = factor,
+          .growth = growth_of(body, body.unknowns_of(state.cell_u, state.face_u), least.x, factor),
+          .iterations = found.iterations + least.iterations};
 }
 
 }  // namespace couplet::solid

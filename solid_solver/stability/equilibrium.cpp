@@ -13,11 +13,13 @@ namespace couplet::solid {
 void EquilibriumWatch::see(const SolidBody& body, const SolidStepper& stepper, const SolidFields& fields) {
   if (body.is_dynamic() || !body.equilibrium().has_tangent() || !body.rigid().empty() || is_told_) return;
   const SolidState& now = stepper.trial();
-  const double stiffness = body.equilibrium().lowest_stiffness(
+  SoftMotion found = body.equilibrium().lowest_stiffness(
       stepper.last_solve().unknowns, now.known,
       [&](std::span<const double> x, std::span<double> y) { body.kernel().apply(x, {}, y); },
       any_start(body));
+  const double stiffness = found.stiffness;
   if (LoadPath* path = body.equilibrium().load_path()) return path->set_stiffness(stiffness);
+  softest_ = std::move(found);
   const Vec3 load = fields.total_load();
   if (stiffness >= 0) {
     time_ = now.time, stiffness_ = stiffness, load_ = load;
@@ -51,6 +53,7 @@ void EquilibriumWatch::see(const SolidBody& body, const SolidStepper& stepper, c
 
 void EquilibriumWatch::forget(const SolidBody& body) {
   stiffness_ = 0;
+  softest_ = {};
   if (const LoadPath* path = body.equilibrium().load_path()) limits_told_ = path->limits().size();
 }
 

@@ -22,10 +22,13 @@ class EquilibriumWatch {
   void finish(const SolidBody& body, std::vector<std::string>& sentences) const;
   /// A restart: what was before is not known.
   void forget(const SolidBody& body);
+  /// Of the last step; under control of the load, which alone makes what is soft err more.
+  const SoftMotion& softest() const { return softest_; }
 
  private:
   double time_ = 0, stiffness_ = 1;  // of the last equilibrium that held; 0: not known
   Vec3 load_ = Vec3::Zero();
+  SoftMotion softest_;
   bool is_told_ = false;
   std::size_t limits_told_ = 0;
 };

@@ -16,13 +16,13 @@ BETWEEN = [
 
 def colours(job):
     from couplet.atlas import atlas
-    from couplet.atlas.main import AGAIN, MAPS
+    from couplet.atlas.main import MAPS
     squares = {m.name: atlas.read(job.root / f"docs/stability/{m.name}.csv") for m in MAPS}
     whole = [m for m in MAPS if len(squares[m.name]) == len(m.panels) * len(m.x.values) * len(m.y.values)]
     counts = {o: sum(s.outcome == o for table in squares.values() for s in table.values()) for o in (atlas.HOLDS, atlas.POOR, atlas.WARNED, atlas.REFUSED, atlas.RED)}
     silent = [f"{m.name} {sum(s.outcome == atlas.RED for s in squares[m.name].values())}" for m in MAPS if any(s.outcome == atlas.RED for s in squares[m.name].values())]
-    return (f"{len(whole)} of {len(MAPS)} maps; {', '.join(f'{n} {o}' for o, n in counts.items())}{' (' + ', '.join(silent) + ')' if silent else ''}; "
-            f"{'; '.join(f'{name}: {why}' for name, why in AGAIN.items()) or 'all drawn again'}"), len(whole) == len(MAPS) and counts[atlas.RED] == 0 and not AGAIN
+    text = f"{len(whole)} of {len(MAPS)} maps; {', '.join(f'{n} {o}' for o, n in counts.items())}{' (' + ', '.join(silent) + ')' if silent else ''}"
+    return text, len(whole) == len(MAPS) and counts[atlas.RED] == 0
 
 
 def placed(folder):

@@ -158,6 +158,11 @@ TEST(EffectCards, fluid_verdicts_turn_at_their_thresholds) {
   EXPECT_FALSE(sound("turbulence model", {.largest_peclet = 251, .largest_yplus = 0.99}, air));
   EXPECT_FALSE(sound("turbulence model", {.largest_peclet = 51, .largest_yplus = 1.01}, air));
   EXPECT_FALSE(sound("turbulence model", {.largest_peclet = 51, .largest_yplus = 0}, air)) << "no walls";
+  fluid::FluidScene slow = air;
+  slow.parameters.viscosity = 1.2e-3;  // nu = 1e-3 m^2/s
+  EXPECT_TRUE(sound("turbulence model", {.largest_peclet = 51, .largest_speed = 1, .width = 3.4}, slow))
+      << "laminar";
+  EXPECT_FALSE(sound("turbulence model", {.largest_peclet = 51, .largest_speed = 1.1, .width = 3.4}, slow));
   EXPECT_TRUE(sound("resolved walls", {.largest_yplus = 1.9}, model));
   EXPECT_FALSE(sound("resolved walls", {.largest_yplus = 2.1}, model));
   EXPECT_TRUE(sound("compressibility", {.largest_speed = 102}, air));

@@ -132,16 +132,16 @@ TEST(Ring, buckles_at_three_under_pressure_and_at_four_under_a_dead_load) {
 TEST(BucklingEstimate, finds_low_factors_and_leaves_others_alone) {
   const double critical = euler(0.05);
   for (const BoxCells cells : {BoxCells::quadrilaterals, BoxCells::tetrahedra})
-    for (const double part : {0.2, 0.5, 1.3, -1.0}) {
+    for (const double part : {0.1, 0.2, 0.5, 1.3, -1.0}) {
       SCOPED_TRACE(fmt::format("{} {}", name(cells), part));
       const auto solid = make_solid(bar(cells, 40, dimension_of(cells) == 2 ? 4 : 2, 0.05),
                                     column(dimension_of(cells), part * critical));
       step(*solid, 1);
       double seen = 0;
-      const BucklingEstimate found =
-          estimate_buckling(solid->body(), solid->fields(), 1, *solid->stepper().method(), seen);
+      const BucklingEstimate found = estimate_buckling(
+          solid->body(), solid->fields(), solid->stepper().state(), *solid->stepper().method(), seen);
       RecordProperty(fmt::format("factor_{}", part), fmt::format("{:.4f}", found.factor));
-      if (part == 0.2 || part < 0)
+      if (part == 0.1 || part < 0)
         EXPECT_EQ(found.factor, 0);
       else
         EXPECT_NEAR(found.factor, 1 / part, 0.15 / part);  // a bound from above, on a mesh that is too stiff
@@ -160,6 +160,24 @@ TEST(BucklingFinding, is_told_of_linear_runs_near_and_above_the_load) {
     run(part);
     EXPECT_EQ(severity_of("buckling", before), severity) << part;
   }
+}
+
+TEST(BucklingFinding, above_a_factor_of_three_is_told_of_what_bends_and_not_of_what_is_pushed_alone) {
+  // Under a load across of any size the deflection grows by 1/(f - 1): of f = 4 a third, of f = 8 a seventh.
+  const double critical = euler(0.05);
+  const auto told = [&](double part, const char* lateral) {
+    const std::size_t before = log::findings().size();
+    SolidParameters p = column(2, part * critical);
+    p.boundaries["xmax"].value[1] = {lateral};
+    const auto solid = make_solid(bar(BoxCells::quadrilaterals, 40, 4, 0.05), p);
+    step(*solid, 1);
+    return severity_of("buckling", before);
+  };
+  EXPECT_EQ(told(0.25, "1e6"), int(base::Severity::warning));
+  const log::Finding& last = log::findings().back();
+  EXPECT_NE(last.sentence.find("adds 0.3"), std::string::npos) << last.sentence;
+  EXPECT_EQ(told(0.25, "0"), -1);
+  EXPECT_EQ(told(0.125, "1e6"), -1);
 }
 
 /// A column of rubber under a growing load, t from 0 to 1 s in five steps: `part` of Euler's load at the end.
@@ -187,6 +205,42 @@ TEST(Equilibrium, that_does_not_hold_is_told_with_the_load_where_it_was_lost) {
   const log::Finding& last = log::findings().back();
   EXPECT_LT(last.number, 0);
   EXPECT_NE(last.sentence.find("lost near t = 0.3"), std::string::npos) << last.sentence;  // 1 / 2.6
+}
+
+/// The least stiffness of a straight column of rubber 50 times as long as thick under `part` of Euler's load, in one step.
+double stiffness_under(double part) {
+  SolidParameters p = column(2, part * pi * pi / 48 * 0.02 * 0.02 * 1e7);
+  p.kinematics = SolidParameters::Kinematics::finite_strain;
+  p.plane = SolidParameters::Plane::strain;
+  p.material = {1100, 1e7, 0};
+  p.material.law = "neo-hookean";
+  const auto solid = make_solid(bar(BoxCells::quadrilaterals, 40, 2, 0.02), p);
+  step(*solid, 1);
+  const SolidBody& body = solid->body();
+  const SolidState& now = solid->stepper().state();
+  return body.equilibrium()
+      .lowest_stiffness(
+          body.unknowns_of(now.cell_u, now.face_u), now.known,
+          [&](std::span<const double> x, std::span<double> y) { body.kernel().apply(x, {}, y); },
+          any_start(body))
+      .stiffness;
+}
+
+TEST(Equilibrium, of_a_slender_column_is_told_apart_within_a_ten_thousandth_of_its_load) {
+  double low = 0.95, high = 1, at_low = stiffness_under(low), at_high = stiffness_under(high);
+  for (int i = 0; i < 3; ++i) {
+    const double next = low - at_low * (high - low) / (at_high - at_low);
+    low = high, at_low = at_high;
+    high = next, at_high = stiffness_under(high);
+  }
+  const double critical = low - at_low * (high - low) / (at_high - at_low);
+  const std::size_t before = log::findings().size();
+  EXPECT_GT(stiffness_under(critical * (1 - 5e-5)), 0);
+  EXPECT_EQ(severity_of("unstable-equilibrium", before), -1);
+  const double beyond = stiffness_under(critical * (1 + 5e-5));
+  EXPECT_LT(beyond, 0);
+  EXPECT_GT(beyond, -1e-4);
+  EXPECT_EQ(severity_of("unstable-equilibrium", before), int(base::Severity::wrong));
 }
 
 }  // namespace

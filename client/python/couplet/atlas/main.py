@@ -11,13 +11,6 @@ from couplet.places import ROOT, build
 from couplet.runs import expect
 
 MAPS = [*solid.MAPS, *large.MAPS, *fluid.MAPS, *periodic.MAPS, *moving.MAPS, *coupling.MAPS, *viscous.MAPS, *strong.MAPS, *tank.MAPS, *plate.MAPS]
-# Maps that are not what they should be, and why.
-OLD = "not drawn again yet: squares that stopped had no halving of steps, silent ones no warning of the estimated error"
-AGAIN = {
-    "solid-buckling": "silent squares: a linear run warns from a third of the buckling load on, where it is 30 % off; two or four long cells across are too stiff at large strain",
-    "fluid-periodic": "two silent squares: five steps per period at alpha 1",
-    **dict.fromkeys(("solid-nu", "large-nu", "large-swing", "coupling-viscous", "strong-robin"), OLD),
-}
 HEAD = """# Where each scheme is stable
 
 Written by `couplet atlas` from runs of the programs; do not edit. Each square shows the number of the map's criterion; each picture has
@@ -45,8 +38,6 @@ def page(maps, folder):
         counts = collections.Counter(s.outcome for s in squares.values())
         text += f"\n## {m.title}\n\n{m.about}\n\n![{m.title}](stability/{m.name}.png)\n\n"
         text += f"*{m.criterion}; {', '.join(f'{n} {o}' for o, n in sorted(counts.items()))}: [table](stability/{m.name}.csv).*\n"
-        if m.name in AGAIN:
-            text += f"\n*{AGAIN[m.name][0].upper()}{AGAIN[m.name][1:]}.*\n"
     if lost := cases.missing(ROOT):
         raise SystemExit(f"hard cases without their test in tests/stability: {', '.join(lost)}")
     return text + cases.page()
