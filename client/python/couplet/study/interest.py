@@ -64,7 +64,7 @@ def seconds(text):
 
 
 def values_of(task, quantities):
-    """{quantity: value}; those that are errors themselves are left out."""
+    """{quantity: value}; those that are errors themselves are omitted."""
     return {q.name: q.value(task.results) for q in quantities if not q.is_error}
 
 
