@@ -215,8 +215,8 @@ def main():
             failed += bool(problems)
         # What is left of the last run, to its end.
         folder = scratch / f"run-{run}"
-        if folder.exists() and any((s / "set.txt").exists() for s in (folder / "out/checkpoints").glob("step-*")):
-            job = Job(binaries, folder, True)
+        if folder.exists():  # from the start where the machine was too busy for a checkpoint
+            job = Job(binaries, folder, any((s / "set.txt").exists() for s in (folder / "out/checkpoints").glob("step-*")))
             job.wait(600)
             said = job.clear()
             compared += 1
