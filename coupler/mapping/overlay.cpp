@@ -206,7 +206,8 @@ std::vector<Cover> covers(const coupling::Interface& surface, Index face, const 
   const double own = reach(surface, face);
   std::array<Polygon, 3> spare;
   for (const Index c : facing) {
-    if (f.flat(other.face_centres[c]).head(surface.dim - 1).norm() > own + reach(other, c)) continue;
+    const Vec2 centre = f.flat(other.face_centres[c]);
+    if ((surface.dim == 3 ? centre.norm() : std::abs(centre[0])) > own + reach(other, c)) continue;
     Eigen::MatrixXd products = common_part(f, other, c, spare);
     const double size = products.sum();
     if (size > 1e-12 * f.size)

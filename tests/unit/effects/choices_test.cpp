@@ -84,7 +84,7 @@ TEST(AutoFluid, pressure_waves_by_their_time_and_by_parts_that_are_shut) {
   EXPECT_EQ(fluid_choice(air, box(2, 0.1 * flat, 0.01), "compressibility", fine), "none, incompressible");
   auto valve = flow(1, 1.8e-5);
   valve.density = 1.2;
-  valve.gaps["seat"] = {{"lid", "floor"}, 0.01};
+  valve.gaps["seat"] = {.between = {"lid", "floor"}, .opening = 0.01, .height = {}, .direction = {}};
   EXPECT_EQ(fluid_choice(valve, box(2, flat, 0.01), "compressibility"), "three-level");
   EXPECT_EQ(fluid_choice(flow(1, 1), box(2, flat, 0.01), "compressibility"), "none, incompressible");
   auto cavity = air;

@@ -29,8 +29,9 @@ TEST(Position, of_a_run_is_the_nearest_to_each_limit_that_it_has_been) {
 }
 
 TEST(Position, is_read_from_verdicts_whose_number_is_the_axis_of_a_map) {
-  const std::vector<EffectVerdict> verdicts{{.effect = "resolved grains", .number = 8, .threshold = 20},
-                                            {.effect = "gravity", .number = 8, .threshold = 20}};
+  const std::vector<EffectVerdict> verdicts{
+      {.effect = "resolved grains", .number = 8, .threshold = 20, .sentence = {}},
+      {.effect = "gravity", .number = 8, .threshold = 20, .sentence = {}}};
   const std::vector<Coordinate> found = coordinates_of(verdicts);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].map, "tank-biot");
