@@ -2,12 +2,13 @@
 // PETSc's start and end, in the shared module that brings its libraries (petsc_calls.hpp).
 #include <petscksp.h>
 
-/// PETSC_COMM_WORLD is set before PetscInitialize; PETSc's own signal handlers stay off. Errors become exceptions (see
-/// petsc_check.hpp); PETSc itself stays silent.
+/// PETSC_COMM_WORLD is set before PetscInitialize. PETSc installs no signal handlers: it starts while the program runs, and removing them
+/// again (PetscPopSignalHandler) would take the program's own with them, and with these the stop that saves its state. Errors become
+/// exceptions (see petsc_check.hpp); PETSc itself stays silent.
 int couplet_petsc_start(MPI_Comm program) {
   PETSC_COMM_WORLD = program;
-  PetscErrorCode code = PetscInitializeNoArguments();
-  if (code == 0) code = PetscPopSignalHandler();
+  PetscErrorCode code = PetscOptionsSetValue(NULL, "-no_signal_handler", "true");
+  if (code == 0) code = PetscInitializeNoArguments();
   if (code == 0) code = PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
   return (int)code;
 }

@@ -142,6 +142,8 @@ def judge(name, victim, ended, finished, said, left):
     asked = "by a signal; the state is saved" in said
     named = f"participant '{victim}'" in said or asked
     due = victim != "mpirun" and not finished and "t=" in said  # after the start-up
+    if name == "TERM" and due and not asked:
+        problems.append("a stop that was asked for was not honoured")
     return problems, due, named
 
 
