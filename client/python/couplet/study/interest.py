@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Errors of the quantities of interest (`study.quantities`) by differences: the case as it stands beside the same case with a half and a quarter of the cells along each line, and with twice and four times the step. The coarser runs cost a fraction of it.
+"""Errors of the quantities of interest (`study.quantities`) by differences: the case as it stands, with the study's `set` and with --set, beside
+the same with a half and a quarter of the cells along each line, and with twice and four times the step. The coarser runs cost a fraction of it.
 
   error = sum over mesh and step of |value - coarser value| / (2^p - 1),   2^p = |coarser - coarsest| / |value - coarser|
 
 with the observed order p between 0.5 and the formal one; the formal one where the differences change their sign or the coarsest run fails.
 
-What is made coarser: `study.sources` (docs/studies.md) where the case has it; else the size of the study's refining axis that gives the
-mesh of the case, and `simulation.time-step` where the run has more than one step."""
+What is made coarser: `study.sources` (docs/studies.md) where the case has it, from the setting that it names; else the size of the study's
+refining axis that gives the mesh of the case, and `simulation.time-step` where the run has more than one step."""
+import copy
 import json
 import math
 
@@ -28,27 +30,43 @@ def value_at(data, key):
     return data
 
 
-def mesh_source(case, section, participant):
-    """The refining axis at the size that gives the case's own values; None where there is no such size."""
+def as_it_stands(case, base):
+    """The content of the case with `base`, {absolute key: value or its text}."""
+    data = copy.deepcopy(case.data)
+    for key, value in base.items():
+        *above, last = key.split(".")
+        node = data
+        for part in above:
+            if not isinstance(node.get(part), dict):
+                node[part] = {}
+            node = node[part]
+        node[last] = yaml.safe_load(value) if isinstance(value, str) else value
+    return data
+
+
+def mesh_source(case, section, participant, data):
+    """The refining axis at the size that gives the values of `data`; None where there is no such size."""
     axis = Axes(case, section, participant).refining if section.get("axes") else None
     if not axis:
         return None
 
     def fits(n):
-        return all(value_at(case.data, case.absolute(key, participant)) == yaml.safe_load(str(text)) for key, text in axis.at(n).items())
+        return all(value_at(data, case.absolute(key, participant)) == yaml.safe_load(str(text)) for key, text in axis.at(n).items())
     sizes = sorted({*axis.sizes.values(), *range(1, LARGEST * int(max(axis.sizes.values())) + 1)})
     own = next((n for n in sizes if fits(n)), None)
     return Source("mesh", lambda f: axis.at(max(1, own / f)), False, 2, 2) if own else None
 
 
-def sources_of(case, participant):
-    section = case.study
+def sources_of(case, participant, base=None):
+    """`base`: what the study's `set` and --set change, {absolute key: value}."""
+    section, base = case.study, base or {}
     if section.get("sources"):
         return [s for s in (source_of(n, g, case.file) for n, g in section["sources"].items()) if not s.tolerance]
-    found = [mesh_source(case, section, participant)]
+    data = as_it_stands(case, base)
+    found = [mesh_source(case, section, participant, data)]
     if found[0] and "simulation.time-step" in found[0].changes(1):
         return found  # mesh and step together
-    step, end = (seconds(case.data["simulation"].get(k)) for k in ("time-step", "end-time"))
+    step, end = (seconds(data["simulation"].get(k)) for k in ("time-step", "end-time"))
     if step and end and end > 1.5 * step:
         found.append(Source("step", lambda f: {"simulation.time-step": step * f}, False, 2, 2))
     return [s for s in found if s]
@@ -90,18 +108,23 @@ def estimate(own, coarser, coarsest, sources):
 def run(case, out, arguments, say):
     section = case.study
     participant = section.get("participant", next(iter(case.participants), None))
-    sources = sources_of(case, participant)
+    base = {case.absolute(k, participant): v for k, v in {**(section.get("set") or {}), **arguments.changes}.items()}
+    sources = sources_of(case, participant, base)
     expect(sources, f"{case.file}: --quantities: nothing to make coarser: the case has neither 'study.sources' nor an axis with 'sizes' at its own "
                     "mesh, and takes one step.")
+    taken = {case.absolute(k, participant) for s in sources for k in s.changes(1)} & set(arguments.changes) if section.get("sources") else ()
+    expect(not taken, f"{case.file}: --quantities: --set {next(iter(taken), '')}: study.sources gives it its own values.")
     folder = out / "quantities"
 
-    def changes(found):
-        return {**{case.absolute(k, participant): v for k, v in {**(section.get("set") or {}), **found}.items()}, **arguments.changes}
-    tasks = {AS_IT_IS: Task(case, AS_IT_IS, folder / AS_IT_IS, changes({}))}
+    def changes(coarser=None, factor=1):
+        """Of the case as it stands, but for one source."""
+        found = {k: v for s in sources for k, v in s.changes(factor if s is coarser else 1).items()}
+        return {**base, **{case.absolute(k, participant): v for k, v in found.items()}}
+    tasks = {AS_IT_IS: Task(case, AS_IT_IS, folder / AS_IT_IS, changes())}
     for s in sources:
         for power, word in ((1, COARSER), (2, COARSEST)):
             name = f"{s.name} {word}"
-            tasks[name] = Task(case, name, folder / name.replace(" ", "-"), changes(s.changes(s.ratio**power)))
+            tasks[name] = Task(case, name, folder / name.replace(" ", "-"), changes(s, s.ratio**power))
     records = run_all(list(tasks.values()), arguments.jobs or 1, arguments.again, say)
     quantities = quantities_of(case, section, participant)
     found = {}
@@ -119,6 +142,7 @@ def run(case, out, arguments, say):
             continue
         own = found[AS_IT_IS][quantity.name]
         coarser, coarsest = ({s.name: found[f"{s.name} {word}"].get(quantity.name) for s in sources} for word in (COARSER, COARSEST))
+        expect(all(map(math.isfinite, (own, *coarser.values()))), f"{quantity.name}: not a number in a run that ended well.")
         parts, orders = estimate(own, coarser, coarsest, sources)
         error, unit = sum(parts.values()), unit_of(quantity)
         written[quantity.name] = {"value": own, "unit": unit, "error": error, "parts": parts, "orders": orders, "method": f"differences of {len(tasks)} runs"}
