@@ -70,8 +70,8 @@ COUPLET_PROCESSOR_CLONES double multiply(const ViscousRows& a, const Vectors<3>&
   return multiply_by_width<3>(a, x, y);
 }
 
-COUPLET_PROCESSOR_CLONES double advance(double alpha, std::span<const double> s, std::span<const double> q,
-                                        std::span<double> u, std::span<double> r) {
+COUPLET_PROCESSOR_CLONES double go_along(double alpha, std::span<const double> s, std::span<const double> q,
+                                         std::span<double> u, std::span<double> r) {
   std::array<double, 4> sums{};  // side by side, for one register
   std::size_t i = 0;
   for (; i + 4 <= s.size(); i += 4)
@@ -88,7 +88,7 @@ COUPLET_PROCESSOR_CLONES double advance(double alpha, std::span<const double> s,
   return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
 
-COUPLET_PROCESSOR_CLONES void turn(double gamma, std::span<const double> r, std::span<double> s) {
+COUPLET_PROCESSOR_CLONES void turn_search(double gamma, std::span<const double> r, std::span<double> s) {
   for (std::size_t i = 0; i < s.size(); ++i) s[i] = r[i] + gamma * s[i];
 }
 

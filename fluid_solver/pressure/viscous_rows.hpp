@@ -25,11 +25,11 @@ struct ViscousRows {
 double multiply(const ViscousRows& a, const Vectors<2>& x, Vectors<2>& y);
 double multiply(const ViscousRows& a, const Vectors<3>& x, Vectors<3>& y);
 
-/// u += alpha s, r -= alpha q; returns r.r.
-double advance(double alpha, std::span<const double> s, std::span<const double> q, std::span<double> u,
-               std::span<double> r);
+/// A step of CG: u += alpha s, r -= alpha q; returns r.r.
+double go_along(double alpha, std::span<const double> s, std::span<const double> q, std::span<double> u,
+                std::span<double> r);
 
-/// s = r + gamma s.
-void turn(double gamma, std::span<const double> r, std::span<double> s);
+/// The next search direction: s = r + gamma s.
+void turn_search(double gamma, std::span<const double> r, std::span<double> s);
 
 }  // namespace couplet::fluid

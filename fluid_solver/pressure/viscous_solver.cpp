@@ -100,9 +100,9 @@ int ViscousSolver<D>::solve(const Vectors<D>& w, double tolerance, Vectors<D>& b
     const double curvature = parallel::sum(mesh_.comm, apply(search_, q_));
     if (!(curvature > 0)) break;
     const double next =
-        parallel::sum(mesh_.comm, advance(rr / curvature, flat<D>(search_).first(n), flat<D>(q_).first(n),
-                                          flat<D>(x_).first(n), flat<D>(r_).first(n)));
-    turn(next / std::exchange(rr, next), flat<D>(r_).first(n), flat<D>(search_).first(n));
+        parallel::sum(mesh_.comm, go_along(rr / curvature, flat<D>(search_).first(n), flat<D>(q_).first(n),
+                                           flat<D>(x_).first(n), flat<D>(r_).first(n)));
+    turn_search(next / std::exchange(rr, next), flat<D>(r_).first(n), flat<D>(search_).first(n));
   }
   // The round-off of b itself is all that can be asked for: a little above it counts as solved.
   if (!(rr <= std::max(goal, 1e-26 * sums[0])))

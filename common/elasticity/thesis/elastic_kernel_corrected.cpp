@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/base/processor_clones.hpp"
+#include "common/elasticity/thesis/elastic_corrected_gradients.hpp"
 #include "common/elasticity/thesis/elastic_corrected_kernel.hpp"
 #include "common/parallel/collective.hpp"
 
