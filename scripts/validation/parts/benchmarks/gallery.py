@@ -65,7 +65,8 @@ def run(job, entry, kind, ranks=None, flags=(), coarse=True):
             f"simulation.checkpoint={{interval: {MIDDLE * entry.step!r}, keep: 100}}", *entry.sets, *(entry.coarse if coarse else ())]
     sets += [f"participants.{name}.pressure-tolerance={INNER:g}" for name, content in case.participants.items() if content["program"] == "fluid_solver" and coarse]
     guests = {name: ["/usr/bin/python3", job.root / file, name, *more] for name, (file, *more) in entry.words.items()}
-    launch(case.command({}, ranks=ranks, raw=sets, flags=flags, played_by=guests), folder / "run.log", folder=folder, timeout=1200, env=surroundings())
+    # While a flow starts its error may be as large as itself, which ends a run with code 4; what is compared here is not the answer.
+    launch(case.command({}, ranks=ranks, raw=sets, flags=("--accept", "error-estimate", *flags), played_by=guests), folder / "run.log", folder=folder, timeout=1200, env=surroundings())
     return folder
 
 
@@ -143,4 +144,6 @@ def both(entry):
 
 
 WANTED = "continued in its middle bit for bit; fluid and solid on 2 ranks: displacement, velocity, pressure within the coupling's tolerance"
-ROWS = [Bar(f"restart and ranks: {entry.name}, coarse, {entry.steps} steps, pressure equation to {INNER:g}", WANTED, both(entry)) for entry in GALLERY]
+ROWS = [Bar(f"restart and ranks: {entry.name}, coarse, {entry.steps} steps, pressure equation to {INNER:g}", WANTED, both(entry),
+            but="a coarse mesh where the case has one, few steps, the pressure equation closer than by default, at which FSI1 is 3e-4 apart; of a solid the displacement alone")
+        for entry in GALLERY]

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""docs/benchmarks.md: the coupled benchmarks beside the figures of others, from the committed tables: ours from docs/validation, theirs from the
-references of the cases. Usage: page.py [--check] (without: writes the page)."""
+"""docs/benchmarks.md: the coupled benchmarks beside the figures of others, from the committed tables: ours from docs/validation, theirs from
+the reference of FSI1 and FSI3 and from OTHER. Usage: page.py [--check] (without: writes the page)."""
 import csv
 import pathlib
 import re
@@ -12,10 +12,12 @@ sys.path[:0] = [str(ROOT / "scripts")]
 from validation import table  # noqa: E402
 
 PAGE = ROOT / "docs" / "benchmarks.md"
+NUMBER = r"[-+]?[\d.]+(e[-+]?\d+)?"
 HEAD = """# Coupled benchmarks beside others
 
 Written by `scripts/validation/parts/benchmarks/page.py` from the committed tables: ours from [validation](validation/coupled-benchmarks.md)
-(`scripts/validate coupled-benchmarks` repeats them), those of others from the reference data of the cases, each with its source. A test
+(`scripts/validate coupled-benchmarks` repeats them), those of others on FSI1 and FSI3 from the reference
+data of the case, each with its source, in the other tables as the publications named there give them. A test
 compares this page with the tables.
 
 Core-hours of ours are processor time of all programs on a shared machine with two cores (AMD EPYC), good to a third. Others publish
@@ -79,7 +81,7 @@ def flag(case, rows):
 
     def number(text, name):
         _, factor, digits = shown[name]
-        return f"{factor * float(text):.{digits}g}" if text else "-"
+        return f"{factor * float(text):.{digits}g}" if re.fullmatch(NUMBER, text) else "-"  # a row may tell why there is none
     for who, cells, step, beginning in OURS[case]:
         mine = {q.rsplit(": ", 1)[1]: r.got for q, r in rows.items() if q.startswith(beginning) and ": " in q and r.verdict != "not measured"}
         values = [number(mine[name].split(" for ")[0], name) if name in mine else "-" for name in shown]
