@@ -32,7 +32,8 @@ FluidParameters valve(bool with_gap, double opening = limit) {
   p.boundaries["xmax"] = boundary(BoundaryType::outlet);
   p.boundaries["ymin"] = boundary(BoundaryType::no_slip);
   p.boundaries["ymax"] = boundary(BoundaryType::interface);
-  if (with_gap) p.gaps["slot"] = {.between = {"ymin", "ymax"}, .opening = opening, .height = {}, .direction = {}};
+  if (with_gap)
+    p.gaps["slot"] = {.between = {"ymin", "ymax"}, .opening = opening, .height = {}, .direction = {}};
   return p;
 }
 
