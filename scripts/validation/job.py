@@ -44,8 +44,14 @@ class Job:
         shutil.rmtree(self.scratch, ignore_errors=True)
 
     def once(self, key, make):
+        """What make() gave, or the exception it ended in: a run of hours is not repeated for every row that reads it."""
         if key not in self._kept:
-            self._kept[key] = make()
+            try:
+                self._kept[key] = make()
+            except Exception as failure:
+                self._kept[key] = failure
+        if isinstance(self._kept[key], Exception):
+            raise self._kept[key]
         return self._kept[key]
 
     def run(self, command, timeout=1800, **options):
