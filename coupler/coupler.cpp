@@ -262,6 +262,9 @@ std::string Coupler::run() {
   actions.write_start = [&](int output) {
     ask_all(everyone(), {coupling::Op::write_output, {}, {}, 0, output, ""});
   };
+  actions.write_stop = [&](double time, int output) {
+    ask_all(everyone(), {coupling::Op::write_output, {}, {}, time, output, ""});
+  };
   actions.save = [&](const std::filesystem::path& folder) { save(folder); };
   actions.stateless = stateless;
   actions.report = [&](const coupling::Step& step, double time) {

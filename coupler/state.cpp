@@ -73,7 +73,7 @@ void Coupler::load() {
     for (std::size_t k = 0; auto* field : lag_->fields())
       *field = file.read_or_none("lag-" + std::to_string(k++), unknown_->n_rider());
   const app::RunState state = app::read_run_state(folders_.restart);
-  loop_.restart(state);
+  loop_.restart(state, folders_.restart);
   ask_all(everyone(), {coupling::Op::load, {}, {}, state.time, -1, folders_.restart.string()});
   log::info("continues from {} at t = {:g} s", folders_.restart.string(), state.time);
 }

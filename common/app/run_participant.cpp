@@ -230,7 +230,7 @@ int run_alone(const Job& job, coupling::Participant& participant) {
   command.must({coupling::Op::initialise, {}, {}, 0, -1, ""});
   if (!job.restart_folder.empty()) {
     command.must({coupling::Op::load, {}, {}, 0, -1, job.restart_folder.string()});
-    loop.restart(read_run_state(job.restart_folder));
+    loop.restart(read_run_state(job.restart_folder), job.restart_folder);
     log::info("continues from {} at t = {:g} s", job.restart_folder.string(), job.restart_time);
   }
   StepActions actions;
@@ -238,6 +238,9 @@ int run_alone(const Job& job, coupling::Participant& participant) {
   actions.accept = [&](double time, int output) { command.accept(time, output); };
   actions.write_start = [&](int output) {
     command.must({coupling::Op::write_output, {}, {}, 0, output, ""});
+  };
+  actions.write_stop = [&](double time, int output) {
+    command.must({coupling::Op::write_output, {}, {}, time, output, ""});
   };
   actions.save = [&](const std::filesystem::path& folder) {
     command.must({coupling::Op::save, {}, {}, 0, -1, folder.string()});

@@ -47,14 +47,37 @@ bool holds_a_set(const fs::path& folder) {
   return std::all_of(entries, end, [](const fs::directory_entry& e) { return is_ours(e.path()); });
 }
 
+/// What the list names below its folder, and nothing else: a damaged list must not lead out of it.
+std::vector<fs::path> listed(const fs::path& folder) {
+  std::vector<fs::path> files;
+  try {
+    if (const auto set = read_checkpoint_set(folder))
+      for (const CheckpointSet::File& file : set->files) {
+        const fs::path name = fs::path(file.name).lexically_normal();
+        if (name.is_relative() && !name.empty() && *name.begin() != "..") files.push_back(folder / name);
+      }
+  } catch (const Error&) {  // damaged: ours alone go
+  }
+  return files;
+}
+
+void remove_empty_folders(const fs::path& folder) {
+  std::vector<fs::path> below;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_directory() && !entry.is_symlink()) below.push_back(entry.path());
+  std::error_code not_empty;
+  for (auto it = below.rbegin(); it != below.rend(); ++it) fs::remove(*it, not_empty);
+}
+
 /// The list goes first: what is left of a set that is being taken away is no set.
 void clear(const fs::path& folder) {
+  std::vector<fs::path> ours = listed(folder);
   fs::remove(folder / list_name);
-  std::vector<fs::path> ours;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
     if (is_ours(entry.path()) && entry.path().filename() != pending_name) ours.push_back(entry.path());
   for (const fs::path& file : ours) fs::remove(file);
   if (is_ours(folder / pending_name)) fs::remove(folder / pending_name);
+  remove_empty_folders(folder);
 }
 
 std::string with_digest(const std::string& text) {
@@ -93,6 +116,8 @@ std::optional<CheckpointSet> parse_list(const std::string& text) {
       good = parse(words[1], file.size, 10) && parse(words[2], file.digest, 16);
       file.name = base::join({words.begin() + 3, words.end()}, " ");
       set.files.push_back(file);
+    } else if (words[0] == "continues") {
+      set.continues.assign(words.begin() + 1, words.end());
     } else {
       good = false;
     }
@@ -194,6 +219,11 @@ fs::path begin_checkpoint_set(const fs::path& parent, const CheckpointStamp& sta
   if (failed) throw Error("Cannot create the checkpoint folder {}: {}.", folder.string(), failed.message());
   try {
     clear(folder);
+    if (!fs::is_empty(folder)) {  // somebody else's files
+      folder = parent / fmt::format("step-{:08d}-{}", stamp.step, stamp.run);
+      fs::create_directories(folder);
+      clear(folder);
+    }
     write_in_place(folder / pending_name, fmt::format("{}\n{}", first_line, stamp.text()));
   } catch (const fs::filesystem_error& error) {
     throw Error("Cannot remove the earlier checkpoint in {}: {}.", folder.string(), error.code().message());
@@ -201,15 +231,20 @@ fs::path begin_checkpoint_set(const fs::path& parent, const CheckpointStamp& sta
   return folder;
 }
 
-void finish_checkpoint_set(const fs::path& folder, const CheckpointStamp& stamp) {
+// The folder was empty when the set was begun: all that is in it belongs to the set.
+void finish_checkpoint_set(const fs::path& folder, const CheckpointStamp& stamp,
+                           const std::vector<std::string>& continues) {
   std::string text = fmt::format("{}\n{}", first_line, stamp.text());
+  if (!continues.empty()) text += "continues " + base::join(continues, " ") + "\n";
   std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (is_ours(entry.path()) && entry.path().extension() != ".part") files.push_back(entry.path());
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file() && !entry.is_symlink() && entry.path().extension() != ".part" &&
+        entry.path() != folder / list_name)
+      files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files)
     text += fmt::format("file {} {:016x} {}\n", fs::file_size(file), digest_of_file(file),
-                        file.filename().string());
+                        file.lexically_relative(folder).string());
   write_in_place(folder / list_name, with_digest(text));
   fs::remove(folder / pending_name);
 }

@@ -19,8 +19,8 @@ struct CheckpointStamp {
   std::string text() const;
 };
 
-/// A folder with the files of all programs of a run at one accepted time. `set.txt` lists them with their sizes
-/// and digests and is written last: a folder that has it is complete. While the files are being written there
+/// A folder with the files of all programs of a run at one accepted time, those that guest programs write in their own
+/// formats, too. `set.txt` lists them with their sizes and digests and is written last: a folder that has it is complete. While the files are being written there
 /// is `set.part` in its place, from which each program takes the stamp for its own file.
 struct CheckpointSet {
   CheckpointStamp stamp;
@@ -29,7 +29,9 @@ struct CheckpointSet {
     std::uintmax_t size = 0;
     std::uint64_t digest = 0;
   };
-  std::vector<File> files;
+  std::vector<File> files;  ///< names relative to the folder
+  std::vector<std::string>
+      continues;  ///< ids of the runs before, whose sets this run goes on from and takes over
 };
 
 /// Digest over all bytes of a file: any change of one 64-bit word changes it. Throws Error if the file cannot be
@@ -49,7 +51,8 @@ std::string problem_in_set(const std::filesystem::path& file);
 /// Error if the folder cannot be made.
 std::filesystem::path begin_checkpoint_set(const std::filesystem::path& parent, const CheckpointStamp& stamp);
 /// All files are there: lists them and puts `set.txt` in place. Throws Error on failure.
-void finish_checkpoint_set(const std::filesystem::path& folder, const CheckpointStamp& stamp);
+void finish_checkpoint_set(const std::filesystem::path& folder, const CheckpointStamp& stamp,
+                           const std::vector<std::string>& continues = {});
 
 /// A complete set found below a folder.
 struct FoundSet {
@@ -58,7 +61,7 @@ struct FoundSet {
 };
 /// Complete sets in the folders step-* of `parent`, by time, then step. What cannot be read is left out.
 std::vector<FoundSet> checkpoint_sets(const std::filesystem::path& parent);
-/// Takes away the files of this set, and the folder if nothing else is in it.
+/// Takes away the files of this set, those of guest programs, too, and the folder if nothing else is in it.
 void remove_checkpoint_set(const std::filesystem::path& folder);
 /// Takes away what runs that ended while they wrote have left in `parent`; gives the folders.
 std::vector<std::filesystem::path> clear_incomplete_sets(const std::filesystem::path& parent);

@@ -22,6 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// A run that continues drops rows and outputs that are later than its checkpoint by more than rounding: what a stop writes is.
+constexpr double later_than_saved = 1 + 4e-9;
+
 /// Different for each run that ever writes into a folder; later runs have larger ones.
 std::string make_run_id() {
   std::random_device device;
@@ -97,7 +100,15 @@ StepLoop::StepLoop(MPI_Comm comm, const SimulationParameters& simulation, coupli
       run_id_(parallel::comm_rank(comm) == 0 ? make_run_id() : ""),
       plan_(simulation.end_time, simulation.time_step, simulation.max_step_halvings) {}
 
-void StepLoop::restart(const RunState& state) {
+void StepLoop::restart(const RunState& state, const fs::path& from) {
+  std::error_code unknown;
+  if (!from.empty() &&
+      fs::equivalent(from.parent_path().empty() ? "." : from.parent_path(), checkpoints_, unknown))
+    if (const auto set = io::read_checkpoint_set(from)) {
+      continues_ = set->continues;
+      continues_.push_back(set->stamp.run);
+      continued_at_ = set->stamp.time;
+    }
   plan_.restore(state.plan, state.time);
   outputs_ = state.outputs;
   restarted_ = true;
@@ -114,6 +125,11 @@ bool StepLoop::due(double interval) const {
   return multiples(plan_.time()) > multiples(plan_.time() - simulation_.time_step);
 }
 
+bool StepLoop::is_own(const io::FoundSet& set) const {
+  return set.stamp.run == run_id_ || (set.stamp.time <= continued_at_ &&
+                                      std::ranges::find(continues_, set.stamp.run) != continues_.end());
+}
+
 fs::path StepLoop::checkpoint(const StepActions& actions) {
   if (!actions.stateless.empty()) return {};
   const io::CheckpointStamp stamp{run_id_, plan_.steps_accepted(), plan_.time()};
@@ -128,11 +144,11 @@ fs::path StepLoop::checkpoint(const StepActions& actions) {
     keys << simulation_.keys;
     keys.close();
     if (!keys) throw Error("Cannot write the checkpoint in {}. Is the disk full?", folder.string());
-    io::finish_checkpoint_set(folder, stamp);
+    io::finish_checkpoint_set(folder, stamp, continues_);
     log::debug("checkpoint {} at t = {:g} s", folder.string(), plan_.time());
-    // Only what this run wrote goes: sets of other runs are theirs.
+    // Sets of other runs are theirs.
     std::vector<io::FoundSet> own = io::checkpoint_sets(checkpoints_);
-    std::erase_if(own, [&](const io::FoundSet& set) { return set.stamp.run != run_id_; });
+    std::erase_if(own, [&](const io::FoundSet& set) { return !is_own(set); });
     for (std::size_t i = 0; i + simulation_.checkpoints_kept < own.size(); ++i)
       io::remove_checkpoint_set(own[i].folder);
   });
@@ -141,6 +157,8 @@ fs::path StepLoop::checkpoint(const StepActions& actions) {
 
 std::string StepLoop::stop(const StepActions& actions) {
   const fs::path folder = checkpoint(actions);
+  // Only now: what participants learn from writing is no part of the state that goes on.
+  if (!is_written_) actions.write_stop(plan_.time() * later_than_saved, outputs_);
   if (folder.empty())
     return fmt::format("Stopped at t = {:g} s by a signal.{}", plan_.time(), what_is_kept(actions));
   Watch::stopped();
@@ -179,7 +197,7 @@ std::string StepLoop::run(const StepActions& actions) {
     for (const fs::path& folder : io::clear_incomplete_sets(checkpoints_))
       log::info("removed the incomplete checkpoint {} of an earlier run", folder.string());
   });
-  if (!restarted_) actions.write_start(outputs_++);
+  if (!restarted_) actions.write_start(outputs_++), is_written_ = true;
   while (!plan_.finished()) {
     if (parallel::any(comm_, Watch::stop_requested())) return stop(actions);
     plan_.limit(actions.advised_dt());
@@ -202,6 +220,7 @@ std::string StepLoop::run(const StepActions& actions) {
     causes_.accepted(step.dt);
     const bool output = plan_.at_nominal_time() && due(simulation_.output_interval);
     actions.accept(plan_.time(), output ? outputs_++ : -1);
+    is_written_ = output;
     actions.report(step, plan_.time());
     if (plan_.at_nominal_time() && due(simulation_.checkpoint_interval)) checkpoint(actions);
   }

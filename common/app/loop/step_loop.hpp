@@ -14,6 +14,7 @@
 #include "common/app/loop/simulation.hpp"
 #include "common/coupling/participant.hpp"
 #include "common/coupling/step_plan.hpp"
+#include "common/io/checkpoint_set.hpp"
 
 namespace couplet::app {
 
@@ -50,6 +51,8 @@ struct StepActions {
   /// The step becomes state n. `time`: its end; `output`: number of the output that is due, -1 for none.
   std::function<void(double time, int output)> accept;
   std::function<void(int output)> write_start;
+  /// The run stops here: the state that was saved, as an output that a continued run drops and writes anew when it is due.
+  std::function<void(double time, int output)> write_stop = [](double, int) {};
   std::function<void(const std::filesystem::path& folder)> save;
   /// Why no checkpoint could be continued from; empty: checkpoints are written.
   std::string stateless;
@@ -65,10 +68,11 @@ class StepLoop {
  public:
   StepLoop(MPI_Comm comm, const SimulationParameters& simulation, coupling::Scheme scheme,
            std::filesystem::path checkpoints);
-  /// Continues from this state instead of from the start.
-  void restart(const RunState& state);
+  /// Continues from this state instead of from the start. `from`: its checkpoint; those of the run that wrote it, up to that
+  /// time, are from now on this run's, and go as its own do, if they lie in the same folder.
+  void restart(const RunState& state, const std::filesystem::path& from = {});
   /// Runs to the end, or to the next accepted step after the job was asked to stop (Watch::stop_requested), which is
-  /// saved. The text is empty if all went well, else it says at what time and why no step could be found; the
+  /// saved and written. The text is empty if all went well, else it says at what time and why no step could be found; the
   /// state before that step was saved, unless the job is stateless.
   std::string run(const StepActions& actions);
 
@@ -82,6 +86,8 @@ class StepLoop {
   /// Gives the folder.
   std::filesystem::path checkpoint(const StepActions& actions);
   std::string stop(const StepActions& actions);
+  /// Whether the run may take this set away when it is old.
+  bool is_own(const io::FoundSet& set) const;
   std::string what_is_kept(const StepActions& actions) const;
   std::string give_up(const StepActions& actions, const coupling::Step& step, const StepFailure& failure);
 
@@ -92,8 +98,10 @@ class StepLoop {
   std::string run_id_;  // on rank 0
   coupling::StepPlan plan_;
   HalvingCauses causes_;
+  std::vector<std::string> continues_;  // ids of the runs before
+  double continued_at_ = 0;
   int outputs_ = 0, halvings_ = 0;
-  bool restarted_ = false;
+  bool restarted_ = false, is_written_ = false;  // is_written_: the state now, as an output
 };
 
 }  // namespace couplet::app

@@ -9,6 +9,8 @@ import sys
 import tempfile
 import time
 
+import h5py
+
 from scene import ROOT, call, case_in, environment, start
 from checks import check, end  # noqa: E402  (scene knows where it is)
 
@@ -109,6 +111,12 @@ def stop(folder):
         _, said = job.communicate(timeout=60)
         check(f"{how}: exit code 3, and how to go on", job.returncode == 3 and "continue: couplet resume" in said, f"{job.returncode} {said[-300:]}")
         check(f"{how}: nobody is left", not left_behind(folder / "a"), left_behind(folder / "a"))
+    last_set = max((folder / "a/out/checkpoints").glob("step-*/set.txt"))
+    saved = float(re.search(r"^time (\S+)", last_set.read_text(), re.M)[1])
+    for name in ("fluid", "solid"):
+        with h5py.File(folder / f"a/out/{name}/{name}.h5") as series:
+            last = max(float(step.attrs["time"]) for step in series["steps"].values())
+        check(f"{name}: the fields of the last step are written", abs(last - saved) <= 1e-8 * saved, (last, saved))
     resumed = call(bin_, "resume", folder / "a/out")
     check("resume goes on to the end", resumed.returncode == 0 and "done in" in resumed.stdout, resumed.stdout[-200:] + resumed.stderr)
     same = call(bin_, "compare", folder / "whole", folder / "a/out")

@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "common/base/error.hpp"
@@ -28,7 +29,7 @@ class Checkpoints : public testing::Test {
   void TearDown() override { fs::remove_all(folder); }
 
   /// A run to this time in steps of 1 s that saves its time after each.
-  void run_to(double end, int keep = 2, const fs::path& restart = {}) {
+  void run_to(double end, int keep = 2, const fs::path& restart = {}, bool takes_over = false) {
     SimulationParameters simulation;
     simulation.end_time = end;
     simulation.time_step = 1;
@@ -37,7 +38,7 @@ class Checkpoints : public testing::Test {
     StepLoop loop(MPI_COMM_SELF, simulation, coupling::Scheme::standalone, folder);
     double time = 0;
     if (!restart.empty()) {
-      loop.restart(read_run_state(restart));
+      loop.restart(read_run_state(restart), takes_over ? restart : fs::path());
       time = read_run_state(restart).time;
     }
     StepActions actions;
@@ -109,6 +110,41 @@ TEST_F(Checkpoints, only_those_of_this_run_are_deleted) {
   for (const char* kept : {"step-00000001", "step-00000002", "step-00000003", "step-00000006"})
     EXPECT_TRUE(fs::exists(folder / kept / "set.txt")) << kept;
   for (const char* gone : {"step-00000004", "step-00000005"}) EXPECT_FALSE(fs::exists(folder / gone)) << gone;
+}
+
+std::set<std::string> names_in(const fs::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename());
+  return names;
+}
+
+// However often a run is continued: as many are kept as are wanted.
+TEST_F(Checkpoints, of_the_runs_that_it_continues_are_deleted_as_its_own) {
+  run_to(3, 2);
+  for (const int from : {3, 4, 5, 6}) run_to(from + 1, 2, folder / fmt::format("step-{:08d}", from), true);
+  EXPECT_EQ(names_in(folder), (std::set<std::string>{"step-00000006", "step-00000007"}));
+}
+
+TEST_F(Checkpoints, of_a_run_behind_the_time_it_is_continued_at_stay) {
+  run_to(5, 9);
+  run_to(5, 1, folder / "step-00000002", true);
+  for (const char* gone : {"step-00000001", "step-00000002"}) EXPECT_FALSE(fs::exists(folder / gone)) << gone;
+  for (const char* kept : {"step-00000003", "step-00000004", "step-00000005"})
+    EXPECT_TRUE(fs::exists(folder / kept)) << kept;
+}
+
+TEST_F(Checkpoints, of_external_programs_go_with_them_and_what_came_later_stays) {
+  fs::create_directories(folder);
+  const CheckpointStamp stamp{"0001-a", 7, 0.7};
+  const fs::path place = begin_checkpoint_set(folder, stamp);
+  fs::create_directories(place / "partner/0.7");
+  std::ofstream(place / "partner/0.7/U") << "velocity";
+  std::ofstream(place / "partner.bin") << "state";
+  finish_checkpoint_set(place, stamp);
+  EXPECT_EQ(read_checkpoint_set(place)->files.size(), 2u);
+  std::ofstream(place / "notes.txt") << "precious";
+  remove_checkpoint_set(place);
+  EXPECT_EQ(names_in(place), (std::set<std::string>{"notes.txt"}));
 }
 
 TEST_F(Checkpoints, a_folder_or_a_link_of_the_user_in_the_way_stays_as_it_is) {
