@@ -81,6 +81,7 @@ class Coupler {
   void exchange_initial_values();
   void load();
   void save(const std::filesystem::path& folder);
+  parallel::GlobalOrder order_of_wall(std::size_t i) const;
   std::optional<app::StepFailure> attempt(const coupling::Step& step);
   /// Why a step failed: what the coupling itself does comes before what a participant reports.
   app::StepFailure cause_of(const std::string& reported) const;

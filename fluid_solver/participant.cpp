@@ -11,7 +11,6 @@
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
-#include "common/io/numbering.hpp"
 #include "common/log/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
@@ -236,24 +235,24 @@ coupling::StepReport FluidParticipant<D>::accept_step() {
 
 template <int D>
 void FluidParticipant<D>::save(io::CheckpointWriter& file) const {
-  io::write_numbering(file, mesh_);
+  file.on(mesh_);
   write_state(file, fluid_->state(), fluid_->parameters().is_compressible());
   fluid_->solvers().save(file);
   if (statistics_) statistics_->save(file);
   file.write_scalar("slowest-contraction", renewal_.slowest());
-  file.write("errors", errors_ ? errors_->state() : std::vector<double>{});
+  file.write_scalar("has-errors", errors_ ? 1 : 0);
+  if (errors_) errors_->save(file);
 }
 
 template <int D>
 void FluidParticipant<D>::load(io::CheckpointReader& file) {
-  io::check_numbering(file, mesh_);
+  file.on(mesh_);
   fluid_->restore(read_state<D>(file, mesh_, fluid_->moving() ? nullptr : fluid_->state().placement,
                                 fluid_->parameters().is_compressible()));
   fluid_->solvers().load(file);
   if (statistics_) statistics_->load(file);
   renewal_.restore(file.read_scalar("slowest-contraction"));
-  const std::vector<double> errors = file.read("errors");
-  if (errors_) errors_->restore(errors);
+  if (const bool has_errors = file.read_scalar("has-errors") != 0; errors_) errors_->load(file, has_errors);
 }
 
 template <int D>

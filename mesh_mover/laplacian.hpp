@@ -42,9 +42,11 @@ class Laplacian final : public MotionMethod {
   const std::vector<double>& cell_displacement() const { return cell_displacement_; }
   linalg::SolveStatistics last() const override { return last_; }
   void save(io::CheckpointWriter& file) const override {
-    file.write("cell-displacement", cell_displacement_);
+    file.write(mesh::Entries::cells, "cell-displacement", cell_displacement_);
   }
-  void load(io::CheckpointReader& file) override { file.read("cell-displacement", cell_displacement_); }
+  void load(io::CheckpointReader& file) override {
+    file.read(mesh::Entries::cells, "cell-displacement", cell_displacement_);
+  }
 
  private:
   enum class PointKind : char { interior, fixed, interface };

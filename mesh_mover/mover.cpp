@@ -5,7 +5,6 @@
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
-#include "common/io/numbering.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/load.hpp"
 #include "common/mesh/quality.hpp"
@@ -251,15 +250,15 @@ MeshState Mover::state() {
 }
 
 void Mover::save(io::CheckpointWriter& file) const {
-  io::write_numbering(file, mesh_);
-  file.write("displacement", accepted_);
+  file.on(mesh_);
+  file.write(mesh::Entries::points, "displacement", accepted_);
   file.write_scalar("barrier-in-force", parameters_.method == Method::barrier ? 1 : 0);
   if (!incremental()) method_->save(file);  // else it starts from nothing in each step
 }
 
 void Mover::load(io::CheckpointReader& file) {
-  io::check_numbering(file, mesh_);
-  file.read("displacement", accepted_);
+  file.on(mesh_);
+  file.read(mesh::Entries::points, "displacement", accepted_);
   if (file.read_scalar("barrier-in-force") > 0 && parameters_.method == Method::automatic)
     use_barrier("it was in force when the checkpoint was written");
   displacement_ = accepted_;

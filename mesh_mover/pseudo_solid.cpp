@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
+#include "common/elasticity/node_fields.hpp"
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -135,6 +136,19 @@ std::vector<double> PseudoSolid::solve(std::span<const double> prescribed) {
   kernel_->point_values(unknowns_, g, displacement);
   mesh_.points.update_ghosts(displacement, dim_);
   return displacement;
+}
+
+void PseudoSolid::save(io::CheckpointWriter& file) const {
+  const elastic::NodeFields fields = elastic::fields_of_unknowns(mesh_, *rows_, unknowns_);
+  file.write(mesh::Entries::owned_cells, "pseudo-solid", fields.inner);
+  file.write(mesh::Entries::owned_boundary, "pseudo-solid-faces", fields.faces);
+}
+
+void PseudoSolid::load(io::CheckpointReader& file) {
+  elastic::NodeFields fields = elastic::fields_of_unknowns(mesh_, *rows_, unknowns_);
+  file.read(mesh::Entries::owned_cells, "pseudo-solid", fields.inner);
+  file.read(mesh::Entries::owned_boundary, "pseudo-solid-faces", fields.faces);
+  unknowns_ = elastic::unknowns_of_fields(mesh_, *rows_, fields);
 }
 
 }  // namespace couplet::mesh_mover

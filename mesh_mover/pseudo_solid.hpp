@@ -24,8 +24,8 @@ class PseudoSolid final : public MotionMethod {
 
   std::vector<double> solve(std::span<const double> prescribed) override;
   linalg::SolveStatistics last() const override { return last_; }
-  void save(io::CheckpointWriter& file) const override { file.write("pseudo-solid", unknowns_); }
-  void load(io::CheckpointReader& file) override { file.read("pseudo-solid", unknowns_); }
+  void save(io::CheckpointWriter& file) const override;
+  void load(io::CheckpointReader& file) override;
 
  private:
   void make_solver(const linalg::LinearOptions& options);

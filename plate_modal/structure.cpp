@@ -234,27 +234,27 @@ std::vector<std::string> Structure::finish() {
 }
 
 void Structure::save(io::CheckpointWriter& file) const {
-  file.write("omega", share_->omega());
+  file.write_common("omega", share_->omega());
   for (const auto& [name, values] : {std::pair{"q", &state_.q},
                                      {"v", &state_.v},
                                      {"a", &state_.a},
                                      {"q-old", &state_.q_old},
                                      {"v-old", &state_.v_old}})
-    file.write(name, *values);
+    file.write_common(name, *values);
   const Energies& e = state_.energies;
-  file.write("energies", std::vector<double>{e.kinetic, e.strain, e.gravity, e.contact, e.initial,
-                                             e.load_work, e.impact_work, e.damping_loss, worst_mismatch_,
-                                             largest_exchange_, largest_true_});
-  file.write("largest", std::vector<double>{largest_, largest_rotation_, within_[0], within_[1],
-                                            on_modes_.part, on_modes_.most, load_acted_ ? 1. : 0.});
-  file.write("truncation", truncation_ ? truncation_->state() : std::vector<double>(2, 0));
+  file.write_common("energies", std::vector<double>{e.kinetic, e.strain, e.gravity, e.contact, e.initial,
+                                                    e.load_work, e.impact_work, e.damping_loss,
+                                                    worst_mismatch_, largest_exchange_, largest_true_});
+  file.write_common("largest", std::vector<double>{largest_, largest_rotation_, within_[0], within_[1],
+                                                   on_modes_.part, on_modes_.most, load_acted_ ? 1. : 0.});
+  file.write_common("truncation", truncation_ ? truncation_->state() : std::vector<double>(2, 0));
   file.write_scalar("dt", state_.dt);
-  if (resolution_) file.write("resolution", resolution_->state());
-  file.write("errors", step_errors_ ? step_errors_->state() : std::vector<double>{});
+  if (resolution_) file.write_common("resolution", resolution_->state());
+  file.write_common("errors", step_errors_ ? step_errors_->state() : std::vector<double>{});
 }
 
 void Structure::load(io::CheckpointReader& file) {
-  if (file.read("omega") != share_->omega())
+  if (file.read_common("omega") != share_->omega())
     throw Error(
         "The checkpoint was written with other modes than this run uses: mesh, material, thickness, "
         "supports or the number of modes differ.");
@@ -264,9 +264,9 @@ void Structure::load(io::CheckpointReader& file) {
                                      {"a", &state_.a},
                                      {"q-old", &state_.q_old},
                                      {"v-old", &state_.v_old}})
-    file.read(name, *values);
+    file.read_common(name, *values);
   std::vector<double> kept(11);
-  file.read("energies", kept);
+  file.read_common("energies", kept);
   Energies& e = state_.energies;
   int i = 0;
   for (double* part : {&e.kinetic, &e.strain, &e.gravity, &e.contact, &e.initial, &e.load_work,
@@ -274,20 +274,20 @@ void Structure::load(io::CheckpointReader& file) {
     *part = kept[i++];
   take_changed_energy(*oscillators_, parallel::comm_rank(context_.comm) == 0, state_);
   std::vector<double> largest(7), left_out(2);
-  file.read("largest", largest);
+  file.read_common("largest", largest);
   largest_ = largest[0], largest_rotation_ = largest[1];
   within_ = {largest[2], largest[3]};
   on_modes_ = {largest[4], largest[5]};
   load_acted_ = largest[6] != 0;
-  file.read("truncation", left_out);
+  file.read_common("truncation", left_out);
   if (truncation_) truncation_->restore(left_out);
   state_.dt = file.read_scalar("dt");
   if (resolution_) {
     std::vector<double> seen = resolution_->state();
-    file.read("resolution", seen);
+    file.read_common("resolution", seen);
     resolution_->restore(seen);
   }
-  const std::vector<double> errors = file.read("errors");
+  const std::vector<double> errors = file.read_common("errors");
   if (step_errors_) step_errors_->restore(errors);
   trial_ = state_;
 }

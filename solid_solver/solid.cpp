@@ -102,7 +102,8 @@ void Solid::save(io::CheckpointWriter& file) const {
   judge_.save(file);
   for (const auto& effect : body_.effects()) effect->save(file);
   stepper_.save_guesses(file);
-  file.write("errors-and-drift", errors_ ? errors_->state() : std::vector<double>{});
+  file.write_scalar("has-errors", errors_ ? 1 : 0);
+  if (errors_) errors_->save(file);
 }
 
 void Solid::load(io::CheckpointReader& file) {
@@ -111,8 +112,7 @@ void Solid::load(io::CheckpointReader& file) {
   for (const auto& effect : body_.effects()) effect->load(file);
   body_.place_expansion(stepper_.state().time);
   stepper_.load_guesses(file);
-  const std::vector<double> errors = file.read("errors-and-drift");
-  if (errors_) errors_->restore(errors);
+  if (file.read_scalar("has-errors") != 0 && errors_) errors_->load(file);
 }
 
 }  // namespace couplet::solid

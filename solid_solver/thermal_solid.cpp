@@ -37,14 +37,16 @@ coupling::Exchange ThermalSolid::solve(const coupling::Exchange&) {
 }
 
 void ThermalSolid::save(io::CheckpointWriter& file) const {
+  file.on(mesh_);
   heat_->save(file);
-  file.write("errors", errors_ ? errors_->state() : std::vector<double>{});
+  file.write_scalar("has-errors", errors_ ? 1 : 0);
+  if (errors_) errors_->save(file);
 }
 
 void ThermalSolid::load(io::CheckpointReader& file) {
+  file.on(mesh_);
   heat_->load(file);
-  const std::vector<double> errors = file.read("errors");
-  if (errors_) errors_->restore(errors);
+  if (file.read_scalar("has-errors") != 0 && errors_) errors_->load(file);
 }
 
 void ThermalSolid::write_output(double time, int) {

@@ -2,6 +2,7 @@
 #include "common/coupling/sub_stepping.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 namespace couplet::coupling {
 
@@ -9,6 +10,10 @@ Interface SubStepping::initialise() {
   Interface interface = inner_.initialise();
   takes_ = interface.takes;
   gives_ = interface.gives;
+  for (const auto& [place, ids, n] :
+       {std::tuple(Interface::Place::vertices, interface.vertex_ids, interface.vertices.size()),
+        std::tuple(Interface::Place::faces, interface.face_ids, interface.face_centres.size())})
+    places_[place] = {ids, n};
   return interface;
 }
 
@@ -100,7 +105,9 @@ void SubStepping::save(io::CheckpointWriter& file) const {
   if (steps_ == 1) return;
   for (const auto& datum : takes_) {
     const auto found = before_.find(datum.name);
-    file.write("before." + datum.name, found == before_.end() ? std::vector<double>{} : found->second);
+    const auto& [ids, n] = places_.at(datum.place);
+    file.write(parallel::GlobalOrder::by_numbers(file.comm(), ids, n), "before." + datum.name,
+               found == before_.end() ? std::vector<double>{} : found->second);
   }
 }
 
@@ -109,9 +116,12 @@ void SubStepping::load(io::CheckpointReader& file) {
   has_start_ = moved_on_ = false;
   if (steps_ == 1) return;
   before_.clear();
-  for (const auto& datum : takes_)
-    if (auto values = file.read("before." + datum.name); !values.empty())
+  for (const auto& datum : takes_) {
+    const auto& [ids, n] = places_.at(datum.place);
+    const auto order = parallel::GlobalOrder::by_numbers(file.comm(), ids, n);
+    if (auto values = file.read(order, "before." + datum.name); !values.empty())
       before_[datum.name] = std::move(values);
+  }
 }
 
 }  // namespace couplet::coupling

@@ -4,51 +4,71 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <exception>
+#include <optional>
 
 #include "common/base/own_file.hpp"
+#include "common/io/checkpoint_format.hpp"
 #include "common/io/checkpoint_set.hpp"
-#include "common/io/hdf5_reader.hpp"
-#include "common/io/rehearse.hpp"
+#include "common/io/hdf5.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::io {
-namespace {
-
-constexpr const char* checkpoint_format = "couplet checkpoint";
-// 3: errors of steps, net heat of a tank's report, what the pressure preconditioner was made from. 4: order of the errors.
-constexpr int format_version = 4;
-
-// FNV-1a over the bit patterns: cheap, and any flipped bit of an array is noticed when it is read.
-std::int64_t checksum(std::span<const double> values) {
-  std::uint64_t hash = 14695981039346656037ull;
-  for (const double value : values) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &value, sizeof bits);
-    hash = (hash ^ bits) * 1099511628211ull;
-    hash ^= hash >> 29;
-  }
-  std::int64_t result = 0;
-  std::memcpy(&result, &hash, sizeof result);
-  return result;
-}
-
-std::string array_path(const std::string& name) { return "arrays/" + name; }
-std::string layout_path(const std::string& name) { return "layout/" + name; }
-std::filesystem::path folder_of(const std::filesystem::path& file) {
-  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-}
-std::string scalar_path(const std::string& name) { return "scalars/" + name; }
-
-}  // namespace
 
 struct CheckpointWriter::State {
   MPI_Comm comm;
   std::filesystem::path file, part;
   hdf5::Handle id;
+  std::optional<mesh::OrderOfEntries> orders;
   int exceptions = std::uncaught_exceptions();
+
+  void require_new(const std::string& path, const std::string& name) const {
+    if (hdf5::exists(id, path))
+      throw Error("The checkpoint '{}' received the array '{}' twice.", file.string(), name);
+  }
+
+  void write_array(const std::string& name, std::span<const double> values) const {
+    require_new(array_path(name), name);
+    const hdf5::Rows rows = hdf5::distribute_rows(comm, values.size(), 1);
+    hdf5::write_table(id, array_path(name), rows, values.data());
+    const std::int64_t layout[2] = {static_cast<std::int64_t>(values.size()), checksum(values)};
+    hdf5::write_table(id, layout_path(name), hdf5::distribute_rows(comm, 1, 2), layout);
+  }
+
+  /// Entries of this rank that are not what the file will give back.
+  void write_copies(const parallel::GlobalOrder& order, const std::string& name,
+                    std::span<const double> values, std::span<const double> block, std::size_t width) const {
+    const std::vector<double> back = order.from_block(block, width);
+    std::vector<double> copies;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (std::bit_cast<std::uint64_t>(values[i]) != std::bit_cast<std::uint64_t>(back[i]))
+        copies.insert(copies.end(), {double(i), values[i]});
+    if (parallel::any(comm, !copies.empty())) write_array(copies_of(name), copies);
+  }
+
+  void write_field(const parallel::GlobalOrder& order, const std::string& name,
+                   std::span<const double> values) const {
+    require_new(field_path(name), name);
+    const std::size_t n = order.n_local();
+    const bool odd = n == 0 ? !values.empty() : values.size() % n != 0;
+    const auto width = static_cast<std::size_t>(parallel::max(comm, n == 0 ? 0. : double(values.size() / n)));
+    if (parallel::any(comm, odd || values.size() != n * width))
+      throw Error("The checkpoint '{}' received {} values of '{}' for {} entries.", file.string(),
+                  values.size(), name, n);
+    const std::vector<double> block = order.to_block(values, width);
+    const auto rows = width == 0 ? 0 : std::uint64_t(order.n_global());
+    const auto first = std::uint64_t(order.first());
+    hdf5::write_table(
+        id, field_path(name),
+        {rows == 0 ? 0 : first, rows == 0 ? 0 : order.count(), rows, std::max<std::size_t>(width, 1)},
+        block.data());
+    std::uint64_t sum = part_of_checksum(block, first * width);
+    MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, comm);
+    const std::int64_t check[3] = {std::int64_t(rows), std::int64_t(width), std::bit_cast<std::int64_t>(sum)};
+    const bool root = parallel::comm_rank(comm) == 0;
+    hdf5::write_table(id, check_path(name), hdf5::distribute_rows(comm, root ? 1 : 0, 3), check);
+    if (parallel::comm_size(comm) > 1 && width > 0) write_copies(order, name, values, block, width);
+  }
 };
 
 CheckpointWriter::CheckpointWriter(MPI_Comm comm, const std::filesystem::path& file)
@@ -74,7 +94,7 @@ CheckpointWriter::CheckpointWriter(MPI_Comm comm, const std::filesystem::path& f
   parallel::broadcast(comm, stamp);
   state_->id = hdf5::create_file(comm, state_->part);
   hdf5::write_attribute(state_->id, "format", std::string(checkpoint_format));
-  hdf5::write_attribute(state_->id, "version", double(format_version));
+  hdf5::write_attribute(state_->id, "version", double(checkpoint_version));
   hdf5::write_attribute(state_->id, "ranks", double(parallel::comm_size(comm)));
   hdf5::write_attribute(state_->id, "set", stamp);
 }
@@ -93,17 +113,48 @@ CheckpointWriter::~CheckpointWriter() {
   if (parallel::comm_rank(state_->comm) == 0) std::filesystem::remove(state_->part, ignored);
 }
 
-void CheckpointWriter::write(const std::string& name, std::span<const double> values) {
-  if (memory_) {
+MPI_Comm CheckpointWriter::comm() const { return memory_ ? MPI_COMM_SELF : state_->comm; }
+
+void CheckpointWriter::on(const mesh::Mesh& mesh) {
+  if (memory_) return;
+  state_->orders.emplace(mesh);
+  const auto identity = mesh::identity_of(mesh);
+  const auto n = static_cast<std::size_t>(parallel::comm_rank(state_->comm) == 0);
+  hdf5::write_table(state_->id, mesh_table, hdf5::distribute_rows(state_->comm, n, identity.size()),
+                    identity.data());
+  const auto share = std::bit_cast<std::int64_t>(mesh::share_of_rank(mesh));
+  hdf5::write_table(state_->id, shares_table, hdf5::distribute_rows(state_->comm, 1, 1), &share);
+}
+
+void CheckpointWriter::write(mesh::Entries entries, const std::string& name, std::span<const double> values) {
+  if (memory_)
     memory_->arrays_[name].assign(values.begin(), values.end());
-    return;
-  }
-  if (hdf5::exists(state_->id, array_path(name)))
-    throw Error("The checkpoint '{}' received the array '{}' twice.", state_->file.string(), name);
-  const hdf5::Rows rows = hdf5::distribute_rows(state_->comm, values.size(), 1);
-  hdf5::write_table(state_->id, array_path(name), rows, values.data());
-  const std::int64_t layout[2] = {static_cast<std::int64_t>(values.size()), checksum(values)};
-  hdf5::write_table(state_->id, layout_path(name), hdf5::distribute_rows(state_->comm, 1, 2), layout);
+  else
+    state_->write_field(state_->orders.value().of(entries), name, values);
+}
+
+void CheckpointWriter::write(const parallel::GlobalOrder& order, const std::string& name,
+                             std::span<const double> values) {
+  if (memory_)
+    memory_->arrays_[name].assign(values.begin(), values.end());
+  else
+    state_->write_field(order, name, values);
+}
+
+void CheckpointWriter::write(const std::string& name, std::span<const double> values) {
+  if (memory_)
+    memory_->arrays_[name].assign(values.begin(), values.end());
+  else
+    state_->write_array(name, values);
+}
+
+void CheckpointWriter::write_sums(const std::string& name, std::span<const double> values) {
+  write(name, values);
+}
+
+void CheckpointWriter::write_common(const std::string& name, std::span<const double> values) {
+  const bool counts = memory_ || parallel::comm_rank(state_->comm) == 0;
+  write(name, counts ? values : std::span<const double>{});
 }
 
 void CheckpointWriter::write_scalar(const std::string& name, double value) {
@@ -136,231 +187,9 @@ void CheckpointWriter::close() {
       trouble = fmt::format("Cannot rename the finished checkpoint to '{}' ({}).", state_->file.string(),
                             code.message());
     else
-      base::flush_to_disk(state_->file.has_parent_path() ? state_->file.parent_path()
-                                                         : std::filesystem::path("."));
+      base::flush_to_disk(folder_of(state_->file));
   }
   hdf5::throw_together(state_->comm, trouble);
-}
-
-namespace {
-
-constexpr const char* what = "checkpoint";
-constexpr const char* advice = "Use an earlier one.";
-
-hdf5::Reader open(const std::filesystem::path& file) { return {file, what, advice}; }
-
-/// Values that each rank wrote and their checksums, from rank 0 on.
-std::vector<std::int64_t> layout_of(const hdf5::Reader& in, const std::string& name, int ranks) {
-  const auto n = std::uint64_t(ranks);
-  if (const std::uint64_t rows = in.rows(layout_path(name), 2); rows != n)
-    in.refuse(fmt::format("the layout of '{}' is for {} ranks; expected {}", name, rows, n));
-  std::vector<std::int64_t> layout(2 * n);
-  in.read(layout_path(name), {0, n, n, 2}, layout.data());
-  const std::uint64_t total = in.rows(array_path(name), 1);
-  std::uint64_t left = total;
-  for (std::size_t r = 0; r < n; ++r) {
-    if (layout[2 * r] < 0 || std::uint64_t(layout[2 * r]) > left)
-      in.refuse(
-          fmt::format("the array '{}' has {} values; its layout assigns to rank {} {} of the {} "
-                      "remaining",
-                      name, total, r, layout[2 * r], left));
-    left -= std::uint64_t(layout[2 * r]);
-  }
-  if (left != 0)
-    in.refuse(fmt::format("the array '{}' has {} values; its layout assigns {} of them to no rank", name,
-                          total, left));
-  return layout;
-}
-
-double scalar_of(const hdf5::Reader& in, const std::string& name) {
-  double value = 0;
-  in.read(scalar_path(name), {0, 1, 1, 1}, &value);
-  return value;
-}
-
-/// Whether the stamp in the file is that of the set it lies in.
-void examine_stamp(const hdf5::Reader& in) {
-  const auto set = read_checkpoint_set(folder_of(in.file()));
-  if (!set || in.text("/", "set", 1024) == set->stamp.text()) return;
-  throw Error(
-      "'{}' is from another step or another run than the checkpoint that contains it (step {}, t = {:g} s "
-      "of run {}).",
-      in.file().string(), set->stamp.step, set->stamp.time, set->stamp.run);
-}
-
-/// All of the file but the arrays' values, which HDF5 copies as they are. `ranks`: of this run; 0: any.
-void examine_content(const hdf5::Reader& in, int ranks) {
-  if (!in.has_attribute("/", "format") || in.text("/", "format") != checkpoint_format)
-    throw Error("'{}' is an HDF5 file, but not a checkpoint.", in.file().string());
-  if (const double version = in.number("/", "version"); version != format_version)
-    throw Error("The checkpoint '{}' has format version {}; this program reads version {}.",
-                in.file().string(), version, format_version);
-  const double written = in.number("/", "ranks");
-  if (!(written >= 1 && written < 1e8)) in.refuse(fmt::format("it was written on {} ranks", written));
-  if (ranks > 0 && written != ranks)
-    throw Error(
-        "The checkpoint '{}' was written on {} {}, this run has {}. Restart on the same number of ranks.",
-        in.file().string(), written, written == 1 ? "rank" : "ranks", ranks);
-  examine_stamp(in);
-  for (const std::string& name : in.leaves("arrays")) layout_of(in, name, int(written));
-  for (const std::string& name : in.leaves("scalars")) scalar_of(in, name);
-}
-
-/// The file as a whole, in a process of its own. Its digest is compared before HDF5 sees it.
-void examine(const std::filesystem::path& file, int ranks) {
-  if (!std::filesystem::exists(file)) throw Error("The checkpoint '{}' does not exist.", file.string());
-  if (const std::string problem = problem_in_set(file); !problem.empty()) throw Error(problem);
-  rehearse(file, what, [&] { examine_content(open(file), ranks); });
-}
-
-}  // namespace
-
-std::string problem_of_checkpoint(const std::filesystem::path& file) {
-  try {
-    examine(file, 0);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
-}
-
-struct CheckpointReader::State {
-  MPI_Comm comm;
-  hdf5::Reader in;
-
-  /// What `read` throws on some rank is thrown on all.
-  template <class Read>
-  auto together(Read read) const {
-    std::string trouble;
-    decltype(read()) result{};
-    try {
-      result = read();
-    } catch (const Error& error) {
-      trouble = error.what();
-    }
-    hdf5::throw_together(comm, trouble);
-    return result;
-  }
-
-  // This rank's rows of an array and its checksum; the reading is local, the verdict is common.
-  std::pair<hdf5::Rows, std::int64_t> rows_of(const std::string& name) const {
-    return together([&] {
-      if (!in.has(array_path(name)) || !in.has(layout_path(name)))
-        throw Error(
-            "The checkpoint '{}' has no array '{}'. It was written by another program or another case.",
-            in.file().string(), name);
-      const int size = parallel::comm_size(comm), rank = parallel::comm_rank(comm);
-      const std::vector<std::int64_t> layout = layout_of(in, name, size);
-      hdf5::Rows rows;
-      for (int r = 0; r < size; ++r) {
-        if (r < rank) rows.first += std::uint64_t(layout[2 * r]);
-        rows.total += std::uint64_t(layout[2 * r]);
-      }
-      rows.count = std::uint64_t(layout[2 * rank]);
-      return std::pair(rows, layout[2 * rank + 1]);
-    });
-  }
-
-  void fill(const std::string& name, const hdf5::Rows& rows, std::int64_t wanted,
-            std::span<double> values) const {
-    together([&] {
-      in.read(array_path(name), rows, values.data());
-      if (checksum(values) != wanted)
-        throw Error(
-            "The checkpoint '{}' is corrupted: wrong checksum of the array '{}' on rank {}. Use an earlier "
-            "checkpoint.",
-            in.file().string(), name, parallel::comm_rank(comm));
-      return 0;
-    });
-  }
-};
-
-CheckpointReader::CheckpointReader(MPI_Comm comm, const std::filesystem::path& file) {
-  std::string trouble;
-  const auto attempt = [&](auto&& act) {
-    try {
-      act();
-    } catch (const Error& error) {
-      trouble = error.what();
-    }
-    hdf5::throw_together(comm, trouble);
-  };
-  attempt([&] {
-    if (parallel::comm_rank(comm) == 0) examine(file, parallel::comm_size(comm));
-  });
-  attempt([&] { state_ = std::make_unique<State>(State{comm, open(file)}); });
-}
-
-// The file was opened by this rank alone, so closing it is local.
-CheckpointReader::~CheckpointReader() = default;
-
-CheckpointReader::CheckpointReader(const StateInMemory& memory) : memory_(&memory) {}
-
-const std::vector<double>& CheckpointReader::in_memory(const std::string& name) const {
-  const auto found = memory_->arrays_.find(name);
-  if (found == memory_->arrays_.end()) throw Error("The saved state has no '{}'.", name);
-  return found->second;
-}
-
-void CheckpointReader::read(const std::string& name, std::span<double> values) {
-  if (memory_) {
-    const std::vector<double>& kept = in_memory(name);
-    if (kept.size() != values.size())
-      throw Error("The saved state has {} values of '{}', but {} are expected.", kept.size(), name,
-                  values.size());
-    std::copy(kept.begin(), kept.end(), values.begin());
-    return;
-  }
-  const auto [rows, wanted] = state_->rows_of(name);
-  std::string trouble;
-  if (rows.count != values.size())
-    trouble = fmt::format(
-        "The checkpoint '{}' has {} values of '{}' on rank {}, but {} are expected. Is it from the same "
-        "mesh?",
-        state_->in.file().string(), rows.count, name, parallel::comm_rank(state_->comm), values.size());
-  hdf5::throw_together(state_->comm, trouble);
-  state_->fill(name, rows, wanted, values);
-}
-
-std::vector<double> CheckpointReader::read(const std::string& name) {
-  if (memory_) return in_memory(name);
-  const auto [rows, wanted] = state_->rows_of(name);
-  std::vector<double> values(rows.count);
-  state_->fill(name, rows, wanted, values);
-  return values;
-}
-
-std::vector<double> CheckpointReader::read_or_none(const std::string& name, std::size_t n) {
-  std::vector<double> values = read(name);
-  std::string trouble;
-  if (!values.empty() && values.size() != n)
-    trouble = fmt::format(
-        "The {} has {} values of '{}', but {} or none are expected. Is it of the same case?",
-        memory_ ? std::string("saved state") : fmt::format("checkpoint '{}'", state_->in.file().string()),
-        values.size(), name, n);
-  if (memory_ && !trouble.empty()) throw Error(trouble);
-  if (!memory_) hdf5::throw_together(state_->comm, trouble);
-  return values;
-}
-
-std::size_t CheckpointReader::read_count(const std::string& name, std::size_t most) {
-  const double value = read_scalar(name);
-  if (!(value >= 0 && value <= double(most)) || value != std::floor(value))
-    throw Error(
-        "The {} gives {} as '{}'; expected a whole number from 0 to {}.",
-        memory_ ? std::string("saved state") : fmt::format("checkpoint '{}'", state_->in.file().string()),
-        value, name, most);
-  return static_cast<std::size_t>(value);
-}
-
-double CheckpointReader::read_scalar(const std::string& name) {
-  if (memory_) return in_memory(scalar_path(name)).front();
-  return state_->together([&] {
-    if (!state_->in.has(scalar_path(name)))
-      throw Error("The checkpoint '{}' has no value '{}'. It was written by another program or another case.",
-                  state_->in.file().string(), name);
-    return scalar_of(state_->in, name);
-  });
 }
 
 }  // namespace couplet::io

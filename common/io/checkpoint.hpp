@@ -10,6 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "common/mesh/order/entries.hpp"
+#include "common/parallel/global_order.hpp"
+
 namespace couplet::io {
 
 /// A state kept in memory, each rank its own part: what a checkpoint writer puts in, a reader gets out.
@@ -23,9 +26,9 @@ class StateInMemory {
   std::map<std::string, std::vector<double>> arrays_;
 };
 
-/// One participant's state at an accepted time, one HDF5 file. Arrays are written rank by rank as they are
-/// (bit for bit on equal ranks). Written under a temporary name, flushed and renamed in close(), so the last
-/// good file is never lost.
+/// One participant's state at an accepted time, one HDF5 file, which any number of ranks can read: fields stand in it by the
+/// numbers of cells, points and faces. On equal ranks all comes back bit for bit. Written under a temporary name, flushed
+/// and renamed in close(), so the last good file is never lost. All calls are collective.
 class CheckpointWriter {
  public:
   CheckpointWriter(MPI_Comm comm, const std::filesystem::path& file);
@@ -33,11 +36,24 @@ class CheckpointWriter {
   explicit CheckpointWriter(StateInMemory& memory);
   ~CheckpointWriter();
   CheckpointWriter(const CheckpointWriter&) = delete;
-  /// Collective: every rank writes its own part.
-  void write(const std::string& name, std::span<const double> values);
+
+  /// The mesh of the fields that follow; it must outlive the writer.
+  void on(const mesh::Mesh& mesh);
+  /// A field of the mesh, a whole number of values per entry; empty (on all ranks): there is none. Where a rank's copy of
+  /// an entry that another one owns differs from the owner's, it is kept for equal ranks.
+  void write(mesh::Entries entries, const std::string& name, std::span<const double> values);
+  /// The same of entries in another order.
+  void write(const parallel::GlobalOrder& order, const std::string& name, std::span<const double> values);
   /// The same on all ranks (rank 0's counts).
+  void write_common(const std::string& name, std::span<const double> values);
   void write_scalar(const std::string& name, double value);
+  /// Each rank's part of sums over all.
+  void write_sums(const std::string& name, std::span<const double> values);
+  /// Each rank's own: another number of ranks is refused.
+  void write(const std::string& name, std::span<const double> values);
   void close();
+  /// Of those who write; a state in memory is each rank's own.
+  MPI_Comm comm() const;
 
  private:
   struct State;
@@ -45,31 +61,53 @@ class CheckpointWriter {
   StateInMemory* memory_ = nullptr;
 };
 
-/// What --check can say of a checkpoint: what CheckpointReader refuses on any number of ranks. Empty: nothing.
+/// What --check can say of a checkpoint: what CheckpointReader refuses. Empty: nothing.
 std::string problem_of_checkpoint(const std::filesystem::path& file);
 
-/// Throws Error naming the file and what is wrong: missing, truncated, not a checkpoint, other number of
-/// ranks, missing array or another size than expected.
+/// Throws Error naming the file and what is wrong: missing, truncated, not a checkpoint, of another mesh, missing array or
+/// another size than expected. Each rank reads its block of a field alone, then the values go to where they belong; all calls
+/// are collective.
 class CheckpointReader {
  public:
   CheckpointReader(MPI_Comm comm, const std::filesystem::path& file);
   explicit CheckpointReader(const StateInMemory& memory);
   ~CheckpointReader();
   CheckpointReader(const CheckpointReader&) = delete;
-  /// Fills `values`, whose size must be what this rank wrote.
-  void read(const std::string& name, std::span<double> values);
-  /// As many values as this rank wrote.
-  std::vector<double> read(const std::string& name);
-  /// The same, of which there must be `n` or none on this rank.
-  std::vector<double> read_or_none(const std::string& name, std::size_t n);
+
+  /// The mesh of the fields that follow, which must be the one they were written on; it must outlive the reader.
+  void on(const mesh::Mesh& mesh);
+  /// Of those who read; a state in memory is each rank's own.
+  MPI_Comm comm() const;
+  /// Whether as many ranks wrote it as read it, each with the same part of the mesh.
+  bool on_same_ranks() const;
+
+  /// Fills `values`: there must be as many per entry.
+  void read(mesh::Entries entries, const std::string& name, std::span<double> values);
+  /// As many values as were written per entry, maybe none.
+  std::vector<double> read(mesh::Entries entries, const std::string& name);
+  void read(const parallel::GlobalOrder& order, const std::string& name, std::span<double> values);
+  std::vector<double> read(const parallel::GlobalOrder& order, const std::string& name);
+  /// `width` values per entry, or none at all.
+  std::vector<double> read_or_none(mesh::Entries entries, const std::string& name, std::size_t width);
+  std::vector<double> read_or_none(const parallel::GlobalOrder& order, const std::string& name,
+                                   std::size_t width);
+  void read_common(const std::string& name, std::span<double> values);
+  std::vector<double> read_common(const std::string& name);
   double read_scalar(const std::string& name);
   /// A whole number from 0 to `most`.
   std::size_t read_count(const std::string& name, std::size_t most);
+  /// This rank's part on equal ranks; else all of it on rank 0, and zeros on the others.
+  void read_sums(const std::string& name, std::span<double> values);
+  /// What this rank wrote, of just that size. Throws Error if another number of ranks wrote it.
+  void read(const std::string& name, std::span<double> values);
+  /// As many values as this rank wrote.
+  std::vector<double> read(const std::string& name);
 
  private:
   struct State;
   std::unique_ptr<State> state_;
   const std::vector<double>& in_memory(const std::string& name) const;
+  void fill_from_memory(const std::string& name, std::span<double> values) const;
   const StateInMemory* memory_ = nullptr;
 };
 

@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <tuple>
 
 #include "common/io/hdf5_reader.hpp"
 #include "common/io/rehearse.hpp"
 #include "common/io/xdmf.hpp"
 #include "common/parallel/collective.hpp"
+#include "common/parallel/global_order.hpp"
 
 namespace couplet::io {
 namespace {
@@ -66,6 +69,9 @@ struct FieldWriter::State {
   xdmf::Series index;  // complete on rank 0 only
   int number = 0;      // of the next entry
   hdf5::Rows point_rows, cell_rows;
+  std::vector<GlobalIndex> points_there{},
+      cells_there{};  // numbers on file, of as many rows as this rank has
+  std::optional<parallel::GlobalOrder> point_order{}, cell_order{};  // of the file; none: as they stand here
 
   std::filesystem::path file() const { return folder / (name + ".h5"); }
 
@@ -73,9 +79,17 @@ struct FieldWriter::State {
     std::vector<double> flat(3 * std::size_t(mesh.points.n_owned()));
     for (Index p = 0; p < mesh.points.n_owned(); ++p)
       for (int d = 0; d < 3; ++d) flat[3 * std::size_t(p) + d] = points[p][d];
-    hdf5::Rows rows = point_rows;
-    rows.width = 3;
-    hdf5::write_table(id, path, rows, flat.data());
+    write_rows(id, path, false, 3, flat);
+  }
+
+  void write_rows(const hdf5::Handle& id, const std::string& path, bool on_cells, std::size_t width,
+                  std::span<const double> values) const {
+    hdf5::Rows rows = on_cells ? cell_rows : point_rows;
+    rows.width = width;
+    const auto& order = on_cells ? cell_order : point_order;
+    if (!order) return hdf5::write_table(id, path, rows, values.data());
+    rows.first = std::uint64_t(order->first()), rows.count = order->count();
+    hdf5::write_table(id, path, rows, order->to_block(values, width).data());
   }
 
   void write_field(const hdf5::Handle& id, const std::string& path, const OutputField& field) const {
@@ -85,20 +99,20 @@ struct FieldWriter::State {
     if (field.values.size() < n * components)
       throw Error("The output field '{}' has {} values for {} {} with {} components.", field.name,
                   field.values.size(), n, on_cells ? "cells" : "points", components);
-    hdf5::Rows rows = on_cells ? cell_rows : point_rows;
-    rows.width = components == 2 ? 3 : components;
-    if (components != 2) return hdf5::write_table(id, path, rows, field.values.data());
+    if (components != 2)
+      return write_rows(id, path, on_cells, components, field.values.first(n * components));
     std::vector<double> padded(3 * n, 0.0);
     for (std::size_t i = 0; i < n; ++i) {
       padded[3 * i] = field.values[2 * i];
       padded[3 * i + 1] = field.values[2 * i + 1];
     }
-    hdf5::write_table(id, path, rows, padded.data());
+    write_rows(id, path, on_cells, 3, padded);
   }
 
   void begin(std::span<const Vec3> places, double restart_time);
   void start(std::span<const Vec3> places);
   bool continue_from(double restart_time);
+  void find_order();
   /// What the file of an earlier run holds up to `restart_time`, and the names of the outputs behind it.
   std::vector<std::string> read_index(double restart_time);
   void read_entries(const hdf5::Reader& file, const std::vector<std::string>& steps, double restart_time);
@@ -155,13 +169,32 @@ std::vector<std::string> FieldWriter::State::read_index(double restart_time) {
     in.refuse(fmt::format("its cells are of the unknown kind {}", kind));
   index = {file().filename().string(), std::int64_t(kind), 0, cell_rows.total, point_rows.total, moving, {}};
   const std::uint64_t width = index.kind == 0 ? 1 : std::uint64_t(xdmf::points_of(index.kind));
-  if (in.number("/", "ranks") != parallel::comm_size(mesh.comm) ||
-      in.rows("mesh/cell-id", 1) != cell_rows.total || in.rows("mesh/point-id", 1) != point_rows.total)
-    in.refuse("it was written on another mesh or another number of ranks");
+  if (in.rows("mesh/cell-id", 1) != cell_rows.total || in.rows("mesh/point-id", 1) != point_rows.total)
+    in.refuse("it was written on another mesh");
+  for (const auto& [table, rows, there] : {std::tuple("mesh/cell-id", cell_rows, &cells_there),
+                                           std::tuple("mesh/point-id", point_rows, &points_there)}) {
+    there->resize(rows.count);
+    in.read(table, rows, there->data());
+  }
   index.topology_size = in.rows("mesh/cells", width) * width;
   const std::vector<std::string> all = in.members("steps");
   read_entries(in, all, restart_time);
   return {all.begin() + std::ptrdiff_t(index.entries.size()), all.end()};
+}
+
+/// Of a file that other ranks have begun: what is added to it stands as the rest does.
+void FieldWriter::State::find_order() {
+  try {
+    const auto here = [](const std::vector<GlobalIndex>& ids, const hdf5::Rows& rows) {
+      return std::span(ids).first(rows.count);
+    };
+    cell_order = parallel::GlobalOrder::of_rows(mesh.comm, cells_there, here(mesh.cell_id, cell_rows));
+    point_order = parallel::GlobalOrder::of_rows(mesh.comm, points_there, here(mesh.point_id, point_rows));
+  } catch (const Error&) {
+    throw Error(
+        "The output '{}' cannot be used: it was written on another mesh. Move it away or restart without it.",
+        file().string());
+  }
 }
 
 bool FieldWriter::State::continue_from(double restart_time) {
@@ -182,6 +215,7 @@ bool FieldWriter::State::continue_from(double restart_time) {
     trouble = error.what();
   }
   hdf5::throw_together(mesh.comm, trouble);
+  find_order();
   number = static_cast<int>(index.entries.size());
   if (dropped.empty()) return true;
   const hdf5::Handle id = hdf5::open_file_to_write(mesh.comm, file());

@@ -79,34 +79,39 @@ void ResidualProjection::accept() {
   for (int k = 0; k < n; ++k) gram_(k, place) = gram_(place, k) = with[k];
 }
 
-std::vector<double> ResidualProjection::values() const {
+std::vector<double> ResidualProjection::products() const {
   std::vector<double> values = {double(kept_.size()), double(oldest_)};
   values.insert(values.end(), gram_.data(), gram_.data() + gram_.size());
-  for (const Correction& c : kept_) {
-    values.insert(values.end(), c.x.begin(), c.x.end());
-    values.insert(values.end(), c.image.begin(), c.image.end());
-  }
   return values;
 }
 
-void ResidualProjection::set_values(std::span<const double> values, const LinearMap& apply) {
-  base::SavedNumbers saved(values, "corrections of solves");
+std::vector<std::span<const double>> ResidualProjection::vectors() const {
+  std::vector<std::span<const double>> vectors;
+  for (const Correction& c : kept_) vectors.insert(vectors.end(), {c.x, c.image});
+  return vectors;
+}
+
+std::size_t ResidualProjection::vectors_of(std::span<const double> products) {
+  base::SavedNumbers saved(products, "corrections of solves");
+  return 2 * saved.count(most);
+}
+
+void ResidualProjection::set_values(std::span<const double> products,
+                                    std::vector<std::vector<double>> vectors, const LinearMap& apply) {
+  base::SavedNumbers saved(products, "corrections of solves");
   kept_.assign(saved.count(most), {});
   oldest_ = saved.count(most);
   saved.fill({gram_.data(), std::size_t(gram_.size())});
+  if (saved.left() > 0 || vectors.size() != 2 * kept_.size()) saved.damaged();
   is_pending_ = false;
-  const std::size_t n = kept_.empty() ? 0 : saved.left() / (2 * kept_.size());
-  for (Correction& c : kept_)
-    for (std::vector<double>* v : {&c.x, &c.image}) {
-      v->resize(n);
-      saved.fill(*v);
-    }
-  if (saved.left() > 0) saved.damaged();
   bool fits = kept_.size() <= std::size_t(depth_) && oldest_ < std::size_t(std::max(depth_, 1));
-  std::vector<double> image(n);
-  for (const Correction& c : kept_) {
+  std::vector<double> image;
+  for (std::size_t k = 0; k < kept_.size(); ++k) {
+    Correction& c = kept_[k];
+    c.x = std::move(vectors[2 * k]), c.image = std::move(vectors[2 * k + 1]);
+    image.assign(c.image.size(), 0.);
     apply(c.x, image);
-    for (std::size_t i = 0; i < n; ++i) image[i] -= c.image[i];
+    for (std::size_t i = 0; i < image.size(); ++i) image[i] -= c.image[i];
     std::array<double, 2> square = {dot_here(image, image), dot_here(c.image, c.image)};
     MPI_Allreduce(MPI_IN_PLACE, square.data(), 2, MPI_DOUBLE, MPI_SUM, comm_);
     fits = fits && square[0] <= same_operator * same_operator * square[1];

@@ -31,11 +31,16 @@ class ResidualProjection {
 
   /// Nothing is kept; the same on all ranks.
   bool is_empty() const { return kept_.empty(); }
-  /// All that is kept, rows of this rank: for checkpoints.
-  std::vector<double> values() const;
+  /// For checkpoints: how many there are and their products, the same on all ranks; the vectors themselves, rows of this
+  /// rank, correction and image by turns.
+  std::vector<double> products() const;
+  std::vector<std::span<const double>> vectors() const;
+  /// How many vectors belong to such products.
+  static std::size_t vectors_of(std::span<const double> products);
   /// `apply`: A. Forgets all if they were made by another operator or there are more than are kept.
   /// Collective.
-  void set_values(std::span<const double> values, const LinearMap& apply);
+  void set_values(std::span<const double> products, std::vector<std::vector<double>> vectors,
+                  const LinearMap& apply);
 
  private:
   struct Correction {

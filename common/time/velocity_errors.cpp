@@ -32,25 +32,37 @@ StepErrors::Seen VelocityErrors::add(std::span<const double> before, std::span<c
   return seen;
 }
 
-std::vector<double> VelocityErrors::state() const {
-  std::vector<double> values{(judged_ ? 1. : 0.) + (has_before_ ? 2. : 0.), double(v_before_.size())};
+std::vector<double> VelocityErrors::numbers() const {
+  std::vector<double> values{(judged_ ? 1. : 0.) + (has_before_ ? 2. : 0.)};
   const std::vector<double> sums = errors_.state();
-  for (const auto* part : {&v_before_, &sums}) values.insert(values.end(), part->begin(), part->end());
+  values.insert(values.end(), sums.begin(), sums.end());
+  return values;
+}
+
+void VelocityErrors::restore(std::span<const double> numbers, std::vector<double> before) {
+  v_before_ = std::move(before);
+  errors_ = {};
+  judged_ = has_before_ = false;
+  if (numbers.empty()) return;
+  base::SavedNumbers saved(numbers, "step errors");
+  const double kind = saved.real();
+  judged_ = kind == 1 || kind == 3;
+  has_before_ = kind >= 2;
+  errors_.restore(saved.rest());
+}
+
+std::vector<double> VelocityErrors::state() const {
+  std::vector<double> values{double(v_before_.size())};
+  const std::vector<double> all = numbers();
+  for (const auto* part : {&v_before_, &all}) values.insert(values.end(), part->begin(), part->end());
   return values;
 }
 
 void VelocityErrors::restore(std::span<const double> state) {
-  v_before_.clear();
-  errors_ = {};
-  judged_ = has_before_ = false;
-  if (state.empty()) return;
+  if (state.empty()) return restore({}, {});
   base::SavedNumbers saved(state, "step errors");
-  const double kind = saved.real();
-  judged_ = kind == 1 || kind == 3;
-  has_before_ = kind >= 2;
   const std::span<const double> v = saved.next(saved.count_of(1));
-  v_before_.assign(v.begin(), v.end());
-  errors_.restore(saved.rest());
+  restore(saved.rest(), {v.begin(), v.end()});
 }
 
 }  // namespace couplet::time

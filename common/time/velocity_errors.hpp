@@ -28,6 +28,10 @@ class VelocityErrors {
   /// For checkpoints; empty: of a run that collected nothing.
   std::vector<double> state() const;
   void restore(std::span<const double> state);
+  /// The same in two parts: numbers that are the same on all ranks, and the velocity, of this rank; empty: not yet.
+  std::vector<double> numbers() const;
+  std::span<const double> before() const { return v_before_; }
+  void restore(std::span<const double> numbers, std::vector<double> before);
 
  private:
   LocalError local_;

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cassert>
 
+#include "common/io/checkpoint.hpp"
 #include "coupler/acceleration/quasi_newton.hpp"
 #include "coupler/acceleration/relaxation.hpp"
 
@@ -57,6 +58,26 @@ std::unique_ptr<Accelerator> make_accelerator(const AccelerationParameters& para
       return std::make_unique<MultiVectorNewton>(parameters, comm);
   }
   return nullptr;
+}
+
+void write_columns(io::CheckpointWriter& file, const parallel::GlobalOrder& order, const std::string& name,
+                   const Columns& columns) {
+  const std::size_t n = order.n_local(), m = columns.size();
+  std::vector<double> rows(n * m);
+  for (std::size_t j = 0; j < m; ++j)
+    for (std::size_t i = 0; i < n; ++i) rows[i * m + j] = columns[j][i];
+  file.write(order, name, rows);
+}
+
+std::vector<std::vector<double>> read_columns(io::CheckpointReader& file, const parallel::GlobalOrder& order,
+                                              const std::string& name, std::size_t m) {
+  const std::size_t n = order.n_local();
+  std::vector<double> rows(n * m);
+  file.read(order, name, rows);
+  std::vector<std::vector<double>> columns(m, std::vector<double>(n));
+  for (std::size_t j = 0; j < m; ++j)
+    for (std::size_t i = 0; i < n; ++i) columns[j][i] = rows[i * m + j];
+  return columns;
 }
 
 }  // namespace couplet::coupler

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "common/parallel/global_order.hpp"
 #include "coupler/parameters/parameters.hpp"
 
 namespace couplet::io {
@@ -23,6 +24,22 @@ struct Iterate {
   std::vector<double> unknown;  ///< any unit
   std::vector<double> rider;    ///< any unit, any length; may be empty
 };
+
+/// The order of its values on file, the same on any ranks.
+struct IterateOrder {
+  parallel::GlobalOrder unknown, rider;
+  /// Rank by rank as they are. Collective.
+  static IterateOrder as_they_are(MPI_Comm comm, const Iterate& x) {
+    return {parallel::GlobalOrder::as_they_are(comm, x.unknown.size()),
+            parallel::GlobalOrder::as_they_are(comm, x.rider.size())};
+  }
+};
+/// Vectors in such an order, each a column of one field. Collective.
+using Columns = std::vector<std::span<const double>>;
+void write_columns(io::CheckpointWriter& file, const parallel::GlobalOrder& order, const std::string& name,
+                   const Columns& columns);
+std::vector<std::vector<double>> read_columns(io::CheckpointReader& file, const parallel::GlobalOrder& order,
+                                              const std::string& name, std::size_t n);
 
 /// How the next guess of x = H(x) follows from the passes made so far: r = H(x) - x is to vanish. Vectors are
 /// flat and distributed, scalar products are taken over `comm` of the maker; all calls are collective over
@@ -48,9 +65,9 @@ class Accelerator {
   /// Pairs of differences in use (0 for relaxations), and how often old ones were given up as misleading.
   virtual int columns() const { return 0; }
   virtual long resets() const { return 0; }
-  /// Between steps only. After load the run continues bit for bit on equal ranks.
-  virtual void save(io::CheckpointWriter& file) const = 0;
-  virtual void load(io::CheckpointReader& file) = 0;
+  /// Between steps only. After load the run continues bit for bit on equal ranks. Collective.
+  virtual void save(io::CheckpointWriter& file, const IterateOrder& order) const = 0;
+  virtual void load(io::CheckpointReader& file, const IterateOrder& order) = 0;
 };
 
 std::unique_ptr<Accelerator> make_accelerator(const AccelerationParameters& parameters, MPI_Comm comm);

@@ -145,22 +145,20 @@ Eigen::VectorXd GrowingQr::back_substitute(const Eigen::VectorXd& t) const {
 
 Eigen::VectorXd GrowingQr::minimise(std::span<const double> r) const { return -back_substitute(along(r)); }
 
-void GrowingQr::save(io::CheckpointWriter& file, const std::string& name) const {
-  std::vector<double> q;
-  for (const auto& column : q_) q.insert(q.end(), column.begin(), column.end());
+void GrowingQr::save(io::CheckpointWriter& file, const std::string& name,
+                     const parallel::GlobalOrder& order) const {
   file.write_scalar(name + ".columns", columns());
-  file.write(name + ".q", q);
-  file.write(name + ".r", {r_.data(), std::size_t(r_.size())});
+  write_columns(file, order, name + ".q", {q_.begin(), q_.end()});
+  file.write_common(name + ".r", {r_.data(), std::size_t(r_.size())});
 }
 
-void GrowingQr::load(io::CheckpointReader& file, const std::string& name, std::size_t rows) {
-  const int m = static_cast<int>(file.read_count(name + ".columns", most_columns));
-  std::vector<double> q(std::size_t(m) * rows), r(std::size_t(m) * std::size_t(m));
-  file.read(name + ".q", q);
-  file.read(name + ".r", r);
-  q_.clear();
-  for (int j = 0; j < m; ++j) q_.emplace_back(q.begin() + j * rows, q.begin() + (j + 1) * rows);
-  r_ = Eigen::Map<Eigen::MatrixXd>(r.data(), m, m);
+void GrowingQr::load(io::CheckpointReader& file, const std::string& name,
+                     const parallel::GlobalOrder& order) {
+  const std::size_t m = file.read_count(name + ".columns", most_columns);
+  std::vector<double> r(m * m);
+  q_ = read_columns(file, order, name + ".q", m);
+  file.read_common(name + ".r", r);
+  r_ = Eigen::Map<Eigen::MatrixXd>(r.data(), Eigen::Index(m), Eigen::Index(m));
 }
 
 }  // namespace couplet::coupler

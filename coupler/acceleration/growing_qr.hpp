@@ -40,8 +40,8 @@ class GrowingQr {
   void subtract(const Eigen::VectorXd& t, std::span<double> r) const;
   Eigen::VectorXd back_substitute(const Eigen::VectorXd& t) const;
 
-  void save(io::CheckpointWriter& file, const std::string& name) const;
-  void load(io::CheckpointReader& file, const std::string& name, std::size_t rows);
+  void save(io::CheckpointWriter& file, const std::string& name, const parallel::GlobalOrder& order) const;
+  void load(io::CheckpointReader& file, const std::string& name, const parallel::GlobalOrder& order);
 
  private:
   MPI_Comm comm_;

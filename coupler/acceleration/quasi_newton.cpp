@@ -74,15 +74,15 @@ void LeastSquaresNewton::accept(const Iterate& x, const Iterate& image) {
   open_ = false;
 }
 
-void LeastSquaresNewton::save(io::CheckpointWriter& file) const {
-  pairs_.save(file, "iqn");
-  file.write("iqn.step-of", std::vector<double>(step_of_.begin(), step_of_.end()));
+void LeastSquaresNewton::save(io::CheckpointWriter& file, const IterateOrder& order) const {
+  pairs_.save(file, "iqn", order);
+  file.write_common("iqn.step-of", std::vector<double>(step_of_.begin(), step_of_.end()));
   file.write_scalar("iqn.step", step_);
 }
 
-void LeastSquaresNewton::load(io::CheckpointReader& file) {
-  pairs_.load(file, "iqn");
-  const std::vector<double> steps = file.read_or_none("iqn.step-of", std::size_t(pairs_.columns()));
+void LeastSquaresNewton::load(io::CheckpointReader& file, const IterateOrder& order) {
+  pairs_.load(file, "iqn", order);
+  const std::vector<double> steps = file.read_common("iqn.step-of");
   if (steps.size() != std::size_t(pairs_.columns()))
     throw Error("The checkpoint's steps of differences ('iqn.step-of') are damaged. Use an earlier one.");
   step_of_.assign(steps.begin(), steps.end());
@@ -150,15 +150,16 @@ void MultiVectorNewton::accept(const Iterate& x, const Iterate& image) {
   open_ = false;
 }
 
-void MultiVectorNewton::save(io::CheckpointWriter& file) const {
+void MultiVectorNewton::save(io::CheckpointWriter& file, const IterateOrder& order) const {
   file.write_scalar("iqn.steps", double(steps_.size()));
-  for (std::size_t s = 0; s < steps_.size(); ++s) steps_[s].save(file, "iqn." + std::to_string(s));
+  for (std::size_t s = 0; s < steps_.size(); ++s) steps_[s].save(file, "iqn." + std::to_string(s), order);
 }
 
-void MultiVectorNewton::load(io::CheckpointReader& file) {
+void MultiVectorNewton::load(io::CheckpointReader& file, const IterateOrder& order) {
   steps_.clear();
   const std::size_t n = file.read_count("iqn.steps", most_columns);
-  for (std::size_t s = 0; s < n; ++s) steps_.emplace_back(comm_).load(file, "iqn." + std::to_string(s));
+  for (std::size_t s = 0; s < n; ++s)
+    steps_.emplace_back(comm_).load(file, "iqn." + std::to_string(s), order);
 }
 
 }  // namespace couplet::coupler

@@ -21,8 +21,8 @@ class SecantPairs {
   const GrowingQr& qr() const { return qr_; }
   /// to += W c.
   void add(const Eigen::VectorXd& c, Iterate& to) const;
-  void save(io::CheckpointWriter& file, const std::string& name) const;
-  void load(io::CheckpointReader& file, const std::string& name);
+  void save(io::CheckpointWriter& file, const std::string& name, const IterateOrder& order) const;
+  void load(io::CheckpointReader& file, const std::string& name, const IterateOrder& order);
 
  private:
   GrowingQr qr_;
@@ -75,8 +75,8 @@ class LeastSquaresNewton final : public Accelerator {
   double relaxation() const override { return share_; }
   int columns() const override { return pairs_.columns(); }
   long resets() const override { return resets_; }
-  void save(io::CheckpointWriter& file) const override;
-  void load(io::CheckpointReader& file) override;
+  void save(io::CheckpointWriter& file, const IterateOrder& order) const override;
+  void load(io::CheckpointReader& file, const IterateOrder& order) override;
 
  private:
   void learn(const Iterate& x, const Iterate& image);
@@ -107,8 +107,8 @@ class MultiVectorNewton final : public Accelerator {
   double relaxation() const override { return share_; }
   int columns() const override;
   long resets() const override { return resets_; }
-  void save(io::CheckpointWriter& file) const override;
-  void load(io::CheckpointReader& file) override;
+  void save(io::CheckpointWriter& file, const IterateOrder& order) const override;
+  void load(io::CheckpointReader& file, const IterateOrder& order) override;
 
  private:
   void learn(const Iterate& x, const Iterate& image);

@@ -86,8 +86,12 @@ void AitkenRelaxation::accept(const Iterate& x, const Iterate& image) {
   forget_pass();
 }
 
-void AitkenRelaxation::save(io::CheckpointWriter& file) const { file.write_scalar("omega", first_); }
+void AitkenRelaxation::save(io::CheckpointWriter& file, const IterateOrder&) const {
+  file.write_scalar("omega", first_);
+}
 
-void AitkenRelaxation::load(io::CheckpointReader& file) { first_ = file.read_scalar("omega"); }
+void AitkenRelaxation::load(io::CheckpointReader& file, const IterateOrder&) {
+  first_ = file.read_scalar("omega");
+}
 
 }  // namespace couplet::coupler

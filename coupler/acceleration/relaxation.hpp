@@ -16,8 +16,8 @@ class ConstantRelaxation final : public Accelerator {
   void accept(const Iterate&, const Iterate&) override {}
   void map_changed() override {}
   double relaxation() const override { return omega_; }
-  void save(io::CheckpointWriter&) const override {}
-  void load(io::CheckpointReader&) override {}
+  void save(io::CheckpointWriter&, const IterateOrder&) const override {}
+  void load(io::CheckpointReader&, const IterateOrder&) override {}
 
  private:
   double omega_;
@@ -41,8 +41,8 @@ class AitkenRelaxation final : public Accelerator {
   void accept(const Iterate& x, const Iterate& image) override;
   void map_changed() override { forget_pass(); }
   double relaxation() const override { return omega_; }
-  void save(io::CheckpointWriter& file) const override;
-  void load(io::CheckpointReader& file) override;
+  void save(io::CheckpointWriter& file, const IterateOrder& order) const override;
+  void load(io::CheckpointReader& file, const IterateOrder& order) override;
 
  private:
   void take_residual(const Iterate& x, const Iterate& image);

@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 
-#include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "coupler/acceleration/quasi_newton.hpp"
 
@@ -50,30 +49,21 @@ void SecantPairs::add(const Eigen::VectorXd& c, Iterate& to) const {
   add_to(to.rider, c, [&](int j) -> const std::vector<double>& { return images_[std::size_t(j)].rider; });
 }
 
-void SecantPairs::save(io::CheckpointWriter& file, const std::string& name) const {
-  qr_.save(file, name);
-  std::vector<double> unknown, rider;
-  for (const Iterate& image : images_) {
-    unknown.insert(unknown.end(), image.unknown.begin(), image.unknown.end());
-    rider.insert(rider.end(), image.rider.begin(), image.rider.end());
-  }
-  file.write(name + ".images", unknown);
-  file.write(name + ".riders", rider);
+void SecantPairs::save(io::CheckpointWriter& file, const std::string& name, const IterateOrder& order) const {
+  qr_.save(file, name, order.unknown);
+  Columns unknown, rider;
+  for (const Iterate& image : images_) unknown.emplace_back(image.unknown), rider.emplace_back(image.rider);
+  write_columns(file, order.unknown, name + ".images", unknown);
+  write_columns(file, order.rider, name + ".riders", rider);
 }
 
-void SecantPairs::load(io::CheckpointReader& file, const std::string& name) {
-  const std::vector<double> unknown = file.read(name + ".images"), rider = file.read(name + ".riders");
-  const std::size_t m = file.read_count(name + ".columns", most_columns);
-  const std::size_t n = m > 0 ? unknown.size() / m : 0, n_rider = m > 0 ? rider.size() / m : 0;
-  if (m * n != unknown.size() || m * n_rider != rider.size())
-    throw Error("The checkpoint's differences of passes '{}' are damaged. Use an earlier one.", name);
-  qr_.load(file, name, n);
+void SecantPairs::load(io::CheckpointReader& file, const std::string& name, const IterateOrder& order) {
+  qr_.load(file, name, order.unknown);
+  const auto m = std::size_t(qr_.columns());
+  std::vector<std::vector<double>> unknown = read_columns(file, order.unknown, name + ".images", m),
+                                   rider = read_columns(file, order.rider, name + ".riders", m);
   images_.clear();
-  for (std::size_t j = 0; j < m; ++j) {
-    Iterate& image = images_.emplace_back();
-    image.unknown.assign(unknown.begin() + j * n, unknown.begin() + (j + 1) * n);
-    image.rider.assign(rider.begin() + j * n_rider, rider.begin() + (j + 1) * n_rider);
-  }
+  for (std::size_t j = 0; j < m; ++j) images_.push_back({std::move(unknown[j]), std::move(rider[j])});
 }
 
 std::optional<Secants::Pair> Secants::pair(const Iterate& x, const Iterate& image) {

@@ -12,7 +12,7 @@ namespace couplet::coupler {
 
 Unknown::Unknown(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
                  const std::vector<std::size_t>& group, bool side_by_side)
-    : comm_(comm) {
+    : comm_(comm), sides_(&sides) {
   const auto place_in_group = [&](std::size_t i) { return std::ranges::find(group, i) - group.begin(); };
   const auto add = [&](const Links::Link& link) {
     const auto known = std::ranges::find_if(
@@ -138,6 +138,24 @@ void Unknown::restore_weights(const std::vector<double>& w) {
   scaled_ = w[0] != 0;
   for (std::size_t i = 0; i < n_parts_; ++i) parts_[i].weight = w[i + 1];
   set_times(times);
+}
+
+IterateOrder Unknown::order(bool within) const {
+  std::vector<GlobalIndex> ids[2];
+  GlobalIndex next[2] = {0, 0};
+  for (const Part& p : within ? std::span<const Part>(parts_) : parts()) {
+    const coupling::Interface& of = (*sides_)[p.giver].interface;
+    const auto& places = p.datum.place == coupling::Interface::Place::vertices ? of.vertex_ids : of.face_ids;
+    GlobalIndex most = -1;
+    for (const GlobalIndex id : places) {
+      for (int c = 0; c < p.components; ++c) ids[p.rides].push_back(next[p.rides] + id * p.components + c);
+      most = std::max(most, id);
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_INT64_T, MPI_MAX, comm_);
+    next[p.rides] += (most + 1) * p.components;
+  }
+  return {parallel::GlobalOrder::by_numbers(comm_, ids[0], ids[0].size()),
+          parallel::GlobalOrder::by_numbers(comm_, ids[1], ids[1].size())};
 }
 
 std::vector<Residual> Unknown::measure(const Iterate& x, const Iterate& image) const {

@@ -75,6 +75,9 @@ class Unknown {
   std::vector<double> weights() const;
   void restore_weights(const std::vector<double>& weights);
 
+  /// By the numbers of the places, at the end of the step or with the values within it, too. Collective.
+  IterateOrder order(bool within) const;
+
   /// Residual of each unknown (riders left out), over all ranks; with its values within the step, if x has them. Collective.
   std::vector<Residual> measure(const Iterate& x, const Iterate& image) const;
   /// Values of the unknown that are displacements [m], this rank's.
@@ -85,6 +88,7 @@ class Unknown {
   std::vector<double> between_times(const Part& part, const coupling::Exchange& given) const;
 
   MPI_Comm comm_;
+  const std::vector<Side>* sides_;
   std::vector<Part> parts_;
   std::size_t n_parts_ = 0, n_unknown_ = 0, n_rider_ = 0;  // of ends
   bool scaled_ = false;

@@ -237,18 +237,19 @@ void VolumeLevel::accept(const std::vector<coupling::Exchange>& given) {
   }
 }
 
-void VolumeLevel::save(io::CheckpointWriter& file) const {
+void VolumeLevel::save(io::CheckpointWriter& file, const std::vector<Side>& sides) const {
   std::vector<double> numbers{slope_dt_};
   for (const Cavity& c : cavities_)
     numbers.insert(numbers.end(), {c.accepted_level, c.change, c.inflow, c.swing[0], c.swing[1], c.flow});
   numbers.insert(numbers.end(), slope_.data(), slope_.data() + slope_.size());
-  file.write("volume-level", parallel::comm_rank(comm_) == 0 ? numbers : std::vector<double>{});
-  for (const Cavity& c : cavities_) file.write("volume-place-" + c.name, c.place);
+  file.write_common("volume-level", numbers);
+  for (const Cavity& c : cavities_)
+    file.write(sides[c.side].order(comm_, coupling::Interface::Place::vertices), "volume-place-" + c.name,
+               c.place);
 }
 
-void VolumeLevel::load(io::CheckpointReader& file) {
-  // Every rank needs all of it.
-  const std::vector<double> numbers = parallel::all_gather(comm_, file.read("volume-level"));
+void VolumeLevel::load(io::CheckpointReader& file, const std::vector<Side>& sides) {
+  const std::vector<double> numbers = file.read_common("volume-level");
   const std::size_t n = cavities_.size();
   if (numbers.size() != 1 + 6 * n && numbers.size() != 1 + 6 * n + n * n)
     throw Error("The checkpoint is from a coupling with other closed fluids.");
@@ -258,7 +259,8 @@ void VolumeLevel::load(io::CheckpointReader& file) {
     const double* saved = &numbers[1 + 6 * k];
     c.accepted_level = saved[0], c.change = saved[1], c.inflow = saved[2];
     c.swing = {saved[3], saved[4]}, c.flow = saved[5], c.begun = true;
-    c.place = file.read("volume-place-" + c.name);
+    c.place =
+        file.read(sides[c.side].order(comm_, coupling::Interface::Place::vertices), "volume-place-" + c.name);
   }
   if (numbers.size() == 1 + 6 * n + n * n)
     slope_ = Eigen::Map<const Eigen::MatrixXd>(&numbers[1 + 6 * n], Eigen::Index(n), Eigen::Index(n));

@@ -86,16 +86,18 @@ std::vector<double> ForeignStructure::velocity() const {
 
 void ForeignStructure::save(io::CheckpointWriter& file) const {
   if (!derives_velocity_) return;
-  file.write(name() + "-displacement", now_);
-  file.write(name() + "-displacement-before", older_);
+  const auto order = parallel::GlobalOrder::as_they_are(file.comm(), n_values_);
+  file.write(order, name() + "-displacement", now_);
+  file.write(order, name() + "-displacement-before", older_);
   file.write_scalar(name() + "-dt", dt_);
   file.write_scalar(name() + "-dt-before", old_dt_);
 }
 
 void ForeignStructure::load(io::CheckpointReader& file) {
   if (!derives_velocity_) return;
-  now_ = file.read_or_none(name() + "-displacement", n_values_);
-  older_ = file.read_or_none(name() + "-displacement-before", n_values_);
+  const auto order = parallel::GlobalOrder::as_they_are(file.comm(), n_values_);
+  now_ = file.read_or_none(order, name() + "-displacement", 1);
+  older_ = file.read_or_none(order, name() + "-displacement-before", 1);
   dt_ = file.read_scalar(name() + "-dt");
   old_dt_ = file.read_scalar(name() + "-dt-before");
 }

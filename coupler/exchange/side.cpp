@@ -20,6 +20,11 @@ Side::Side(MPI_Comm comm, std::string its_name, coupling::Interface its_interfac
   rank_ = std::size_t(parallel::comm_rank(comm));
 }
 
+parallel::GlobalOrder Side::order(MPI_Comm comm, coupling::Interface::Place place) const {
+  const auto& ids = place == coupling::Interface::Place::vertices ? interface.vertex_ids : interface.face_ids;
+  return parallel::GlobalOrder::by_numbers(comm, ids, ids.size());
+}
+
 PointSet Side::places(coupling::Interface::Place place) const {
   const bool at_vertices = place == coupling::Interface::Place::vertices;
   PointSet set;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/coupling/messages.hpp"
+#include "common/parallel/global_order.hpp"
 #include "coupler/exchange/search.hpp"
 
 namespace couplet::coupler {
@@ -24,6 +25,8 @@ struct Side {
     return place == coupling::Interface::Place::vertices ? interface.vertices.size()
                                                          : interface.face_centres.size();
   }
+  /// The order of this rank's places by their numbers. Collective.
+  parallel::GlobalOrder order(MPI_Comm comm, coupling::Interface::Place place) const;
   /// All places of a kind.
   PointSet places(coupling::Interface::Place place) const;
   /// Those where a datum is given, or taken.

@@ -36,6 +36,7 @@ class Mechanics {
 
   /// Displacement of each member's wall at t^n, for checkpoints.
   std::vector<std::vector<double>>& walls() { return walls_; }
+  std::size_t side_of_wall(std::size_t i) const { return members_[i].side; }
 
  private:
   struct Member {

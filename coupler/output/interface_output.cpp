@@ -33,21 +33,27 @@ void integers(std::ofstream& out, const char* name, const std::vector<GlobalInde
 }
 
 /// Entries "  <DataSet timestep="..." part="0" file="..."/>" of an earlier run up to this time.
-std::vector<std::pair<double, std::string>> kept(const fs::path& list, double restart_time) {
-  std::vector<std::pair<double, std::string>> files;
+std::vector<InterfaceFiles> kept(const fs::path& list, double restart_time) {
+  std::vector<InterfaceFiles> files;
   if (std::isnan(restart_time)) return files;
   std::error_code ignored;
   if (!fs::exists(list, ignored)) return files;
   csv::LineReader in(list, "list of interface files", {.bytes = 1 << 30, .lines = 10000000});
   for (std::string_view line; in.next(line);) {
-    const auto time = line.find("timestep=\""), part = line.find("part=\"0\""), file = line.find("file=\"");
+    const auto time = line.find("timestep=\""), part = line.find("part=\""), file = line.find("file=\"");
     if (time == std::string::npos || part == std::string::npos || file == std::string::npos) continue;
     const auto quoted = [&](std::size_t from) { return line.substr(from, line.find('"', from) - from); };
     const auto t = csv::number_of(quoted(time + 10));
     const std::string_view name = quoted(file + 6);  // "side-000001.0.vtp"
-    if (!t || !name.ends_with(".0.vtp"))
+    const std::string end = fmt::format(".{}.vtp", quoted(part + 6));
+    if (!t || !name.ends_with(end))
       throw Error("{}: this line is damaged. Move the list away; the files it names remain.", in.place());
-    if (*t <= restart_time * (1 + 1e-12)) files.emplace_back(*t, name.substr(0, name.size() - 6));
+    if (*t > restart_time * (1 + 1e-12)) continue;
+    const std::string_view stem = name.substr(0, name.size() - end.size());
+    if (!files.empty() && files.back().stem == stem)
+      ++files.back().parts;
+    else
+      files.push_back({*t, std::string(stem), 1});
   }
   return files;
 }
@@ -88,7 +94,7 @@ void InterfaceOutput::write(double time, int number, const std::vector<coupling:
     const std::string stem = fmt::format("{}-{:06d}", surface.side->name, number);
     write_piece(surface, folder_ / fmt::format("{}.{}.vtp", stem, parallel::comm_rank(comm_)),
                 given[surface.index], taken[surface.index]);
-    surface.files.emplace_back(time, stem);
+    surface.files.push_back({time, stem, parallel::comm_size(comm_)});
     if (parallel::comm_rank(comm_) == 0) write_list(surface);
   }
 }
@@ -140,8 +146,8 @@ void InterfaceOutput::write_list(const Surface& surface) const {
   {
     std::ofstream out(part);
     out << "<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n";
-    for (const auto& [time, stem] : surface.files)
-      for (int r = 0; r < parallel::comm_size(comm_); ++r)
+    for (const auto& [time, stem, parts] : surface.files)
+      for (int r = 0; r < parts; ++r)
         out << fmt::format("  <DataSet timestep=\"{:.12g}\" part=\"{}\" file=\"{}.{}.vtp\"/>\n", time, r,
                            stem, r);
     out << "</Collection>\n</VTKFile>\n";

@@ -11,6 +11,13 @@
 
 namespace couplet::coupler {
 
+/// Of one output: <stem>.<rank>.vtp of as many ranks as the coupler had then.
+struct InterfaceFiles {
+  double time = 0;
+  std::string stem;
+  int parts = 0;
+};
+
 /// What goes over the interfaces, for ParaView: <participant>.pvd with a VTK file for each output and rank of
 /// the coupler. Faces are polygons with the data at faces; data at vertices stand at their corners, each face
 /// its own. The surface is the reference configuration; displacements warp it.
@@ -29,7 +36,7 @@ class InterfaceOutput {
     std::size_t index;  // among all sides
     Transfer to_corners;
     std::vector<double> corners;  // 3 coordinates each
-    std::vector<std::pair<double, std::string>> files;
+    std::vector<InterfaceFiles> files;
   };
   void write_piece(const Surface& surface, const std::filesystem::path& file, const coupling::Exchange& given,
                    const coupling::Exchange& taken) const;

@@ -227,47 +227,38 @@ coupling::ErrorParts FluidErrorEstimate<D>::parts() const {
 }
 
 template <int D>
-std::vector<double> FluidErrorEstimate<D>::state() const {
-  std::vector<double> values{double(seen_),
-                             judged_ ? 1. : 0.,
-                             dt_old_,
-                             time_,
-                             power_,
-                             gain_,
-                             energy_,
-                             work_,
-                             held_,
-                             left_of_late_,
-                             carried_,
-                             changed_,
-                             double(left_.size()),
-                             double(rate_.size())};
-  for (const Vectors<D>* vectors : {&left_, &rate_, &rate_change_})
-    for (const Vec<D>& v : *vectors) values.insert(values.end(), v.begin(), v.end());
-  const std::vector<double> sums = steps_.state();
-  values.insert(values.end(), sums.begin(), sums.end());
-  return values;
+void FluidErrorEstimate<D>::save(io::CheckpointWriter& file) const {
+  file.write_common("error-numbers",
+                    std::array{double(seen_), judged_ ? 1. : 0., dt_old_, time_, power_, gain_, energy_,
+                               work_, held_, left_of_late_, carried_, changed_});
+  file.write(mesh::Entries::owned_cells, "error-left", flat<D>(left_));
+  file.write(mesh::Entries::owned_cells, "error-rate", flat<D>(rate_));
+  file.write(mesh::Entries::owned_cells, "error-rate-change", flat<D>(rate_change_));
+  file.write_common("error-steps", steps_.state());
 }
 
 template <int D>
-void FluidErrorEstimate<D>::restore(std::span<const double> state) {
+void FluidErrorEstimate<D>::load(io::CheckpointReader& file, bool is_there) {
   seen_ = 0, judged_ = false, steps_ = {};
   time_ = power_ = gain_ = energy_ = work_ = held_ = left_of_late_ = carried_ = changed_ = 0;
   u_.clear(), rate_.clear(), rate_change_.clear(), left_.clear();
-  if (state.empty()) return;
-  base::SavedNumbers saved(state, "step errors");
-  seen_ = int(saved.count(1e9)), judged_ = saved.real() != 0, dt_old_ = saved.real();
+  if (!is_there) return;
+  std::array<double, 12> numbers{};
+  file.read_common("error-numbers", numbers);
+  base::SavedNumbers saved(numbers, "step errors");
+  seen_ = int(saved.count(1e9)), judged_ = saved.real() != 0;
   for (double* value :
-       {&time_, &power_, &gain_, &energy_, &work_, &held_, &left_of_late_, &carried_, &changed_})
+       {&dt_old_, &time_, &power_, &gain_, &energy_, &work_, &held_, &left_of_late_, &carried_, &changed_})
     *value = saved.real();
-  const std::size_t kept = saved.count_of(D), n = saved.count_of(2 * D);
+  const auto read = [&](const char* name, Vectors<D>& vectors) {
+    const std::vector<double> values = file.read_or_none(mesh::Entries::owned_cells, name, D);
+    for (std::size_t i = 0; i < values.size(); i += D) vectors.emplace_back(values.data() + i);
+  };
+  read("error-left", left_);
+  read("error-rate", rate_);
+  read("error-rate-change", rate_change_);
+  steps_.restore(file.read_common("error-steps"));
   const Vectors<D>& u = fluid_.state().u;
-  for (const std::size_t size : {kept, n})
-    if (size != 0 && size != std::size_t(fluid_.mesh().cells.n_owned())) saved.damaged();
-  for (std::size_t c = 0; c < kept; ++c) left_.emplace_back(saved.next(D).data());
-  for (Vectors<D>* vectors : {&rate_, &rate_change_})
-    for (std::size_t c = 0; c < n; ++c) vectors->emplace_back(saved.next(D).data());
-  steps_.restore(saved.rest());
   u_.assign(u.begin(), u.begin() + fluid_.mesh().cells.n_owned());
 }
 

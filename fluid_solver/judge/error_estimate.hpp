@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/coupling/error_parts.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/time/step_errors.hpp"
 #include "fluid_solver/judge/driving.hpp"
 #include "fluid_solver/step/fluid.hpp"
@@ -32,10 +33,10 @@ class FluidErrorEstimate {
   /// After the step of `dt` [s] was accepted.
   void accepted(double dt);
   coupling::ErrorParts parts() const;
-  /// For checkpoints.
-  std::vector<double> state() const;
-  /// After the fluid's own state; empty: of a run that collected nothing.
-  void restore(std::span<const double> state);
+  /// For checkpoints, on the fluid's mesh. Collective.
+  void save(io::CheckpointWriter& file) const;
+  /// After the fluid's own state; `is_there`: the run that wrote it collected them.
+  void load(io::CheckpointReader& file, bool is_there);
 
  private:
   double size(const Vectors<D>& values) const;

@@ -116,7 +116,10 @@ void PressureEquation<D>::save(io::CheckpointWriter& file) const {
   file.write_scalar("pressure-preconditioner-due", accepted_.memory.is_due);
   file.write_scalar("pressure-preconditioner-single", accepted_.memory.is_single);
   file.write_scalar("pressure-preconditioner-iterations", accepted_.memory.most_iterations);
-  file.write("pressure-preconditioner", *accepted_.made_from);
+  const std::span<const double> all = *accepted_.made_from;  // nothing, or the diagonal, then the faces
+  const std::size_t owned = all.empty() ? 0 : std::size_t(mesh_.cells.n_owned());
+  file.write(mesh::Entries::owned_cells, "pressure-preconditioner", all.first(owned));
+  file.write(mesh::Entries::interior_faces, "pressure-preconditioner-faces", all.subspan(owned));
 }
 
 template <int D>
@@ -127,7 +130,10 @@ void PressureEquation<D>::load(io::CheckpointReader& file) {
   memory.is_single = file.read_scalar("pressure-preconditioner-single") != 0;
   memory.most_iterations = static_cast<int>(file.read_count("pressure-preconditioner-iterations", 1000000));
   const std::size_t coefficients = std::size_t(mesh_.cells.n_owned()) + std::size_t(mesh_.n_interior);
-  std::vector<double> saved = file.read_or_none("pressure-preconditioner", coefficients);
+  std::vector<double> saved = file.read_or_none(mesh::Entries::owned_cells, "pressure-preconditioner", 1);
+  const std::vector<double> faces =
+      file.read_or_none(mesh::Entries::interior_faces, "pressure-preconditioner-faces", 1);
+  saved.insert(saved.end(), faces.begin(), faces.end());
   if (!memory.is_due && saved.size() != coefficients)
     throw Error("The checkpoint's preconditioner of the pressure is damaged. Use an earlier one.");
   const bool is_here = solver_->memory() == memory && *now_.made_from == saved;

@@ -122,7 +122,7 @@ void UpstreamVolume<D>::complete(PressureLevel<D>& level) const {
 
 template <int D>
 void UpstreamVolume<D>::load(io::CheckpointReader& file) {
-  response_ = file.read_or_none("upstream-response", k_.mesh.cells.n_local());
+  response_ = file.read_or_none(mesh::Entries::cells, "upstream-response", 1);
   accepted_ = response_;
 }
 

@@ -31,7 +31,9 @@ class UpstreamVolume {
   void complete(PressureLevel<D>& level) const;
   /// y is where the next one is looked for: of the accepted level.
   void accept() { accepted_ = response_; }
-  void save(io::CheckpointWriter& file) const { file.write("upstream-response", accepted_); }
+  void save(io::CheckpointWriter& file) const {
+    file.write(mesh::Entries::cells, "upstream-response", accepted_);
+  }
   void load(io::CheckpointReader& file);
 
  private:

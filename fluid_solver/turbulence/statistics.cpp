@@ -89,21 +89,29 @@ std::vector<double> RunningStatistics<D>::reynolds_shear() const {
 template <int D>
 void RunningStatistics<D>::save(io::CheckpointWriter& file) const {
   file.write_scalar("statistics-duration", duration_);
-  file.write("statistics-velocity", flat<D>(velocity_));
-  file.write("statistics-normal", flat<D>(normal_));
-  file.write("statistics-shear", shear_);
-  file.write("statistics-pressure", pressure_);
-  file.write("statistics-pressure-square", pressure_square_);
+  const auto write = [&](const std::string& name, std::span<const double> values, std::size_t width) {
+    file.write(mesh::Entries::cells, "statistics-" + name, values.first(cells_ * width));
+    file.write(mesh::Entries::owned_boundary, "statistics-boundary-" + name, values.subspan(cells_ * width));
+  };
+  write("velocity", flat<D>(velocity_), D);
+  write("normal", flat<D>(normal_), D);
+  write("pressure", pressure_, 1);
+  write("pressure-square", pressure_square_, 1);
+  file.write(mesh::Entries::cells, "statistics-shear", shear_);
 }
 
 template <int D>
 void RunningStatistics<D>::load(io::CheckpointReader& file) {
   duration_ = file.read_scalar("statistics-duration");
-  file.read("statistics-velocity", flat<D>(velocity_));
-  file.read("statistics-normal", flat<D>(normal_));
-  file.read("statistics-shear", shear_);
-  file.read("statistics-pressure", pressure_);
-  file.read("statistics-pressure-square", pressure_square_);
+  const auto read = [&](const std::string& name, std::span<double> values, std::size_t width) {
+    file.read(mesh::Entries::cells, "statistics-" + name, values.first(cells_ * width));
+    file.read(mesh::Entries::owned_boundary, "statistics-boundary-" + name, values.subspan(cells_ * width));
+  };
+  read("velocity", flat<D>(velocity_), D);
+  read("normal", flat<D>(normal_), D);
+  read("pressure", pressure_, 1);
+  read("pressure-square", pressure_square_, 1);
+  file.read(mesh::Entries::cells, "statistics-shear", shear_);
 }
 
 template class RunningStatistics<2>;

@@ -109,16 +109,16 @@ bool BarrierMotion::find_direction(const std::vector<double>& u, const std::vect
 
 void BarrierMotion::save(io::CheckpointWriter& file) const {
   const linalg::PreconditionerMemory memory = solver_->memory();
-  file.write("barrier", displacement_);
-  file.write("barrier-factors", factored_at_);
+  file.write(mesh::Entries::points, "barrier", displacement_);
+  file.write(mesh::Entries::points, "barrier-factors", factored_at_);
   file.write_scalar("barrier-factors-exact", factored_ == BarrierSystem::Hessian::exact ? 1 : 0);
   file.write_scalar("barrier-factors-due", memory.is_due || factored_at_.empty() ? 1 : 0);
   file.write_scalar("barrier-factors-most", memory.most_iterations);
 }
 
 void BarrierMotion::load(io::CheckpointReader& file) {
-  file.read("barrier", displacement_);
-  factored_at_ = file.read("barrier-factors");
+  file.read(mesh::Entries::points, "barrier", displacement_);
+  factored_at_ = file.read_or_none(mesh::Entries::points, "barrier-factors", std::size_t(dim_));
   const bool exact = file.read_scalar("barrier-factors-exact") > 0;
   factored_ = exact ? BarrierSystem::Hessian::exact : BarrierSystem::Hessian::projected;
   linalg::PreconditionerMemory memory;

@@ -63,7 +63,7 @@ SolidInterface::SolidInterface(const SolidBody& body) : body_(body) {
         "temperature at.");
   takes_temperature_ = true;
   for (const auto& effect : body.effects())
-    if (effect->wants_temperature()) effect->set_interface(description_.face_centres);
+    if (effect->wants_temperature()) effect->set_interface(description_.face_centres, map_->faces());
 }
 
 void SolidInterface::take_temperature(const coupling::Exchange& in) const {

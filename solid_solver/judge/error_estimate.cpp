@@ -2,6 +2,7 @@
 #include "solid_solver/judge/error_estimate.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -9,6 +10,7 @@
 #include "common/base/error.hpp"
 #include "common/base/saved_numbers.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/judge/inner_variation.hpp"
 #include "solid_solver/judge/soft_motion.hpp"
@@ -207,25 +209,21 @@ coupling::ErrorParts SolidErrorEstimate::parts() const {
   return parts;
 }
 
-std::vector<double> SolidErrorEstimate::state() const {
-  const std::vector<double> linear = linear_.state(), steps = steps_.state();
-  const std::vector<double> drift = drift_.state();
-  std::vector<double> values{double(linear.size())};
-  for (const auto* part : {&linear, &drift, &steps}) values.insert(values.end(), part->begin(), part->end());
-  return values;
+void SolidErrorEstimate::save(io::CheckpointWriter& file) const {
+  file.write_common("error-of-solver", linear_.state());
+  file.write_common("error-drift", drift_.state());
+  file.write_common("error-steps", steps_.numbers());
+  file.write(mesh::Entries::owned_cells, "error-velocity-before", steps_.before());
 }
 
-void SolidErrorEstimate::restore(std::span<const double> state) {
-  if (state.empty()) {
-    linear_.restore(state);
-    steps_.restore(state);
-    return;
-  }
-  base::SavedNumbers saved(state, "step errors");
-  linear_.restore(saved.next(saved.count_of(1)));
-  const std::span<const double> drift = saved.next(PhaseDrift::n_values);
-  steps_.restore(saved.rest());
+void SolidErrorEstimate::load(io::CheckpointReader& file) {
+  linear_.restore(file.read_common("error-of-solver"));
+  std::array<double, PhaseDrift::n_values> drift{};
+  file.read_common("error-drift", drift);
   drift_.restore(drift);
+  const std::vector<double> steps = file.read_common("error-steps");
+  steps_.restore(steps, file.read_or_none(mesh::Entries::owned_cells, "error-velocity-before",
+                                          std::size_t(body_.mesh().dim)));
 }
 
 }  // namespace couplet::solid

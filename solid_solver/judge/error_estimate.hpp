@@ -37,9 +37,9 @@ class SolidErrorEstimate {
   void see_step();
   /// After the last step.
   coupling::ErrorParts parts() const;
-  /// For checkpoints; empty: of a run that collected nothing.
-  std::vector<double> state() const;
-  void restore(std::span<const double> state);
+  /// For checkpoints, on the body's mesh. Collective.
+  void save(io::CheckpointWriter& file) const;
+  void load(io::CheckpointReader& file);
 
  private:
   void see_swing(const SolidState& now, const time::StepErrors::Seen& step);

@@ -164,12 +164,11 @@ linalg::SolveStatistics FiniteStrain::follow_path(const Load& load, std::span<do
 }
 
 void FiniteStrain::save(io::CheckpointWriter& file) const {
-  if (path_) path_->save(file);
+  if (path_) path_->save(file, rows_);
 }
 
-void FiniteStrain::load(io::CheckpointReader& file, std::span<const double> unknowns,
-                        std::span<const double>) {
-  if (path_) path_->load(file, unknowns.size());
+void FiniteStrain::load(io::CheckpointReader& file, std::span<const double>, std::span<const double>) {
+  if (path_) path_->load(file, rows_);
 }
 
 }  // namespace couplet::solid

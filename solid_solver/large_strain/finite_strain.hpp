@@ -58,7 +58,7 @@ class FiniteStrain final : public LargeStrain {
   }
   LoadPath* load_path() override { return path_ ? &*path_ : nullptr; }
   void save(io::CheckpointWriter& file) const override;
-  void load(io::CheckpointReader& file, std::span<const double> unknowns, std::span<const double>) override;
+  void load(io::CheckpointReader& file, std::span<const double>, std::span<const double>) override;
   /// Of the last solve.
   const std::vector<NewtonIterate>& iterates() const { return iterates_; }
   /// "3 iterations of Newton's method, ...", of the last solve.

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "common/elasticity/elasticity.hpp"
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/parameters/load_stepping.hpp"
 
@@ -46,8 +47,9 @@ class LoadPath {
   /// What was proposed is the state now, at `time`.
   void accept(double time);
 
-  void save(io::CheckpointWriter& file) const;
-  void load(io::CheckpointReader& file, std::size_t n_unknowns);
+  /// `rows`: whose unknowns the changes are of.
+  void save(io::CheckpointWriter& file, const elastic::ElasticOperator& rows) const;
+  void load(io::CheckpointReader& file, const elastic::ElasticOperator& rows);
 
  private:
   struct Point {

@@ -91,15 +91,15 @@ void UpdatedLagrangian::save(io::CheckpointWriter& file) const {
   for (const Vec3& x : now_.points) points.insert(points.end(), x.begin(), x.end());
   for (const Tensor3& F : now_.gradient)
     gradient.insert(gradient.end(), F.reshaped().begin(), F.reshaped().end());
-  file.write(points_on_file, points);
-  file.write(gradient_on_file, gradient);
+  file.write(mesh::Entries::points, points_on_file, points);
+  file.write(mesh::Entries::flux_faces, gradient_on_file, gradient);
 }
 
 void UpdatedLagrangian::load(io::CheckpointReader& file, std::span<const double> unknowns,
                              std::span<const double> known) {
   std::vector<double> points(now_.points.size() * 3), gradient(now_.gradient.size() * 9);
-  file.read(points_on_file, points);
-  file.read(gradient_on_file, gradient);
+  file.read(mesh::Entries::points, points_on_file, points);
+  file.read(mesh::Entries::flux_faces, gradient_on_file, gradient);
   for (std::size_t v = 0; v < now_.points.size(); ++v)
     now_.points[v] = Vec3(points[3 * v], points[3 * v + 1], points[3 * v + 2]);
   for (std::size_t f = 0; f < now_.gradient.size(); ++f)

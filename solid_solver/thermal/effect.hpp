@@ -38,7 +38,8 @@ class SolidEffect {
   /// An effect that wants_temperature() gets the centres of this rank's faces of the interface once, and what was given
   /// at these at the start of each solve (empty: nothing yet); begin_step() follows. Collective.
   virtual bool wants_temperature() const { return false; }
-  virtual void set_interface(const std::vector<Vec3>& /*face_centres*/) {}
+  virtual void set_interface(const std::vector<Vec3>& /*face_centres*/, const std::vector<Index>& /*faces*/) {
+  }
   virtual void take_temperature(const std::vector<double>& /*faces*/) {}
   /// An effect that wants_stress() gets that of the owned cells after each accepted step [Pa].
   virtual bool wants_stress() const { return false; }

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "common/io/checkpoint.hpp"
 #include "common/log/timer.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -260,30 +259,6 @@ void Heat::set_inflow(std::span<const double> source) {
 void Heat::accept_step() {
   if (swing_) swing_->accepted(*mesh_, *geometry_, state_.cells, trial_.cells, trial_.time);
   std::swap(state_, trial_);
-}
-
-void Heat::save(io::CheckpointWriter& file) const {
-  file.write("cell-temperature", state_.cells);
-  file.write("face-temperature", state_.boundary);
-  file.write("known-temperature", state_.known);
-  file.write("enthalpy", state_.enthalpy);
-  file.write("enthalpy-before", state_.enthalpy_before);
-  file.write("heat-inflow", state_.inflow);
-  file.write_scalar("heat-time", state_.time);
-  file.write_scalar("heat-dt", state_.dt);
-  file.write_scalar("heat-steps", state_.steps);
-}
-
-void Heat::load(io::CheckpointReader& file) {
-  file.read("cell-temperature", state_.cells);
-  file.read("face-temperature", state_.boundary);
-  file.read("known-temperature", state_.known);
-  file.read("enthalpy", state_.enthalpy);
-  file.read("enthalpy-before", state_.enthalpy_before);
-  file.read("heat-inflow", state_.inflow);
-  state_.time = file.read_scalar("heat-time");
-  state_.dt = file.read_scalar("heat-dt");
-  state_.steps = static_cast<int>(file.read_scalar("heat-steps"));
 }
 
 }  // namespace couplet::solid

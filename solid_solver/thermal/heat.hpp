@@ -81,6 +81,7 @@ class Heat final {
   struct Coefficients;
   bool is_steady() const { return parameters_.analysis == HeatParameters::Analysis::steady; }
   void start();
+  std::pair<std::vector<double>, std::vector<double>> known_fields() const;
   Coefficients coefficients(double dt) const;
   std::vector<double> face_heat() const;  // of the flux faces, into their owners [W]
   void set_conductivity(const HeatState& state, std::span<double> conductivity) const;

@@ -2,10 +2,11 @@
 #include "solid_solver/thermal/heat_errors.hpp"
 
 #include <Eigen/Dense>
+#include <array>
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "common/base/saved_numbers.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::solid {
@@ -115,20 +116,20 @@ coupling::ErrorParts HeatErrors::parts(const Heat& heat, std::optional<double> r
   return parts;
 }
 
-std::vector<double> HeatErrors::state() const {
-  std::vector<double> values{begun_ ? 1. : 0., level_, dt_, double(rate_.size())};
-  const std::vector<double> sums = steps_.state();
-  for (const auto* part : {&rate_, &sums}) values.insert(values.end(), part->begin(), part->end());
-  return values;
+void HeatErrors::save(io::CheckpointWriter& file) const {
+  file.write_common("heat-errors", std::array{begun_ ? 1. : 0., level_, dt_});
+  file.write_common("heat-error-steps", steps_.numbers());
+  file.write(mesh::Entries::owned_cells, "heat-error-rate-before", steps_.before());
+  file.write(mesh::Entries::owned_cells, "heat-error-rate", rate_);
 }
 
-void HeatErrors::restore(std::span<const double> state) {
-  if (state.empty()) return;
-  base::SavedNumbers saved(state, "step errors");
-  begun_ = saved.real() != 0, level_ = saved.real(), dt_ = saved.real();
-  const std::span<const double> rate = saved.next(saved.count_of(1));
-  rate_.assign(rate.begin(), rate.end());
-  steps_.restore(saved.rest());
+void HeatErrors::load(io::CheckpointReader& file) {
+  std::array<double, 3> numbers{};
+  file.read_common("heat-errors", numbers);
+  begun_ = numbers[0] != 0, level_ = numbers[1], dt_ = numbers[2];
+  const std::vector<double> steps = file.read_common("heat-error-steps");
+  steps_.restore(steps, file.read_or_none(mesh::Entries::owned_cells, "heat-error-rate-before", 1));
+  rate_ = file.read_or_none(mesh::Entries::owned_cells, "heat-error-rate", 1);
 }
 
 }  // namespace couplet::solid

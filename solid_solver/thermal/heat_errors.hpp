@@ -25,9 +25,9 @@ class HeatErrors {
   void see_step(const HeatState& before, const HeatState& now);
   /// Of what was accepted; with `reference` [K] over the distance from that.
   coupling::ErrorParts parts(const Heat& heat, std::optional<double> reference = {}) const;
-  /// For checkpoints; empty: of a run that collected nothing.
-  std::vector<double> state() const;
-  void restore(std::span<const double> state);
+  /// For checkpoints, on the solid's mesh. Collective.
+  void save(io::CheckpointWriter& file) const;
+  void load(io::CheckpointReader& file);
 
  private:
   double root_mean_square(std::span<const double> cells) const;

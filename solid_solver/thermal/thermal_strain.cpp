@@ -144,7 +144,8 @@ std::vector<double> ThermalStrain::given_at(Places places, bool trial) const {
   return values;
 }
 
-void ThermalStrain::set_interface(const std::vector<Vec3>& face_centres) {
+void ThermalStrain::set_interface(const std::vector<Vec3>& face_centres, const std::vector<Index>& faces) {
+  for (const Index f : faces) interface_faces_.push_back(f - mesh_->n_interior);
   const auto& g = *geometry_;
   const std::span flux_faces(g.face_centre.data(), std::size_t(mesh_->n_flux_faces()));
   interface_.emplace(mesh_->comm, face_centres,
@@ -222,16 +223,27 @@ void ThermalStrain::accept_step() {
 }
 
 void ThermalStrain::save(io::CheckpointWriter& file) const {
-  if (heat_)
-    heat_->save(file), file.write("temperature-errors", errors_ ? errors_->state() : std::vector<double>{});
-  if (given_) file.write("interface-temperature", given_accepted_);
+  if (heat_) {
+    heat_->save(file);
+    file.write_scalar("has-temperature-errors", errors_ ? 1 : 0);
+    if (errors_) errors_->save(file);
+  }
+  if (given_) {
+    std::vector<double> faces;
+    if (parallel::any(mesh_->comm, !given_accepted_.empty())) {
+      faces.assign(mesh_->boundary.n_owned(), 0.);
+      for (std::size_t i = 0; i < interface_faces_.size(); ++i)
+        faces[interface_faces_[i]] = given_accepted_[i];
+    }
+    file.write(mesh::Entries::owned_boundary, "interface-temperature", faces);
+  }
   if (coupled_) {
-    file.write("dilation", dilation_);
-    file.write("dilation-rate", dilation_rate_);
+    file.write(mesh::Entries::owned_cells, "dilation", dilation_);
+    file.write(mesh::Entries::owned_cells, "dilation-rate", dilation_rate_);
   }
   std::vector<double> constants;
   for (const elastic::LameConstants& lame : lame_) constants.insert(constants.end(), {lame.mu, lame.lambda});
-  if (varies_) file.write("elastic-constants", constants);
+  if (varies_) file.write(mesh::Entries::cells, "elastic-constants", constants);
   file.write_scalar("temperature-time", time_);
   file.write_scalar("lowest-temperature", parallel::min(mesh_->comm, lowest_));
   file.write_scalar("highest-temperature", parallel::max(mesh_->comm, highest_));
@@ -240,19 +252,23 @@ void ThermalStrain::save(io::CheckpointWriter& file) const {
 void ThermalStrain::load(io::CheckpointReader& file) {
   if (heat_) {
     heat_->load(file);
-    const std::vector<double> errors = file.read("temperature-errors");
-    if (errors_) errors_->restore(errors);
+    if (file.read_scalar("has-temperature-errors") != 0 && errors_) errors_->load(file);
   }
-  if (given_)
-    given_trial_ = given_accepted_ =
-        file.read_or_none("interface-temperature", interface_ ? interface_->n_faces() : 0);
+  if (given_) {
+    const std::vector<double> saved =
+        file.read_or_none(mesh::Entries::owned_boundary, "interface-temperature", 1);
+    std::vector<double> faces;
+    for (const Index f : interface_faces_)
+      if (!saved.empty()) faces.push_back(saved[f]);
+    if (interface_) given_trial_ = given_accepted_ = interface_->with_others(faces);
+  }
   if (coupled_) {
-    file.read("dilation", dilation_);
-    file.read("dilation-rate", dilation_rate_);
+    file.read(mesh::Entries::owned_cells, "dilation", dilation_);
+    file.read(mesh::Entries::owned_cells, "dilation-rate", dilation_rate_);
   }
   if (varies_) {
     std::vector<double> constants(2 * lame_.size());
-    file.read("elastic-constants", constants);
+    file.read(mesh::Entries::cells, "elastic-constants", constants);
     for (std::size_t c = 0; c < lame_.size(); ++c) lame_[c] = {constants[2 * c], constants[2 * c + 1]};
     lame_trial_ = lame_;
   }

@@ -43,7 +43,7 @@ class ThermalStrain final : public SolidEffect {
   std::vector<double> expansion(double t) override;
   void accept_step() override;
   bool wants_temperature() const override { return given_; }
-  void set_interface(const std::vector<Vec3>& face_centres) override;
+  void set_interface(const std::vector<Vec3>& face_centres, const std::vector<Index>& faces) override;
   void take_temperature(const std::vector<double>& faces) override;
   bool wants_stress() const override { return coupled_; }
   void take_stress(std::span<const Tensor3> stress) override;
@@ -95,6 +95,7 @@ class ThermalStrain final : public SolidEffect {
   std::optional<HeatErrors> errors_;  // none: not wanted
   std::optional<fv::Expression> prescribed_;
   bool given_ = false;                                // at the interface
+  std::vector<Index> interface_faces_;                // as entries of the boundary
   std::optional<InterfaceTemperature> interface_;     // once it is known where that is
   std::vector<double> given_accepted_, given_trial_;  // at its faces that are needed here [K]
   std::vector<fv::Property> expansion_;               // one a material; none: no thermal strain

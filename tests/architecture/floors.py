@@ -14,7 +14,7 @@ FLOORS = {
     "mesh_mover": [".", "barrier"],
     "plate_modal": ["model", "motion", "."],
     "common/elasticity": [".", "thesis", "symmetric", "axisymmetric", "prestress", "tied", "finite", "solve"],
-    "common/mesh": [".", "msh", "inp", "gmsh"],
+    "common/mesh": [".", "order", "msh", "inp", "gmsh"],
     "common/app": ["watch", "loop", "case", "."],
     "common/io": [".", "probes"],
     "common/linalg": ["lazy", ".", "multigrid"],

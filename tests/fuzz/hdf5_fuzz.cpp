@@ -13,6 +13,7 @@
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
+#include "common/io/checkpoint_format.hpp"
 #include "common/io/checkpoint_set.hpp"
 #include "common/modes/modes_file.hpp"
 #include "coupler/acceleration/quasi_newton.hpp"
@@ -102,31 +103,29 @@ void expect_sound(const ModalModel& m) {
   for (const Index v : m.faces.index) ASSERT_TRUE(v >= 0 && std::size_t(v) < vertices);
 }
 
-/// The checksum of an array, as checkpoint.cpp makes it: who spoils a file can make it fit again.
-std::int64_t checksum(const std::vector<double>& values) {
-  std::uint64_t hash = 14695981039346656037ull;
-  for (const double value : values) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &value, sizeof bits);
-    hash = (hash ^ bits) * 1099511628211ull;
-    hash ^= hash >> 29;
-  }
-  return std::int64_t(hash);
-}
-
 void add_array(CraftedFile& file, const std::string& name, const std::vector<double>& values) {
   file.push_back(table("arrays/" + name, {values.size()}, values));
   file.push_back(integers("layout/" + name, {1, 2}, {std::int64_t(values.size()), checksum(values)}));
 }
 
+void add_field(CraftedFile& file, const std::string& name, std::size_t rows,
+               const std::vector<double>& values) {
+  const std::size_t width = rows == 0 ? 0 : values.size() / rows;
+  file.push_back(width > 1 ? table("fields/" + name, {rows, width}, values)
+                           : table("fields/" + name, {rows}, values));
+  file.push_back(integers(
+      "checks/" + name, {1, 3},
+      {std::int64_t(rows), std::int64_t(width), std::bit_cast<std::int64_t>(part_of_checksum(values, 0))}));
+}
+
 /// Of a coupler with two columns, and of a participant that saves one array.
 CraftedFile checkpoint_file(const CheckpointStamp& stamp) {
-  CraftedFile file{text_value("format", "couplet checkpoint"), number("version", 4), number("ranks", 1),
-                   text_value("set", stamp.text())};
+  CraftedFile file{text_value("format", "couplet checkpoint"), number("version", checkpoint_version),
+                   number("ranks", 1), text_value("set", stamp.text())};
   add_array(file, "u", std::vector<double>(50, 1.5));
-  add_array(file, "iqn.images", {1, 2, 3, 4, 5, 6});
-  add_array(file, "iqn.riders", {});
-  add_array(file, "iqn.q", {1, 0, 0, 0, 1, 0});
+  add_field(file, "iqn.images", 3, {1, 4, 2, 5, 3, 6});
+  add_field(file, "iqn.riders", 0, {});
+  add_field(file, "iqn.q", 3, {1, 0, 0, 1, 0, 0});
   add_array(file, "iqn.r", {1, 0, 0.5, 1});
   add_array(file, "iqn.step-of", {3, 2});
   for (const auto& [name, value] :
@@ -138,6 +137,15 @@ CraftedFile checkpoint_file(const CheckpointStamp& stamp) {
 /// Checksums and lengths made to fit what the arrays have become.
 void recompute(CraftedFile& file) {
   for (CraftedValue& layout : file) {
+    if (layout.path.starts_with("checks/")) {
+      const std::string name = "fields/" + layout.path.substr(7);
+      for (CraftedValue& field : file)
+        if (field.path == name && field.size.size() == 2 && field.size[0] * field.size[1] < 100000) {
+          field.values.resize(field.size[0] * field.size[1]);
+          layout.integers = {std::int64_t(field.size[0]), std::int64_t(field.size[1]),
+                             std::bit_cast<std::int64_t>(part_of_checksum(field.values, 0))};
+        }
+    }
     if (!layout.path.starts_with("layout/")) continue;
     const std::string name = "arrays/" + layout.path.substr(7);
     for (CraftedValue& array : file)
@@ -156,7 +164,8 @@ void read_checkpoint(const fs::path& file) {
   ASSERT_LT(reader.read("u").size(), 51u);
   reader.read_scalar("dt");
   coupler::LeastSquaresNewton newton(coupler::AccelerationParameters{}, MPI_COMM_SELF);
-  newton.load(reader);
+  newton.load(reader, coupler::IterateOrder::as_they_are(MPI_COMM_SELF,
+                                                         {std::vector<double>(3), std::vector<double>(0)}));
 }
 
 std::set<std::string> tree(const fs::path& folder) {

@@ -198,8 +198,8 @@ class ElementParticipant final : public coupling::Participant {
     std::swap(accepted_, next_);
     return {.dt = step_.dt};
   }
-  void save(io::CheckpointWriter& file) const override { file.write("element", accepted_.state()); }
-  void load(io::CheckpointReader& file) override { accepted_.restore(file.read("element")); }
+  void save(io::CheckpointWriter& file) const override { file.write_common("element", accepted_.state()); }
+  void load(io::CheckpointReader& file) override { accepted_.restore(file.read_common("element")); }
   void write_output(double, int) override {}
   void write_monitors(double) override {}
   std::vector<std::string> finish() override { return {accepted_.books()}; }

@@ -261,18 +261,18 @@ TankRecord Tank::record() const {
 }
 
 void Tank::save(io::CheckpointWriter& file) const {
-  for (const auto& [name, values] : accepted_.state()) file.write(name, values);
-  file.write("flow-control", control_state_);
+  for (const auto& [name, values] : accepted_.state()) file.write_common(name, values);
+  file.write_common("flow-control", control_state_);
   for (std::size_t i = 0; i < observers_.size(); ++i)
-    file.write("observer-" + std::to_string(i), observers_[i]->state());
+    file.write_common("observer-" + std::to_string(i), observers_[i]->state());
 }
 
 void Tank::load(io::CheckpointReader& file) {
-  accepted_.restore([&](const std::string& name) { return file.read(name); });
-  control_state_ = file.read("flow-control");
+  accepted_.restore([&](const std::string& name) { return file.read_common(name); });
+  control_state_ = file.read_common("flow-control");
   control_->restore(control_state_);
   for (std::size_t i = 0; i < observers_.size(); ++i)
-    observers_[i]->restore(file.read("observer-" + std::to_string(i)));
+    observers_[i]->restore(file.read_common("observer-" + std::to_string(i)));
 }
 
 void Tank::write_output(double time, int) {

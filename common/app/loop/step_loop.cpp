@@ -54,7 +54,7 @@ void write_run_state(MPI_Comm comm, const fs::path& folder, const RunState& stat
     io::CheckpointWriter file(MPI_COMM_SELF, folder / run_file);
     file.write_scalar("time", state.time);
     file.write_scalar("outputs", state.outputs);
-    file.write("plan", state.plan);
+    file.write_common("plan", state.plan);
     file.close();
   }
   MPI_Barrier(comm);
@@ -65,7 +65,7 @@ RunState read_run_state(const fs::path& folder) {
   RunState state;
   state.time = file.read_scalar("time");
   state.outputs = int(file.read_count("outputs", std::numeric_limits<int>::max()));
-  file.read("plan", state.plan);
+  file.read_common("plan", state.plan);
   return state;
 }
 

@@ -64,8 +64,8 @@ class Spring final : public coupling::Participant {
     now_ = next_;
     return {.dt = dt_};
   }
-  void save(io::CheckpointWriter& file) const override { file.write("state", now_); }
-  void load(io::CheckpointReader& file) override { file.read("state", now_); }
+  void save(io::CheckpointWriter& file) const override { file.write_common("state", now_); }
+  void load(io::CheckpointReader& file) override { file.read_common("state", now_); }
   void write_output(double, int) override {}
   void write_monitors(double) override {}
 

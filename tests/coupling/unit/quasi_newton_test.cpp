@@ -289,10 +289,12 @@ TEST(Accelerators, continue_from_a_checkpoint_bit_for_bit) {
     const auto second = make_accelerator(parameters, MPI_COMM_SELF);
     for (int n = 0; n < 5; ++n) step(*whole, 10, 0.1 * n);
     io::CheckpointWriter writer(MPI_COMM_SELF, file);
-    whole->save(writer);
+    const IterateOrder order =
+        IterateOrder::as_they_are(MPI_COMM_SELF, {std::vector<double>(40), std::vector<double>(40)});
+    whole->save(writer, order);
     writer.close();
     io::CheckpointReader reader(MPI_COMM_SELF, file);
-    second->load(reader);
+    second->load(reader, order);
     for (int n = 5; n < 9; ++n) {
       Iterate a, b;
       EXPECT_EQ(step(*whole, 10, 0.1 * n, 200, &a), step(*second, 10, 0.1 * n, 200, &b)) << int(type);

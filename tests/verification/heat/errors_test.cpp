@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "common/io/checkpoint.hpp"
 #include "common/log/finding.hpp"
 #include "tests/verification/heat/support.hpp"
 
@@ -44,9 +45,12 @@ Outcome slab(int n, int steps, HeatScheme scheme, bool again = false) {
     errors->see_step(scene.heat->accepted(), scene.heat->trial());
     scene.heat->accept_step();
     if (!again) continue;
-    const std::vector<double> state = errors->state();
+    io::StateInMemory state;
+    io::CheckpointWriter writer(state);
+    errors->save(writer);
     errors = std::make_unique<HeatErrors>(scene.mesh(), scene.geometry(), p);
-    errors->restore(state);
+    io::CheckpointReader reader(state);
+    errors->load(reader);
   }
   const double size = scene.error([](const Vec3&) { return mean_before; });
   return {errors->parts(*scene.heat), scene.error([](const Vec3& x) { return cooled(x[0], 0.5); }) / size};

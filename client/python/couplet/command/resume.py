@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Continues a stopped or interrupted run from its last complete checkpoint, with its original ranks and
-settings. A continued run equals the uninterrupted one bit for bit."""
+settings. A continued run equals the uninterrupted one bit for bit; on other ranks (-n), within the tolerance of the solvers."""
 import pathlib
 import shlex
 
-from couplet.command.run import shown_run
+from couplet.command.run import RANKS_HELP, ranks_of, shown_run
 from couplet.runs import folder as folders
 from couplet.runs.case import Case, expect
 from couplet.runs.job import Job
@@ -12,6 +12,7 @@ from couplet.runs.job import Job
 
 def declare(parser):
     parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER", help="the output folder of the run")
+    parser.add_argument("-n", "--ranks", action="append", default=[], metavar="NAME=N", help=f"other ranks than before: {RANKS_HELP}")
     parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="a further change, such as simulation.end-time='10 s'")
     parser.add_argument("--print", action="store_true", help="prints the launch line only")
 
@@ -29,7 +30,8 @@ def run(arguments):
     expect(record, f"{arguments.folder}: was not started by couplet run (no {folders.RECORD}). Continue with: couplet run CASE --restart {arguments.folder / 'checkpoints'}")
     expect(folders.checkpoint(folder), f"{arguments.folder}: no complete checkpoint to continue from; `simulation.checkpoint.interval` writes them. Start again: couplet run {shlex.quote(str(record['case']))}")
     flags = [*without_restart(record["flags"]), "--restart", str(folder / "checkpoints" / folders.checkpoint(folder))]
-    job = Job(Case(record["case"], pathlib.Path(record["bin"]).parent), record["ranks"], [*record["sets"], f"simulation.output.folder={folder}", *arguments.set],
+    case = Case(record["case"], pathlib.Path(record["bin"]).parent)
+    job = Job(case, {**record["ranks"], **ranks_of(arguments.ranks, case)}, [*record["sets"], f"simulation.output.folder={folder}", *arguments.set],
               flags, record["alone"], record["with"])
     if arguments.print:
         print(job.line())

@@ -11,12 +11,13 @@ from couplet.runs import folder as folders
 from couplet.runs.case import Case, expect
 from couplet.runs.job import Job, output_of
 
+RANKS_HELP = "ranks of participants (fluid=4,solid=2), or one number for all together, divided by measured or expected work"
 FLAGS = {"strict": "fail on warnings about the run's own result; --strict=effects: also about neglected effects"}
 
 
 def declare(parser):
     parser.add_argument("case", type=pathlib.Path, metavar="CASE", help="a YAML file, or a folder with case.yaml")
-    parser.add_argument("-n", "--ranks", action="append", default=[], metavar="NAME=N", help="ranks of participants (fluid=4,solid=2), or one number for all together, divided by measured or expected work")
+    parser.add_argument("-n", "--ranks", action="append", default=[], metavar="NAME=N", help=RANKS_HELP)
     parser.add_argument("--participant", metavar="NAME", help="this participant alone, without the others")
     parser.add_argument("--with", dest="played_by", action="append", default=[], metavar="NAME=COMMAND", help="the command of an external participant")
     parser.add_argument("--separate", action="append", default=[], metavar="NAME[=tcp:INTERFACE]", help="this external participant is launched separately, with COUPLET_JOIN in its environment; it is reached on this machine, or on one network interface (tcp6: by IPv6)")

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "common/elasticity/elasticity.hpp"
+
+namespace couplet::elastic {
+
+/// Values of nodes of an operator, `dim` each, as fields of its mesh, zeros where there is no node: for files that do not depend
+/// on the ranks.
+struct NodeFields {
+  std::vector<double> inner;  ///< unknowns: per owned cell; known columns: per local point
+  std::vector<double> faces;  ///< per boundary face of owned cells
+};
+
+namespace detail {
+
+inline NodeFields empty_fields(const mesh::Mesh& mesh, Index inner) {
+  const auto dim = std::size_t(mesh.dim);
+  return {std::vector<double>(std::size_t(inner) * dim, 0.),
+          std::vector<double>(std::size_t(mesh.boundary.n_owned()) * dim, 0.)};
+}
+
+/// The `dim` values of entry `from` of one to entry `to` of the other.
+inline void copy_entry(const mesh::Mesh& mesh, std::span<const double> values, std::size_t from,
+                       std::span<double> others, std::size_t to) {
+  const auto dim = std::size_t(mesh.dim);
+  std::copy_n(values.begin() + std::ptrdiff_t(from * dim), dim, others.begin() + std::ptrdiff_t(to * dim));
+}
+
+}  // namespace detail
+
+inline NodeFields fields_of_unknowns(const mesh::Mesh& mesh, const ElasticOperator& rows,
+                                     std::span<const double> unknowns) {
+  NodeFields fields = detail::empty_fields(mesh, mesh.cells.n_owned());
+  std::copy_n(unknowns.begin(), fields.inner.size(), fields.inner.begin());
+  std::size_t node = std::size_t(mesh.cells.n_owned());
+  for (const Index f : rows.unknown_faces())
+    detail::copy_entry(mesh, unknowns, node++, fields.faces, std::size_t(f - mesh.n_interior));
+  return fields;
+}
+
+inline std::vector<double> unknowns_of_fields(const mesh::Mesh& mesh, const ElasticOperator& rows,
+                                              const NodeFields& fields) {
+  std::vector<double> unknowns(fields.inner);
+  unknowns.resize(rows.n_unknowns());
+  std::size_t node = std::size_t(mesh.cells.n_owned());
+  for (const Index f : rows.unknown_faces())
+    detail::copy_entry(mesh, fields.faces, std::size_t(f - mesh.n_interior), unknowns, node++);
+  return unknowns;
+}
+
+inline NodeFields fields_of_known(const mesh::Mesh& mesh, const ElasticOperator& rows,
+                                  std::span<const double> known) {
+  NodeFields fields = detail::empty_fields(mesh, mesh.points.n_local());
+  std::size_t column = 0;
+  for (const Index v : rows.constraints().points())
+    detail::copy_entry(mesh, known, column++, fields.inner, std::size_t(v));
+  for (const Index f : rows.known_faces())
+    detail::copy_entry(mesh, known, column++, fields.faces, std::size_t(f - mesh.n_interior));
+  return fields;
+}
+
+inline std::vector<double> known_of_fields(const mesh::Mesh& mesh, const ElasticOperator& rows,
+                                           const NodeFields& fields) {
+  std::vector<double> known(rows.n_known() * std::size_t(mesh.dim));
+  std::size_t column = 0;
+  for (const Index v : rows.constraints().points())
+    detail::copy_entry(mesh, fields.inner, std::size_t(v), known, column++);
+  for (const Index f : rows.known_faces())
+    detail::copy_entry(mesh, fields.faces, std::size_t(f - mesh.n_interior), known, column++);
+  return known;
+}
+
+}  // namespace couplet::elastic

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/io/hdf5_reader.hpp"
+
+namespace couplet::io {
+
+constexpr const char* checkpoint_format = "couplet checkpoint";
+// 3: errors of steps, net heat of a tank's report, what the pressure preconditioner was made from. 4: order of the errors.
+// 5: fields by the numbers of cells, points and faces, for any number of ranks.
+constexpr int checkpoint_version = 5;
+
+// arrays/NAME with layout/NAME: values rank by rank; count and checksum of each rank's.
+// fields/NAME with checks/NAME: rows by the entries' numbers; rows, values per row, checksum over all ranks' rows.
+// copies/NAME (an array): position and value of a rank's entries that differ from their owner's.
+inline std::string array_path(const std::string& name) { return "arrays/" + name; }
+inline std::string layout_path(const std::string& name) { return "layout/" + name; }
+inline std::string field_path(const std::string& name) { return "fields/" + name; }
+inline std::string check_path(const std::string& name) { return "checks/" + name; }
+inline std::string scalar_path(const std::string& name) { return "scalars/" + name; }
+inline std::string copies_of(const std::string& name) { return "copies/" + name; }
+constexpr const char* mesh_table = "mesh";
+constexpr const char* shares_table = "shares";  // of each rank: mesh::share_of_rank
+
+inline std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+}
+
+/// FNV-1a over the bit patterns: cheap, and any flipped bit of an array is noticed when it is read.
+inline std::int64_t checksum(std::span<const double> values) {
+  std::uint64_t hash = 14695981039346656037ull;
+  for (const double value : values) {
+    hash = (hash ^ std::bit_cast<std::uint64_t>(value)) * 1099511628211ull;
+    hash ^= hash >> 29;
+  }
+  return std::bit_cast<std::int64_t>(hash);
+}
+
+/// Of values that begin at place `first` of a whole: the sum of it over all parts does not depend on the parts.
+inline std::uint64_t part_of_checksum(std::span<const double> values, std::uint64_t first) {
+  std::uint64_t sum = 0;
+  for (const double value : values) {
+    std::uint64_t hash = std::bit_cast<std::uint64_t>(value) ^ (++first * 0x9e3779b97f4a7c15ull);
+    hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9ull;
+    hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebull;
+    sum += hash ^ (hash >> 31);
+  }
+  return sum;
+}
+
+/// Parts of a checkpoint on file, for its reader. What does not fit together is refused: Error, on this rank alone.
+hdf5::Reader open_checkpoint(const std::filesystem::path& file);
+int ranks_that_wrote(const hdf5::Reader& in);
+/// Values that each rank wrote and their checksums, from rank 0 on.
+std::vector<std::int64_t> layout_of_array(const hdf5::Reader& in, const std::string& name, int ranks);
+
+struct FieldCheck {
+  std::uint64_t rows = 0;
+  std::size_t width = 0;
+  std::int64_t checksum = 0;
+};
+FieldCheck check_of_field(const hdf5::Reader& in, const std::string& name);
+double scalar_on_file(const hdf5::Reader& in, const std::string& name);
+/// The file as a whole, in a process of its own. Its digest is compared before HDF5 sees it.
+void examine_checkpoint(const std::filesystem::path& file);
+
+}  // namespace couplet::io
