@@ -90,7 +90,8 @@ std::vector<coupling::Exchange> Coupler::pass(std::vector<coupling::Exchange> kn
     try {
       answer(i, given[i], move_mesh);
     } catch (const SolveFailure& failure) {
-      failures += (failures.empty() ? "" : " ") + std::string(failure.what());
+      if (!failures.empty()) failures += ' ';
+      failures += failure.what();
       hopeless = hopeless || dynamic_cast<const SchemeFailure*>(&failure);
     }
   }

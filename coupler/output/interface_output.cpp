@@ -48,7 +48,7 @@ std::vector<InterfaceFiles> kept(const fs::path& list, double restart_time) {
     const std::string end = fmt::format(".{}.vtp", quoted(part + 6));
     if (!t || !name.ends_with(end))
       throw Error("{}: this line is damaged. Move the list away; the files it names remain.", in.place());
-    if (*t > restart_time * (1 + 1e-12)) continue;
+    if (*t > restart_time * (1 + 1e-9)) continue;
     const std::string_view stem = name.substr(0, name.size() - end.size());
     if (!files.empty() && files.back().stem == stem)
       ++files.back().parts;

@@ -24,7 +24,7 @@ CASES = {  # folder, file, step [s], texts in its meshes, further keys
              + ["participants.solid.mesh-parameters={nx: 24, ny: 3}"]),
 }
 # Of what the last state holds, what users look at: by the largest value of the field.
-FIELDS = {"fluid": ("velocity", "pressure-0", "flux"), "solid": ("cell-displacement", "cell-velocity"), "mover": ("displacement",)}
+FIELDS = {"coupler": ("now", "old"), "fluid": ("velocity", "pressure-0", "flux"), "solid": ("cell-displacement", "cell-velocity"), "mover": ("displacement",)}
 STEPS = 6
 
 

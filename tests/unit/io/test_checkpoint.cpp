@@ -13,6 +13,7 @@
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
+#include "common/io/hdf5.hpp"
 #include "tests/support/world.hpp"
 #include "tests/unit/io/scratch.hpp"
 
@@ -141,6 +142,21 @@ TEST(Checkpoint, other_files_are_not_taken_for_checkpoints) {
   const auto file = scratch / "a.h5";
   damage(file, [](const auto& f) { std::ofstream(f) << "hello"; });
   EXPECT_THAT(error_of([&] { CheckpointReader(world, file); }), HasSubstr("it is not an HDF5 file"));
+}
+
+TEST(Checkpoint, an_earlier_version_is_refused_with_file_and_both_versions) {
+  const Scratch scratch;
+  write_one(scratch / "old.h5", awkward_values());
+  damage(scratch / "old.h5", [](const std::filesystem::path& path) {
+    const hdf5::Handle file = hdf5::open_file_to_write(MPI_COMM_SELF, path);
+    const hdf5::Handle version(H5Aopen(file, "version", H5P_DEFAULT), H5Aclose);
+    const double before = 4;
+    ASSERT_GE(H5Awrite(version, H5T_NATIVE_DOUBLE, &before), 0);
+  });
+  EXPECT_THAT(error_of([&] { CheckpointReader(world, scratch / "old.h5"); }),
+              ::testing::AllOf(HasSubstr("old.h5' has format version 4; this program reads version 5"),
+                               HasSubstr("with the release that wrote it")));
+  EXPECT_THAT(problem_of_checkpoint(scratch / "old.h5"), HasSubstr("format version 4"));
 }
 
 TEST(Checkpoint, values_that_are_each_ranks_own_are_refused_on_another_number_of_ranks_with_both_numbers) {
