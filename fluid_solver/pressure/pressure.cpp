@@ -125,17 +125,21 @@ void PressureEquation<D>::save(io::CheckpointWriter& file) const {
 template <int D>
 void PressureEquation<D>::load(io::CheckpointReader& file) {
   if (fixed_) return;
-  linalg::PreconditionerMemory memory;
-  memory.is_due = file.read_scalar("pressure-preconditioner-due") != 0;
-  memory.is_single = file.read_scalar("pressure-preconditioner-single") != 0;
-  memory.most_iterations = static_cast<int>(file.read_count("pressure-preconditioner-iterations", 1000000));
-  const std::size_t coefficients = std::size_t(mesh_.cells.n_owned()) + std::size_t(mesh_.n_interior);
-  std::vector<double> saved = file.read_or_none(mesh::Entries::owned_cells, "pressure-preconditioner", 1);
-  const std::vector<double> faces =
-      file.read_or_none(mesh::Entries::interior_faces, "pressure-preconditioner-faces", 1);
-  saved.insert(saved.end(), faces.begin(), faces.end());
-  if (!memory.is_due && saved.size() != coefficients)
-    throw Error("The checkpoint's preconditioner of the pressure is damaged. Use an earlier one.");
+  // Other ranks have another kind of preconditioner, or another one of the same kind: it is made anew.
+  linalg::PreconditionerMemory memory{true, solver_->memory().is_single, 0};
+  std::vector<double> saved;
+  if (file.on_same_ranks()) {
+    memory.is_due = file.read_scalar("pressure-preconditioner-due") != 0;
+    memory.is_single = file.read_scalar("pressure-preconditioner-single") != 0;
+    memory.most_iterations = static_cast<int>(file.read_count("pressure-preconditioner-iterations", 1000000));
+    saved = file.read_or_none(mesh::Entries::owned_cells, "pressure-preconditioner", 1);
+    const std::vector<double> faces =
+        file.read_or_none(mesh::Entries::interior_faces, "pressure-preconditioner-faces", 1);
+    saved.insert(saved.end(), faces.begin(), faces.end());
+    const std::size_t coefficients = std::size_t(mesh_.cells.n_owned()) + std::size_t(mesh_.n_interior);
+    if (!memory.is_due && saved.size() != coefficients)
+      throw Error("The checkpoint's preconditioner of the pressure is damaged. Use an earlier one.");
+  }
   const bool is_here = solver_->memory() == memory && *now_.made_from == saved;
   if (parallel::any(mesh_.comm, !is_here)) {
     if (!memory.is_due) fill(saved);

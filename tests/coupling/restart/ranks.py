@@ -51,7 +51,7 @@ class Case:
             words += ["--restart", str(restart), "--restart-with-changes"] if restart else []
         result = subprocess.run(words, cwd=self.here, capture_output=True, text=True, timeout=900)
         if result.returncode:
-            sys.exit(f"{out}: exit code {result.returncode}\n{result.stdout[-3000:]}\n{result.stderr[-2000:]}")
+            sys.exit(f"{out}: exit code {result.returncode}\n{result.stdout[-3000:]}\n{result.stderr[-6000:]}")
         return self.here / out / "checkpoints" / f"step-{steps:08d}"
 
 
