@@ -229,12 +229,10 @@ void ThermalStrain::save(io::CheckpointWriter& file) const {
     if (errors_) errors_->save(file);
   }
   if (given_) {
-    std::vector<double> faces;
-    if (parallel::any(mesh_->comm, !given_accepted_.empty())) {
-      faces.assign(mesh_->boundary.n_owned(), 0.);
-      for (std::size_t i = 0; i < interface_faces_.size(); ++i)
-        faces[interface_faces_[i]] = given_accepted_[i];
-    }
+    const bool is_given = parallel::any(mesh_->comm, !given_accepted_.empty());
+    std::vector<double> faces(is_given ? std::size_t(mesh_->boundary.n_owned()) : 0);
+    for (std::size_t i = 0; is_given && i < interface_faces_.size(); ++i)
+      faces[interface_faces_[i]] = given_accepted_[i];
     file.write(mesh::Entries::owned_boundary, "interface-temperature", faces);
   }
   if (coupled_) {
