@@ -42,16 +42,17 @@ class Case:
             mesh.write_text(text)
 
     def run(self, out, ranks, steps, restart=None):
-        """To the end of `steps`, with a checkpoint there; gives its folder."""
+        """To the end of `steps`, with a checkpoint there, of which this gives the folder. Fields are written there by all runs: what a
+        participant learns from them is in its state."""
         words = ["mpirun", "--oversubscribe"]
         for i, program in enumerate(("coupler", "fluid_solver", "solid_solver", "mesh_mover")):
             words += [":"] * (i > 0) + ["-n", str(ranks), str(self.bin / program), self.file]
             words += [f"--set={s}" for s in (*self.sets, f"simulation.end-time={steps * self.step}", "simulation.checkpoint.interval=0",
-                                            f"simulation.output={{folder: {out}, interval: 0}}")]
+                                            f"simulation.output={{folder: {out}, interval: {STEPS // 2 * self.step}}}")]
             words += ["--restart", str(restart), "--restart-with-changes"] if restart else []
         result = subprocess.run(words, cwd=self.here, capture_output=True, text=True, timeout=900)
         if result.returncode:
-            sys.exit(f"{out}: exit code {result.returncode}\n{result.stdout[-3000:]}\n{result.stderr[-6000:]}")
+            sys.exit(f"{out}: exit code {result.returncode}\n{result.stdout[-3000:]}\n{result.stderr[-2000:]}")
         return self.here / out / "checkpoints" / f"step-{steps:08d}"
 
 
