@@ -190,6 +190,7 @@ std::string FiniteStrain::where_worst() const {
 
 /// u + s du with the largest s of 1, 1/2, ... that leaves det F positive and the residual below `most`.
 bool FiniteStrain::search(const Load& load, std::span<double> u, NewtonIterate& now, double most) {
+  if (load.mass_factor == 0 && iterates_.size() == 1) jump_.predict(u, du_);
   for (double s = 1; s >= shortest; s *= 0.5) {
     for (std::size_t i = 0; i < u.size(); ++i) trial_[i] = u[i] + s * du_[i];
     kernel_->set_pressure_fraction(is_carried_ ? s : 0);

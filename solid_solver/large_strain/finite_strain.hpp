@@ -11,6 +11,7 @@
 #include "common/linalg/linear_map.hpp"
 #include "solid_solver/large_strain/large_strain.hpp"
 #include "solid_solver/large_strain/load_path.hpp"
+#include "solid_solver/large_strain/step_jump.hpp"
 #include "solid_solver/method/tangent_solver.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
@@ -72,6 +73,8 @@ class FiniteStrain final : public LargeStrain {
   void follow_known(const Load& load, TangentSolver& solver, std::span<double> u);
   double scale_of(const Load& load, std::span<const double> u, double residual);
   linalg::SolveStatistics iterate(const Load& load, std::span<double> u);
+  std::vector<double> backward_motion(const Load& load, std::span<const double> before,
+                                      std::span<const double> u);
   struct PathSearch;
   linalg::SolveStatistics follow_path(const Load& load, std::span<double> u);
   void scale_loads(PathSearch& path, double factor);
@@ -97,6 +100,7 @@ class FiniteStrain final : public LargeStrain {
   std::unique_ptr<elastic::FiniteKernel> kernel_;
   std::vector<std::unique_ptr<TangentSolver>> solvers_;  // by size of the inertia, latest first
   std::vector<double> r_, trial_, du_;
+  StepJump jump_;
   std::optional<LoadPath> path_;        // none: the loads follow the time
   std::vector<double> whole_pressure_;  // at load factor 1
   std::vector<NewtonIterate> iterates_;

@@ -16,8 +16,13 @@ namespace couplet::solid {
 linalg::SolveStatistics FiniteStrain::solve(const Load& load, std::span<double> u) {
   if (path_) return follow_path(load, u);
   if (load.is_conserving) kernel_->set_start(load.accepted, load.accepted_known);
+  const bool is_static = load.mass_factor == 0;
+  if (is_static) jump_.start(u, mesh_.dim);
   try {
     const linalg::SolveStatistics statistics = iterate(load, u);
+    if (is_static && statistics.iterations > 0)
+      jump_.end(mesh_.comm, u,
+                [&](std::span<const double> before) { return backward_motion(load, before, u); });
     kernel_->forget_start();
     return statistics;
   } catch (const SolveFailure& failure) {

@@ -19,6 +19,8 @@ constexpr int most_looks = 2000, most_refined = 12;
 constexpr double nearly_lost = 0.5;
 // A negative stiffness of this part of the stiffest motion's may be rounding.
 constexpr double spectral_rounding = 1e-14;
+// Linear solve of a motion whose size alone is used.
+constexpr double roughly = 1e-4;
 // Of x . K y against y . K x.
 constexpr double symmetric_part = 1e-7;
 
@@ -56,6 +58,26 @@ SoftMotion FiniteStrain::lowest_stiffness(std::span<const double> unknowns, std:
   solver.forget_factors();
   if (least < 0 && -least <= spectral_rounding * stiffest_over(softest.x, elastic)) least = 0;
   return {least, std::move(softest.x)};
+}
+
+/// K(u)^-1 of the load that led from the equilibrium `before` to `u`: what `before` leaves of the new load, as it was in equilibrium with
+/// the old one.
+std::vector<double> FiniteStrain::backward_motion(const Load& load, std::span<const double> before,
+                                                  std::span<const double> u) {
+  TangentSolver& solver = solver_for(0, {});
+  const std::span<const double> known_before = load.before.empty() ? load.known : load.before;
+  std::vector<double> change(load.known.begin(), load.known.end()), motion(u.size());
+  for (std::size_t i = 0; i < change.size(); ++i) change[i] -= known_before[i];
+  double ratio = 1;
+  residual({load.rows, known_before, {}, 0, false}, before, ratio);
+  kernel_->linearise(u, load.known, 0, trial_);
+  solver.forget_factors();
+  solver.follow(true);
+  const std::vector<double> still(u.size(), 0);
+  kernel_->apply_tangent(still, change, 0, trial_);
+  for (std::size_t i = 0; i < r_.size(); ++i) r_[i] -= trial_[i];
+  solver.solve(r_, motion, roughly, most_linear_);
+  return motion;
 }
 
 /// x . x of the stiffest motion there may be over that of `x`, each per x . K x, by a motion that turns round from row to row.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arc length: a shallow arch against its closed form, under dead loads, pressure and prescribed displacement; restart; refusals.
+// Arc length: a shallow arch against its closed form, under dead loads, pressure and prescribed displacement; restart; refusals;
+// the jump past the limit point without arc length.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "common/base/error.hpp"
 #include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/large_strain/load_path.hpp"
@@ -124,6 +126,37 @@ TEST(ArcLength, warns_of_a_last_equilibrium_that_is_unstable_and_only_then) {
   EXPECT_EQ(warnings(), 0);
   for (int i = 0; i < 40 && height(*solid) > 1; ++i) step(*solid, 1);
   EXPECT_EQ(warnings(), 1);
+}
+
+/// What ends a run of the arch whose load follows the time, limit load times `factors`, one step each; empty: nothing.
+std::string failure_of(const std::vector<double>& factors) {
+  SolidParameters p = hinged();
+  p.load_stepping = {};
+  p.boundaries["ymax"] =
+      boundary(Type::traction, {"0", fmt::format("{}*t*sin(pi*x/{})", -limit, span_length)});
+  const auto solid = make_solid(arch(30), p);
+  double time = 0;
+  try {
+    for (const double factor : factors) {
+      step(*solid, factor - time);
+      time = factor;
+    }
+  } catch (const SolveFailure& failure) {
+    return failure.what();
+  }
+  EXPECT_GT(height(*solid), 2 - 0.1);
+  return "";
+}
+
+TEST(ArcLength, without_it_a_step_that_jumps_past_the_limit_point_fails_and_steps_up_to_it_do_not) {
+  using ::testing::HasSubstr;
+  // Newton's method converges in all four, to the snapped arch.
+  EXPECT_THAT(failure_of({1.3}), HasSubstr("jumped past a limit point"));
+  EXPECT_THAT(failure_of({4}), HasSubstr("jumped past a limit point"));
+  EXPECT_THAT(failure_of({0.8, 1.4}), HasSubstr("jumped past a limit point"));
+  EXPECT_THAT(failure_of({0.5, 2.5}), HasSubstr("arc-length"));
+  EXPECT_EQ(failure_of({0.95}), "");
+  EXPECT_EQ(failure_of({0.3, 0.6, 0.9, 0.97}), "");
 }
 
 TEST(ArcLength, scales_a_pressure_that_follows_the_surface) {
