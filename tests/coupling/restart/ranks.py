@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """A coupled run is stopped in its middle and goes on on other numbers of ranks, and from there back: its last state is that of the run
-on one rank within the tolerances of its solvers, and the same bits where the number stays. Files hold fields by the numbers of cells,
+on one rank within the tolerances of its solvers (the coupling's, or what runs on those ranks that were never stopped are apart by), and the same bits where the number stays. Files hold fields by the numbers of cells,
 points and faces, so that those of different ranks are compared as they are. Coarse meshes.
 Usage: ranks.py CASE CONFIGS BIN [--ranks 1,2,3]      CASE: flap, tube, fsi1"""
 import pathlib
@@ -104,10 +104,10 @@ def main():
             off, field = apart(whole[one], ended)
             ranks, _ = apart(whole[one], whole[other])
             print(f"{name}: {one} to {other}: apart by {off:.2g} ({field}); runs that never changed their ranks by {ranks:.2g}", flush=True)
-            failed = failed or not off <= TOLERANCE
+            failed = failed or not off <= max(TOLERANCE, ranks)
     sys.exit(failed)
 
 
-TOLERANCE = 1e-5  # of the coupling
+TOLERANCE = 1e-5  # of the coupling, for displacements; runs that were never stopped show what it leaves to the velocities
 if __name__ == "__main__":
     main()
