@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """A coupled run is stopped in its middle and goes on on other numbers of ranks, and from there back: its last state is that of the run
-on one rank within the tolerances of its solvers (the coupling's, or what runs on those ranks that were never stopped are apart by), and the same bits where the number stays. Files hold fields by the numbers of cells,
-points and faces, so that those of different ranks are compared as they are. Coarse meshes.
+on one rank within the tolerances of its solvers (the coupling's, or what runs on those ranks that were never stopped are apart by), and
+the same bits where the number stays. Files hold fields by the numbers of cells, points and faces, so that those of different ranks are
+compared as they are. Coarse meshes.
 Usage: ranks.py CASE CONFIGS BIN [--ranks 1,2,3]      CASE: flap, tube, fsi1"""
 import pathlib
 import shutil
