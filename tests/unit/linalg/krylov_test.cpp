@@ -132,13 +132,18 @@ TEST(ResidualProjection, continues_from_its_values_and_forgets_those_of_another_
     solver.solve(moving_load(n, k), x, {1e-9, 500}, &one);
     one.accept();
   }
-  other.set_values(one.values(), convect);
+  const auto saved = [&] {
+    std::vector<std::vector<double>> all;
+    for (const std::span<const double> v : one.vectors()) all.emplace_back(v.begin(), v.end());
+    return all;
+  };
+  other.set_values(one.products(), saved(), convect);
   std::vector<double> x(n, 0.0), y(n, 0.0), z(n, 0.0), fresh(n, 0.0);
   const std::vector<double> b = moving_load(n, 5);
   solver.solve(b, x, {1e-9, 500}, &one);
   solver.solve(b, y, {1e-9, 500}, &other);
   EXPECT_EQ(x, y);
-  foreign.set_values(one.values(), identity);
+  foreign.set_values(one.products(), saved(), identity);
   solver.solve(b, z, {1e-9, 500}, &foreign);
   solver.solve(b, fresh, {1e-9, 500});
   EXPECT_EQ(z, fresh);
