@@ -169,6 +169,7 @@ void FiniteStrain::save(io::CheckpointWriter& file) const {
 
 void FiniteStrain::load(io::CheckpointReader& file, std::span<const double>, std::span<const double>) {
   if (path_) path_->load(file, rows_);
+  is_restored_ = true;
 }
 
 }  // namespace couplet::solid

@@ -101,6 +101,7 @@ class FiniteStrain final : public LargeStrain {
   std::vector<std::unique_ptr<TangentSolver>> solvers_;  // by size of the inertia, latest first
   std::vector<double> r_, trial_, du_;
   StepJump jump_;
+  bool is_restored_ = false;            // the expansion that comes next is that of the equilibrium on file
   std::optional<LoadPath> path_;        // none: the loads follow the time
   std::vector<double> whole_pressure_;  // at load factor 1
   std::vector<NewtonIterate> iterates_;

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/base/error.hpp"
+#include "common/mesh/extent.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/large_strain/finite_strain.hpp"
 #include "solid_solver/large_strain/folded_support.hpp"
@@ -21,8 +23,9 @@ linalg::SolveStatistics FiniteStrain::solve(const Load& load, std::span<double> 
   try {
     const linalg::SolveStatistics statistics = iterate(load, u);
     if (is_static && statistics.iterations > 0)
-      jump_.end(mesh_.comm, u,
+      jump_.end(mesh_.comm, u, mesh::extent_of(mesh_, geometry_).diagonal(),
                 [&](std::span<const double> before) { return backward_motion(load, before, u); });
+    if (is_static) jump_.settle();
     kernel_->forget_start();
     return statistics;
   } catch (const SolveFailure& failure) {
@@ -101,6 +104,8 @@ void FiniteStrain::set_expansion(std::vector<double> of_faces) {
         "thermal-expansion: a thermal strain of -1 or less leaves nothing of the body; check "
         "'material.expansion' and the temperatures.");
   kernel_->set_stretch(of_faces);
+  jump_.set_stretch(std::move(of_faces));
+  if (std::exchange(is_restored_, false)) jump_.settle();
 }
 
 }  // namespace couplet::solid

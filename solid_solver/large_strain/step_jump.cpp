@@ -26,9 +26,18 @@ void StepJump::predict(std::span<const double> u, std::span<const double> correc
   for (std::size_t i = 0; i < u.size(); ++i) predicted_[i] = u[i] - before_[i] + correction[i];
 }
 
-/// By how much a node moves more than by the larger of both predictions, over the largest motion of a node; `later` may be empty.
-double StepJump::beyond(MPI_Comm comm, std::span<const double> u, std::span<const double> later) const {
-  std::array<double, 2> found{};
+/// This rank's.
+double StepJump::largest_growth(double length) const {
+  double largest = 0;
+  for (std::size_t i = 0; i < stretch_.size(); ++i)
+    largest = std::max(largest, std::abs(stretch_[i] - (settled_.empty() ? 1 : settled_[i])));
+  return largest * length;
+}
+
+/// By how much a node moves more than by the larger of both predictions and the growth, over the largest motion of a node; `later` may be empty.
+double StepJump::beyond(MPI_Comm comm, std::span<const double> u, std::span<const double> later,
+                        double growth) const {
+  std::array<double, 3> found{0, 0, growth};
   for (std::size_t i = 0; i + dim_ <= u.size(); i += dim_) {
     double motion = 0, first = 0, last = 0;
     for (std::size_t k = i; k < i + dim_; ++k) {
@@ -39,19 +48,20 @@ double StepJump::beyond(MPI_Comm comm, std::span<const double> u, std::span<cons
     found[0] = std::max(found[0], std::sqrt(motion) - std::sqrt(std::max(first, last)));
     found[1] = std::max(found[1], std::sqrt(motion));
   }
-  MPI_Allreduce(MPI_IN_PLACE, found.data(), 2, MPI_DOUBLE, MPI_MAX, comm);
-  return found[1] > 0 ? found[0] / found[1] : 0;
+  MPI_Allreduce(MPI_IN_PLACE, found.data(), 3, MPI_DOUBLE, MPI_MAX, comm);
+  return found[1] > 0 ? (found[0] - found[2]) / found[1] : 0;
 }
 
-void StepJump::end(MPI_Comm comm, std::span<const double> u, const Backward& backward) const {
-  if (beyond(comm, u, {}) <= limit) return;
+void StepJump::end(MPI_Comm comm, std::span<const double> u, double length, const Backward& backward) {
+  const double growth = largest_growth(length);
+  if (beyond(comm, u, {}, growth) <= limit) return;
   std::vector<double> later;
   try {
     later = backward(before_);
   } catch (const SolveFailure&) {
     return;  // an indefinite tangent: the least stiffness shows it
   }
-  if (const double found = beyond(comm, u, later); found > limit)
+  if (const double found = beyond(comm, u, later, growth); found > limit)
     throw SolveFailure(
         "The load step moved some of the body further than its stiffness before and after it gives, by {:.2g} of the "
         "largest motion (limit {:g}): it jumped past a limit point of the load, or past soft states that a shorter step "
