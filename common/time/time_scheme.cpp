@@ -78,13 +78,15 @@ std::vector<Stage> bathe(double dt) {
 
 }  // namespace
 
-void declare(config::Section& s, TimeSchemeParameters& p) {
+void declare(config::Section& s, TimeSchemeParameters& p, const std::string& automatic) {
   auto words = first_order_words;
+  if (!automatic.empty()) words.emplace(words.begin(), "auto", TimeScheme::automatic);
   words.emplace_back("generalised-alpha", TimeScheme::generalised_alpha);
   s.choice("type", p.type, words)
       .doc(
           "time integration scheme; all but euler are second order, all but trapezoidal damp the highest "
-          "modes");
+          "modes" +
+          automatic);
   s.value("spectral-radius", p.spectral_radius)
       .range(0, 1)
       .doc(
@@ -100,6 +102,8 @@ std::vector<Stage> second_order_stages(const TimeSchemeParameters& scheme, doubl
                                        const StepHistory& history) {
   const bool first = history.steps == 0;
   switch (scheme.type) {
+    case TimeScheme::automatic:
+      break;
     case TimeScheme::euler:
       return {euler(dt)};
     case TimeScheme::three_point:
@@ -111,7 +115,7 @@ std::vector<Stage> second_order_stages(const TimeSchemeParameters& scheme, doubl
     case TimeScheme::generalised_alpha:
       return {first ? trapezoidal(dt) : generalised_alpha(dt, scheme.spectral_radius)};
   }
-  throw std::logic_error("unknown time scheme");
+  throw std::logic_error("no time scheme is chosen");
 }
 
 std::vector<Stage> first_order_stages(const TimeSchemeParameters& scheme, double dt,
@@ -126,6 +130,8 @@ bool uses_acceleration(TimeScheme scheme) { return scheme == TimeScheme::general
 
 LocalError local_error(const TimeSchemeParameters& scheme) {
   switch (scheme.type) {
+    case TimeScheme::automatic:
+      break;
     case TimeScheme::euler:
       return {1, 0.5};
     case TimeScheme::three_point:
@@ -137,13 +143,13 @@ LocalError local_error(const TimeSchemeParameters& scheme) {
     case TimeScheme::generalised_alpha:
       return {2, Alpha(scheme.spectral_radius).beta - 1. / 6};
   }
-  throw std::logic_error("unknown time scheme");
+  throw std::logic_error("no time scheme is chosen");
 }
 
 std::string name(TimeScheme scheme) {
   for (const auto& [word, value] : first_order_words)
     if (value == scheme) return word;
-  return "generalised-alpha";
+  return scheme == TimeScheme::automatic ? "auto" : "generalised-alpha";
 }
 
 }  // namespace couplet::time

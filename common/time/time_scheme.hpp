@@ -8,15 +8,17 @@
 
 namespace couplet::time {
 
-enum class TimeScheme { euler, three_point, trapezoidal, bathe, generalised_alpha };
+/// automatic: chosen by the equation that is integrated, which then passes one of the others to the functions below.
+enum class TimeScheme { automatic, euler, three_point, trapezoidal, bathe, generalised_alpha };
 
 struct TimeSchemeParameters {
   TimeScheme type = TimeScheme::trapezoidal;
   double spectral_radius = 0.8;  // of generalised-alpha: what is left of the highest modes after a step
 };
 
-/// The keys of `time-scheme` of an equation with second time derivatives.
-void declare(config::Section& section, TimeSchemeParameters& parameters);
+/// The keys of `time-scheme` of an equation with second time derivatives. `automatic`: what `auto` chooses, for the document; empty: no such
+/// word.
+void declare(config::Section& section, TimeSchemeParameters& parameters, const std::string& automatic = "");
 /// The same for first derivatives: all schemes but generalised-alpha.
 void declare_first_order(config::Section& section, TimeSchemeParameters& parameters);
 

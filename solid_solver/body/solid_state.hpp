@@ -22,8 +22,9 @@ struct SolidState {
   std::vector<double> cell_a;                          ///< generalised-alpha alone
   std::vector<double> cell_u_old, cell_v_old;          ///< a step earlier; three-point, Adams's predictor
   std::vector<double> face_a, face_u_old, face_v_old;  ///< the same of faces, where they have inertia
-  double stage_dt = 0;                                 ///< of the last stage
-  double offset_lag = 0;                               ///< `offset` lives so long before `time`
+  std::vector<double> interface;    ///< partner's forces of the last step; generalised-alpha, three-point
+  double stage_dt = 0;              ///< of the last stage
+  double offset_lag = 0;            ///< `offset` lives so long before `time`
   std::vector<double> offset;       ///< u_B - u_P of the traction faces where the last stage was solved
   std::vector<double> offset_rate;  ///< v_B - v_P at the middle of the last stage
   SolidEnergies energies;           ///< if they are wanted

@@ -75,7 +75,7 @@ effects::EffectChoice inertia(const SolidParameters& p, const mesh::MeshFacts& m
     return choose(true, "the partner's forces vary in time");
   if (!p.initial_velocity.empty()) return choose(true, "'initial-velocity' is given");
   if (p.damping) return choose(true, "'damping' is given");
-  if (p.time_scheme.type != time::TimeScheme::trapezoidal) return choose(true, "'time-scheme' is given");
+  if (p.time_scheme.type != time::TimeScheme::automatic) return choose(true, "'time-scheme' is given");
   const double change = time_of_change(loads_of(p), 0.5 * mesh.size, scene.end_time);
   if (std::isinf(change)) return choose(false, "no load varies in time");
   const double period = lowest_period(p, mesh);

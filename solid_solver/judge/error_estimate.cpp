@@ -25,7 +25,7 @@ constexpr double most_bound = 0.5;
 
 SolidErrorEstimate::SolidErrorEstimate(const SolidBody& body, const SolidStepper& stepper,
                                        const SolidFields& fields, const SolidJudge& judge)
-    : body_(body), stepper_(stepper), fields_(fields), judge_(judge), steps_(body.parameters().time_scheme) {
+    : body_(body), stepper_(stepper), fields_(fields), judge_(judge), steps_(scheme_of(body.parameters())) {
   const mesh::Geometry& geometry = body.geometry();
   const mesh::Mesh& mesh = body.mesh();
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume_ += geometry.volume[c];

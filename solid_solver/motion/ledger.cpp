@@ -203,7 +203,7 @@ void SolidLedger::add_finite_work(const SolvedStage& stage) const {
 std::vector<double> SolidLedger::mean_of_ends(const StageWork& work,
                                               const std::vector<double>& at_place) const {
   std::vector<double> rows = at_place;
-  if (parameters_.time_scheme.type == time::TimeScheme::trapezoidal) return rows;
+  if (scheme_of(parameters_).type == time::TimeScheme::trapezoidal) return rows;
   const auto rows_at = [&](double t) {
     std::vector<double> at_time(elastic_.n_unknowns(), 0);
     const std::vector<double> body = body_.body_forces(t);
@@ -222,7 +222,7 @@ std::vector<double> SolidLedger::mean_of_ends(const StageWork& work,
 
 SolidEnergies SolidLedger::total(const SolidState& state, std::span<const double> points) const {
   SolidEnergies e = state.energies;
-  e.conserving = parameters_.time_scheme.type == time::TimeScheme::trapezoidal;
+  e.conserving = scheme_of(parameters_).type == time::TimeScheme::trapezoidal;
   if (kernel_.is_symmetric()) {
     e = summed(e);
     e.strain = body_.equilibrium().energy(body_.unknowns_of(state.cell_u, state.face_u), state.known);

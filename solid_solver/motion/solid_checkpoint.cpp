@@ -25,6 +25,7 @@ void visit_arrays(State& s, bool has_mass, Visit visit) {
   visit(Entries::cells, "cell-displacement", s.cell_u);
   visit(Entries::cells, "cell-velocity", s.cell_v);
   if (!s.cell_a.empty()) visit(Entries::cells, "cell-acceleration", s.cell_a);
+  if (!s.interface.empty()) visit(Entries::owned_boundary, "interface-force", s.interface);
   if (has_mass && !s.cell_a.empty()) visit(Entries::boundary, "nodes-face-acceleration", s.face_a);
   if (has_mass && !s.cell_u_old.empty()) {
     visit(Entries::boundary, "old-face-displacement", s.face_u_old);

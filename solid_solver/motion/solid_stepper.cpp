@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/log/log.hpp"
 #include "solid_solver/large_strain/load_path.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
 
@@ -24,6 +25,16 @@ SolidStepper::SolidStepper(SolidBody& body)
   start_from_rest();
   body_.place_expansion(0);
   if (body.equilibrium().load_path()) body.set_load_factor(0);
+  if (body.is_dynamic() && has_finite_strain(parameters_)) announce_time_scheme();
+}
+
+void SolidStepper::announce_time_scheme() const {
+  const time::TimeSchemeParameters scheme = scheme_of(parameters_);
+  log::info("Time scheme: {}{}", time::name(scheme.type),
+            scheme.type == time::TimeScheme::generalised_alpha
+                ? fmt::format(", which leaves {:g} of the highest modes after a step", scheme.spectral_radius)
+            : parameters_.energy_momentum ? ", energy and momenta conserved"
+                                          : "");
 }
 
 void SolidStepper::start_from_rest() {
@@ -35,9 +46,14 @@ void SolidStepper::start_from_rest() {
   state_.known.assign(body_.prescribed().size() * dim, 0);
   state_.known_rate = state_.known;
   last_.unknowns.assign(elastic_.n_unknowns(), 0);
-  if (body_.is_dynamic() && time::uses_acceleration(parameters_.time_scheme.type))
+  if (body_.is_dynamic() && time::uses_acceleration(scheme_of(parameters_).type))
     state_.cell_a = state_.cell_u;
-  if (body_.is_dynamic() && (time::uses_old_level(parameters_.time_scheme.type) ||
+  const time::TimeScheme scheme = scheme_of(parameters_).type;
+  const bool is_after_the_middle =
+      scheme == time::TimeScheme::generalised_alpha || scheme == time::TimeScheme::three_point;
+  if (body_.is_dynamic() && is_after_the_middle && !body_.boundaries().interface_patches().empty())
+    state_.interface.assign(std::size_t(mesh_.boundary.n_owned()) * dim, 0);
+  if (body_.is_dynamic() && (time::uses_old_level(scheme_of(parameters_).type) ||
                              parameters_.method.predictor == MethodParameters::Predictor::adams))
     state_.cell_u_old = state_.cell_v_old = state_.cell_u;
   if (body_.has_mass() && !state_.cell_a.empty()) state_.face_a = state_.face_u;
@@ -124,6 +140,7 @@ void SolidStepper::solve(std::vector<double> interface_load) {
     trial_.cell_v_old = state_.cell_v;
     if (body_.has_mass()) trial_.face_u_old = state_.face_u, trial_.face_v_old = state_.face_v;
   }
+  if (!state_.interface.empty() && !last_.interface.empty()) trial_.interface = last_.interface;
   if (!trial_.acceleration.empty()) finish_acceleration();
   elastic_.impose_known(trial_.known, trial_.face_u);
   elastic_.impose_known(trial_.known_rate, trial_.face_v);

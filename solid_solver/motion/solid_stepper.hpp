@@ -65,6 +65,7 @@ class SolidStepper final {
   SolidSystem& system_for(double mass_factor);
   SolidProblem problem_of(const SolidSystem& system) const;
   void announce(const SolidSystem& system);
+  void announce_time_scheme() const;
   void prepare_stage(StageWork& work);
   void subtract_prescribed(StageWork& work);
   void add_body_forces(double t, std::span<double> rhs);

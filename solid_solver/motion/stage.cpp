@@ -21,7 +21,7 @@ constexpr std::size_t systems_kept = 2;
 
 std::vector<time::Stage> SolidStepper::stages_of(double dt) const {
   if (body_.is_dynamic())
-    return time::second_order_stages(parameters_.time_scheme, dt, {state_.steps, state_.dt});
+    return time::second_order_stages(scheme_of(parameters_), dt, {state_.steps, state_.dt});
   // No inertia, no damping; velocities are differences.
   time::Stage still{.dt = dt};
   still.end_value.x = 1;
@@ -228,6 +228,7 @@ void SolidStepper::add_kernel_inertia(const StageWork& work, const SolidState& n
   for (std::size_t i = 0; i < force.size(); ++i) last_.rhs[i] -= force[i];
 }
 
+/// A partner's load is its mean over the step: that of the middle. Where the stage is solved it is continued from the middle of the last step.
 void SolidStepper::add_face_forces(const StageWork& work) {
   if (last_.interface.empty()) {
     last_.face_force = kernel_.add_face_forces(work.face_force, last_.rhs);
@@ -235,6 +236,10 @@ void SolidStepper::add_face_forces(const StageWork& work) {
   }
   std::vector<double> force = work.face_force;
   for (std::size_t i = 0; i < force.size(); ++i) force[i] += last_.interface[i];
+  if (const std::vector<double>& before = state_.interface; !before.empty() && state_.steps > 0) {
+    const double on = (work.stage.place - 0.5) * work.stage.dt / (0.5 * (step_.dt + state_.dt));
+    for (std::size_t i = 0; i < force.size(); ++i) force[i] += on * (last_.interface[i] - before[i]);
+  }
   last_.face_force = kernel_.add_face_forces(force, last_.rhs);
 }
 

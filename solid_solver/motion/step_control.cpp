@@ -22,7 +22,7 @@ constexpr double share_of_a_step = 0.1;
 // accelerations of this step and the last one. A coupled step is not refused here: its iterates come before
 // the load has settled.
 void SolidStepper::judge_step() {
-  const time::LocalError local = time::local_error(parameters_.time_scheme);
+  const time::LocalError local = time::local_error(scheme_of(parameters_));
   const double dt = step_.dt, apart = 0.5 * (dt + state_.dt);
   double error = 0, volume = 0;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
@@ -49,7 +49,7 @@ void SolidStepper::judge_step() {
 double SolidStepper::suggest_dt() const {
   if (!(state_.error > 0)) return std::numeric_limits<double>::infinity();
   const double room = share_of_a_step * parameters_.step_control->tolerance / state_.error;
-  return safety * state_.dt * std::pow(room, 1. / (time::local_error(parameters_.time_scheme).order + 1));
+  return safety * state_.dt * std::pow(room, 1. / (time::local_error(scheme_of(parameters_)).order + 1));
 }
 
 }  // namespace couplet::solid

@@ -116,7 +116,7 @@ void SolidOutput::write_spectrum(double dt) {
   int n_complex = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double rate = time::growth_rate(values[i]),
-                 of_scheme = time::growth_rate(p.time_scheme, dt, values[i], damping);
+                 of_scheme = time::growth_rate(scheme_of(p), dt, values[i], damping);
     growth = std::max(growth, rate);
     discrete = std::max(discrete, of_scheme);
     n_complex += values[i].imag() != 0;
@@ -126,7 +126,7 @@ void SolidOutput::write_spectrum(double dt) {
   log::info(
       "spectrum of M^-1 K: {} eigenvalues, {} of them in complex pairs; undamped vibration grows by up to "
       "{:.3g} 1/s; with {} and dt = {:g} s{} by up to {:.3g} 1/s",
-      values.size(), n_complex, growth, time::name(p.time_scheme.type), dt, p.damping ? ", damped," : "",
+      values.size(), n_complex, growth, time::name(scheme_of(p).type), dt, p.damping ? ", damped," : "",
       discrete);
 }
 

@@ -86,7 +86,7 @@ void check_law(config::Section& s, SolidParameters& p) {
   s.check(
       [&p]() -> std::string {
         const bool fits = has_finite_strain(p) && p.analysis == SolidParameters::Analysis::dynamic &&
-                          p.time_scheme.type == time::TimeScheme::trapezoidal;
+                          scheme_of(p).type == time::TimeScheme::trapezoidal;
         return p.energy_momentum && !fits
                    ? "it requires 'kinematics: finite-strain', 'analysis: dynamic' and 'time-scheme: {type: "
                      "trapezoidal}'"

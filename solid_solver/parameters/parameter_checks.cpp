@@ -38,7 +38,8 @@ void check_motion(config::Section& s, SolidParameters& p) {
       "damping");
   s.check(
       [&] {
-        return p.time_scheme.type != time::TimeScheme::trapezoidal &&
+        return scheme_of(p).type != time::TimeScheme::trapezoidal &&
+                       p.time_scheme.type != time::TimeScheme::automatic &&
                        p.analysis == SolidParameters::Analysis::static_
                    ? "a static analysis has no inertia to integrate in time; remove it"
                    : "";

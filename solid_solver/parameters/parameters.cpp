@@ -118,7 +118,11 @@ void declare(config::Section& s, SolidParameters& p) {
   declare_materials(s, p);
   declare_loads(s, p);
   s.section(
-      "time-scheme", [&](config::Section& t) { time::declare(t, p.time_scheme); },
+      "time-scheme",
+      [&](config::Section& t) {
+        time::declare(t, p.time_scheme,
+                      "; auto: generalised-alpha at finite strain with an interface, else trapezoidal");
+      },
       "time integration of a dynamic analysis");
   s.optional_section<SolidDamping>(
       "damping", p.damping, [](config::Section& d, SolidDamping& v) { declare(d, v); },

@@ -39,7 +39,7 @@ struct SolidParameters {
   std::vector<config::ExpressionText> body_force;        // [N/m^3]; empty: none
   std::vector<double> gravity;                           // [m/s^2]; empty: none
   std::vector<config::ExpressionText> initial_velocity;  // [m/s]; empty: at rest
-  time::TimeSchemeParameters time_scheme;
+  time::TimeSchemeParameters time_scheme{.type = time::TimeScheme::automatic};  // see scheme_of()
   LoadStepping load_stepping;
   std::optional<SolidDamping> damping;
   std::optional<HeatParameters> heat;
@@ -83,6 +83,9 @@ inline bool has_finite_strain(const SolidParameters& p) {
   return p.kinematics == SolidParameters::Kinematics::finite_strain &&
          p.analysis != SolidParameters::Analysis::thermal;
 }
+/// What integrates a dynamic analysis in time. `auto` is generalised-alpha for a body of large strain that a partner loads: the trapezoidal rule
+/// neither keeps the energy of a nonlinear law nor damps the highest modes, which a coupling excites. Else the trapezoidal rule.
+time::TimeSchemeParameters scheme_of(const SolidParameters& parameters);
 /// Some patch moves as a rigid body (remote-load with coupling: rigid).
 bool has_rigid_patch(const SolidParameters& parameters);
 /// Some material is orthotropic: all cells have an elastic matrix.
