@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/elasticity/axisymmetric/axisymmetric_kernel.hpp"
 
-#include <algorithm>
-
 namespace couplet::elastic {
 
 AxisymmetricKernel::AxisymmetricKernel(const mesh::Mesh& mesh, const ElasticOperator& rows)
-    : mesh_(mesh), rows_(rows), space_(mesh, rows) {
+    : SpaceKernel<2>(mesh, rows), mesh_(mesh), rows_(rows) {
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
     if (mesh.owner[f] >= mesh.cells.n_owned()) continue;  // another rank's
     const AxisymmetricFace from = axisymmetric_face(mesh, rows, f);
@@ -71,30 +69,6 @@ void AxisymmetricKernel::spread_pressure(std::span<const double> pressure) {
   }
 }
 
-void AxisymmetricKernel::apply(std::span<const double> unknowns, std::span<const double> known,
-                               std::span<double> result) {
-  apply_with_mass(unknowns, known, 0, true, result);
-}
-
-void AxisymmetricKernel::apply_with_mass(std::span<const double> unknowns, std::span<const double> known,
-                                         double mass_factor, bool with_stiffness, std::span<double> result) {
-  space_.fill(unknowns, known);
-  space_.clear_forces();
-  if (with_stiffness) internal_forces();
-  if (mass_factor > 0) space_.add_mass_forces(mass_factor);
-  space_.collect();
-  space_.take_rows(with_stiffness ? unknowns : std::span<const double>(), known, result);
-}
-
-double AxisymmetricKernel::product(ElasticPart part, const ElasticField& u, const ElasticField& v) {
-  space_.fill(u.unknowns, u.known);
-  space_.clear_forces();
-  if (part == ElasticPart::stiffness) internal_forces();
-  if (part == ElasticPart::mass) space_.add_mass_forces(1);
-  space_.fill(v.unknowns, v.known);
-  return space_.work();
-}
-
 void AxisymmetricKernel::face_gradients(std::span<const double> unknowns, std::span<const double> known,
                                         const ElasticKernel::TakeGradient& take, Index first, Index end) {
   space_.fill(unknowns, known);
@@ -115,51 +89,6 @@ void AxisymmetricKernel::face_gradients(std::span<const double> unknowns, std::s
           space_.nodes()[std::size_t(space_.node_across(f)) * stride] / rows_.geometry().face_centre[f][0];
     take(f, gradient);
   }
-}
-
-void AxisymmetricKernel::point_values(std::span<const double> unknowns, std::span<const double> known,
-                                      std::span<double> points) {
-  space_.fill(unknowns, known);
-  space_.visit_points([&](Index v) {
-    std::copy_n(space_.points() + std::size_t(v) * stride, 2, points.data() + std::size_t(v) * 2);
-  });
-}
-
-bool AxisymmetricKernel::set_density(std::span<const double> of_cells) {
-  space_.set_density(of_cells);
-  return true;
-}
-
-Vec3 AxisymmetricKernel::add_face_forces(std::span<const double> forces, std::span<double> rhs) {
-  space_.clear_forces();
-  space_.spread_face_forces(forces);
-  space_.add_collected(rhs);
-  return space_.acting(forces);
-}
-
-void AxisymmetricKernel::add_cell_forces(std::span<const double> forces, std::span<double> rhs) {
-  space_.clear_forces();
-  space_.spread_cell_forces(forces);
-  space_.add_collected(rhs);
-}
-
-void AxisymmetricKernel::add_pressure(std::span<const double> pressure, std::span<double> rhs) {
-  space_.clear_forces();
-  spread_pressure(pressure);
-  space_.add_collected(rhs);
-}
-
-std::vector<Wrench> AxisymmetricKernel::holding_forces(std::span<const double> unknowns,
-                                                       std::span<const double> known,
-                                                       const ElasticLoads& loads) {
-  space_.clear_forces();
-  if (!loads.faces.empty()) space_.spread_face_forces(loads.faces);
-  if (!loads.cells.empty()) space_.spread_cell_forces(loads.cells);
-  if (!loads.pressure.empty()) spread_pressure(loads.pressure);
-  space_.negate_forces();
-  space_.fill(unknowns, known);
-  internal_forces();
-  return space_.held(known, false);
 }
 
 std::unique_ptr<ElasticKernel::Implementation> make_axisymmetric_kernel(const mesh::Mesh& mesh,

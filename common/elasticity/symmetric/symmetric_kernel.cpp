@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/elasticity/symmetric/symmetric_kernel.hpp"
 
-#include <algorithm>
-
 #include "common/base/processor_clones.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -172,17 +170,6 @@ void SymmetricKernel<D>::forces_of_stress() {
 }
 
 template <int D>
-void SymmetricKernel<D>::apply(std::span<const double> unknowns, std::span<const double> known,
-                               std::span<double> result) {
-  space_.fill(unknowns, known);
-  space_.clear_forces();
-  internal_forces();
-  space_.add_springs(known);
-  space_.collect();
-  space_.take_rows(unknowns, known, result);
-}
-
-template <int D>
 void SymmetricKernel<D>::face_gradients(std::span<const double> unknowns, std::span<const double> known,
                                         const ElasticKernel::TakeGradient& take, Index first, Index end) {
   space_.fill(unknowns, known);
@@ -229,15 +216,6 @@ void SymmetricKernel<D>::face_gradients(std::span<const double> unknowns, std::s
     }
     take(f, gradient);
   }
-}
-
-template <int D>
-void SymmetricKernel<D>::point_values(std::span<const double> unknowns, std::span<const double> known,
-                                      std::span<double> points) {
-  space_.fill(unknowns, known);
-  space_.visit_points([&](Index v) {
-    std::copy_n(space_.points() + std::size_t(v) * stride, D, points.data() + std::size_t(v) * D);
-  });
 }
 
 template class SymmetricKernel<2>;

@@ -8,8 +8,8 @@
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/elasticity/elastic_nodes.hpp"
 #include "common/elasticity/symmetric/shared_edges.hpp"
+#include "common/elasticity/symmetric/space_kernel.hpp"
 #include "common/elasticity/symmetric/symmetric_blocks.hpp"
-#include "common/elasticity/symmetric/symmetric_space.hpp"
 
 namespace couplet::elastic {
 
@@ -25,25 +25,12 @@ namespace couplet::elastic {
 /// One pass over the vertices, one over the faces in blocks of four, one back over the vertices; a message
 /// more than the other kernels: the forces on ghosts go to their owners.
 template <int D>
-class SymmetricKernel final : public ElasticKernel::Implementation {
+class SymmetricKernel final : public SpaceKernel<D> {
  public:
   SymmetricKernel(const mesh::Mesh& mesh, const ElasticOperator& rows);
 
-  void apply(std::span<const double> unknowns, std::span<const double> known,
-             std::span<double> result) override;
-  void apply_with_mass(std::span<const double> unknowns, std::span<const double> known, double mass_factor,
-                       bool with_stiffness, std::span<double> result) override;
-  double product(ElasticPart part, const ElasticField& u, const ElasticField& v) override;
   void face_gradients(std::span<const double> unknowns, std::span<const double> known,
                       const ElasticKernel::TakeGradient& take, Index first, Index end) override;
-  void point_values(std::span<const double> unknowns, std::span<const double> known,
-                    std::span<double> points) override;
-  bool set_density(std::span<const double> of_cells) override;
-  Vec3 add_face_forces(std::span<const double> forces, std::span<double> rhs) override;
-  void add_cell_forces(std::span<const double> forces, std::span<double> rhs) override;
-  void add_pressure(std::span<const double> pressure, std::span<double> rhs) override;
-  std::vector<Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
-                                     const ElasticLoads& loads) override;
   void apply_mixed(std::span<const double> unknowns, std::span<const double> pressure, double mass_factor,
                    std::span<double> result, std::span<double> defect) override;
 
@@ -71,16 +58,16 @@ class SymmetricKernel final : public ElasticKernel::Implementation {
                                                  const std::vector<VolumeBlock>& volumes);
   [[gnu::always_inline]] inline V pressure_on(const FaceBlock<D>& block, const VolumeBlock& volume) const;
   void make_faces();
-  void internal_forces();
+  void internal_forces() override;
   void forces_of_stress();
   std::span<double> sum_volumes();
   void find_pressures();
-  void spread_pressure(std::span<const double> pressure);
+  void spread_pressure(std::span<const double> pressure) override;
 
   const mesh::Mesh& mesh_;
   const mesh::Geometry& geometry_;
   const ElasticOperator& rows_;
-  SymmetricSpace<D> space_;
+  using SpaceKernel<D>::space_;
   std::vector<Index> mine_;          // faces that this rank computes, in the order of the blocks
   std::vector<Index> shared_mine_;   // those that share with their edges
   std::vector<Index> shared_index_;  // of each flux face in edges_, -1: it shares nothing

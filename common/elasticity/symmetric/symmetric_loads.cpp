@@ -44,7 +44,7 @@ void SymmetricKernel<D>::spread_pressure(std::span<const double> pressure) {
 }
 
 template <int D>
-Vec3 SymmetricKernel<D>::add_face_forces(std::span<const double> forces, std::span<double> rhs) {
+Vec3 SpaceKernel<D>::add_face_forces(std::span<const double> forces, std::span<double> rhs) {
   space_.clear_forces();
   space_.spread_face_forces(forces);
   space_.add_collected(rhs);
@@ -52,42 +52,36 @@ Vec3 SymmetricKernel<D>::add_face_forces(std::span<const double> forces, std::sp
 }
 
 template <int D>
-void SymmetricKernel<D>::add_cell_forces(std::span<const double> forces, std::span<double> rhs) {
+void SpaceKernel<D>::add_cell_forces(std::span<const double> forces, std::span<double> rhs) {
   space_.clear_forces();
   space_.spread_cell_forces(forces);
   space_.add_collected(rhs);
 }
 
 template <int D>
-void SymmetricKernel<D>::add_pressure(std::span<const double> pressure, std::span<double> rhs) {
+void SpaceKernel<D>::add_pressure(std::span<const double> pressure, std::span<double> rhs) {
   space_.clear_forces();
   spread_pressure(pressure);
   space_.add_collected(rhs);
 }
 
 template <int D>
-bool SymmetricKernel<D>::set_density(std::span<const double> of_cells) {
-  space_.set_density(of_cells);
-  return true;
-}
-
-template <int D>
-void SymmetricKernel<D>::apply_with_mass(std::span<const double> unknowns, std::span<const double> known,
-                                         double mass_factor, bool with_stiffness, std::span<double> result) {
+void SpaceKernel<D>::apply_with_mass(std::span<const double> unknowns, std::span<const double> known,
+                                     double mass_factor, bool with_stiffness, std::span<double> result) {
   space_.fill(unknowns, known);
   space_.clear_forces();
   if (with_stiffness) {
     internal_forces();
     space_.add_springs(known);
   }
-  space_.add_mass_forces(mass_factor);
+  if (mass_factor > 0) space_.add_mass_forces(mass_factor);
   space_.collect();
   space_.take_rows(with_stiffness ? unknowns : std::span<const double>(), known, result);
 }
 
 /// The forces of u on all nodes and points, times what v moves them.
 template <int D>
-double SymmetricKernel<D>::product(ElasticPart part, const ElasticField& u, const ElasticField& v) {
+double SpaceKernel<D>::product(ElasticPart part, const ElasticField& u, const ElasticField& v) {
   space_.fill(u.unknowns, u.known);
   space_.clear_forces();
   if (part == ElasticPart::stiffness) internal_forces();
@@ -98,9 +92,8 @@ double SymmetricKernel<D>::product(ElasticPart part, const ElasticField& u, cons
 }
 
 template <int D>
-std::vector<Wrench> SymmetricKernel<D>::holding_forces(std::span<const double> unknowns,
-                                                       std::span<const double> known,
-                                                       const ElasticLoads& loads) {
+std::vector<Wrench> SpaceKernel<D>::holding_forces(std::span<const double> unknowns,
+                                                   std::span<const double> known, const ElasticLoads& loads) {
   space_.clear_forces();
   if (!loads.faces.empty()) space_.spread_face_forces(loads.faces);
   if (!loads.cells.empty()) space_.spread_cell_forces(loads.cells);
@@ -113,26 +106,9 @@ std::vector<Wrench> SymmetricKernel<D>::holding_forces(std::span<const double> u
   return space_.held(known, false);
 }
 
+template class SpaceKernel<2>;
+template class SpaceKernel<3>;
 template void SymmetricKernel<2>::spread_pressure(std::span<const double>);
-template Vec3 SymmetricKernel<2>::add_face_forces(std::span<const double>, std::span<double>);
-template void SymmetricKernel<2>::add_cell_forces(std::span<const double>, std::span<double>);
-template void SymmetricKernel<2>::add_pressure(std::span<const double>, std::span<double>);
-template bool SymmetricKernel<2>::set_density(std::span<const double>);
-template void SymmetricKernel<2>::apply_with_mass(std::span<const double>, std::span<const double>, double,
-                                                  bool, std::span<double>);
-template double SymmetricKernel<2>::product(ElasticPart, const ElasticField&, const ElasticField&);
-template std::vector<Wrench> SymmetricKernel<2>::holding_forces(std::span<const double>,
-                                                                std::span<const double>, const ElasticLoads&);
-
 template void SymmetricKernel<3>::spread_pressure(std::span<const double>);
-template Vec3 SymmetricKernel<3>::add_face_forces(std::span<const double>, std::span<double>);
-template void SymmetricKernel<3>::add_cell_forces(std::span<const double>, std::span<double>);
-template void SymmetricKernel<3>::add_pressure(std::span<const double>, std::span<double>);
-template bool SymmetricKernel<3>::set_density(std::span<const double>);
-template void SymmetricKernel<3>::apply_with_mass(std::span<const double>, std::span<const double>, double,
-                                                  bool, std::span<double>);
-template double SymmetricKernel<3>::product(ElasticPart, const ElasticField&, const ElasticField&);
-template std::vector<Wrench> SymmetricKernel<3>::holding_forces(std::span<const double>,
-                                                                std::span<const double>, const ElasticLoads&);
 
 }  // namespace couplet::elastic

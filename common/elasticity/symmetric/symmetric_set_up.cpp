@@ -8,7 +8,7 @@ namespace couplet::elastic {
 
 template <int D>
 SymmetricKernel<D>::SymmetricKernel(const mesh::Mesh& mesh, const ElasticOperator& rows)
-    : mesh_(mesh), geometry_(rows.geometry()), rows_(rows), space_(mesh, rows) {
+    : SpaceKernel<D>(mesh, rows), mesh_(mesh), geometry_(rows.geometry()), rows_(rows) {
   make_faces();
   if (!rows.volume_by_cells()) return;
   volumes_ = make_volumes(mine_);
