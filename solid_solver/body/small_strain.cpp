@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/body/small_strain.hpp"
 
+#include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::solid {
@@ -18,6 +19,11 @@ std::vector<double> SmallStrain::force_of_known(std::span<const double> known) c
 linalg::SolveStatistics SmallStrain::find(const EquilibriumLoad& load, SolidSystem& system,
                                           std::span<double> u) {
   return system.method->solve(load.rows, u);
+}
+
+void SmallStrain::explain_failure(const SolveFailure& failure) const {
+  throw SchemeFailure("The static step failed, and a shorter step would solve the same equations: {}",
+                      failure.what());
 }
 
 std::vector<double> SmallStrain::forces(std::span<const double> unknowns, std::span<const double> known) {

@@ -26,6 +26,7 @@ class SmallStrain final : public Equilibrium {
   std::vector<double> force_of_known(std::span<const double> known) const override;
   linalg::SolveStatistics find(const EquilibriumLoad& load, SolidSystem& system,
                                std::span<double> u) override;
+  void explain_failure(const SolveFailure& failure) const override;
   std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;
   double energy(std::span<const double> unknowns, std::span<const double> known) override;
   std::vector<elastic::Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,

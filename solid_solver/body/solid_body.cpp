@@ -125,10 +125,7 @@ bool SolidBody::apply_stiffness() {
 }
 
 void SolidBody::place_expansion(double t) const {
-  if (equilibrium_->is_linear()) return;
-  for (const auto& effect : effects_)
-    if (std::vector<double> strain = effect->expansion(t); !strain.empty())
-      equilibrium_->set_expansion(std::move(strain));
+  for (const auto& effect : effects_) equilibrium_->set_expansion([&] { return effect->expansion(t); });
 }
 
 std::vector<double> SolidBody::scaled(std::vector<double> values) const {

@@ -37,12 +37,14 @@ Tensor3 mean_stress(std::span<const Index> corners, std::span<const double> poin
 std::vector<double> SolidFields::traction(std::span<const Vec3> places,
                                           std::span<const double> point_stress) const {
   const std::size_t n = mesh_.boundary.n_owned(), dim = mesh_.dim;
-  const bool finite = !body_.equilibrium().is_linear();
-  const std::vector<SurfaceTraction> known = finite ? std::vector<SurfaceTraction>(n) : known_tractions();
+  const std::span<const Vec3> moved = body_.equilibrium().surface(places);
+  const std::vector<SurfaceTraction> known =
+      moved.empty() ? known_tractions() : std::vector<SurfaceTraction>(n);
   std::vector<double> result(n * dim);
   for (std::size_t b = 0; b < n; ++b) {
     const Index f = mesh_.n_interior + Index(b);
-    const Vec3 normal = finite ? normal_at(mesh_, geometry_, f, places) : geometry_.face_area[f].normalized();
+    const Vec3 normal =
+        moved.empty() ? geometry_.face_area[f].normalized() : normal_at(mesh_, geometry_, f, moved);
     const Vec3 here = mean_stress(mesh_.face_points[f], point_stress) * normal;
     const Vec3 value = known[b].traction + here - known[b].projector * here;
     for (std::size_t a = 0; a < dim; ++a) result[b * dim + a] = value[Index(a)];

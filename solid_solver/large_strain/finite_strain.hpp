@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -45,7 +46,7 @@ class FiniteStrain final : public LargeStrain {
   using Load = EquilibriumLoad;
   linalg::SolveStatistics solve(const Load& load, std::span<double> u) override;
   void set_pressure(std::vector<double> of_faces) override;
-  void set_expansion(std::vector<double> of_faces) override;
+  void set_expansion(const std::function<std::vector<double>()>& of_faces) override;
   std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;
   double energy(std::span<const double> unknowns, std::span<const double> known) override;
   void visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) override;

@@ -96,15 +96,17 @@ void FiniteStrain::set_pressure(std::vector<double> of_faces) {
 }
 
 /// theta = 1 + the integral of alpha dT: lengths of the body as it was at the reference temperature.
-void FiniteStrain::set_expansion(std::vector<double> of_faces) {
+void FiniteStrain::set_expansion(const std::function<std::vector<double>()>& of_faces) {
+  std::vector<double> strains = of_faces();
+  if (strains.empty()) return;
   double least = 1;
-  for (double& strain : of_faces) least = std::min(least, strain += 1);
+  for (double& strain : strains) least = std::min(least, strain += 1);
   if (!(parallel::min(mesh_.comm, least) > 0))
     throw Error(
         "thermal-expansion: a thermal strain of -1 or less leaves nothing of the body; check "
         "'material.expansion' and the temperatures.");
-  kernel_->set_stretch(of_faces);
-  jump_.set_stretch(std::move(of_faces));
+  kernel_->set_stretch(strains);
+  jump_.set_stretch(std::move(strains));
   if (std::exchange(is_restored_, false)) jump_.settle();
 }
 

@@ -30,6 +30,7 @@ class LargeStrain : public Equilibrium {
   void to_strain(std::span<Tensor3> gradients) const override;
   std::vector<Tensor3> face_stress(const Displaced& state, Index first, Index count) override;
   std::vector<Tensor3> cell_stress(const Displaced& state) override;
+  std::span<const Vec3> surface(std::span<const Vec3> moved) const override { return moved; }
 
   virtual std::string name() const = 0;
   /// `u`: the first guess on entry. Throws SolveFailure, `u` being of no use then.

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/base/error.hpp"
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/linalg/linear_map.hpp"
 #include "common/linalg/linear_solver.hpp"
@@ -88,6 +89,8 @@ class Equilibrium {
   /// `u`: the first guess on entry. Throws SolveFailure, `u` being of no use then.
   virtual linalg::SolveStatistics find(const EquilibriumLoad& load, SolidSystem& system,
                                        std::span<double> u) = 0;
+  /// A static step has failed: throws SchemeFailure if a shorter step would meet the same equations.
+  virtual void explain_failure(const SolveFailure&) const {}
   /// The end of the step under way, which accept() makes the state that the next one begins at. Throws SolveFailure.
   virtual void end_step(std::span<const double> /*unknowns*/, std::span<const double> /*known*/) {}
   virtual void accept() {}
@@ -130,8 +133,10 @@ class Equilibrium {
                                       const linalg::LinearMap& /*elastic*/, std::vector<double> /*start*/) {
     return {};
   }
-  /// Thermal strains that the stress does not see, one a local flux face, until others are given: of large strain.
-  virtual void set_expansion(std::vector<double> /*of_faces*/) {}
+  /// Gives the thermal strains that the stress does not see, one a local flux face (empty: as before), to those that take them.
+  virtual void set_expansion(const std::function<std::vector<double>()>& /*of_faces*/) {}
+  /// Where the surface stands on which tractions act, of its points moved; empty: undeformed, and given tractions are known there.
+  virtual std::span<const Vec3> surface(std::span<const Vec3> /*moved*/) const { return {}; }
 };
 
 }  // namespace couplet::solid

@@ -125,12 +125,9 @@ void SolidStepper::solve(std::vector<double> interface_load) {
   try {
     for (std::size_t i = 0; i < stages_.size(); ++i) solve_stage(stages_[i], i == 0);
   } catch (const SolveFailure& failure) {
-    // Linear equations: a shorter step meets the same ones.
-    if (body_.is_dynamic() || !body_.equilibrium().is_linear() ||
-        step_.scheme != coupling::Scheme::standalone)
-      throw;
-    throw SchemeFailure("The static step failed, and a shorter step would solve the same equations: {}",
-                        failure.what());
+    if (!body_.is_dynamic() && step_.scheme == coupling::Scheme::standalone)
+      body_.equilibrium().explain_failure(failure);
+    throw;
   }
   trial_.time = step_.time + step_.dt;
   trial_.dt = step_.dt;
