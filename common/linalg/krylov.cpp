@@ -10,7 +10,7 @@
 
 #include "common/base/error.hpp"
 #include "common/linalg/dot.hpp"
-#include "common/linalg/idr.hpp"
+#include "common/linalg/petsc_gmres.hpp"
 #include "common/linalg/residual_projection.hpp"
 #include "common/log/life.hpp"
 #include "common/log/log.hpp"
@@ -43,7 +43,7 @@ KrylovSolver::~KrylovSolver() = default;
 
 void KrylovSolver::forget_vectors() {
   for (auto* v : {&r_, &shadow_, &p_, &v_, &t_, &z_}) *v = std::vector<double>();
-  idr_.reset();
+  gmres_.reset();
 }
 
 /// r = b - A x and its norm.
@@ -96,8 +96,8 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
           "{:.3e}) in {} of at most {} iterations{}.",
           what_,
           options.is_symmetric ? "CG"
-          : options.is_hard    ? "IDR(4)"
-          : is_hard            ? "IDR(4) after BiCGStab"
+          : options.is_hard    ? "GMRES"
+          : is_hard            ? "GMRES after BiCGStab"
                                : "BiCGStab",
           statistics.residual / size, options.relative_tolerance, statistics.iterations,
           options.max_iterations, stuck ? " and a restart does not help" : "");
@@ -108,7 +108,7 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
     if (options.is_symmetric)
       run_cg(x, aim, options.max_iterations, statistics);
     else if (is_hard)
-      run_idr(x, aim, options.max_iterations, statistics);
+      run_gmres(x, aim, options.max_iterations, statistics);
     else
       run_bicgstab(x, aim, std::min(options.max_iterations, patience), statistics);
     statistics.residual = true_residual(b, x);
@@ -148,17 +148,15 @@ void KrylovSolver::run_cg(std::span<double> x, double wanted, int max_iterations
   }
 }
 
-void KrylovSolver::run_idr(std::span<double> x, double wanted, int max_iterations,
-                           SolveStatistics& statistics) {
+void KrylovSolver::run_gmres(std::span<double> x, double wanted, int max_iterations,
+                             SolveStatistics& statistics) {
   if (!is_announced_ && statistics.iterations > 0)
-    log::info("{}: {} iterations of BiCGStab were not enough; IDR(4) continues", what_,
-              statistics.iterations);
+    log::info("{}: {} iterations of BiCGStab were not enough; GMRES continues", what_, statistics.iterations);
   is_announced_ = true;
   for (auto* v : {&shadow_, &p_, &v_, &t_, &z_}) *v = std::vector<double>();
-  if (!idr_) idr_ = std::make_unique<Idr>(comm_, n_);
+  if (!gmres_) gmres_ = std::make_unique<PetscGmres>(comm_, n_, apply_, precondition_);
   // An iteration of BiCGStab preconditions and applies twice.
-  int applications = 0;
-  idr_->run(apply_, precondition_, r_, x, wanted, 2 * (max_iterations - statistics.iterations), applications);
+  const int applications = gmres_->run(r_, x, wanted, 2 * (max_iterations - statistics.iterations));
   statistics.iterations += (applications + 1) / 2;
 }
 

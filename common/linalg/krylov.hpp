@@ -13,18 +13,18 @@
 
 namespace couplet::linalg {
 
-class Idr;
+class PetscGmres;
 class ResidualProjection;
 
 struct KrylovOptions {
   double relative_tolerance = 1e-8;  ///< of |b - A x| / |b|
   int max_iterations = 500;
   bool is_symmetric = false;  ///< A and the preconditioner are, and positive: conjugate gradients
-  bool is_hard = false;       ///< known to be slow for BiCGStab: IDR(4) from the start
+  bool is_hard = false;       ///< known to be slow for BiCGStab: GMRES from the start
 };
 
 /// BiCGStab [vandervorst1992] preconditioned from the right, for operators that are only applied; where it
-/// has not converged after 50 iterations, IDR(4) goes on, which needs more memory and bears more. The
+/// has not converged after 50 iterations, PETSc's GMRES goes on, which needs more memory and tolerates more. The
 /// residual that is judged is the true one, b - A x: the recurrence drifts away from it on long runs, so that
 /// it is computed anew when the recurrence has reached the tolerance, and the iteration begins again from
 /// there if it has not. Symmetric positive pairs take preconditioned conjugate gradients [hestenes1952] in
@@ -47,14 +47,14 @@ class KrylovSolver {
   double rounding(std::span<const double> x);
   void run_bicgstab(std::span<double> x, double wanted, int max_iterations, SolveStatistics& statistics);
   void run_cg(std::span<double> x, double wanted, int max_iterations, SolveStatistics& statistics);
-  void run_idr(std::span<double> x, double wanted, int max_iterations, SolveStatistics& statistics);
+  void run_gmres(std::span<double> x, double wanted, int max_iterations, SolveStatistics& statistics);
 
   std::string what_;
   MPI_Comm comm_;
   std::size_t n_;
   LinearMap apply_, precondition_;
   std::vector<double> r_, shadow_, p_, v_, t_, z_;
-  std::unique_ptr<Idr> idr_;  // while it is needed
+  std::unique_ptr<PetscGmres> gmres_;  // while it is needed
   bool is_announced_ = false;
 };
 

@@ -7,8 +7,8 @@
 #include <exception>
 #include <utility>
 
-#include "common/linalg/idr.hpp"
 #include "common/linalg/petsc_check.hpp"
+#include "common/linalg/petsc_gmres.hpp"
 #include "common/linalg/petsc_methods.hpp"
 #include "common/linalg/single_factors.hpp"
 #include "common/log/life.hpp"
@@ -142,7 +142,7 @@ SolveStatistics LinearSolver::solve(std::span<const double> b, std::span<double>
 SolveStatistics LinearSolver::solve(std::span<const double> b, std::span<double> x, double relative_tolerance,
                                     double absolute_tolerance) {
   const auto start = std::chrono::steady_clock::now();
-  // BiCGStab leaves half of the iterations to IDR(4).
+  // BiCGStab leaves half of the iterations to GMRES.
   const int most = options_.method == LinearMethod::bicgstab_ilu ? (options_.max_iterations + 1) / 2
                                                                  : options_.max_iterations;
   petsc_check(KSPSetTolerances(ksp_, relative_tolerance, absolute_tolerance, PETSC_DEFAULT, most));
@@ -162,7 +162,7 @@ SolveStatistics LinearSolver::solve(std::span<const double> b, std::span<double>
       reason = restart < most_restarts ? attempt(b, x, statistics) : KSP_DIVERGED_BREAKDOWN;
   }
   if (reason < 0 && options_.method == LinearMethod::bicgstab_ilu)
-    reason = continue_by_idr(b, x, std::max(relative_tolerance * norm(b), absolute_tolerance), statistics);
+    reason = continue_by_gmres(b, x, std::max(relative_tolerance * norm(b), absolute_tolerance), statistics);
   if (reason < 0)
     throw SolveFailure("The linear solver for {} did not converge: {} after {} iterations, residual {:.3e}.",
                        what_, KSPConvergedReasons[reason], statistics.iterations, statistics.residual);
@@ -197,8 +197,8 @@ double LinearSolver::true_residual(std::span<const double> b, std::span<const do
 }
 
 /// Where BiCGStab has broken down or is slow: from its guess if that is nearer, with the same preconditioner.
-KSPConvergedReason LinearSolver::continue_by_idr(std::span<const double> b, std::span<double> x,
-                                                 double wanted, SolveStatistics& statistics) {
+KSPConvergedReason LinearSolver::continue_by_gmres(std::span<const double> b, std::span<double> x,
+                                                   double wanted, SolveStatistics& statistics) {
   const auto apply = [&](std::span<const double> from, std::span<double> to) { matrix_->multiply(from, to); };
   const auto precondition = [&](std::span<const double> from, std::span<double> to) {
     petsc_check(VecPlaceArray(b_, from.data()));
@@ -211,10 +211,10 @@ KSPConvergedReason LinearSolver::continue_by_idr(std::span<const double> b, std:
   };
   if (!(true_residual(b, x) < norm(b))) std::fill(x.begin(), x.end(), 0.0);
   std::vector<double> r(b.size());
-  Idr idr(matrix_->comm(), b.size());
+  PetscGmres gmres(matrix_->comm(), b.size(), apply, precondition);
   const int most = 2 * (options_.max_iterations - statistics.iterations);
   if (most > 0)
-    log::info("{}: BiCGStab stopped after {} iterations; IDR(4) continues", what_, statistics.iterations);
+    log::info("{}: BiCGStab stopped after {} iterations; GMRES continues", what_, statistics.iterations);
   int applications = 0, before = -1;
   while (applications < most && applications > before) {
     before = applications;
@@ -222,7 +222,7 @@ KSPConvergedReason LinearSolver::continue_by_idr(std::span<const double> b, std:
     for (std::size_t i = 0; i < r.size(); ++i) r[i] = b[i] - r[i];
     statistics.residual = norm(r);
     if (statistics.residual <= wanted) break;
-    idr.run(apply, precondition, r, x, wanted, most, applications);
+    applications += gmres.run(r, x, wanted, most - applications);
   }
   statistics.residual = true_residual(b, x);
   statistics.iterations += (applications + 1) / 2;

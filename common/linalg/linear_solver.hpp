@@ -19,7 +19,7 @@ enum class LinearMethod {
   cg_single,         ///< the same, the factors in single precision where that is enough (one rank)
   cg_multigrid,      ///< CG with smoothed aggregation (ML), symmetric SOR
   gmres_multigrid,   ///< GMRES with BoomerAMG
-  bicgstab_ilu,  ///< BiCGStab with ILU(0), block Jacobi over the ranks; IDR(4) where that breaks down or is
+  bicgstab_ilu,  ///< BiCGStab with ILU(0), block Jacobi over the ranks; GMRES where that breaks down or is
                  ///< slow
   cg_icc,        ///< CG with incomplete Cholesky factors, block Jacobi over the ranks
 };
@@ -84,8 +84,8 @@ class LinearSolver {
   void use_single_precision();
   void make_single_factors();
   void leave_single_precision();
-  KSPConvergedReason continue_by_idr(std::span<const double> b, std::span<double> x, double wanted,
-                                     SolveStatistics& statistics);
+  KSPConvergedReason continue_by_gmres(std::span<const double> b, std::span<double> x, double wanted,
+                                       SolveStatistics& statistics);
   KSPConvergedReason attempt(std::span<const double> b, std::span<double> x, SolveStatistics& statistics);
 
   std::string what_;

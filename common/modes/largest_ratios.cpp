@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "common/base/error.hpp"
-#include "common/modes/shell_operator.hpp"
+#include "common/linalg/shell_operator.hpp"
 
 namespace couplet::modes {
 namespace {
@@ -29,7 +29,7 @@ struct RatioSolver {
   }
 };
 
-void set_up_ratios(RatioSolver& solver, ShellOperator& inverse, int n) {
+void set_up_ratios(RatioSolver& solver, linalg::ShellOperator& inverse, int n) {
   linalg::petsc_check(EPSSetOperators(solver.eps, solver.a, solver.b));
   linalg::petsc_check(EPSSetProblemType(solver.eps, EPS_GHEP));
   linalg::petsc_check(EPSSetType(solver.eps, EPSKRYLOVSCHUR));
@@ -46,17 +46,17 @@ void set_up_ratios(RatioSolver& solver, ShellOperator& inverse, int n) {
   linalg::petsc_check(KSPGetPC(ksp, &pc));
   linalg::petsc_check(PCSetType(pc, PCSHELL));
   linalg::petsc_check(PCShellSetContext(pc, &inverse));
-  linalg::petsc_check(PCShellSetApply(pc, precondition_shell));
+  linalg::petsc_check(PCShellSetApply(pc, linalg::precondition_shell));
 }
 
 }  // namespace
 
 Ratios largest_ratios(MPI_Comm comm, std::size_t n_owned, const RatioOperators& of, int n) {
   std::exception_ptr failure;
-  ShellOperator a{&of.a, &failure}, b{&of.b, &failure}, inverse{&of.solve_b, &failure};
+  linalg::ShellOperator a{&of.a, &failure}, b{&of.b, &failure}, inverse{&of.solve_b, &failure};
   RatioSolver solver;
-  solver.a = symmetric_shell(comm, n_owned, a);
-  solver.b = symmetric_shell(comm, n_owned, b);
+  solver.a = linalg::symmetric_shell(comm, n_owned, a);
+  solver.b = linalg::symmetric_shell(comm, n_owned, b);
   PetscInt rows = 0;
   linalg::petsc_check(MatGetSize(solver.a, &rows, nullptr));
   linalg::petsc_check(EPSCreate(comm, &solver.eps));

@@ -9,8 +9,8 @@
 
 #include "common/base/error.hpp"
 #include "common/linalg/petsc_check.hpp"
+#include "common/linalg/shell_operator.hpp"
 #include "common/modes/lowest_modes.hpp"
-#include "common/modes/shell_operator.hpp"
 
 namespace couplet::modes {
 namespace {
@@ -21,7 +21,7 @@ constexpr double solver_tolerance =
 constexpr double hidden_below = 1e-6;
 
 using Apply = ModalOperators::Apply;
-using Operator = ShellOperator;
+using Operator = linalg::ShellOperator;
 
 /// One search; what it needs lives as long as it.
 class Search {
@@ -29,8 +29,8 @@ class Search {
   Search(MPI_Comm comm, std::size_t n_owned, const ModalOperators& of, double shift) : shift_(shift) {
     stiffness_ = {&of.stiffness, &failure_};
     mass_ = {&of.mass, &failure_};
-    k_ = symmetric_shell(comm, n_owned, stiffness_);
-    m_ = symmetric_shell(comm, n_owned, mass_);
+    k_ = linalg::symmetric_shell(comm, n_owned, stiffness_);
+    m_ = linalg::symmetric_shell(comm, n_owned, mass_);
     inverse_ = {&of.solve, &failure_};
     linalg::petsc_check(EPSCreate(comm, &eps_));
     linalg::petsc_check(EPSSetOperators(eps_, k_, m_));
@@ -49,7 +49,7 @@ class Search {
     linalg::petsc_check(KSPGetPC(ksp, &pc));
     linalg::petsc_check(PCSetType(pc, PCSHELL));
     linalg::petsc_check(PCShellSetContext(pc, &inverse_));
-    linalg::petsc_check(PCShellSetApply(pc, precondition_shell));
+    linalg::petsc_check(PCShellSetApply(pc, linalg::precondition_shell));
   }
   Search(const Search&) = delete;
   ~Search() {

@@ -5,16 +5,16 @@
 
 #include <algorithm>
 #include <exception>
-#include <functional>
 #include <span>
 
+#include "common/linalg/linear_map.hpp"
 #include "common/linalg/petsc_check.hpp"
 
-namespace couplet::modes {
+namespace couplet::linalg {
 
 /// An operator for PETSc, and the first exception that came out of it: none may pass through PETSc's frames.
 struct ShellOperator {
-  const std::function<void(std::span<const double>, std::span<double>)>* apply = nullptr;
+  const LinearMap* apply = nullptr;
   std::exception_ptr* failure = nullptr;
 
   PetscErrorCode operator()(::Vec x, ::Vec y) const {
@@ -29,7 +29,7 @@ struct ShellOperator {
     } catch (...) {
       *failure = std::current_exception();
     }
-    // After a failure the search goes on with something finite until it ends; its result is thrown away.
+    // After a failure the iteration goes on with something finite until it ends; its result is thrown away.
     if (*failure) std::copy_n(in, n, out);
     VecRestoreArray(y, &out);
     VecRestoreArrayRead(x, &in);
@@ -50,13 +50,18 @@ inline PetscErrorCode precondition_shell(PC pc, ::Vec x, ::Vec y) {
 }
 
 /// `op` by reference.
-inline Mat symmetric_shell(MPI_Comm comm, std::size_t n_owned, ShellOperator& op) {
+inline Mat shell_matrix(MPI_Comm comm, std::size_t n_owned, ShellOperator& op) {
   Mat mat = nullptr;
   const auto n = static_cast<PetscInt>(n_owned);
-  linalg::petsc_check(MatCreateShell(comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, &op, &mat));
-  linalg::petsc_check(MatShellSetOperation(mat, MATOP_MULT, reinterpret_cast<void (*)()>(multiply_shell)));
-  linalg::petsc_check(MatSetOption(mat, MAT_SYMMETRIC, PETSC_TRUE));
+  petsc_check(MatCreateShell(comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, &op, &mat));
+  petsc_check(MatShellSetOperation(mat, MATOP_MULT, reinterpret_cast<void (*)()>(multiply_shell)));
   return mat;
 }
 
-}  // namespace couplet::modes
+inline Mat symmetric_shell(MPI_Comm comm, std::size_t n_owned, ShellOperator& op) {
+  Mat mat = shell_matrix(comm, n_owned, op);
+  petsc_check(MatSetOption(mat, MAT_SYMMETRIC, PETSC_TRUE));
+  return mat;
+}
+
+}  // namespace couplet::linalg

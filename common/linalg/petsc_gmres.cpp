@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/linalg/petsc_gmres.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "common/linalg/petsc_check.hpp"
+#include "common/log/life.hpp"
+
+namespace couplet::linalg {
+namespace {
+
+// Iterations between restarts: GMRES has to resolve a few dozen eigenvalues far from the others.
+constexpr PetscInt before_restart = 100;
+
+PetscErrorCode iteration_is_alive(KSP, PetscInt, PetscReal, void*) {
+  log::alive();
+  return 0;
+}
+
+}  // namespace
+
+PetscGmres::PetscGmres(MPI_Comm comm, std::size_t n, LinearMap apply, LinearMap precondition)
+    : apply_(std::move(apply)), precondition_(std::move(precondition)) {
+  matrix_ = shell_matrix(comm, n, operator_);
+  petsc_check(MatCreateVecs(matrix_, &correction_, &r_));
+  petsc_check(KSPCreate(comm, &ksp_));
+  petsc_check(KSPMonitorSet(ksp_, iteration_is_alive, nullptr, nullptr));
+  petsc_check(KSPSetOperators(ksp_, matrix_, matrix_));
+  petsc_check(KSPSetType(ksp_, KSPFGMRES));
+  petsc_check(KSPSetPCSide(ksp_, PC_RIGHT));
+  petsc_check(KSPGMRESSetRestart(ksp_, before_restart));
+  PC pc = nullptr;
+  petsc_check(KSPGetPC(ksp_, &pc));
+  petsc_check(PCSetType(pc, PCSHELL));
+  petsc_check(PCShellSetContext(pc, &inverse_));
+  petsc_check(PCShellSetApply(pc, precondition_shell));
+}
+
+PetscGmres::~PetscGmres() {
+  if (!ksp_ || std::uncaught_exceptions() > 0) return;  // collective: not during unwinding
+  KSPDestroy(&ksp_);
+  VecDestroy(&r_);
+  VecDestroy(&correction_);
+  MatDestroy(&matrix_);
+}
+
+int PetscGmres::run(std::span<const double> r, std::span<double> x, double wanted, int most) {
+  failure_ = nullptr;
+  petsc_check(KSPSetTolerances(ksp_, 0, wanted, PETSC_DEFAULT, most));
+  petsc_check(VecPlaceArray(r_, r.data()));
+  const PetscErrorCode code = KSPSolve(ksp_, r_, correction_);
+  petsc_check(VecResetArray(r_));
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  petsc_check(code);
+  PetscInt iterations = 0;
+  PetscReal size = 0;
+  petsc_check(KSPGetIterationNumber(ksp_, &iterations));
+  petsc_check(VecNorm(correction_, NORM_2, &size));
+  if (!std::isfinite(size)) return static_cast<int>(iterations);
+  const PetscScalar* correction = nullptr;
+  petsc_check(VecGetArrayRead(correction_, &correction));
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] += correction[i];
+  petsc_check(VecRestoreArrayRead(correction_, &correction));
+  return static_cast<int>(iterations);
+}
+
+}  // namespace couplet::linalg
