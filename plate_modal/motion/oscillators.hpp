@@ -27,6 +27,7 @@ struct ModalState {
   std::vector<double> q, v, a;       ///< displacement, rate, acceleration
   std::vector<double> q_old, v_old;  ///< one level further back, for schemes that use it
   double dt = 0;                     ///< of the last step [s]; 0: none yet
+  std::vector<double> partner;  ///< loads of a partner in the last step, where the scheme looks back at them
   Energies energies;
 };
 

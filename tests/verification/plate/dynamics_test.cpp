@@ -53,6 +53,50 @@ TEST(PlateDynamics, trapezoidal_and_bathe_are_second_order_with_and_without_damp
       0.2);
 }
 
+/// A partner gives the mean of 40 sin^2(4 t) over each step; deflection of the plate after 0.8 s by n steps.
+std::vector<double> pushed_by_a_partner(TimeScheme scheme, int n) {
+  Parameters p;
+  p.material = {1000, 1e6, 0.3};
+  p.thickness = 0.05;
+  p.number = 4;
+  p.output.fields = false;
+  p.time_scheme.type = scheme;
+  for (const char* patch : {"xmax", "ymin", "ymax"}) p.boundaries[patch];
+  p.boundaries["xmin"].support = Support::clamped;
+  const mesh::RawMesh raw = square(4);
+  Structure plate(p, {MPI_COMM_WORLD, "plate", {}, {}, std::numeric_limits<double>::quiet_NaN()}, &raw);
+  const coupling::Interface interface = plate.initialise();
+  const double dt = 0.8 / n;
+  const auto impulse = [](double t) { return 20 * t - 2.5 * std::sin(8 * t); };
+  for (int i = 0; i < n; ++i) {
+    coupling::Exchange in;
+    for (const Vec3& area : interface.face_areas)
+      for (const double f : {0., 0., (impulse((i + 1) * dt) - impulse(i * dt)) / dt * std::max(area.z(), 0.)})
+        in["pressure-force"].push_back(f);
+    plate.begin_step({i * dt, dt, coupling::Scheme::implicit, i});
+    plate.solve(in);
+    plate.accept_step();
+  }
+  return plate.displacement();
+}
+
+TEST(PlateDynamics, the_mean_load_of_a_partner_is_taken_to_second_order) {
+  const std::vector<double> exact = pushed_by_a_partner(TimeScheme::trapezoidal, 2560);
+  const auto apart = [&](const std::vector<double>& u) {
+    double difference = 0, size = 0;
+    for (std::size_t i = 0; i < u.size(); ++i)
+      difference = std::max(difference, std::abs(u[i] - exact[i])), size = std::max(size, std::abs(exact[i]));
+    return difference / size;
+  };
+  for (const TimeScheme scheme :
+       {TimeScheme::trapezoidal, TimeScheme::bathe, TimeScheme::generalised_alpha, TimeScheme::three_point}) {
+    const double slope =
+        0.5 * std::log2(apart(pushed_by_a_partner(scheme, 80)) / apart(pushed_by_a_partner(scheme, 320)));
+    EXPECT_GT(slope, 1.85) << name(scheme);
+    RecordProperty(name(scheme), fmt::format("{:.3f}", slope));
+  }
+}
+
 TEST(PlateDynamics, energy_of_the_trapezoidal_rule_balances_to_rounding_and_bathe_loses) {
   const std::vector<double> omega{3, 40, 900}, gravity{0.5, -0.2, 0.1};
   double left[2] = {0, 0};
