@@ -178,8 +178,14 @@ std::string StepLoop::give_up(const StepActions& actions, const coupling::Step& 
   checkpoint(actions);
   if (!failure.halving_helps)
     return fmt::format("The run ends at t = {:g} s: {}{}", step.time, failure.reason, what_is_kept(actions));
-  return fmt::format("The step from t = {:g} s failed, even with dt = {:g} s after {} halvings: {}{}",
-                     step.time, step.dt, plan_.halvings(), failure.reason, what_is_kept(actions));
+  const auto& [first_dt, first] = first_failure_;
+  // The last failure may be one that short steps alone have.
+  const bool is_another =
+      HalvingCauses::without_numbers(first) != HalvingCauses::without_numbers(failure.reason);
+  return fmt::format("The step from t = {:g} s failed, even with dt = {:g} s after {} halvings: {}{}{}",
+                     step.time, step.dt, plan_.halvings(), failure.reason,
+                     is_another ? fmt::format(" It failed first with dt = {:g} s: {}", first_dt, first) : "",
+                     what_is_kept(actions));
 }
 
 /// The failure itself, or, where the same cause has halved steps too often, why the run ends. Collective: ranks may word a
@@ -210,6 +216,7 @@ std::string StepLoop::run(const StepActions& actions) {
       log::warn("t = {:g} s: step {} with dt = {:g} s failed: {}", step.time, step.number + 1, step.dt,
                 failure->reason);
       if (!failure->halving_helps) return give_up(actions, step, *failure);
+      if (first_failure_.second.empty()) first_failure_ = {step.dt, failure->reason};
       ++halvings_;
       if (const StepFailure again = seen_again(*failure, step.dt); !again.halving_helps)
         return give_up(actions, step, again);
@@ -218,6 +225,7 @@ std::string StepLoop::run(const StepActions& actions) {
     }
     plan_.accepted();
     causes_.accepted(step.dt);
+    first_failure_ = {};
     const bool output = plan_.at_nominal_time() && due(simulation_.output_interval);
     actions.accept(plan_.time(), output ? outputs_++ : -1);
     is_written_ = output;

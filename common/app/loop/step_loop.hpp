@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "common/app/loop/halving_causes.hpp"
 #include "common/app/loop/simulation.hpp"
@@ -98,7 +99,8 @@ class StepLoop {
   std::string run_id_;  // on rank 0
   coupling::StepPlan plan_;
   HalvingCauses causes_;
-  std::vector<std::string> continues_;  // ids of the runs before
+  std::pair<double, std::string> first_failure_;  // of the step under way: dt [s] and reason; empty: none
+  std::vector<std::string> continues_;            // ids of the runs before
   double continued_at_ = 0;
   int outputs_ = 0, halvings_ = 0;
   bool restarted_ = false, is_written_ = false;  // is_written_: the state now, as an output

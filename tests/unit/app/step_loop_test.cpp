@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/loop/step_loop.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <fstream>
@@ -209,6 +209,32 @@ TEST_F(Checkpoints, a_flipped_bit_in_a_scalar_is_noticed) {
   bytes[at + 6] = char(bytes[at + 6] ^ 1);
   std::ofstream(file, std::ios::binary) << bytes;
   EXPECT_THAT(error_of([&] { saved_time(file.parent_path()); }), HasSubstr("its digest differs"));
+}
+
+/// What a run says whose steps of `dt` fail for `reason(dt)`.
+std::string end_of_a_run_that_fails(const std::function<std::string(double)>& reason) {
+  SimulationParameters simulation;
+  simulation.end_time = simulation.time_step = 1;
+  simulation.max_step_halvings = 2;
+  StepLoop loop(MPI_COMM_SELF, simulation, coupling::Scheme::standalone, fs::temp_directory_path());
+  StepActions actions;
+  actions.stateless = "nothing to save";
+  actions.attempt = [&](const coupling::Step& step) { return StepFailure{reason(step.dt)}; };
+  actions.write_start = [](int) {};
+  return loop.run(actions);
+}
+
+TEST(StepLoop, names_the_first_failure_of_a_step_where_the_last_one_is_another) {
+  EXPECT_EQ(
+      end_of_a_run_that_fails([](double dt) {
+        return dt > 0.3 ? fmt::format("The pressure {} is lost.", dt) : "No solver for it.";
+      }),
+      "The step from t = 0 s failed, even with dt = 0.25 s after 2 halvings: No solver for it. It failed "
+      "first with dt = 1 s: The pressure 1 is lost. No state was saved: nothing to save.");
+  EXPECT_EQ(
+      end_of_a_run_that_fails([](double dt) { return fmt::format("The pressure {} is lost.", dt); }),
+      "The step from t = 0 s failed, even with dt = 0.25 s after 2 halvings: The pressure 0.25 is lost. No "
+      "state was saved: nothing to save.");
 }
 
 }  // namespace
