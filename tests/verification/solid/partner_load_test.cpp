@@ -7,28 +7,12 @@
 
 #include "common/parallel/collective.hpp"
 #include "tests/support/saved_state.hpp"
-#include "tests/verification/solid/support.hpp"
+#include "tests/verification/solid/partner_load.hpp"
 
 namespace couplet::testing {
 using namespace coupling;
 using time::TimeScheme;
 namespace {
-
-SolidParameters pushed(TimeScheme scheme) {
-  SolidParameters p = box_parameters(2);
-  p.analysis = SolidParameters::Analysis::dynamic;
-  p.kinematics = SolidParameters::Kinematics::finite_strain;
-  p.material = {1000, 2e4, 0.3};
-  p.time_scheme.type = scheme;
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
-  p.boundaries["xmax"] = boundary(Type::interface_);
-  return p;
-}
-
-std::unique_ptr<Solid> sheet(TimeScheme scheme) {
-  return make_solid(mesh::make_box(mesh::BoxCells::quadrilaterals, {5, 2, 1}, Vec3::Zero(), Vec3(1, 0.4, 0)),
-                    pushed(scheme));
-}
 
 /// Of the end [Pa].
 double pull(double t) { return 300 * std::sin(4 * t) * std::sin(4 * t); }
@@ -36,14 +20,7 @@ double pull(double t) { return 300 * std::sin(4 * t) * std::sin(4 * t); }
 double mean_pull(double t, double dt) { return (pull(t) + 4 * pull(t + dt / 2) + pull(t + dt)) / 6; }
 
 void push(Solid& solid, const Interface& interface, double dt) {
-  const double t = solid.stepper().state().time;
-  std::vector<double> force;
-  for (const Vec3& area : interface.face_areas)
-    force.insert(force.end(), {0, area.norm() * mean_pull(t, dt)});
-  const std::vector<double> still(force.size(), 0);
-  solid.begin_step({t, dt, Scheme::semi_implicit, solid.stepper().state().steps});
-  solid.solve({{"pressure-force", force}, {"viscous-force", still}});
-  solid.accept_step();
+  step_under(solid, interface, dt, mean_pull(solid.stepper().state().time, dt));
 }
 
 constexpr double end_time = 0.8;
