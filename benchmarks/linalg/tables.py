@@ -22,8 +22,8 @@ HAND_WRITTEN = {
     "krylov": ("our krylov CG, component_multigrid", lambda name: "CG, our component_multigrid" in name, ("plate B", "tetrahedra", "slender")),
 }
 # What else lies in that folder: PETSc's and MUMPS's own behind one call, LAPACK, what is no linear solver.
-NOT_SOLVERS = ("acceleration", "dense_eigenvalues", "dot", "linear_map", "linear_solver", "matrix", "petsc_calls", "petsc_check", "petsc_environment", "petsc_gmres", "petsc_methods",
-               "residual_projection", "shell_operator", "symmetric_factors")
+NOT_SOLVERS = ("acceleration", "dense_eigenvalues", "dot", "linear_map", "linear_solver", "matrix", "petsc_calls", "petsc_check", "petsc_environment", "petsc_methods", "petsc_shell",
+               "residual_projection", "symmetric_factors")
 BEGIN, END = "<!-- tables -->", "<!-- end of tables -->"
 
 

@@ -10,7 +10,7 @@
 
 #include "common/base/error.hpp"
 #include "common/linalg/dot.hpp"
-#include "common/linalg/petsc_gmres.hpp"
+#include "common/linalg/petsc_shell.hpp"
 #include "common/linalg/residual_projection.hpp"
 #include "common/log/life.hpp"
 #include "common/log/log.hpp"

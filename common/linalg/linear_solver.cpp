@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "common/linalg/petsc_check.hpp"
-#include "common/linalg/petsc_gmres.hpp"
 #include "common/linalg/petsc_methods.hpp"
+#include "common/linalg/petsc_shell.hpp"
 #include "common/linalg/single_factors.hpp"
 #include "common/log/life.hpp"
 #include "common/log/log.hpp"

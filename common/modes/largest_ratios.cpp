@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "common/base/error.hpp"
-#include "common/linalg/shell_operator.hpp"
+#include "common/linalg/petsc_shell.hpp"
 
 namespace couplet::modes {
 namespace {

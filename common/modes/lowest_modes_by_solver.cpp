@@ -9,7 +9,7 @@
 
 #include "common/base/error.hpp"
 #include "common/linalg/petsc_check.hpp"
-#include "common/linalg/shell_operator.hpp"
+#include "common/linalg/petsc_shell.hpp"
 #include "common/modes/lowest_modes.hpp"
 
 namespace couplet::modes {

@@ -36,9 +36,9 @@ struct SolidParameters {
   ZoneMaterials materials;             // by zone of the mesh
   std::map<std::string, SolidBoundary> boundaries;
   std::map<std::string, PointLoad> point_loads;
-  std::vector<config::ExpressionText> body_force;        // [N/m^3]; empty: none
-  std::vector<double> gravity;                           // [m/s^2]; empty: none
-  std::vector<config::ExpressionText> initial_velocity;  // [m/s]; empty: at rest
+  std::vector<config::ExpressionText> body_force;                               // [N/m^3]; empty: none
+  std::vector<double> gravity;                                                  // [m/s^2]; empty: none
+  std::vector<config::ExpressionText> initial_velocity;                         // [m/s]; empty: at rest
   time::TimeSchemeParameters time_scheme{.type = time::TimeScheme::automatic};  // see scheme_of()
   LoadStepping load_stepping;
   std::optional<SolidDamping> damping;

@@ -17,7 +17,7 @@ FILES = {
         *_of("fluid_solver", "rates face_flux predictor projection pressure boundary turbulence viscous_solver placement immersed "
                              "projection_bodies yielding_walls"),
         *_of("solid_solver", "heat heat_boundaries cell_gradient stress finite_strain updated_lagrangian orthotropic mixed_form"),
-        *_of("common/elasticity", "face_stencil symmetric_faces symmetric_kernel symmetric_space symmetric_held elastic_faces elastic_kernel_corrected "
+        *_of("common/elasticity", "face_stencil symmetric_faces symmetric_kernel symmetric_space elastic_faces elastic_kernel_corrected "
                                   "elastic_kernel_thesis shared_edges finite_edges finite_kernel anisotropic joined_vertices "
                                   "elastic_corrections vertex_constraints"),
         *_of("common/fv", "conduction face_gradient point_gradient vertex_interpolation vertex_weights prescribed_motion"),
@@ -36,7 +36,7 @@ FILES = {
     ],
     "loads": [
         *_of("fluid_solver", "loads turning_walls cavity rotating_frame"),
-        *_of("common/elasticity", "symmetric_loads follower_pressure finite_pressures"),
+        *_of("common/elasticity", "symmetric_forces follower_pressure finite_pressures"),
         *_of("plate_modal", "pressure_load contact"),
         *_of("solid_solver", "thermal_strain solid_forces boundaries body_fields interface_data solid_interface"),
         *_of("coupler", "volume_level"), *_of("thermocline", "mechanics wall_bending"),

@@ -74,7 +74,7 @@ MUTANTS = [
     Mutant("half the loss by mass damping, cell by cell", "solid_solver/motion/ledger.cpp",
            "damping.mass / dt * body_.density(c) *", "0.5 * damping.mass / dt * body_.density(c) *",
            "verification_solid_energy", "SolidEnergy.*"),
-    Mutant("thermal load of three-cornered faces without their edges", "common/elasticity/symmetric/symmetric_loads.cpp",
+    Mutant("thermal load of three-cornered faces without their edges", "common/elasticity/symmetric/symmetric_forces.cpp",
            "shared[i] = (1 - SharedEdges::share) * pressure[shared_mine_[i]] + SharedEdges::share * shared[i];",
            "shared[i] = pressure[shared_mine_[i]] + 0 * shared[i];", "unit_symmetric_loads"),
     Mutant("half the friction of oblique faces", "fluid_solver/step/rates.cpp",

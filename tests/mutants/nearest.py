@@ -37,7 +37,7 @@ FILE = {
     "common/elasticity/joined_vertices": "verification_mover_periodic",
     "common/elasticity/anisotropic": "verification_solid_orthotropic",
     "common/elasticity/symmetric/shared_edges": "verification_solid_symmetric verification_heat_strain",
-    "common/elasticity/symmetric/symmetric_loads": "unit_symmetric_loads verification_heat_strain verification_solid_symmetric",
+    "common/elasticity/symmetric/symmetric_forces": "unit_symmetric_loads verification_heat_strain verification_solid_symmetric",
     "common/fv/conduction": "unit_fv_operators verification_heat_exactness",
     "common/fv/prescribed_motion": "unit_fv_operators verification_fluid_prescribed_motion",
     "common/fv/point_gradient": "unit_fv_point_gradient verification_heat_strain",

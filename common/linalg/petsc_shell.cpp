@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/linalg/petsc_gmres.hpp"
+#include "common/linalg/petsc_shell.hpp"
 
 #include <cmath>
 #include <utility>
