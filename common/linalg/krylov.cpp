@@ -110,7 +110,7 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
     else if (is_hard)
       run_gmres(x, aim, options.max_iterations, statistics);
     else
-      run_bicgstab(x, aim, std::min(options.max_iterations, patience), statistics);
+      try_bicgstab(x, aim, std::min(options.max_iterations, patience), statistics);
     statistics.residual = true_residual(b, x);
   }
   if (projection) projection->finish(r_, x);
@@ -158,6 +158,16 @@ void KrylovSolver::run_gmres(std::span<double> x, double wanted, int max_iterati
   // An iteration of BiCGStab preconditions and applies twice.
   const int applications = gmres_->run(r_, x, wanted, 2 * (max_iterations - statistics.iterations));
   statistics.iterations += (applications + 1) / 2;
+}
+
+/// What leaves more than it found is undone: GMRES starts where this did.
+void KrylovSolver::try_bicgstab(std::span<double> x, double wanted, int max_iterations,
+                                SolveStatistics& statistics) {
+  const double before = std::sqrt(over_ranks<1>(comm_, {dot_here(r_, r_)})[0]);
+  const std::vector<double> start(x.begin(), x.end());
+  run_bicgstab(x, wanted, max_iterations, statistics);
+  if (!(std::sqrt(over_ranks<1>(comm_, {dot_here(r_, r_)})[0]) <= before))
+    std::ranges::copy(start, x.begin());
 }
 
 void KrylovSolver::run_bicgstab(std::span<double> x, double wanted, int max_iterations,

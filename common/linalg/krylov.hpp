@@ -45,6 +45,7 @@ class KrylovSolver {
  private:
   double true_residual(std::span<const double> b, std::span<const double> x);
   double rounding(std::span<const double> x);
+  void try_bicgstab(std::span<double> x, double wanted, int max_iterations, SolveStatistics& statistics);
   void run_bicgstab(std::span<double> x, double wanted, int max_iterations, SolveStatistics& statistics);
   void run_cg(std::span<double> x, double wanted, int max_iterations, SolveStatistics& statistics);
   void run_gmres(std::span<double> x, double wanted, int max_iterations, SolveStatistics& statistics);

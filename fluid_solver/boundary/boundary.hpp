@@ -39,6 +39,8 @@ class Boundary {
   /// face [kg/m^2], 0: none.
   bool yields() const { return yields_; }
   const std::vector<double>& wall_mass() const { return wall_mass_; }
+  /// Those of them whose mass may be that of two sides, as boundary faces.
+  const std::vector<Index>& faces_with_two_sides() const { return two_sided_; }
   /// The structure says these masses (`impedance: structure`), for all its faces of the interface or some.
   bool asks_for_mass() const { return asks_for_mass_; }
   /// What it said, at boundary faces [kg/m^2]; counts where it was asked. Whether one of this rank's has changed. Throws
@@ -94,6 +96,7 @@ class Boundary {
   std::vector<AbsorbingPatch> absorbing_patches_;
   std::vector<FaceRange> upstream_patches_;
   std::vector<double> wall_mass_;
+  std::vector<Index> two_sided_;
   std::vector<char> asked_;  // by boundary face: its mass is the structure's word
 };
 

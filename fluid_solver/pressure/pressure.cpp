@@ -15,13 +15,15 @@ namespace couplet::fluid {
 constexpr GlobalIndex largest_direct = 120000;
 
 template <int D>
-PressureEquation<D>::PressureEquation(const mesh::Mesh& mesh, const Boundary<D>& boundary, bool fixed)
+PressureEquation<D>::PressureEquation(const mesh::Mesh& mesh, const Boundary<D>& boundary, bool fixed,
+                                      const Couplings* couplings)
     : mesh_(mesh),
       boundary_(boundary),
+      couplings_(couplings),
       fixed_(fixed),
       direct_(D == 2 && mesh.cells.n_global() <= largest_direct) {}
 
-// Triplets: the diagonal of each owned cell first, then the neighbours face by face.
+// Triplets: the diagonal of each owned cell first, then the neighbours face by face, then what is coupled beside.
 template <int D>
 void PressureEquation<D>::make_pattern() {
   const Index owned = mesh_.cells.n_owned();
@@ -36,6 +38,10 @@ void PressureEquation<D>::make_pattern() {
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     add(mesh_.owner[f], mesh_.neighbour[f]);
     add(mesh_.neighbour[f], mesh_.owner[f]);
+  }
+  if (couplings_) {
+    for (const Index cell : couplings_->row) row.push_back(mesh_.cells.global(cell));
+    column.insert(column.end(), couplings_->column.begin(), couplings_->column.end());
   }
   values_.resize(row.size());
   matrix_ = std::make_unique<linalg::SparseMatrix>(mesh_.comm, owned, std::move(row), std::move(column));
@@ -85,7 +91,8 @@ void PressureEquation<D>::make_fixed(const Placement<D>& at) {
   matrix_->complete();
 }
 
-/// Of the matrix as it stands: its diagonal per owned cell, then one entry a face, which stands in it twice.
+/// Of the matrix as it stands: its diagonal per owned cell, then one entry a face, which stands in it twice, then the
+/// couplings.
 template <int D>
 std::vector<double> PressureEquation<D>::coefficients() const {
   const Index owned = mesh_.cells.n_owned();
@@ -95,6 +102,7 @@ std::vector<double> PressureEquation<D>::coefficients() const {
   for (Index f = 0; f < mesh_.n_interior; ++f)
     for (const Index cell : {mesh_.owner[f], mesh_.neighbour[f]})
       if (cell < owned) all[owned + f] = values_[next++];
+  all.insert(all.end(), values_.begin() + std::ptrdiff_t(next), values_.end());
   return all;
 }
 
@@ -107,6 +115,8 @@ void PressureEquation<D>::fill(std::span<const double> coefficients) {
   for (Index f = 0; f < mesh_.n_interior; ++f)
     for (const Index cell : {mesh_.owner[f], mesh_.neighbour[f]})
       if (cell < owned) values_[next++] = coefficients[owned + f];
+  std::copy(coefficients.begin() + owned + mesh_.n_interior, coefficients.end(),
+            values_.begin() + std::ptrdiff_t(next));
   matrix_->fill(values_);
 }
 
@@ -119,7 +129,9 @@ void PressureEquation<D>::save(io::CheckpointWriter& file) const {
   const std::span<const double> all = *accepted_.made_from;  // nothing, or the diagonal, then the faces
   const std::size_t owned = all.empty() ? 0 : std::size_t(mesh_.cells.n_owned());
   file.write(mesh::Entries::owned_cells, "pressure-preconditioner", all.first(owned));
-  file.write(mesh::Entries::interior_faces, "pressure-preconditioner-faces", all.subspan(owned));
+  const std::size_t faces = all.empty() ? 0 : std::size_t(mesh_.n_interior);
+  file.write(mesh::Entries::interior_faces, "pressure-preconditioner-faces", all.subspan(owned, faces));
+  if (couplings_) file.write("pressure-preconditioner-couplings", all.subspan(owned + faces));
 }
 
 template <int D>
@@ -136,7 +148,12 @@ void PressureEquation<D>::load(io::CheckpointReader& file) {
     const std::vector<double> faces =
         file.read_or_none(mesh::Entries::interior_faces, "pressure-preconditioner-faces", 1);
     saved.insert(saved.end(), faces.begin(), faces.end());
-    const std::size_t coefficients = std::size_t(mesh_.cells.n_owned()) + std::size_t(mesh_.n_interior);
+    if (couplings_) {
+      const std::vector<double> beside = file.read("pressure-preconditioner-couplings");
+      saved.insert(saved.end(), beside.begin(), beside.end());
+    }
+    const std::size_t coefficients = std::size_t(mesh_.cells.n_owned()) + std::size_t(mesh_.n_interior) +
+                                     (couplings_ ? couplings_->row.size() : 0);
     if (!memory.is_due && saved.size() != coefficients)
       throw Error("The checkpoint's preconditioner of the pressure is damaged. Use an earlier one.");
   }
@@ -163,6 +180,7 @@ void PressureEquation<D>::set(const Placement<D>& at, bool regular, std::span<co
     for (Index f = 0; f < mesh_.n_interior; ++f)
       for (const Index cell : {mesh_.owner[f], mesh_.neighbour[f]})
         if (cell < mesh_.cells.n_owned()) values_[next++] = -at.conductance[f];
+    if (couplings_) std::ranges::copy(couplings_->value, values_.begin() + std::ptrdiff_t(next));
     matrix_->fill(values_);
   }
   if (solver_) return solver_->matrix_changed();

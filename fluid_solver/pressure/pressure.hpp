@@ -13,13 +13,22 @@
 
 namespace couplet::fluid {
 
+/// Entries that the matrix has beside those of the mesh: in the row of an owned cell. Symmetric as a whole.
+struct Couplings {
+  std::vector<Index> row;
+  std::vector<GlobalIndex> column;
+  std::vector<double> value;  ///< [m]
+};
+
 /// A = -sum_f g (p_N - p_P), and g p_P at faces of given pressure: symmetric, positive (semi-)definite. Faces
 /// of given flux have no entry. The places of the entries are fixed; a moved mesh only refills the values.
 template <int D>
 class PressureEquation {
  public:
-  /// `fixed`: the mesh rests; nothing is kept for a second set().
-  PressureEquation(const mesh::Mesh& mesh, const Boundary<D>& boundary, bool fixed);
+  /// `fixed`: the mesh rests; nothing is kept for a second set(). `couplings`: their places stay, set() takes their
+  /// values; null: none. They must outlive the equation.
+  PressureEquation(const mesh::Mesh& mesh, const Boundary<D>& boundary, bool fixed,
+                   const Couplings* couplings = nullptr);
   /// `regular`: walls or openings answer to the pressure with `admittance`, per boundary face [m], or cells with `storage`,
   /// per owned cell [m], so that a closed domain has a level. Collective.
   void set(const Placement<D>& at, bool regular = false, std::span<const double> admittance = {},
@@ -56,6 +65,7 @@ class PressureEquation {
                                         std::span<double> p, double relative, double absolute);
   const mesh::Mesh& mesh_;
   const Boundary<D>& boundary_;
+  const Couplings* couplings_;  // null: none
   bool fixed_, regular_ = false;
   bool direct_;  // small 2-D meshes: kept Cholesky factors
   std::unique_ptr<linalg::SparseMatrix> matrix_;

@@ -31,8 +31,10 @@ constexpr double largest_degrees = 40;
 template <int D>
 PressureProjection<D>::PressureProjection(StepWork<D>& work, bool moving)
     : k_(work),
+      walls_(work.boundary.yields() ? std::make_unique<YieldingWalls<D>>(work) : nullptr),
       pressure_(work.mesh, work.boundary,
-                !moving && work.parameters.bodies.empty() && !work.boundary.yields() && work.sound == 0) {
+                !moving && work.parameters.bodies.empty() && !work.boundary.yields() && work.sound == 0,
+                walls_ ? &walls_->couplings() : nullptr) {
   if (work.sound > 0) make_waves();
 }
 
@@ -166,7 +168,7 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
   const Placement<D>& now = *k_.step.to;
   const double factor = k_.rho / k_.step.dt;
   set_boundary_flux(w);
-  if (k_.step.yields) foresee_walls(from);
+  if (k_.step.yields) walls_->foresee(from);
   k_.p_boundary.assign(w.size(), 0.0);
   k_.boundary.pressure_at(k_.by.time + k_.step.dt / 2, now.boundary_centre, k_.p_boundary);
   if (k_.frame)
@@ -199,7 +201,7 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
       now, b_, k_.p, tolerance, std::max(floor, std::numeric_limits<double>::min()), answer, changed);
   k_.statistics.pressure_iterations += solved.iterations;
   if (k_.bodies) fill_pressure_in_bodies();
-  if (k_.step.yields) let_walls_yield();
+  if (k_.step.yields) walls_->follow();
   if (absorbing_) absorbing_->follow();
   set_boundary_pressure(from);
 }

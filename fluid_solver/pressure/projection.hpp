@@ -10,6 +10,7 @@
 #include "fluid_solver/pressure/compression.hpp"
 #include "fluid_solver/pressure/pressure.hpp"
 #include "fluid_solver/pressure/upstream_volume.hpp"
+#include "fluid_solver/pressure/yielding_walls.hpp"
 
 namespace couplet::fluid {
 
@@ -71,8 +72,6 @@ class PressureProjection {
   std::array<double, 3> matrix_rule() const;
   double add_waves();
   std::vector<double> admittance() const;
-  void foresee_walls(const State<D>& from);
-  void let_walls_yield();
   void add_oblique_pressure();
   bool gradient_stands() const;
   void solve_pressure(const State<D>& from, const Vectors<D>& w, double tolerance, double answer);
@@ -85,6 +84,7 @@ class PressureProjection {
   void clear_bodies(std::vector<double>& values) const;
 
   StepWork<D>& k_;
+  std::unique_ptr<YieldingWalls<D>> walls_;  // null: none yields
   PressureEquation<D> pressure_;
   std::vector<double> b_;
   bool assembled_yielding_ = false;

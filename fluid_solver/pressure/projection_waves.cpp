@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What pressure waves change in the pressure equation.
+// What pressure waves, and walls that yield, change in the pressure equation.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -37,6 +37,16 @@ void PressureProjection<D>::set_waves(const State<D>& from) {
   compression_->prepare(from);
   if (absorbing_) absorbing_->prepare(from);
   if (upstream_) upstream_->prepare(from, compression_->rate());
+}
+
+/// Per boundary face [m]; empty: nothing answers to the pressure.
+template <int D>
+std::vector<double> PressureProjection<D>::admittance() const {
+  if (!walls_ && !absorbing_) return {};
+  std::vector<double> values(k_.w.size(), 0.);
+  if (absorbing_) absorbing_->add_admittance(values);
+  if (walls_) walls_->respond(values);
+  return values;
 }
 
 template <int D>
@@ -81,6 +91,7 @@ void PressureProjection<D>::load(io::CheckpointReader& file) {
 
 template void PressureProjection<2>::make_waves();
 template void PressureProjection<2>::set_waves(const State<2>&);
+template std::vector<double> PressureProjection<2>::admittance() const;
 template std::span<const double> PressureProjection<2>::storage() const;
 template double PressureProjection<2>::add_waves();
 template std::array<double, 3> PressureProjection<2>::matrix_rule() const;
@@ -89,6 +100,7 @@ template void PressureProjection<2>::save(io::CheckpointWriter&) const;
 template void PressureProjection<2>::load(io::CheckpointReader&);
 template void PressureProjection<3>::make_waves();
 template void PressureProjection<3>::set_waves(const State<3>&);
+template std::vector<double> PressureProjection<3>::admittance() const;
 template std::span<const double> PressureProjection<3>::storage() const;
 template double PressureProjection<3>::add_waves();
 template std::array<double, 3> PressureProjection<3>::matrix_rule() const;

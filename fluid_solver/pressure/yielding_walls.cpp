@@ -1,68 +1,133 @@
 // SPDX-License-Identifier: Apache-2.0
-// The interface as a Robin condition: what the structure would answer to the pressure that the equation finds, w is
-// moved by (p_b - p_b^k)/Z off the velocity w^k that the structure gave for p_b^k, Z = m/dt with its mass per area m.
-// With p_b = p_P + s - D (w - w^n), D = rho S/(g dt), normal to the wall
-//   w = [Z w^k + D w^n + s - p_b^k]/(Z + D) + p_P/(Z + D)
-// of which the last part joins the matrix, rho S/(m + rho S/g) a face [badia2008]. Where the iteration stands
-// p_b = p_b^k and w = w^k, whatever Z.
-#include "fluid_solver/pressure/projection.hpp"
+#include "fluid_solver/pressure/yielding_walls.hpp"
+
+#include <algorithm>
+
+#include "common/log/log.hpp"
 
 namespace couplet::fluid {
+namespace {
+
+// Of the interface's area: with less of it opposite itself nothing is said of two sides.
+constexpr double worth_telling = 0.05;
+
+}  // namespace
 
 template <int D>
-std::vector<double> PressureProjection<D>::admittance() const {
-  if (!k_.step.yields && !absorbing_) return {};
-  const Placement<D>& at = *k_.step.to;
-  std::vector<double> values(k_.w.size(), 0.);
-  if (absorbing_) absorbing_->add_admittance(values);
-  for (std::size_t b = 0; k_.step.yields && b < k_.boundary.wall_mass().size(); ++b) {
-    const Index f = k_.mesh.n_interior + static_cast<Index>(b);
-    const double area = at.area[f].norm();
-    if (k_.boundary.wall_mass()[b] > 0)
-      values[b] += k_.rho * area / (k_.boundary.wall_mass()[b] + k_.rho * area / at.conductance[f]);
+YieldingWalls<D>::YieldingWalls(StepWork<D>& work) : k_(work) {
+  const mesh::Geometry geometry = mesh::compute_geometry(k_.mesh, k_.points_at_rest);
+  opposite_ = OppositeFaces(k_.mesh, geometry, k_.boundary.faces_with_two_sides());
+  const std::size_t faces = std::size_t(k_.mesh.boundary.n_owned());
+  alone_.assign(faces, 1.);
+  std::vector<GlobalIndex> cell(std::size_t(opposite_.map().n_local()));
+  for (std::size_t b = 0; b < faces; ++b)
+    cell[b] = k_.mesh.cells.global(k_.mesh.owner[k_.mesh.n_interior + static_cast<Index>(b)]);
+  opposite_.map().update_ghosts(std::span<GlobalIndex>(cell));
+  for (const auto& pair : opposite_.pairs()) {
+    const Index f = k_.mesh.n_interior + pair.face;
+    alone_[pair.face] -= pair.area / geometry.face_area[f].norm();
+    couplings_.row.push_back(k_.mesh.owner[f]);
+    couplings_.column.push_back(cell[pair.other]);
   }
-  return values;
+  for (double& share : alone_) share = std::max(share, 0.);
+  couplings_.value.assign(couplings_.row.size(), 0.);
+  if (opposite_.share() > worth_telling)
+    log::info(
+        "Robin interface: {:.0f} % of it lies opposite itself, on the other side of a body {:.3g} m thick: there "
+        "both sides move together (boundary key 'sides').",
+        100 * opposite_.share(), opposite_.thickness());
 }
 
-/// What is known of w before the pressure is.
 template <int D>
-void PressureProjection<D>::foresee_walls(const State<D>& from) {
+void YieldingWalls<D>::set_resistances() {
+  const Placement<D>& at = *k_.step.to;
+  sides_.assign(std::size_t(opposite_.map().n_local()), {});
+  for (std::size_t b = 0; b < k_.boundary.wall_mass().size(); ++b) {
+    const Index f = k_.mesh.n_interior + static_cast<Index>(b);
+    const double m = k_.boundary.wall_mass()[b];
+    if (m > 0) sides_[b].resistance = (m + k_.rho * at.area[f].norm() / at.conductance[f]) / k_.step.dt;
+  }
+}
+
+template <int D>
+void YieldingWalls<D>::respond(std::vector<double>& admittance) {
+  std::fill(couplings_.value.begin(), couplings_.value.end(), 0.);
+  if (!k_.step.yields) return;
+  const Placement<D>& at = *k_.step.to;
+  set_resistances();
+  share();
+  const double factor = k_.rho / k_.step.dt;
+  for (std::size_t b = 0; b < alone_.size(); ++b) {
+    const double area = at.area[k_.mesh.n_interior + static_cast<Index>(b)].norm();
+    if (sides_[b].resistance > 0) admittance[b] += factor * area * alone_[b] / sides_[b].resistance;
+  }
+  for (std::size_t i = 0; i < couplings_.value.size(); ++i) {
+    const auto& pair = opposite_.pairs()[i];
+    const double both = factor * answer_of(pair);
+    admittance[pair.face] += both;
+    couplings_.value[i] = -both;
+  }
+}
+
+/// S'/(Z + Z' + D + D') [m^4 s/kg].
+template <int D>
+double YieldingWalls<D>::answer_of(const OppositeFaces::Pair& pair) const {
+  const Side &here = sides_[std::size_t(pair.face)], &there = sides_[std::size_t(pair.other)];
+  return here.resistance > 0 && there.resistance > 0 ? pair.area / (here.resistance + there.resistance) : 0;
+}
+
+/// Of the faces that lie opposite on other ranks.
+template <int D>
+void YieldingWalls<D>::share() {
+  opposite_.map().update_ghosts(std::as_writable_bytes(std::span(sides_)), sizeof(Side));
+}
+
+template <int D>
+void YieldingWalls<D>::foresee(const State<D>& from) {
   const Placement<D>& at = *k_.step.to;
   const double dt = k_.step.dt;
-  for (std::size_t b = 0; b < k_.boundary.wall_mass().size(); ++b) {
-    if (k_.boundary.wall_mass()[b] == 0) continue;
+  set_resistances();
+  for (std::size_t b = 0; b < alone_.size(); ++b) {
+    if (sides_[b].resistance == 0) continue;
     const Index f = k_.mesh.n_interior + static_cast<Index>(b), p = k_.mesh.owner[f];
-    const double area = at.area[f].norm(), g = at.conductance[f];
-    const Vec<D> n = at.area[f] / area;
-    double source = 0;
+    const double g = at.conductance[f];
+    double source = -k_.rho * (k_.w[b] - from.w[b]).dot(at.area[f]) / (g * dt) - k_.wall_load[b];
     if (!k_.force.empty()) source += k_.rho * k_.force[p].dot(at.area[f]) / g;
     if (!k_.gradient_guess.empty()) source -= k_.gradient_guess[p].dot(at.oblique_of(f)) / g;
-    const double z = k_.boundary.wall_mass()[b] / dt, d = k_.rho * area / (g * dt), given = k_.w[b].dot(n);
-    const double known = (z * given + d * from.w[b].dot(n) + source - k_.wall_load[b]) / (z + d);
-    k_.w[b] += (known - given) * n;
-    k_.phi_p[f] = k_.w[b].dot(at.area[f]);
+    sides_[b].pressure = source;
   }
+  add_answers();
 }
 
 template <int D>
-void PressureProjection<D>::let_walls_yield() {
+void YieldingWalls<D>::follow() {
+  for (std::size_t b = 0; b < alone_.size(); ++b)
+    sides_[b].pressure = k_.p[k_.mesh.owner[k_.mesh.n_interior + static_cast<Index>(b)]];
+  add_answers();
+}
+
+/// The walls' velocities and fluxes move by what the pressures of their sides do to them.
+template <int D>
+void YieldingWalls<D>::add_answers() {
   const Placement<D>& at = *k_.step.to;
-  const double dt = k_.step.dt;
-  for (std::size_t b = 0; b < k_.boundary.wall_mass().size(); ++b) {
-    if (k_.boundary.wall_mass()[b] == 0) continue;
+  share();
+  flux_.assign(alone_.size(), 0.);
+  for (std::size_t b = 0; b < alone_.size(); ++b)
+    if (sides_[b].resistance > 0)
+      flux_[b] = at.area[k_.mesh.n_interior + static_cast<Index>(b)].norm() * alone_[b] * sides_[b].pressure /
+                 sides_[b].resistance;
+  for (const auto& pair : opposite_.pairs())
+    flux_[std::size_t(pair.face)] += answer_of(pair) * (sides_[std::size_t(pair.face)].pressure -
+                                                        sides_[std::size_t(pair.other)].pressure);
+  for (std::size_t b = 0; b < alone_.size(); ++b) {
+    if (sides_[b].resistance == 0) continue;
     const Index f = k_.mesh.n_interior + static_cast<Index>(b);
-    const double area = at.area[f].norm();
-    const double resistance = (k_.boundary.wall_mass()[b] + k_.rho * area / at.conductance[f]) / dt;
-    k_.w[b] += k_.p[k_.mesh.owner[f]] / resistance * (at.area[f] / area);
+    k_.w[b] += flux_[b] / at.area[f].squaredNorm() * at.area[f];
     k_.phi_p[f] = k_.w[b].dot(at.area[f]);
   }
 }
 
-template std::vector<double> PressureProjection<2>::admittance() const;
-template void PressureProjection<2>::foresee_walls(const State<2>&);
-template void PressureProjection<2>::let_walls_yield();
-template std::vector<double> PressureProjection<3>::admittance() const;
-template void PressureProjection<3>::foresee_walls(const State<3>&);
-template void PressureProjection<3>::let_walls_yield();
+template class YieldingWalls<2>;
+template class YieldingWalls<3>;
 
 }  // namespace couplet::fluid

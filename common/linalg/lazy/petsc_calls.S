@@ -103,6 +103,7 @@ lazily ISGetIndices
 lazily ISRestoreIndices
 lazily KSPCreate
 lazily KSPDestroy
+lazily KSPGMRESSetCGSRefinementType
 lazily KSPGMRESSetRestart
 lazily KSPGetConvergedReason
 lazily KSPGetIterationNumber

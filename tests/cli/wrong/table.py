@@ -245,7 +245,7 @@ case.yaml:9:5: participants.solid.initial-velocity: it requires 'analysis: dynam
 case.yaml:9:5: participants.solid.interface: no patch is an interface: set 'type: interface' for one, or remove this section.
 """, ("analysis: dynamic", "analysis: dynamic\n    interface: {load: pressure}")),
     solid("unknown time scheme", """
-case.yaml:9:19: participants.solid.time-scheme.type: 'bath' is not one of: euler, three-point, trapezoidal, bathe, generalised-alpha. Did you mean 'bathe'?
+case.yaml:9:19: participants.solid.time-scheme.type: 'bath' is not one of: auto, euler, three-point, trapezoidal, bathe, generalised-alpha. Did you mean 'bathe'?
 """, ("analysis: dynamic", "analysis: dynamic\n    time-scheme: {type: bath}")),
     solid("known components and all of them", """
 case.yaml:14:40: participants.solid.boundaries.left.value: give either 'value' (all components) or 'components' (the prescribed ones of x, y, z).

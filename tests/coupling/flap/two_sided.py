@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""A soft light flap, wet on both sides, by the Robin interface without acceleration: together its sides converge in a few passes a step,
+also on several ranks and across a restart; the failing neighbour, each side for itself, does not in 30. Coarse meshes.
+Usage: two_sided.py CONFIG_FOLDER BIN"""
+import csv
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+SOURCE, BIN = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
+COUNTS = {"n_side = 80": "n_side = 20", "n_side = 160": "n_side = 40", "n_tip = 8": "n_tip = 4", "n_tip = 16": "n_tip = 8",
+          "growth = 1.12; ": "growth = 1.25; ", "wall_cells = 10": "wall_cells = 5"}
+SETS = ("simulation.end-time=0.05", "simulation.max-step-halvings=0", "simulation.output.interval=0", "simulation.checkpoint={interval: 0.01, keep: 9}",
+        "participants.fluid.boundaries.inlet.ramp=0.4", "participants.fluid.viscosity=0.01", "participants.solid.material.density=10",
+        "participants.solid.material.youngs-modulus=1e4", "participants.solid.interface={surface-density: true}", "coupling.order=structure-first",
+        "coupling.acceleration={type: constant, initial-relaxation: 1}", "participants.fluid.boundaries.flap.impedance=structure")
+
+
+def launch(here, name, *sets, ranks=1, restart=None):
+    words = ["mpirun", "--oversubscribe"]
+    for i, program in enumerate(("coupler", "fluid_solver", "solid_solver", "mesh_mover")):
+        words += [":"] * (i > 0) + ["-n", str(ranks if i in (1, 2) else 1), str(BIN / program), "case.yaml"]
+        words += [f"--set={s}" for s in (*SETS, f"simulation.output.folder={name}", *sets)] + (["--restart", restart] if restart else [])
+    return subprocess.run(words, cwd=here, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=280)
+
+
+def table(file):
+    with open(file, encoding="utf-8") as text:
+        return list(csv.reader(text))[1:]
+
+
+def check(claim, holds, value):
+    print(f"{'ok' if holds else 'not ok'}  {claim}: {value}", flush=True)
+    if not holds:
+        sys.exit(1)
+
+
+def main():
+    with tempfile.TemporaryDirectory(prefix="couplet-two-sided-") as name:
+        here = pathlib.Path(name)
+        shutil.copy(SOURCE / "case.yaml", here)
+        for mesh in ("fluid.geo", "solid.geo"):
+            text = (SOURCE / mesh).read_text()
+            for old, new in COUNTS.items():
+                text = text.replace(old, new)
+            (here / mesh).write_text(text)
+        together = launch(here, "together")
+        check("together: exit code", together.returncode == 0, f"{together.returncode}\n{together.stdout[-2000:] if together.returncode else ''}")
+        check("together: the log names the two sides", "Robin interface: 95 % of it lies opposite itself" in together.stdout, "")
+        passes = len(table(here / "together/coupler/residuals.csv")) / 5
+        check("together: at most 10 passes a step", passes <= 10, passes)
+        apart = launch(here, "apart", "participants.fluid.boundaries.flap.sides=apart")
+        check("apart: the coupling fails, by name", apart.returncode != 0 and "did not converge" in apart.stdout, apart.returncode)
+        tips = table(here / "together/solid/probes.csv")
+        launch(here, "ranks", ranks=2)
+        gap = max(abs(float(a[1]) - float(b[1])) for a, b in zip(table(here / "ranks/solid/probes.csv"), tips)) / abs(float(tips[-1][1]))
+        check("fluid and solid on 2 ranks: tips apart", gap < 1e-4, gap)
+        shutil.copytree(here / "together/checkpoints/step-00000003", here / "set")
+        launch(here, "on", restart="set")
+        check("restart bit for bit", table(here / "on/solid/probes.csv")[-2:] == tips[-2:], tips[-1])
+
+
+main()
