@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The flap from heavy to light and from viscous to thin fluids, refined in the step: order of the tip, by default settings."""
+import json
 import math
 
 import couplet
@@ -8,10 +9,11 @@ from validation.job import Bar
 from validation.strong_coupling import COARSE, FLAP
 
 STEPS = (0.01, 0.005, 0.0025, 0.00125)  # s
+RHO, MU = (1000, 100, 10, 1), (10, 1, 0.1, 0.01)
 
 
-def tip(job, rho, mu, step):
-    """At 0.2 s [m]; None where the run ended before."""
+def tip_and_estimate(job, rho, mu, step):
+    """At 0.2 s [m], and the run's own estimate of the step's error (a share); None where the run ended before."""
 
     def make():
         try:
@@ -21,8 +23,34 @@ def tip(job, rho, mu, step):
                 "coupling.convergence.max-iterations=100", *COARSE), {}, 3000).folder
         except RunFailed:
             return None
-        return couplet.read_csv(folder / "solid" / "probes.csv")["tip x [m]"][-1]
+        estimate = json.loads((folder / "coupler" / "run.json").read_text())["errors"]["step"]
+        return couplet.read_csv(folder / "solid" / "probes.csv")["tip x [m]"][-1], estimate
     return job.once(("rung", rho, mu, step), make)
+
+
+def tip(job, rho, mu, step):
+    found = tip_and_estimate(job, rho, mu, step)
+    return found and found[0]
+
+
+def estimates(job):
+    """Of steps of 10, 5 and 2.5 ms in the rungs that end: beside the limit of the two finest, of the order that they show, 1 to 2."""
+    ratios = []
+    for rho in RHO:
+        for mu in MU:
+            tips = [tip(job, rho, mu, step) for step in STEPS]
+            if None in tips:
+                continue
+            order = min(2, max(1, math.log2(abs(tips[1] - tips[2]) / abs(tips[2] - tips[3]))))
+            limit = tips[3] + (tips[3] - tips[2]) / (2**order - 1)
+            for step, value in zip(STEPS[:3], tips):
+                truth = abs(value / limit - 1)
+                if truth > 1e-4:  # what the coupling's tolerance leaves
+                    ratios.append(tip_and_estimate(job, rho, mu, step)[1] / truth)
+    good = sum(1 / 3 <= r <= 3 for r in ratios)
+    ratios.sort()
+    return (f"{good} of {len(ratios)}; {sum(r > 3 for r in ratios)} above three times the truth, {sum(r < 1 / 3 for r in ratios)} below a third; "
+            f"{ratios[0]:.2f} to {ratios[-1]:.1f} times it"), good >= 0.8 * len(ratios)
 
 
 def rung(rho, mu):
@@ -38,4 +66,6 @@ def rung(rho, mu):
 
 
 BARS = [Bar(f"ladder of flaps, rho_s {rho}, mu {mu}: tip at 0.2 s, steps of 10, 5, 2.5, 1.25 ms", "order >= 1.8 between the finest, or 1e-4 apart",
-            rung(rho, mu), long=True) for rho in (1000, 100, 10, 1) for mu in (10, 1, 0.1, 0.01)]
+            rung(rho, mu), long=True) for rho in RHO for mu in MU]
+BARS.append(Bar("ladder of flaps: the run's estimate of the step's error beside the truth", "within a factor of 3 in 80 % of the runs whose error is above 1e-4", estimates,
+                long=True, but="truth: the limit of the two finest steps"))
