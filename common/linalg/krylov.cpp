@@ -163,10 +163,9 @@ void KrylovSolver::run_gmres(std::span<double> x, double wanted, int max_iterati
 /// What leaves more than it found is undone: GMRES starts where this did.
 void KrylovSolver::try_bicgstab(std::span<double> x, double wanted, int max_iterations,
                                 SolveStatistics& statistics) {
-  const double before = std::sqrt(over_ranks<1>(comm_, {dot_here(r_, r_)})[0]);
   const std::vector<double> start(x.begin(), x.end());
   run_bicgstab(x, wanted, max_iterations, statistics);
-  if (!(std::sqrt(over_ranks<1>(comm_, {dot_here(r_, r_)})[0]) <= before))
+  if (!(std::sqrt(over_ranks<1>(comm_, {dot_here(r_, r_)})[0]) <= statistics.residual))
     std::ranges::copy(start, x.begin());
 }
 

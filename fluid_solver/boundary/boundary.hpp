@@ -39,8 +39,11 @@ class Boundary {
   /// face [kg/m^2], 0: none.
   bool yields() const { return yields_; }
   const std::vector<double>& wall_mass() const { return wall_mass_; }
-  /// Those of them whose mass may be that of two sides, as boundary faces.
-  const std::vector<Index>& faces_with_two_sides() const { return two_sided_; }
+  /// Boundary faces whose mass may be that of two sides. None in a closed domain: two sides that move as one say nothing of
+  /// the pressure's level, each by itself does.
+  std::span<const Index> faces_with_two_sides() const {
+    return closed_ ? std::span<const Index>{} : std::span<const Index>(two_sided_);
+  }
   /// The structure says these masses (`impedance: structure`), for all its faces of the interface or some.
   bool asks_for_mass() const { return asks_for_mass_; }
   /// What it said, at boundary faces [kg/m^2]; counts where it was asked. Whether one of this rank's has changed. Throws

@@ -26,7 +26,14 @@ void declare_interface(config::Section& s, BoundaryParameters& b) {
       .doc(
           "Robin condition of faces that lie opposite each other, on two wet sides of one body no thicker than a "
           "quarter of the interface's extent: together: one motion, driven by the difference of their pressures, with "
-          "the mass of both; apart: each for itself, for a body that a pressure wave needs more than a step to cross");
+          "the mass of both (apart in a fluid without an outlet); apart: each for itself, for a body that a pressure wave needs more than a step to cross");
+  s.check(
+      [&b] {
+        return b.sides == Sides::apart && !b.foresees()
+                   ? "there is no Robin condition here: set 'surface-density' or 'impedance: structure', or remove the key"
+                   : "";
+      },
+      "sides");
   s.check(
       [&b] {
         return b.surface_density && b.impedance == Impedance::structure

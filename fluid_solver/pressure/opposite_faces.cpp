@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <tuple>
 
@@ -12,15 +13,16 @@
 namespace couplet::fluid {
 namespace {
 
-constexpr double thin = 0.25;  // thickness over the extent of the walls
-constexpr double facing =
-    0.7;  // least -n.n' of the normals, least share of the way across that is along the normal
-constexpr std::size_t first_look = 16;
-constexpr int along = 8;    // parts of an edge
-constexpr int rounds = 50;  // of the scaling
+constexpr double thin = 0.25;    // thickness over the extent of the walls
+constexpr double facing = 0.7;   // least -n.n' of the normals
+constexpr double beside = 1.1;   // of a face's radius: so far from its centre it is still met
+constexpr std::size_t look = 8;  // faces at a place of the way across
+constexpr int along = 8;         // parts of an edge
+constexpr int rounds = 50;       // of the scaling
 
 struct Face {
   Vec3 centre, normal;  // out of the fluid
+  double radius;        // of its corners about the centre [m]
   Index entry;
   int rank;
 };
@@ -43,26 +45,50 @@ std::vector<Vec3> samples_of(const mesh::Mesh& mesh, const mesh::Geometry& geome
   return places;
 }
 
-double extent_of(const std::vector<Face>& all) {
-  Vec3 low = Vec3::Constant(1e300), high = -low;
-  for (const Face& face : all) low = low.cwiseMin(face.centre), high = high.cwiseMax(face.centre);
-  return all.empty() ? 0 : (high - low).norm();
-}
-
-/// The nearest face across the body from `place` of one with the normal n; -1: none within `reach`.
-Index across(const std::vector<Face>& all, const base::PointTree& tree, const Vec3& place, const Vec3& n,
-             double reach) {
-  for (std::size_t k = first_look;; k *= 4) {
-    const std::vector<Index> near = tree.nearest(place, k);
-    for (const Index i : near) {
-      const Face& face = all[std::size_t(i)];
-      const Vec3 way = face.centre - place;
-      if (way.norm() > reach) return -1;
-      if (face.normal.dot(n) < -facing && way.dot(n) >= -1e-9 * reach) return i;
+/// Faces of all ranks, to look for those across a body.
+class Walls {
+ public:
+  explicit Walls(const std::vector<Face>& all) : all_(all), centres_(centres_of(all)), tree_(centres_) {
+    Vec3 low = Vec3::Constant(std::numeric_limits<double>::max()), high = -low;
+    for (const Face& face : all) {
+      low = low.cwiseMin(face.centre), high = high.cwiseMax(face.centre);
+      widest_ = std::max(widest_, face.radius);
     }
-    if (near.size() < k) return -1;
+    if (!all.empty()) reach_ = thin * (high - low).norm();
   }
-}
+
+  /// The face that the normal of `from` meets across the body from a place of it; null: none. Goes on as far as no face
+  /// can be met, so that walls with one wet side cost little.
+  const Face* across(const Face& from, const Vec3& place) const {
+    for (double way = 0; way <= reach_;) {
+      const Vec3 at = place + way * from.normal;
+      const std::vector<Index> near = tree_.nearest(at, look);
+      for (const Index i : near)
+        if (is_met(all_[std::size_t(i)], from, place)) return &all_[std::size_t(i)];
+      const double clear = (centres_[std::size_t(near.front())] - at).norm() - widest_;
+      way += std::max(clear, from.radius / 2);
+    }
+    return nullptr;
+  }
+
+ private:
+  static std::vector<Vec3> centres_of(const std::vector<Face>& all) {
+    std::vector<Vec3> centres;
+    for (const Face& face : all) centres.push_back(face.centre);
+    return centres;
+  }
+  bool is_met(const Face& face, const Face& from, const Vec3& place) const {
+    const Vec3 way = face.centre - place;
+    const double depth = way.dot(from.normal);
+    return face.normal.dot(from.normal) < -facing && depth >= -1e-9 * reach_ && depth <= reach_ &&
+           (way - depth * from.normal).norm() <= beside * face.radius;
+  }
+
+  const std::vector<Face>& all_;
+  std::vector<Vec3> centres_;
+  base::PointTree tree_;
+  double widest_ = 0, reach_ = 0;  // largest radius; largest thickness [m]
+};
 
 /// What a face says of another rank's: they have this area in common.
 struct Told {
@@ -78,14 +104,14 @@ OppositeFaces::OppositeFaces(const mesh::Mesh& mesh, const mesh::Geometry& geome
   std::vector<Face> mine;
   for (const Index b : candidates) {
     const Index f = mesh.n_interior + b;
-    mine.push_back({geometry.face_centre[f], geometry.face_area[f].normalized(), b, rank});
+    double radius = 0;
+    for (const Index v : mesh.face_points[f])
+      radius = std::max(radius, (geometry.points[v] - geometry.face_centre[f]).norm());
+    mine.push_back({geometry.face_centre[f], geometry.face_area[f].normalized(), radius, b, rank});
   }
   // All of them are here while the opposite ones are looked for, and no longer.
   const std::vector<Face> all = parallel::all_gather(mesh.comm, mine);
-  std::vector<Vec3> centres;
-  for (const Face& face : all) centres.push_back(face.centre);
-  const base::PointTree tree(centres);
-  const double reach = thin * extent_of(all);
+  const Walls walls(all);
 
   std::map<std::tuple<Index, int, Index>, double> common;  // face here, rank and face there: area
   std::vector<std::vector<Told>> tell(static_cast<std::size_t>(ranks));
@@ -97,9 +123,9 @@ OppositeFaces::OppositeFaces(const mesh::Mesh& mesh, const mesh::Geometry& geome
     const double part = geometry.face_area[f].norm() / double(places.size());
     for (const Vec3& place : places) {
       sums[0] += part;
-      const Index found = across(all, tree, place, face.normal, reach);
-      if (found < 0) continue;
-      const Face& other = all[std::size_t(found)];
+      const Face* const found = walls.across(face, place);
+      if (!found) continue;
+      const Face& other = *found;
       sums[1] += part;
       covered[std::size_t(face.entry)] += part;
       sums[2] += part * (other.centre - place).dot(face.normal);

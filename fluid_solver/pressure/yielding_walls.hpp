@@ -23,7 +23,7 @@ class YieldingWalls {
   /// Collective.
   explicit YieldingWalls(StepWork<D>& work);
 
-  /// Where there are entries; the values come with set().
+  /// Where there are entries; the values come with respond().
   const Couplings& couplings() const { return couplings_; }
   /// For the work's step: to what the walls add to the diagonal of the pressure equation, per boundary face [m], and the
   /// values of couplings(). Collective.

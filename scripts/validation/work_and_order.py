@@ -19,7 +19,7 @@ was tried: fewer iterations on the flap (0.71) and FSI1 (0.83), but more passes 
 Robin interface of the flap: not met. Its two sides share their mass and move together now, which saves passes without acceleration and with Aitken (docs/coupling.md); IQN-ILS knows from earlier steps the modes that added mass amplifies, most of this flap's answer within a step is stiffness, which a mass does not represent (any mass from 0.25 to 25 kg/m^2 given by hand: 6.25 to 7.6 passes), and the load as the unknown takes 7.3 passes without Robin.
 
 FSI3 to 20 s: runs on both pairs of meshes (with the trapezoidal rule, the default before, it ended after 15.2 and 11.1 s). Work of the two sides is equal to rounding in a step (first row of this
-table); these two are sums of the printed columns, in which each side counts its load at its own time. The plate loses as much energy as it holds in these 20 s: generalised-alpha damps,
+table); these two are sums of the printed columns, in which each side presumably counts its load at its own time. The plate loses as much energy as it holds in these 20 s: generalised-alpha damps,
 steps of 2 ms, presumably the vibrations that the trapezoidal rule kept.
 
 Exchange: not met. The measure is the whole pass of the coupler, relaxation and logging included, over a bare MPI_Send and MPI_Recv."""

@@ -2,6 +2,9 @@
 // A thin body that is wet on both sides: the Robin condition lets its two sides move together.
 #include <gtest/gtest.h>
 
+#include <map>
+#include <set>
+
 #include "tests/verification/fluid/fluid_case.hpp"
 
 namespace couplet::fluid::test {
@@ -127,6 +130,74 @@ void expect_apart(const std::array<Speeds, 2>& w) {
 // The neighbour: each side for itself.
 TEST(TwoSidedWalls, apart_each_has_its_own_motion) {
   expect_apart(speeds<2>(two_boxes(2, 6, 6), Sides::apart));
+}
+
+/// A box of 8 x 8 cells, closed, without the cells that a plate takes in its midst.
+RawMesh box_around_plate() {
+  RawMesh raw = mesh::make_box(BoxCells::quadrilaterals, {8, 8, 1}, Vec3::Zero(), Vec3::Ones());
+  const auto in_plate = [&](const Vec3& x) {
+    return std::abs(x[0] - 0.5) < 0.3 && std::abs(x[1] - 0.5625) < 0.1;
+  };
+  std::map<std::set<Index>, int> sides;  // edges of the plate's cells: how many of these
+  RawMesh kept = raw;
+  kept.cell_points = {};
+  kept.cell_type.clear(), kept.cell_zone.clear();
+  for (Index c = 0; c < raw.cell_points.size(); ++c) {
+    const auto corners = raw.cell_points[c];
+    Vec3 centre = Vec3::Zero();
+    for (const Index v : corners) centre += raw.points[std::size_t(v)] / 4;
+    if (in_plate(centre)) {
+      for (std::size_t i = 0; i < 4; ++i) ++sides[{corners[i], corners[(i + 1) % 4]}];
+      continue;
+    }
+    kept.cell_points.push_row(corners);
+    kept.cell_type.push_back(raw.cell_type[std::size_t(c)]),
+        kept.cell_zone.push_back(raw.cell_zone[std::size_t(c)]);
+  }
+  for (const auto& [side, count] : sides)
+    if (count == 1) {
+      kept.boundary_points.push_row(std::vector<Index>(side.begin(), side.end()));
+      kept.boundary_patch.push_back(int(kept.patches.size()));
+    }
+  kept.patches.push_back("plate");
+  return kept;
+}
+
+// Two sides that move as one say nothing of the level of the pressure: without an outlet each side yields by itself.
+TEST(TwoSidedWalls, closed_fluids_keep_their_sides_apart) {
+  const auto pressure = [](Sides sides) {
+    FluidParameters p;
+    p.density = 1.3;
+    p.viscosity = 1e-6;
+    p.pressure_tolerance = 1e-12;
+    all_sides(p, 2, boundary(BoundaryType::slip));
+    p.boundaries["plate"] = boundary(BoundaryType::interface);
+    p.boundaries["plate"].surface_density = mass / 2;
+    p.boundaries["plate"].sides = sides;
+    FluidCase<2> c(MPI_COMM_WORLD, box_around_plate(), p);
+    std::vector<double> loads(std::size_t(c.mesh().boundary.n_owned()), 0.);
+    for (std::size_t b = 0; b < loads.size(); ++b)
+      loads[b] = push * std::max(0., c.geometry().face_area[c.mesh().n_interior + Index(b)][1]);
+    c.fluid().begin_step(0, dt);
+    c.fluid().yield_from(loads);
+    c.fluid().solve({}, {});
+    return c.fluid().boundary_pressure();
+  };
+  const std::vector<double> as_one = pressure(Sides::together);
+  EXPECT_EQ(as_one, pressure(Sides::apart));
+  double most = 0;
+  for (const double p : as_one) most = std::max(most, std::abs(p));
+  most = parallel::max(MPI_COMM_WORLD, most);
+  EXPECT_GT(most, 0.01 * push);
+  EXPECT_LT(most, 10 * push);
+}
+
+// Another body's wet side, further along, is not this one's.
+TEST(TwoSidedWalls, bodies_side_by_side_do_not_see_each_other) {
+  RawMesh raw = two_boxes(2, 6, 6);
+  for (Vec3& x : raw.points)
+    if (x[1] > 1 + thickness / 2) x[0] += 1.02;
+  expect_apart(speeds<2>(raw, Sides::together));
 }
 
 // A body that is thicker than a quarter of the walls' extent is not seen through: sides apart.
