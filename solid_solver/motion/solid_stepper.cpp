@@ -30,7 +30,12 @@ SolidStepper::SolidStepper(SolidBody& body)
 
 void SolidStepper::announce_time_scheme() const {
   const time::TimeSchemeParameters scheme = scheme_of(parameters_);
-  log::info("Time scheme: {}{}", time::name(scheme.type),
+  const bool by_auto = parameters_.time_scheme.type == time::TimeScheme::automatic;
+  log::info("Time scheme: {}{}{}", time::name(scheme.type),
+            !by_auto ? ""
+            : scheme.type == time::TimeScheme::generalised_alpha
+                ? " (auto: a partner loads a body of large strain)"
+                : " (auto)",
             scheme.type == time::TimeScheme::generalised_alpha
                 ? fmt::format(", which leaves {:g} of the highest modes after a step", scheme.spectral_radius)
             : parameters_.energy_momentum ? ", energy and momenta conserved"

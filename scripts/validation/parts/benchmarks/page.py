@@ -30,7 +30,7 @@ PEERS = {  # source: (name, fluid and solid cells, step, core-hours); the figure
     "Tukovic18": ("Tuković and others 2018 (foam-extend)", "-", "-", "-"), "TH06": ("Turek and Hron 2006", "-", "-", "-"),
     "FF_2": ("Featflow, level 2", "-", "0.25 ms", "-"), "FF_3": ("Featflow, level 3", "-", "0.25 ms", "-"), "FF": ("Featflow, finest: the reference", "-", "0.25 ms", "-")}
 OURS = {  # case: [(name, cells, step, beginning of our rows)]
-    "FSI1": [("Couplet, implicit", "20.8 k, 2.5 k", "20 ms", "FSI1, about 21 k fluid and 2.5 k solid cells"), ("Couplet", "4.8 k, 0.6 k", "20 ms", "FSI1, 4.8 k fluid cells")],
+    "FSI1": [("Couplet", "20.8 k, 2.5 k", "20 ms", "FSI1, about 21 k fluid and 2.5 k solid cells"), ("Couplet", "4.8 k, 0.6 k", "20 ms", "FSI1, 4.8 k fluid cells")],
     "FSI3": [("Couplet", "20.8 k, 2.5 k", "0.5 ms", "FSI3, about 21 k fluid and 2.5 k solid cells"), ("Couplet", "4.8 k, 0.6 k", "2 ms", "FSI3, coarse, ten minutes")]}
 SHOWN = {  # quantity: (head, factor, digits)
     "FSI1": {"ux_mean": ("u_x [1e-5 m]", 1e5, 4), "uy_mean": ("u_y [1e-4 m]", 1e4, 4), "drag_mean": ("drag [N]", 1, 5), "lift_mean": ("lift [N]", 1, 4)},
