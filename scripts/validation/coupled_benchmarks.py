@@ -21,9 +21,6 @@ case ([README](../../configs/cavity-flexible-bottom/README.md)); its mesh files 
 period is near the lid's, and its height grows with the cube root of the load, so that 10 % in height are a third in load or damping; published amplitudes differ by half themselves. Its two meshes: the
 least height changes by 2.1 % from 32 x 32 to 64 x 64 cells (four cells across the strips, which drive the flow).
 
-FSI1 on other ranks: not met. Presumably the flow starts symmetric, loads of both sides cancel, and the plate amplifies what is left (not tested); its pressures agree. FSI3
-agrees.
-
 Lift of FSI3: not met by 0.35 percentage points. With the trapezoidal rule, the default before, it was 185 N (+20 %): the plate vibrated in its highest modes; generalised-alpha damps them."""
 PAGES = [page.write]
 BARS = [

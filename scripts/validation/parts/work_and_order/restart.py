@@ -35,6 +35,7 @@ def other(case):
 
 
 COARSE = "six steps on coarse meshes; all fields of the last state"
+CLOSER = {"fsi1": "; the coupling converges to 1e-7, as the velocities of the plate, which hardly moves yet, are compared too"}
 BARS = [bar for case, name in CASES.items() for bar in (
-    Bar(f"restart of the {name} on the same ranks, 1, 2, 3", "bit for bit", equal(case), long=True, but=COARSE),
-    Bar(f"restart of the {name} from 1 to 2, 3 and back", "within solver tolerance: 1e-5, the coupling's, or what runs that were never stopped are apart by on those ranks", other(case), long=True, but=COARSE))]
+    Bar(f"restart of the {name} on the same ranks, 1, 2, 3", "bit for bit", equal(case), long=True, but=COARSE + CLOSER.get(case, "")),
+    Bar(f"restart of the {name} from 1 to 2, 3 and back", "within solver tolerance: 1e-5, the coupling's, or what runs that were never stopped are apart by on those ranks", other(case), long=True, but=COARSE + CLOSER.get(case, "")))]
