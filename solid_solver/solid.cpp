@@ -64,6 +64,13 @@ void Solid::collect_errors() {
   for (const auto& effect : body_.effects()) effect->collect_errors();
 }
 
+coupling::ErrorParts Solid::error_parts() const {
+  if (!errors_) return {};
+  const coupling::ErrorParts parts = errors_->parts();
+  if (stepper_.state().steps > 0) output_->tell_stresses(parts.mesh);
+  return parts;
+}
+
 std::vector<effects::EffectVerdict> Solid::audit() const {
   return couplet::effects::audit(solid_effect_cards(), body_.parameters(), judge_.evidence());
 }

@@ -41,9 +41,7 @@ class Solid final : public coupling::Participant, public coupling::EstimatesErro
   std::vector<effects::EffectVerdict> audit() const override;
   std::vector<std::string> finish() override;
   void collect_errors() override;
-  coupling::ErrorParts error_parts() const override {
-    return errors_ ? errors_->parts() : coupling::ErrorParts{};
-  }
+  coupling::ErrorParts error_parts() const override;
 
   const SolidBody& body() const { return body_; }
   const SolidStepper& stepper() const { return stepper_; }

@@ -43,6 +43,8 @@ constexpr std::array ids{
     FindingId{neglected, "waves-of-pressure", "pressure waves or the fluid's compliance matter"},
     FindingId{neglected, "mesh-motion", "an interface moves, but the mesh does not"},
     // solid_solver
+    FindingId{answer, "stress-error",
+              "estimated error of the stress at a probe, and of the largest equivalent stress"},
     FindingId{answer, "strain-energy", "work and strain energy, or two face gradients, disagree"},
     FindingId{answer, "energy-growth", "the motion has more energy than was supplied"},
     FindingId{answer, "heat-swing", "the temperature oscillates from step to step"},

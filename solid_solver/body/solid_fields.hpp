@@ -36,6 +36,10 @@ class SolidFields final {
   /// points, empty: all; others may hold anything.
   std::vector<double> point_stress(std::span<const double> points,
                                    std::span<const std::uint8_t> wanted = {}) const;
+  /// StressRecovery::left_at_points() of it; not of bodies at large strain and of revolution.
+  std::vector<double> left_of_point_stress(std::span<const double> points,
+                                           std::span<const std::uint8_t> wanted) const;
+  bool recovers_stress() const;
   /// On boundary faces of owned cells, `dim` values each, out of the body [Pa]: as the loads have it where it is known (at
   /// small strain), else sigma n of the mean of `point_stress` over the face's points, of which those on a patch suffice for
   /// its faces. `places`: where the local points are; the normal is that of the deformed face at large strain.
@@ -58,6 +62,7 @@ class SolidFields final {
   double share_of_yield(std::span<const double> points) const;
 
  private:
+  const StressRecovery& recovery() const;
   BodyField displacement(std::span<const double> points) const {
     return {state_.cell_u, state_.face_u, points};
   }

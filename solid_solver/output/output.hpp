@@ -13,6 +13,7 @@
 #include "solid_solver/body/solid_fields.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
 #include "solid_solver/output/probes.hpp"
+#include "solid_solver/output/stress_report.hpp"
 #include "solid_solver/output/surfaces.hpp"
 
 namespace couplet::solid {
@@ -32,6 +33,10 @@ class SolidOutput {
   void write_spectrum(double dt);
   /// modes.csv and, of a body in space, modes.h5; `estimates`: what the mesh leaves in the frequencies is told. Collective.
   void write_modes(bool estimates);
+  /// Largest stress and those at probes with their errors, as findings; `mesh`: what the mesh leaves in the displacement. Collective.
+  void tell_stresses(double mesh) const {
+    solid::tell_stresses(body_.mesh().comm, reported_stresses(body_, derived_, probes_, mesh));
+  }
   /// modes.csv and modes.h5 of the accepted state of a linear static run. Collective.
   void write_preloaded_modes();
   /// buckling.csv, buckling.xdmf and a sentence in the log of its loads. Collective.

@@ -31,7 +31,8 @@ SolidProbes::SolidProbes(const SolidBody& body, const SolidFields& derived) : bo
   std::vector<Vec3> places;
   for (const auto& [name, chosen] : body.parameters().probes) {
     places.push_back(chosen.point);
-    probes_.push_back({io::Probe(body.mesh(), body.geometry().points, name, chosen.point), chosen.fields});
+    probes_.push_back(
+        {name, io::Probe(body.mesh(), body.geometry().points, name, chosen.point), chosen.fields});
     for (const std::string& field : chosen.fields) add_columns(name, field);
   }
   io::doubt_mesh_scale(body.mesh(), body.geometry().points, places);
@@ -118,6 +119,21 @@ std::vector<double> SolidProbes::sample(std::span<const double> points) const {
     }
   }
   return row;
+}
+
+std::vector<SolidProbes::Stress> SolidProbes::stresses(std::span<const double> points) const {
+  if (!watches_stress()) return {};
+  const std::vector<double> stress = derived_.point_stress(points, stressed_);
+  const std::vector<double> left = derived_.left_of_point_stress(points, stressed_);
+  std::vector<Stress> found;
+  for (const Watched& watched : probes_) {
+    if (std::ranges::none_of(watched.fields, is_stress)) continue;
+    const std::vector<double> tensor = watched.probe.sample(stress, tensor_size),
+                              share = watched.probe.sample(left, 1);
+    if (!tensor.empty())
+      found.push_back({watched.name, watched.probe.place(), equivalent_stress(unpack(tensor)), share[0]});
+  }
+  return found;
 }
 
 }  // namespace couplet::solid

@@ -24,8 +24,19 @@ class SolidProbes {
   /// points. Collective.
   std::vector<double> sample(std::span<const double> points) const;
 
+  /// Stress at a probe that watches it.
+  struct Stress {
+    std::string probe;
+    Vec3 place;
+    double equivalent;  ///< von Mises [Pa]
+    double left;        ///< SolidFields::left_of_point_stress() [1]
+  };
+  /// At the accepted state, on rank 0 (empty elsewhere). Collective.
+  std::vector<Stress> stresses(std::span<const double> points) const;
+
  private:
   struct Watched {
+    std::string name;
     io::Probe probe;
     std::vector<std::string> fields;
   };
