@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
       .effects =
           [&](const couplet::effects::EffectScene& scene) {
             return couplet::effects::effects_of(
-                couplet::fluid::fluid_effect_cards(),
+                "fluid_solver", couplet::fluid::fluid_effect_cards(),
                 couplet::fluid::FluidScene{parameters, scene.has_mover || parameters.motion, scene.coupled});
           },
       .choose =

@@ -19,7 +19,8 @@ int main(int argc, char** argv) {
       .environment = couplet::linalg::petsc_environment,
       .effects =
           [&](const couplet::effects::EffectScene&) {
-            return couplet::effects::effects_of(couplet::mesh_mover::effect_cards(), parameters);
+            return couplet::effects::effects_of("mesh_mover", couplet::mesh_mover::effect_cards(),
+                                                parameters);
           }};
   return couplet::app::run_program(argc, argv, program);
 }

@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
       .effects =
           [&](const couplet::effects::EffectScene& scene) {
             return couplet::effects::effects_of(
-                couplet::plate::plate_effect_cards(),
+                "plate_modal", couplet::plate::plate_effect_cards(),
                 couplet::plate::PlateScene{parameters, scene.coupled, scene.time_step});
           },
       .problems_of_files =

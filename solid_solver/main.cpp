@@ -28,7 +28,8 @@ int main(int argc, char** argv) {
       .environment = couplet::linalg::petsc_environment,
       .effects =
           [&](const couplet::effects::EffectScene&) {
-            return couplet::effects::effects_of(couplet::solid::solid_effect_cards(), parameters);
+            return couplet::effects::effects_of("solid_solver", couplet::solid::solid_effect_cards(),
+                                                parameters);
           },
       .choose =
           [&](const couplet::effects::ChoiceScene& scene) {

@@ -17,7 +17,8 @@ int main(int argc, char** argv) {
           },
       .effects =
           [&](const couplet::effects::EffectScene&) {
-            return couplet::effects::effects_of(couplet::thermocline::effect_cards(), parameters);
+            return couplet::effects::effects_of("thermocline", couplet::thermocline::effect_cards(),
+                                                parameters);
           },
       .problems_of_files =
           [&](const std::filesystem::path& folder) {

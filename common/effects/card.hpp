@@ -6,21 +6,13 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "common/effects/prices.hpp"
 #include "common/effects/verdict.hpp"
 
 namespace couplet::effects {
-
-/// What an effect adds to a run where it is on; nothing of it exists where it is off.
-struct EffectCost {
-  const char* adds = "";  ///< fields, matrices, files, processes, in words
-  /// Expected memory, in the plane on one rank; 0: not in proportion to the cells, or less than two numbers a cell.
-  double bytes_a_cell = 0;
-  /// Expected time, as a share of a step without it, of the small scenes of `scripts/validate effects-and-stability` (a square
-  /// of quadrilaterals, a bed of 200 cells), whose rows hold both numbers to measurements; 0: less than 3 %.
-  double share_of_step = 0;
-};
 
 /// One effect of a program as data. `asked_by` names what in the scene asks for it (a key with its value), or
 /// is empty where it is off. `judge` says of an effect that is off (or, with `judged_when_on`, of one that is
@@ -31,11 +23,12 @@ struct EffectCard {
   const char* name;
   const char* keys;  ///< what switches it on, for the documents
   std::string (*asked_by)(const Parameters&);
-  EffectCost cost{};
+  std::string_view
+      adds{};  ///< where it is on: fields, matrices, files, processes; nothing of it exists where it is off
   const char* judged_by = "";  ///< the number and its threshold, for the documents
   std::optional<EffectVerdict> (*judge)(const Parameters&, const Evidence&) = nullptr;
   bool judged_when_on = false;
-  /// Of an effect that is on: how little it does. The verdict's `saves` is taken from `cost` where it is 0.
+  /// Of an effect that is on: how little it does, and what leaving it out `saves`.
   std::optional<EffectVerdict> (*spare)(const Parameters&, const Evidence&) = nullptr;
 };
 
@@ -43,7 +36,8 @@ struct EffectCard {
 struct Effect {
   std::string name, keys;
   std::string asked_by;  ///< empty: off
-  EffectCost cost;
+  std::string_view adds;
+  std::vector<Price> prices;  ///< of the one list
   std::string judged_by;
   bool judged_when_on = false;
   bool on() const { return !asked_by.empty(); }
@@ -57,12 +51,13 @@ struct EffectScene {
 };
 
 template <class Parameters, class Evidence>
-std::vector<Effect> effects_of(std::span<const EffectCard<Parameters, Evidence>> cards,
+std::vector<Effect> effects_of(std::string_view program,
+                               std::span<const EffectCard<Parameters, Evidence>> cards,
                                const Parameters& parameters) {
   std::vector<Effect> effects;
   for (const auto& card : cards)
-    effects.push_back(
-        {card.name, card.keys, card.asked_by(parameters), card.cost, card.judged_by, card.judged_when_on});
+    effects.push_back({card.name, card.keys, card.asked_by(parameters), card.adds,
+                       prices_of(program, card.name), card.judged_by, card.judged_when_on});
   return effects;
 }
 
@@ -81,10 +76,8 @@ std::vector<EffectVerdict> audit(std::span<const EffectCard<Parameters, Evidence
       }
     if (card.spare != nullptr && on)
       if (std::optional<EffectVerdict> verdict = card.spare(parameters, evidence)) {
-        const double share = card.cost.share_of_step;
         verdict->effect = card.name;
         verdict->left_out = false;
-        if (!(verdict->saves > 0)) verdict->saves = share / (1 + share);
         verdicts.push_back(std::move(*verdict));
       }
   }

@@ -9,12 +9,12 @@
 namespace couplet::effects {
 namespace {
 
-std::string cost_text(const EffectCost& cost) {
-  std::string text = cost.adds;
-  if (cost.bytes_a_cell > 0)
-    text += fmt::format("{}{:g} B per cell", text.empty() ? "" : "; ", cost.bytes_a_cell);
-  if (cost.share_of_step > 0)
-    text += fmt::format("{}{:+.0f} % of a step", text.empty() ? "" : "; ", 100 * cost.share_of_step);
+/// What it adds in words, then by the list of prices.
+std::string cost_text(const Effect& effect) {
+  std::string text(effect.adds);
+  for (const Price& p : effect.prices)
+    if (const std::string price = price_text(p); !price.empty())
+      text += fmt::format("{}{}", text.empty() ? "" : "; ", price);
   return text.empty() ? "negligible" : text;
 }
 
@@ -130,25 +130,28 @@ std::string explanation(const std::vector<Effect>& effects) {
     for (const Effect& e : effects)
       if (e.on() == on)
         lines +=
-            on ? fmt::format("  on   {}: enabled by {}; adds {}\n", e.name, e.asked_by, cost_text(e.cost))
+            on ? fmt::format("  on   {}: enabled by {}; adds {}\n", e.name, e.asked_by, cost_text(e))
                : fmt::format(
                      "  off  {}: {}{}\n", e.name, e.keys,
                      e.judged_when_on || e.judged_by.empty() ? "" : "; judged by the run: " + e.judged_by);
-  const bool has_numbers = std::ranges::any_of(effects, [](const Effect& e) {
-    return e.on() && (e.cost.bytes_a_cell > 0 || e.cost.share_of_step > 0);
+  const bool has_prices = std::ranges::any_of(effects, [](const Effect& e) {
+    return e.on() && std::ranges::any_of(e.prices, [](const Price& p) { return !price_text(p).empty(); });
   });
-  if (has_numbers)
+  if (has_prices)
     lines +=
-        "  (numbers: measured in two dimensions on one rank; share of a step of a small scene without the "
+        "  (prices: from the least to the most in small scenes on one rank; share of a step without the "
         "effect; docs/effects.md)\n";
   return lines;
 }
 
 std::string markdown(const std::string& program, const std::vector<Effect>& effects) {
   std::string lines = fmt::format(
-      "## {}\n\n| effect | enabled by | adds | judged when neglected |\n|---|---|---|---|\n", program);
+      "## {}\n\n| effect | enabled by | adds | memory per cell | time of a step | judged when neglected "
+      "|\n|---|---|---|---|---|---|\n",
+      program);
   for (const Effect& e : effects)
-    lines += fmt::format("| {} | {} | {} | {} |\n", e.name, e.keys, cost_text(e.cost), e.judged_by);
+    lines += fmt::format("| {} | {} | {} | {} | {} | {} |\n", e.name, e.keys, e.adds,
+                         column(e.prices, memory_text, "B"), column(e.prices, time_text, "%"), e.judged_by);
   return lines;
 }
 

@@ -104,11 +104,13 @@ V judge_walls(const S&, const E& e) {
 /// What the model adds to the viscosity decides what it does.
 V spare_turbulence(const S&, const E& e) {
   if (std::isnan(e.eddy_viscosity)) return {};
-  return effects::EffectVerdict{
+  effects::EffectVerdict v{
       .effect = "",
       .number = e.eddy_viscosity,
       .threshold = 0.01,
       .sentence = fmt::format("max eddy viscosity = {:.2g} of the molecular", e.eddy_viscosity)};
+  v.saves = effects::saved_share("fluid_solver", "turbulence model");
+  return v;
 }
 
 // Density changes go with the Mach number squared over two: 5 % at 0.3.

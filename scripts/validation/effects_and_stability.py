@@ -8,7 +8,7 @@ import numpy as np
 
 from couplet import series
 from validation.job import Bar
-from validation.parts.effects import cost as effects_cost, off as effects_off
+from validation.parts.effects import off as effects_off, prices as effects_prices
 from validation.parts.stability import cases as stability_cases
 
 SOURCES = ("common/effects", "common/app", "common/time", "solid_solver", "fluid_solver", "thermocline", "plate_modal", "coupler",
@@ -204,7 +204,7 @@ BARS = [
     Bar("effects: off, the plate's seat, damping and gravity allocate nothing and take no step of their own", "tests pass",
         tests("verification_plate_effects", "Effects")),
     *effects_off.BARS,
-    *effects_cost.BARS,
+    *effects_prices.BARS,
     Bar("effects: auto chooses as an expert would, a reason each", "15 scenes", tests("unit_effects", "scene_[0-9]+_", 15)),
     Bar("two components against three, one cell thick: solid", "at most 0.5 of the time", solid_2d, but="seconds in 'solve', the less of three runs"),
     Bar("two components against three, one cell thick: solid, newton-krylov with multigrid in both", "at most 0.5 of the time",

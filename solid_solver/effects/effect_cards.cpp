@@ -31,8 +31,8 @@ bool varies(const P& p) {
       materials_of(p), [](const SolidMaterial& m) { return m.heat.youngs_modulus || m.heat.poissons_ratio; });
 }
 
-/// Of an effect that is on: advice where it does next to nothing. `saves`: 0: what the card says.
-V spare(double number, double threshold, std::string sentence, double saves = 0) {
+/// Of an effect that is on: advice where it does next to nothing.
+V spare(double number, double threshold, std::string sentence, double saves) {
   if (std::isnan(number)) return {};
   effects::EffectVerdict v{"", number, threshold, std::move(sentence), ""};
   v.saves = saves;
@@ -148,94 +148,61 @@ V judge_thermoelastic(const P&, const E& e) {
 
 V spare_thermoelastic(const P&, const E& e) {
   return spare(e.coupling_number, 0.005,
-               fmt::format("heat of deformation / stiffness = {:.1e}", e.coupling_number));
+               fmt::format("heat of deformation / stiffness = {:.1e}", e.coupling_number),
+               effects::saved_share("solid_solver", "thermoelastic coupling"));
 }
 
 const std::array cards{
-    SolidCard{"inertia",
-              "`analysis: dynamic`",
-              [](const P& p) { return when(is_dynamic(p), "analysis: dynamic"); },
-              {"velocities, a mass in the matrix", 0, 0},
-              "inertia over load, 0.01",
-              judge_inertia,
-              false,
-              spare_inertia},
     SolidCard{
-        "geometric non-linearity",
-        "`kinematics: finite-strain`",
+        "inertia", "`analysis: dynamic`", [](const P& p) { return when(is_dynamic(p), "analysis: dynamic"); },
+        "velocities, a mass in the matrix", "inertia over load, 0.01", judge_inertia, false, spare_inertia},
+    SolidCard{
+        "geometric non-linearity", "`kinematics: finite-strain`",
         [](const P& p) { return when(has_finite_strain(p), "kinematics: finite-strain"); },
-        {"per face F and the derivatives of the material law, Newton's method; `type: segregated` uses the "
-         "updated-Lagrangian method of the thesis instead, at 9 to 17 times the solution time",
-         0, 33},
-        "largest displacement gradient, 0.02",
-        judge_geometry},
-    SolidCard{"yielding",
-              "not available here",
-              [](const P&) { return std::string(); },
-              {},
-              "where `yield-strength` is given: equivalent stress over it, 1",
-              judge_yield},
+        "per face F and the derivatives of the material law, Newton's method; `type: segregated` uses the "
+        "updated-Lagrangian method of the thesis instead, at 9 to 17 times the solution time",
+        "largest displacement gradient, 0.02", judge_geometry},
+    SolidCard{"yielding", "not available here", [](const P&) { return std::string(); }, "",
+              "where `yield-strength` is given: equivalent stress over it, 1", judge_yield},
     SolidCard{
         "near incompressibility",
         "`solution-method: {face-gradient: symmetric, volume-strain: cells}` (or `shared`)",
         [](const P& p) { return when(has_volume_strain_of_cells(p), "one volume strain per cell"); },
-        {"a mean stress per cell, a pass over the faces; from nu = 0.49, without factors, also an unknown "
-         "per cell",
-         630, 0.1},
-        "largest Poisson's ratio, 0.45",
-        judge_incompressibility},
-    SolidCard{"orthotropic elasticity",
-              "`material.orthotropic`",
+        "a mean stress per cell, a pass over the faces; from nu = 0.49, without factors, also an unknown "
+        "per cell",
+        "largest Poisson's ratio, 0.45", judge_incompressibility},
+    SolidCard{"orthotropic elasticity", "`material.orthotropic`",
               [](const P& p) { return when(is_elastic(p) && has_orthotropic(p), "orthotropic"); },
-              {"21 constants per face (6 in two dimensions) instead of 2", 116, 0}},
-    SolidCard{"gravity",
-              "`gravity`",
-              [](const P& p) { return when(!p.gravity.empty(), "gravity"); },
-              {"a load per cell", 21, 0.05}},
-    SolidCard{"body force",
-              "`body-force`",
-              [](const P& p) { return when(!p.body_force.empty(), "body-force"); },
-              {"a load per cell", 21, 0.05}},
-    SolidCard{"structural damping",
-              "`damping`",
-              [](const P& p) { return when(p.damping.has_value(), "damping"); },
-              {},
+              "21 constants per face (6 in two dimensions) instead of 2"},
+    SolidCard{"gravity", "`gravity`", [](const P& p) { return when(!p.gravity.empty(), "gravity"); },
+              "a load per cell"},
+    SolidCard{"body force", "`body-force`",
+              [](const P& p) { return when(!p.body_force.empty(), "body-force"); }, "a load per cell"},
+    SolidCard{"structural damping", "`damping`",
+              [](const P& p) { return when(p.damping.has_value(), "damping"); }, "",
               "reported for every dynamic run without it"},
-    SolidCard{"conduction of heat",
-              "`heat`",
-              [](const P& p) { return when(p.heat.has_value(), "heat"); },
-              {"a temperature, its matrix and solver", 1820, 0.26}},
-    SolidCard{"thermal strain",
-              "`thermal-expansion`",
+    SolidCard{"conduction of heat", "`heat`", [](const P& p) { return when(p.heat.has_value(), "heat"); },
+              "a temperature, its matrix and solver"},
+    SolidCard{"thermal strain", "`thermal-expansion`",
               [](const P& p) { return when(p.expansion.has_value(), "thermal-expansion"); },
-              {"a temperature per face", 130, 0.15},
-              "strain of a free body over the displacement gradient, 0.02",
+              "a temperature per face", "strain of a free body over the displacement gradient, 0.02",
               judge_thermal_strain},
-    SolidCard{"thermoelastic coupling",
-              "`thermoelastic-coupling: true`",
+    SolidCard{"thermoelastic coupling", "`thermoelastic-coupling: true`",
               [](const P& p) { return when(p.thermoelastic_coupling, "thermoelastic-coupling"); },
-              {"a strain rate per cell", 0, 0},
-              "stiffening by heat of deformation, 0.05",
-              judge_thermoelastic,
-              false,
+              "a strain rate per cell", "stiffening by heat of deformation, 0.05", judge_thermoelastic, false,
               spare_thermoelastic},
-    SolidCard{"properties of temperature",
-              "`youngs-modulus-table`, `poissons-ratio-table`",
+    SolidCard{"properties of temperature", "`youngs-modulus-table`, `poissons-ratio-table`",
               [](const P& p) { return when(varies(p), "a table of the material"); },
-              {"Lame's constants per cell; the matrix is reassembled when they change", 0, 0}},
+              "Lame's constants per cell; the matrix is reassembled when they change"},
     SolidCard{"third dimension", "`dimension: 3`",
               [](const P& p) { return when(p.dimension == 3, "dimension: 3"); }},
-    SolidCard{"energies",
-              "`output.energies: true`",
+    SolidCard{"energies", "`output.energies: true`",
               [](const P& p) { return when(p.output.energies, "output.energies"); },
-              {"energies.csv, work of the step summed over the faces", 78, 1.06}},
-    SolidCard{
-        "free vibrations",
-        "`output.modes` above 0",
-        [](const P& p) { return when(p.output.modes > 0, "output.modes"); },
-        {"modes.csv and modes.h5, computed once at the start: factors of the shifted stiffness with the "
-         "vertices as unknowns, and about forty solutions with them",
-         0, 0}},
+              "energies.csv, work of the step summed over the faces"},
+    SolidCard{"free vibrations", "`output.modes` above 0",
+              [](const P& p) { return when(p.output.modes > 0, "output.modes"); },
+              "modes.csv and modes.h5, computed once at the start: factors of the shifted stiffness with the "
+              "vertices as unknowns, and about forty solutions with them"},
 };
 
 }  // namespace

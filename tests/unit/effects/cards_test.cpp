@@ -41,11 +41,12 @@ TEST(EffectCards, a_scene_has_the_effects_that_it_asks_for_and_no_others) {
   SolidParameters p = static_solid();
   p.gravity = {0, 0, -9.81};
   std::vector<std::string> on;
-  for (const Effect& e : effects_of(solid_effect_cards(), p))
+  for (const Effect& e : effects_of("solid_solver", solid_effect_cards(), p))
     if (e.on()) on.push_back(e.name);
   EXPECT_THAT(on, ElementsAre("gravity", "third dimension"));
   p.analysis = SolidParameters::Analysis::dynamic;
-  EXPECT_THAT(summary(effects_of(solid_effect_cards(), p)), HasSubstr("inertia (analysis: dynamic)"));
+  EXPECT_THAT(summary(effects_of("solid_solver", solid_effect_cards(), p)),
+              HasSubstr("inertia (analysis: dynamic)"));
 }
 
 TEST(EffectCards, without_evidence_there_is_no_verdict) {
@@ -313,7 +314,7 @@ TEST(EffectCards, coupling_verdicts_turn_at_their_thresholds) {
 
 // `--effects` asks before a case is read: this dereferenced the fluid that is not there yet.
 TEST(EffectCards, coupling_cards_answer_without_participants) {
-  EXPECT_NO_THROW(effects_of(coupling_effect_cards(), CouplingParameters{}));
+  EXPECT_NO_THROW(effects_of("coupler", coupling_effect_cards(), CouplingParameters{}));
   EXPECT_THROW(schedule_of(CouplingParameters{}), std::bad_optional_access);
 }
 

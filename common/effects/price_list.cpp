@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+
+#include "common/effects/prices.hpp"
+
+namespace couplet::effects {
+namespace {
+
+// Program, effect, dimension, bytes per cell, share of a step.
+constexpr auto prices = std::to_array<Price>({
+    // clang-format off
+    // begin: written by scripts/prices
+    {"fluid_solver", "body force", 2, {45, 65}, {0.038, 0.052}},
+    {"fluid_solver", "body force", 3, {68, 78}, {0, 0.038}},
+    {"fluid_solver", "energy budget", 2, {20, 43}, {0.04, 0.068}},
+    {"fluid_solver", "energy budget", 3, {71, 74}, {0, 0.059}},
+    {"fluid_solver", "gaps that close", 2, {52, 69}, {0, 0}},
+    {"fluid_solver", "gaps that close", 3, {50, 60}, {0, 0}},
+    {"fluid_solver", "immersed bodies", 2, {300, 390}, {0.45, 0.6}},
+    {"fluid_solver", "immersed bodies", 3, {440, 480}, {0.15, 0.33}},
+    {"fluid_solver", "moving frame", 2, {330, 330}, {0.14, 0.32}},
+    {"fluid_solver", "moving frame", 3, {760, 800}, {0.2, 0.79}},
+    {"fluid_solver", "rotating frame", 2, {32, 57}, {0, 0.067}},
+    {"fluid_solver", "rotating frame", 3, {42, 59}, {0, 0.088}},
+    {"fluid_solver", "running statistics", 2, {120, 130}, {0, 0.038}},
+    {"fluid_solver", "running statistics", 3, {180, 200}, {0, 0.051}},
+    {"fluid_solver", "turbulence model", 2, {42, 95}, {0.49, 0.83}},
+    {"fluid_solver", "turbulence model", 3, {36, 170}, {0.33, 0.81}},
+    {"fluid_solver", "waves of pressure", 2, {150, 250}, {0.11, 0.61}},
+    {"fluid_solver", "waves of pressure", 3, {160, 210}, {0.3, 0.36}},
+    {"solid_solver", "body force", 2, {32, 46}, {0.051, 0.075}},
+    {"solid_solver", "body force", 3, {64, 85}, {0.041, 0.11}},
+    {"solid_solver", "conduction of heat", 2, {1800, 2800}, {0, 0}},
+    {"solid_solver", "conduction of heat", 3, {4200, 10000}, {0, 0.037}},
+    {"solid_solver", "energies", 2, {48, 58}, {0.086, 0.14}},
+    {"solid_solver", "energies", 3, {84, 110}, {0.061, 0.13}},
+    {"solid_solver", "geometric non-linearity", 2, {0, 0}, {2.7, 3.8}},
+    {"solid_solver", "geometric non-linearity", 3, {1800, 2200}, {4.8, 6.4}},
+    {"solid_solver", "gravity", 2, {20, 22}, {0, 0}},
+    {"solid_solver", "gravity", 3, {37, 46}, {0, 0}},
+    {"solid_solver", "near incompressibility", 2, {55, 650}, {0.042, 0.11}},
+    {"solid_solver", "near incompressibility", 3, {57, 76}, {0.11, 0.23}},
+    {"solid_solver", "orthotropic elasticity", 2, {94, 110}, {0, 0}},
+    {"solid_solver", "orthotropic elasticity", 3, {590, 1200}, {0.25, 0.31}},
+    {"solid_solver", "structural damping", 2, {0, 0}, {0, 0}},
+    {"solid_solver", "structural damping", 3, {0, 0}, {0, 0}},
+    {"solid_solver", "thermal strain", 2, {110, 120}, {0.037, 0.048}},
+    {"solid_solver", "thermal strain", 3, {140, 200}, {0, 0.038}},
+    {"mesh_mover", "elastic mesh motion", 2, {4900, 6600}, {4.4, 6.1}},
+    {"mesh_mover", "elastic mesh motion", 3, {0, 41}, {7.8, 34}},
+    {"mesh_mover", "incremental mesh motion", 2, {200, 260}, {6.7, 6.8}},
+    {"mesh_mover", "incremental mesh motion", 3, {0, 120}, {6.4, 11}},
+    {"mesh_mover", "mesh motion by a barrier", 2, {850, 2900}, {4.4, 10}},
+    {"mesh_mover", "mesh motion by a barrier", 3, {1100, 10000}, {9.5, 28}},
+    {"mesh_mover", "rotations carried into the mesh", 2, {0, 0}, {0, 0}},
+    {"mesh_mover", "rotations carried into the mesh", 3, {0, 0}, {0, 0}},
+    {"plate_modal", "contact with a seat", 2, {72, 88}, {0.097, 0.15}},
+    {"plate_modal", "damping", 2, {0, 0}, {0, 0}},
+    {"plate_modal", "pressures of the case", 2, {810, 2300}, {0, 0}},
+    {"thermocline", "filler mechanics", 1, {160, 190}, {0.032, 0.071}},
+    {"thermocline", "ground", 1, {0, 0}, {0.078, 0.89}},
+    {"thermocline", "implicit advection", 1, {0, 0}, {0, 0}},
+    {"thermocline", "insulation", 1, {460, 510}, {0.14, 0.25}},
+    {"thermocline", "resolved grains", 1, {60, 63}, {0.15, 0.27}},
+    {"thermocline", "shell", 1, {440, 570}, {0.088, 0.22}},
+    {"thermocline", "ullage", 1, {95, 130}, {0.36, 0.39}},
+    // end
+    // clang-format on
+});
+
+}  // namespace
+
+std::span<const Price> price_list() { return prices; }
+
+}  // namespace couplet::effects
