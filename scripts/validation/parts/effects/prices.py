@@ -15,7 +15,7 @@ LIST = "common/effects/price_list.cpp"
 BOX = (Scene(2, 32), Scene(2, 16, True), Scene(3, 8), Scene(3, 5, True))
 SCENES = {"fluid_solver": BOX, "solid_solver": BOX, "mesh_mover": BOX, "plate_modal": BOX[:2], "thermocline": (Scene(1, 100), Scene(1, 400))}
 STEPS = {"fluid_solver": (10, 150), "solid_solver": (10, 60), "mesh_mover": (10, 150), "plate_modal": (50, 400), "thermocline": (100, 1000)}
-FEW = {"geometric non-linearity": (4, 12)}  # its steps are dear enough to be seen
+FEW = {"geometric non-linearity": (4, 12)}  # its steps are long enough to be seen
 OFF_ONLY = ("implicit viscous term", "step control", "vorticity and Q", "lines and planes", "velocity from a file", "free vibrations")
 MORE = [
     Own("fluid_solver", "body force", ("body-force=['1', '0'|]",)),
@@ -75,7 +75,7 @@ def weigh(job, program, keys, steps, scene):
 
 
 def measured(job, own, scene):
-    """(bytes per cell, share of a step) by which the effect makes the scene dearer."""
+    """(bytes per cell, share of a step) by which the effect makes the scene costlier."""
     steps = FEW.get(own.effect) or STEPS[own.program]
     off, on = weigh(job, own.program, own.needs, steps, scene), weigh(job, own.program, own.keys, steps, scene)
     found = (on.bytes - off.bytes) / scene.cells, on.step / off.step - 1
