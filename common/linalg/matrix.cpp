@@ -26,18 +26,6 @@ SparseMatrix::SparseMatrix(MPI_Comm comm, GlobalIndex n_owned_rows, std::vector<
   petsc_check(MatCreateVecs(matrix_, &x_, &y_));
 }
 
-SparseMatrix::SparseMatrix(MPI_Comm comm, const std::vector<int>& own, const std::vector<int>& other)
-    : comm_(comm), n_owned_(static_cast<GlobalIndex>(own.size())) {
-  assert(own.size() == other.size());
-  petsc_check(MatCreate(comm, &matrix_));
-  const auto n = static_cast<PetscInt>(n_owned_);
-  petsc_check(MatSetSizes(matrix_, n, n, PETSC_DETERMINE, PETSC_DETERMINE));
-  petsc_check(MatSetType(matrix_, MATAIJ));
-  const std::vector<PetscInt> here(own.begin(), own.end()), there(other.begin(), other.end());
-  petsc_check(MatXAIJSetPreallocation(matrix_, 1, here.data(), there.data(), nullptr, nullptr));
-  petsc_check(MatCreateVecs(matrix_, &x_, &y_));
-}
-
 SparseMatrix::~SparseMatrix() {
   // Destroying PETSc objects is collective: leave them to the end of the process when unwinding.
   if (!matrix_ || std::uncaught_exceptions() > 0) return;
@@ -55,16 +43,6 @@ SparseMatrix::SparseMatrix(SparseMatrix&& other) noexcept
 
 void SparseMatrix::fill(std::span<const double> values) {
   petsc_check(MatSetValuesCOO(matrix_, values.data(), INSERT_VALUES));
-}
-
-void SparseMatrix::set(GlobalIndex row, GlobalIndex column, double value) {
-  const auto i = static_cast<PetscInt>(row), j = static_cast<PetscInt>(column);
-  petsc_check(MatSetValues(matrix_, 1, &i, 1, &j, &value, INSERT_VALUES));
-}
-
-void SparseMatrix::complete() {
-  petsc_check(MatAssemblyBegin(matrix_, MAT_FINAL_ASSEMBLY));
-  petsc_check(MatAssemblyEnd(matrix_, MAT_FINAL_ASSEMBLY));
 }
 
 void SparseMatrix::multiply(std::span<const double> x, std::span<double> y) const {

@@ -4,9 +4,9 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "common/base/error.hpp"
+#include "common/base/processor_clones.hpp"
 
 namespace couplet::linalg {
 
@@ -18,8 +18,6 @@ using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 // columns they take any zeros, up to so many this part, beyond that.
 constexpr Index always = 2, narrow = 16;
 constexpr double zeros_of_narrow = 0.3, zeros_of_wide = 0.05;
-// Loops over up to so many columns are unrolled.
-constexpr int most_unrolled = 6;
 
 bool worth_its_zeros(Index columns, double zeros, double entries) {
   return columns <= always || zeros <= (columns <= narrow ? zeros_of_narrow : zeros_of_wide) * entries;
@@ -79,10 +77,10 @@ void SingleFactors::find_supernodes() {
     row_.insert(row_.end(), row + start[next] - below, row + start[next]);
     row_.resize(nodes_.back().rows + std::size_t(groups) * lanes, n);
     n_triangle += std::size_t(columns) * (columns + 1) / 2;
-    n_below += std::size_t(groups) * columns;
+    n_below += std::size_t(groups) * columns * lanes;
     most = std::max(most, columns);
   }
-  sum_.resize(most);
+  sum_.resize(std::size_t(most) * lanes);
   triangle_.reserve(n_triangle);
   below_.reserve(n_below);
 }
@@ -127,17 +125,15 @@ void SingleFactors::keep(const Supernode& node, const double* block, std::size_t
     for (std::size_t j = 0; j <= i; ++j) triangle_.push_back(static_cast<float>(inverse[i + j * n]));
   for (Index g = 0; g < node.groups; ++g)
     for (std::size_t j = 0; j < n; ++j) {
-      Lanes part{};
       for (int l = 0; l < lanes; ++l) {
         const std::size_t i = n + std::size_t(g) * lanes + l;
-        if (i < stride) part[l] = static_cast<float>(block[i + j * stride]);
+        below_.push_back(i < stride ? static_cast<float>(block[i + j * stride]) : 0.0F);
       }
-      below_.push_back(part);
     }
 }
 
 /// The columns' own x, by the inverse of their triangle: no row waits for the one before.
-void SingleFactors::multiply_inverse(const Supernode& node) {
+[[gnu::always_inline]] inline void SingleFactors::multiply_inverse(const Supernode& node) {
   const float* l = triangle_.data() + node.triangle + std::size_t(node.columns) * (node.columns + 1) / 2;
   float* x = work_.data() + node.first;
   for (Index i = node.columns - 1; i >= 0; --i) {
@@ -148,7 +144,7 @@ void SingleFactors::multiply_inverse(const Supernode& node) {
   }
 }
 
-void SingleFactors::multiply_transposed(const Supernode& node) {
+[[gnu::always_inline]] inline void SingleFactors::multiply_transposed(const Supernode& node) {
   const float* l = triangle_.data() + node.triangle;
   float* x = work_.data() + node.first;
   for (Index i = 0; i < node.columns; ++i) {
@@ -161,52 +157,89 @@ void SingleFactors::multiply_transposed(const Supernode& node) {
 
 /// Rows below -= L x. Columns = 0: any number.
 template <int Columns>
-void SingleFactors::spread(const Supernode& node) {
+[[gnu::always_inline]] inline void SingleFactors::spread(const Supernode& node) {
   const Index columns = Columns > 0 ? Columns : node.columns;
   const float* x = work_.data() + node.first;
-  const Lanes* l = below_.data() + node.below;
+  const float* l = below_.data() + node.below;
   const Index* row = row_.data() + node.rows;
-  for (Index g = 0; g < node.groups; ++g, row += lanes, l += columns) {
-    Lanes part{};
-    for (Index j = 0; j < columns; ++j) part += l[j] * x[j];
+  for (Index g = 0; g < node.groups; ++g, row += lanes) {
+    Lanes part{}, entries;
+    for (Index j = 0; j < columns; ++j, l += lanes) load(l, entries), part += entries * x[j];
     for (int k = 0; k < lanes; ++k) work_[row[k]] -= part[k];
   }
 }
 
 /// x -= L^T (rows below).
 template <int Columns>
-void SingleFactors::collect(const Supernode& node) {
+[[gnu::always_inline]] inline void SingleFactors::collect(const Supernode& node) {
   const Index columns = Columns > 0 ? Columns : node.columns;
   float* x = work_.data() + node.first;
-  const Lanes* l = below_.data() + node.below;
+  const float* l = below_.data() + node.below;
   const Index* row = row_.data() + node.rows;
-  Lanes few[Columns > 0 ? Columns : 1];
-  Lanes* sum = Columns > 0 ? few : sum_.data();
-  std::fill_n(sum, columns, Lanes{});
-  for (Index g = 0; g < node.groups; ++g, row += lanes, l += columns) {
-    const Lanes part{work_[row[0]], work_[row[1]], work_[row[2]], work_[row[3]]};
-    for (Index j = 0; j < columns; ++j) sum[j] += l[j] * part;
+  Lanes few[Columns > 0 ? Columns : 1] = {}, entries, sum;
+  if (Columns == 0) std::fill_n(sum_.begin(), std::size_t(columns) * lanes, 0.0F);
+  for (Index g = 0; g < node.groups; ++g, row += lanes) {
+    Lanes part;
+    load(work_.data(), row, part);
+    for (Index j = 0; j < columns; ++j, l += lanes) {
+      load(l, entries);
+      if constexpr (Columns > 0) {
+        few[j] += entries * part;
+      } else {
+        float* at = sum_.data() + std::size_t(j) * lanes;
+        load(at, sum);
+        store(Lanes(sum + entries * part), at);
+      }
+    }
   }
-  for (Index j = 0; j < columns; ++j) x[j] -= (sum[j][0] + sum[j][1]) + (sum[j][2] + sum[j][3]);
+  for (Index j = 0; j < columns; ++j) {
+    if constexpr (Columns == 0) load(sum_.data() + std::size_t(j) * lanes, sum);
+    x[j] -= sum_of<float>(Columns > 0 ? few[Columns > 0 ? j : 0] : sum);
+  }
 }
 
 /// visit.operator()<n>() with n the number of columns, 0 if there are too many to unroll.
 template <class Visit>
-void SingleFactors::with_columns(const Supernode& node, const Visit& visit) {
-  const auto unrolled = [&]<int... Counts>(std::integer_sequence<int, Counts...>) {
-    return ((node.columns == Counts + 1 && (visit.template operator()<Counts + 1>(), true)) || ...);
-  };
-  if (!unrolled(std::make_integer_sequence<int, most_unrolled>())) visit.template operator()<0>();
+[[gnu::always_inline]] inline void SingleFactors::with_columns(const Supernode& node, const Visit& visit) {
+  switch (node.columns) {
+    case 1:
+      return visit.template operator()<1>();
+    case 2:
+      return visit.template operator()<2>();
+    case 3:
+      return visit.template operator()<3>();
+    case 4:
+      return visit.template operator()<4>();
+    case 5:
+      return visit.template operator()<5>();
+    case 6:
+      return visit.template operator()<6>();
+    default:
+      return visit.template operator()<0>();
+  }
 }
 
-void SingleFactors::forward(const Supernode& node) {
-  multiply_inverse(node);
-  with_columns(node, [&]<int Columns>() { spread<Columns>(node); });
+[[gnu::always_inline]] inline void SingleFactors::forward() {
+  for (const Supernode& node : nodes_) {
+    multiply_inverse(node);
+    with_columns(node, [&]<int Columns>() [[gnu::always_inline]] { spread<Columns>(node); });
+  }
 }
 
-void SingleFactors::backward(const Supernode& node) {
-  with_columns(node, [&]<int Columns>() { collect<Columns>(node); });
-  multiply_transposed(node);
+[[gnu::always_inline]] inline void SingleFactors::backward() {
+  for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) {
+    with_columns(*node, [&]<int Columns>() [[gnu::always_inline]] { collect<Columns>(*node); });
+    multiply_transposed(*node);
+  }
+}
+
+COUPLET_PROCESSOR_CLONES void forward_pass(SingleFactors& factors) { factors.forward(); }
+COUPLET_PROCESSOR_CLONES void backward_pass(SingleFactors& factors) { factors.backward(); }
+
+void SingleFactors::apply_double(std::span<const double> b, std::span<double> x) const {
+  const auto n = static_cast<Eigen::Index>(b.size());
+  Eigen::Map<Eigen::VectorXd>(x.data(), n) =
+      analysis_->solver.solve(Eigen::Map<const Eigen::VectorXd>(b.data(), n));
 }
 
 void SingleFactors::apply(std::span<const double> b, std::span<double> x) {
@@ -218,9 +251,9 @@ void SingleFactors::apply(std::span<const double> b, std::span<double> x) {
   }
   const double scale = 1 / largest;  // residuals become too small for single precision
   for (std::size_t i = 0; i < order_.size(); ++i) work_[i] = static_cast<float>(scale * b[order_[i]]);
-  for (const Supernode& node : nodes_) forward(node);
+  forward_pass(*this);
   work_.back() = 0;
-  for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) backward(*node);
+  backward_pass(*this);
   for (std::size_t i = 0; i < order_.size(); ++i) x[order_[i]] = largest * work_[i];
 }
 

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "common/base/error.hpp"
+#include "common/linalg/lanes/vector_passes.hpp"
+#include "common/linalg/poisson/petsc_cell_solver.hpp"
+#include "common/linalg/poisson/poisson_solver.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/pressure/largest_entry.hpp"
 
@@ -23,28 +25,23 @@ PressureEquation<D>::PressureEquation(const mesh::Mesh& mesh, const Boundary<D>&
       fixed_(fixed),
       direct_(D == 2 && mesh.cells.n_global() <= largest_direct) {}
 
-// Triplets: the diagonal of each owned cell first, then the neighbours face by face, then what is coupled beside.
 template <int D>
-void PressureEquation<D>::make_pattern() {
-  const Index owned = mesh_.cells.n_owned();
-  std::vector<GlobalIndex> row(owned), column;
-  std::iota(row.begin(), row.end(), mesh_.cells.first());
-  column = row;
-  const auto add = [&](Index from, Index to) {
-    if (from >= owned) return;
-    row.push_back(mesh_.cells.global(from));
-    column.push_back(mesh_.cells.global(to));
-  };
-  for (Index f = 0; f < mesh_.n_interior; ++f) {
-    add(mesh_.owner[f], mesh_.neighbour[f]);
-    add(mesh_.neighbour[f], mesh_.owner[f]);
+void PressureEquation<D>::make_solver() {
+  using linalg::LinearMethod, linalg::PoissonSolver;
+  const linalg::CellGraph graph{mesh_.cells, mesh_.comm,
+                                std::span<const Index>(mesh_.owner).first(mesh_.n_interior),
+                                std::span<const Index>(mesh_.neighbour).first(mesh_.n_interior)};
+  const bool alone = parallel::comm_size(mesh_.comm) == 1;
+  if (!couplings_ && (alone || !direct_)) {
+    solver_ = std::make_unique<PoissonSolver>(
+        "pressure", graph,
+        direct_ ? PoissonSolver::Preconditioner::factors : PoissonSolver::Preconditioner::multigrid);
+    return;
   }
-  if (couplings_) {
-    for (const Index cell : couplings_->row) row.push_back(mesh_.cells.global(cell));
-    column.insert(column.end(), couplings_->column.begin(), couplings_->column.end());
-  }
-  values_.resize(row.size());
-  matrix_ = std::make_unique<linalg::SparseMatrix>(mesh_.comm, owned, std::move(row), std::move(column));
+  linalg::Beside beside;
+  if (couplings_) beside = {couplings_->row, couplings_->column};
+  solver_ = std::make_unique<linalg::PetscCellSolver>(
+      "pressure", graph, beside, direct_ ? LinearMethod::cg_single : LinearMethod::cg_multigrid);
 }
 
 template <int D>
@@ -66,58 +63,11 @@ std::vector<double> PressureEquation<D>::diagonal(const Placement<D>& at, std::s
   return sum;
 }
 
-// Entry by entry, so that nothing but the matrix itself takes memory.
-template <int D>
-void PressureEquation<D>::make_fixed(const Placement<D>& at) {
-  const Index owned = mesh_.cells.n_owned();
-  std::vector<int> own(owned, 1), other(owned, 0);
-  const auto count = [&](Index from, Index to) {
-    if (from < owned) ++(to < owned ? own : other)[from];
-  };
-  for (Index f = 0; f < mesh_.n_interior; ++f) {
-    count(mesh_.owner[f], mesh_.neighbour[f]);
-    count(mesh_.neighbour[f], mesh_.owner[f]);
-  }
-  matrix_ = std::make_unique<linalg::SparseMatrix>(mesh_.comm, own, other);
-  const auto set = [&](Index from, Index to, double value) {
-    if (from < owned) matrix_->set(mesh_.cells.global(from), mesh_.cells.global(to), value);
-  };
-  const std::vector<double> middle = diagonal(at, {}, {});
-  for (Index c = 0; c < owned; ++c) set(c, c, middle[c]);
-  for (Index f = 0; f < mesh_.n_interior; ++f) {
-    set(mesh_.owner[f], mesh_.neighbour[f], -at.conductance[f]);
-    set(mesh_.neighbour[f], mesh_.owner[f], -at.conductance[f]);
-  }
-  matrix_->complete();
-}
-
-/// Of the matrix as it stands: its diagonal per owned cell, then one entry a face, which stands in it twice, then the
-/// couplings.
-template <int D>
-std::vector<double> PressureEquation<D>::coefficients() const {
-  const Index owned = mesh_.cells.n_owned();
-  std::vector<double> all(values_.begin(), values_.begin() + owned);
-  all.resize(std::size_t(owned) + mesh_.n_interior);
-  std::size_t next = owned;
-  for (Index f = 0; f < mesh_.n_interior; ++f)
-    for (const Index cell : {mesh_.owner[f], mesh_.neighbour[f]})
-      if (cell < owned) all[owned + f] = values_[next++];
-  all.insert(all.end(), values_.begin() + std::ptrdiff_t(next), values_.end());
-  return all;
-}
-
-/// The other way round.
 template <int D>
 void PressureEquation<D>::fill(std::span<const double> coefficients) {
-  const Index owned = mesh_.cells.n_owned();
-  std::copy_n(coefficients.begin(), owned, values_.begin());
-  std::size_t next = owned;
-  for (Index f = 0; f < mesh_.n_interior; ++f)
-    for (const Index cell : {mesh_.owner[f], mesh_.neighbour[f]})
-      if (cell < owned) values_[next++] = coefficients[owned + f];
-  std::copy(coefficients.begin() + owned + mesh_.n_interior, coefficients.end(),
-            values_.begin() + std::ptrdiff_t(next));
-  matrix_->fill(values_);
+  const std::size_t owned = mesh_.cells.n_owned(), faces = mesh_.n_interior;
+  solver_->fill(coefficients.first(owned), coefficients.subspan(owned, faces),
+                coefficients.subspan(owned + faces));
 }
 
 template <int D>
@@ -159,7 +109,7 @@ void PressureEquation<D>::load(io::CheckpointReader& file) {
   }
   const bool is_here = solver_->memory() == memory && *now_.made_from == saved;
   if (parallel::any(mesh_.comm, !is_here)) {
-    if (!memory.is_due) fill(saved);
+    if (!memory.is_due) fill(saved), values_ = saved;
     solver_->restore(memory);
     now_ = {memory, std::make_shared<const std::vector<double>>(std::move(saved))};
   }
@@ -170,33 +120,20 @@ template <int D>
 void PressureEquation<D>::set(const Placement<D>& at, bool regular, std::span<const double> admittance,
                               std::span<const double> storage) {
   regular_ = regular;
-  if (fixed_) {
-    solver_.reset();
-    make_fixed(at);
-  } else {
-    if (!matrix_) make_pattern();
-    const std::vector<double> middle = diagonal(at, admittance, storage);
-    std::size_t next = std::copy(middle.begin(), middle.end(), values_.begin()) - values_.begin();
-    for (Index f = 0; f < mesh_.n_interior; ++f)
-      for (const Index cell : {mesh_.owner[f], mesh_.neighbour[f]})
-        if (cell < mesh_.cells.n_owned()) values_[next++] = -at.conductance[f];
-    if (couplings_) std::ranges::copy(couplings_->value, values_.begin() + std::ptrdiff_t(next));
-    matrix_->fill(values_);
-  }
-  if (solver_) return solver_->matrix_changed();
-  linalg::LinearOptions options;
-  options.method = !direct_ ? linalg::LinearMethod::cg_multigrid
-                   : fixed_ ? linalg::LinearMethod::cg_direct
-                            : linalg::LinearMethod::cg_single;
-  solver_ = std::make_unique<linalg::LinearSolver>("pressure", *matrix_, options);
+  if (!solver_) make_solver();
+  values_ = diagonal(at, admittance, storage);
+  for (Index f = 0; f < mesh_.n_interior; ++f) values_.push_back(-at.conductance[f]);
+  if (couplings_) values_.insert(values_.end(), couplings_->value.begin(), couplings_->value.end());
+  fill(values_);
+  if (fixed_) std::vector<double>().swap(values_), solver_->refresh();
 }
 
 // A closed domain has a pressure up to a constant only if the fluxes add up to nothing.
 template <int D>
 void PressureEquation<D>::remove_mean(std::vector<double>& b) const {
-  const double mean = parallel::sum(mesh_.comm, std::accumulate(b.begin(), b.end(), 0.0)) /
-                      static_cast<double>(mesh_.cells.n_global());
-  for (double& value : b) value -= mean;
+  const double mean =
+      parallel::sum(mesh_.comm, linalg::sum_of(b)) / static_cast<double>(mesh_.cells.n_global());
+  linalg::shift(-mean, b);
 }
 
 /// A tolerance that is not finite would let anything pass: fluxes whose squares overflow make one.
@@ -225,7 +162,7 @@ linalg::SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::
     // constant.
     double pin = owned > 0 ? p[0] : 0;
     MPI_Bcast(&pin, 1, MPI_DOUBLE, 0, mesh_.comm);
-    for (Index c = 0; c < owned; ++c) p[c] -= pin;
+    linalg::shift(-pin, std::span(p).first(owned));
   }
   if (answer > 0) {
     const double enough = relative * (size < 0 ? solver_->norm(b) : size);
@@ -242,7 +179,7 @@ linalg::SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::
   if (!fixed_) {
     now_.memory = solver_->memory();
     if (solver_->preconditioners_built() != made)
-      now_.made_from = std::make_shared<const std::vector<double>>(coefficients());
+      now_.made_from = std::make_shared<const std::vector<double>>(values_);
   }
   if (singular()) {
     double sums[2] = {0, 0};
@@ -254,10 +191,12 @@ linalg::SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::
       for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
         if (boundary_.is_convective(f - mesh_.n_interior)) add(at.area[f].norm(), mesh_.owner[f]);
     } else {
-      for (Index c = 0; c < owned; ++c) add(at.volume[c], c);
+      const std::span volume = std::span(at.volume).first(owned);
+      sums[0] = linalg::two_products(volume, std::span(p).first(owned), volume)[0],
+      sums[1] = linalg::sum_of(volume);
     }
     MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-    for (Index c = 0; c < owned; ++c) p[c] -= sums[0] / sums[1];
+    linalg::shift(-sums[0] / sums[1], std::span(p).first(owned));
   }
   mesh_.cells.update_ghosts(p);
   return statistics;

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "common/io/checkpoint.hpp"
-#include "common/linalg/linear_solver.hpp"
-#include "common/linalg/matrix.hpp"
+#include "common/linalg/poisson/cell_solver.hpp"
 #include "fluid_solver/boundary/boundary.hpp"
 #include "fluid_solver/state/placement.hpp"
 
@@ -54,8 +53,7 @@ class PressureEquation {
   static constexpr double least_answer = 1e-4;
 
  private:
-  void make_pattern();
-  void make_fixed(const Placement<D>& at);
+  void make_solver();
   /// The pressure is known up to a constant only.
   bool singular() const { return boundary_.closed() && !regular_; }
   std::vector<double> diagonal(const Placement<D>& at, std::span<const double> admittance,
@@ -68,12 +66,10 @@ class PressureEquation {
   const Couplings* couplings_;  // null: none
   bool fixed_, regular_ = false;
   bool direct_;  // small 2-D meshes: kept Cholesky factors
-  std::unique_ptr<linalg::SparseMatrix> matrix_;
-  std::unique_ptr<linalg::LinearSolver> solver_;
-  std::vector<double> coefficients() const;
+  std::unique_ptr<linalg::CellSolver> solver_;
   void fill(std::span<const double> coefficients);
-  // Of a moving mesh: the matrix's triplets, and the preconditioner with the coefficients that it was made from: now,
-  // and as the accepted level had it.
+  // Of a moving mesh: the matrix's diagonal per owned cell, one entry a face, then the couplings; and the preconditioner with those
+  // that it was made from: now, and as the accepted level had it.
   std::vector<double> values_;
   struct Lagging {
     linalg::PreconditionerMemory memory;

@@ -17,7 +17,7 @@ FLOORS = {
     "common/mesh": [".", "order", "msh", "inp", "gmsh"],
     "common/app": ["watch", "loop", "case", "."],
     "common/io": [".", "probes"],
-    "common/linalg": ["lazy", ".", "multigrid"],
+    "common/linalg": ["lazy", "lanes", ".", "multigrid", "poisson"],
 }
 
 # Functions of a class above, written where their subject is.

@@ -120,8 +120,6 @@ lazily KSPSetType
 lazily KSPSetUp
 lazily KSPSolve
 lazily MatAXPY
-lazily MatAssemblyBegin
-lazily MatAssemblyEnd
 lazily MatCholeskyFactorNumeric
 lazily MatCholeskyFactorSymbolic
 lazily MatCreate
@@ -155,12 +153,10 @@ lazily MatSetOption
 lazily MatSetPreallocationCOO
 lazily MatSetSizes
 lazily MatSetType
-lazily MatSetValues
 lazily MatSetValuesCOO
 lazily MatShellGetContext
 lazily MatShellSetOperation
 lazily MatSolve
-lazily MatXAIJSetPreallocation
 lazily PCApply
 lazily PCFactorSetMatOrderingType
 lazily PCFactorSetMatSolverType

@@ -10,18 +10,23 @@
 namespace couplet::linalg {
 namespace {
 
-using Lanes = ComponentMultigrid::Lanes;
-using Rows = ComponentMultigrid::Rows;
-
 constexpr Index largest_coarsest = 60;
 // A neighbour is strong when |a_ij| is at least this part of the largest in its row or in the other's.
 constexpr float strong = 0.5F;
 // Damping of the prolongation smoother: 4/3 over the largest eigenvalue of D^-1 A, which is below 2.
 constexpr float omega = 0.66F;
 
-float total(const Lanes& v) { return v[0] + v[1] + v[2] + v[3]; }
+float total(float v) { return v; }
+float total(const FourFloats& v) { return v[0] + v[1] + v[2] + v[3]; }
+float number(const float* v, float) { return v[0]; }
+FourFloats number(const float* v, FourFloats) { return FourFloats{v[0], v[1], v[2], v[3]}; }
+void put(float v, float* to) { to[0] = v; }
+void put(const FourFloats& v, float* to) {
+  for (int l = 0; l < 4; ++l) to[l] = v[l];
+}
 
 /// For each entry whether it is strong; those of other ranks never are.
+template <class Rows>
 std::vector<std::uint8_t> strong_entries(const Rows& a) {
   std::vector<float> largest(a.size(), 0);
   for (Index i = 0; i < a.size(); ++i)
@@ -36,12 +41,13 @@ std::vector<std::uint8_t> strong_entries(const Rows& a) {
 }
 
 /// Aggregates: roots take their whole strong neighbourhood where all of it is free; what remains joins a
-/// neighbour.
+/// neighbour. Rows without entries have none (-1): a sweep solves them.
+template <class Rows>
 std::vector<Index> aggregate(const Rows& a, const std::vector<std::uint8_t>& is_strong, Index& n_aggregates) {
   std::vector<Index> of(a.size(), -1);
   n_aggregates = 0;
   for (Index i = 0; i < a.size(); ++i) {
-    if (of[i] >= 0) continue;
+    if (of[i] >= 0 || a.offset[i] == a.offset[i + 1]) continue;
     bool free = true;
     for (Index e = a.offset[i]; e < a.offset[i + 1] && free; ++e) free = !is_strong[e] || of[a.index[e]] < 0;
     if (!free) continue;
@@ -52,7 +58,7 @@ std::vector<Index> aggregate(const Rows& a, const std::vector<std::uint8_t>& is_
   }
   const std::vector<Index> roots = of;
   for (Index i = 0; i < a.size(); ++i) {
-    if (of[i] >= 0) continue;
+    if (of[i] >= 0 || a.offset[i] == a.offset[i + 1]) continue;
     float best = 0;
     for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e)
       if (a.index[e] < a.size() && roots[a.index[e]] >= 0 && -total(a.value[e]) > best) {
@@ -67,14 +73,16 @@ std::vector<Index> aggregate(const Rows& a, const std::vector<std::uint8_t>& is_
 }  // namespace
 
 /// Of P: the rows of the ghosts, whose columns are rows of other ranks on the coarser level, ghosts there.
-struct ComponentMultigrid::GhostRows {
+template <class Number>
+struct AggregationMultigrid<Number>::GhostRows {
   std::vector<Index> offset{0}, index;
   std::vector<Lanes> value;
   std::unique_ptr<parallel::IndexMap> map;  // of the coarser level
 };
 
 /// Adds a level; false where the last is coarse enough, or cannot be made coarser.
-bool ComponentMultigrid::coarsen() {
+template <class Number>
+bool AggregationMultigrid<Number>::coarsen() {
   Level& fine = levels_.back();
   const GlobalIndex rows = parallel::sum(comm_, GlobalIndex(fine.a.size()));
   if (rows <= largest_coarsest) return false;
@@ -91,8 +99,9 @@ bool ComponentMultigrid::coarsen() {
 }
 
 // P = (I - omega D^-1 A) P_0, weak neighbours lumped on the diagonal of A so that constants stay constants.
-void ComponentMultigrid::prolong(Level& fine, const std::vector<Index>& of,
-                                 const std::vector<std::uint8_t>& is_strong) {
+template <class Number>
+void AggregationMultigrid<Number>::prolong(Level& fine, const std::vector<Index>& of,
+                                           const std::vector<std::uint8_t>& is_strong) {
   const Rows& a = fine.a;
   fine.p_offset.assign(1, 0);
   for (Index i = 0; i < a.size(); ++i) {
@@ -111,7 +120,7 @@ void ComponentMultigrid::prolong(Level& fine, const std::vector<Index>& of,
       if (!is_strong[e]) diagonal += a.value[e];
     // A row without strong neighbours may lump to nothing.
     diagonal = diagonal > 1e-3F * a.diagonal[i] ? diagonal : a.diagonal[i];
-    add(of[i], Lanes{1, 1, 1, 1} * (1 - omega));
+    if (of[i] >= 0) add(of[i], Lanes{} + (1 - omega));
     for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e)
       if (is_strong[e]) add(of[a.index[e]], -omega * a.value[e] / diagonal);
     fine.p_offset.push_back(static_cast<Index>(fine.p_index.size()));
@@ -120,7 +129,9 @@ void ComponentMultigrid::prolong(Level& fine, const std::vector<Index>& of,
   fine.p_value.shrink_to_fit();
 }
 
-ComponentMultigrid::GhostRows ComponentMultigrid::rows_of_ghosts(const Level& fine, Index n_coarse) const {
+template <class Number>
+typename AggregationMultigrid<Number>::GhostRows AggregationMultigrid<Number>::rows_of_ghosts(
+    const Level& fine, Index n_coarse) const {
   GhostRows ghosts;
   if (!fine.map) return ghosts;
   struct Entry {
@@ -141,7 +152,7 @@ ComponentMultigrid::GhostRows ComponentMultigrid::rows_of_ghosts(const Level& fi
       const Index at = fine.p_offset[i] + k;
       if (at >= fine.p_offset[i + 1]) continue;
       entries[i].column = first + fine.p_index[at];
-      for (int l = 0; l < lanes; ++l) entries[i].value[l] = fine.p_value[at][l];
+      put(fine.p_value[at], entries[i].value);
     }
     fine.map->update_ghosts(std::as_writable_bytes(std::span(entries)), sizeof(Entry));
     for (Index i = n; i < n_local; ++i)
@@ -156,7 +167,7 @@ ComponentMultigrid::GhostRows ComponentMultigrid::rows_of_ghosts(const Level& fi
     for (const Entry& e : row) {
       const auto place = std::ranges::lower_bound(columns, e.column) - columns.begin();
       ghosts.index.push_back(n_coarse + static_cast<Index>(place));
-      ghosts.value.push_back(Lanes{e.value[0], e.value[1], e.value[2], e.value[3]});
+      ghosts.value.push_back(number(e.value, Lanes{}));
     }
     ghosts.offset.push_back(static_cast<Index>(ghosts.index.size()));
   }
@@ -173,8 +184,9 @@ ComponentMultigrid::GhostRows ComponentMultigrid::rows_of_ghosts(const Level& fi
 }
 
 // P^T A P, one coarse row after the other.
-ComponentMultigrid::Rows ComponentMultigrid::galerkin(const Level& fine, Index n_coarse,
-                                                      const GhostRows& ghosts) {
+template <class Number>
+auto AggregationMultigrid<Number>::galerkin(const Level& fine, Index n_coarse, const GhostRows& ghosts)
+    -> Rows {
   const Rows& a = fine.a;
   std::vector<Index> offset(n_coarse + 1, 0);
   for (const Index c : fine.p_index) ++offset[c + 1];
@@ -216,7 +228,7 @@ ComponentMultigrid::Rows ComponentMultigrid::galerkin(const Level& fine, Index n
     }
     for (const auto& [to, value] : sums) place[to] = -1;
     std::sort(sums.begin(), sums.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
-    Lanes diagonal{1, 1, 1, 1};
+    Lanes diagonal = Lanes{} + 1.0F;
     for (const auto& [to, value] : sums) {
       if (to == c) {
         diagonal = value;
@@ -232,5 +244,8 @@ ComponentMultigrid::Rows ComponentMultigrid::galerkin(const Level& fine, Index n
   coarse.value.shrink_to_fit();
   return coarse;
 }
+
+template bool AggregationMultigrid<FourFloats>::coarsen();
+template bool AggregationMultigrid<float>::coarsen();
 
 }  // namespace couplet::linalg

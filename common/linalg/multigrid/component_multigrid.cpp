@@ -10,13 +10,16 @@
 namespace couplet::linalg {
 namespace {
 
-using Lanes = ComponentMultigrid::Lanes;
-using Rows = ComponentMultigrid::Rows;
+float get(float v, int) { return v; }
+float get(const FourFloats& v, int l) { return v[l]; }
+void set(float& v, int, float value) { v = value; }
+void set(FourFloats& v, int l, float value) { v[l] = value; }
 
 constexpr int most_levels = 12;
 // Rows of all ranks that are factored where they could not be made fewer, which are those of many ranks.
 constexpr GlobalIndex largest_dense = 1000;
 /// Neighbours ascending, by insertion: rows are short and nearly in order.
+template <class Rows>
 void sort_rows(Rows& a) {
   for (Index i = 0; i < a.size(); ++i)
     for (Index e = a.offset[i] + 1; e < a.offset[i + 1]; ++e)
@@ -28,7 +31,8 @@ void sort_rows(Rows& a) {
 
 }  // namespace
 
-ComponentMultigrid::ComponentMultigrid(Rows rows, const Options& options)
+template <class Number>
+AggregationMultigrid<Number>::AggregationMultigrid(Rows rows, const Options& options)
     : coarse_factor_(options.coarse_factor),
       comm_(options.map && parallel::comm_size(options.comm) > 1 ? options.comm : MPI_COMM_SELF) {
   add_level(std::move(rows), comm_ == MPI_COMM_SELF ? nullptr : options.map, nullptr);
@@ -39,8 +43,9 @@ ComponentMultigrid::ComponentMultigrid(Rows rows, const Options& options)
   for (Level& level : levels_) level.a.diagonal = std::vector<Lanes>();
 }
 
-void ComponentMultigrid::add_level(Rows rows, const parallel::IndexMap* map,
-                                   std::unique_ptr<parallel::IndexMap> own) {
+template <class Number>
+void AggregationMultigrid<Number>::add_level(Rows rows, const parallel::IndexMap* map,
+                                             std::unique_ptr<parallel::IndexMap> own) {
   Level level;
   level.a = std::move(rows);
   level.map = map;
@@ -60,11 +65,13 @@ void ComponentMultigrid::add_level(Rows rows, const parallel::IndexMap* map,
   levels_.push_back(std::move(level));
 }
 
-void ComponentMultigrid::Level::update_ghosts() {
+template <class Number>
+void AggregationMultigrid<Number>::Level::update_ghosts() {
   if (map) map->update_ghosts(std::as_writable_bytes(std::span(x)), sizeof(Lanes));
 }
 
-void ComponentMultigrid::factor_coarsest() {
+template <class Number>
+void AggregationMultigrid<Number>::factor_coarsest() {
   const Level& level = levels_.back();
   const Rows& a = level.a;
   const GlobalIndex n = parallel::sum(comm_, GlobalIndex(a.size()));
@@ -76,7 +83,8 @@ void ComponentMultigrid::factor_coarsest() {
   };
   std::vector<Entry> entries;
   const auto add = [&](Index i, GlobalIndex column, const Lanes& v) {
-    entries.push_back({first_coarsest_ + i, static_cast<Index>(column), {v[0], v[1], v[2], v[3]}});
+    entries.push_back({first_coarsest_ + i, static_cast<Index>(column), {}});
+    for (int l = 0; l < lanes; ++l) entries.back().value[l] = get(v, l);
   };
   for (Index i = 0; i < a.size(); ++i) {
     add(i, first_coarsest_ + i, a.diagonal[i] * (1 + 1e-5F));  // a pure Neumann problem is singular
@@ -91,7 +99,8 @@ void ComponentMultigrid::factor_coarsest() {
   }
 }
 
-void ComponentMultigrid::solve_coarsest(Level& level) const {
+template <class Number>
+void AggregationMultigrid<Number>::solve_coarsest(Level& level) const {
   if (coarsest_.empty()) {
     smooth_forward(level);
     level.update_ghosts();
@@ -101,14 +110,15 @@ void ComponentMultigrid::solve_coarsest(Level& level) const {
   const std::vector<Lanes> right = comm_ == MPI_COMM_SELF ? level.b : parallel::all_gather(comm_, level.b);
   Eigen::VectorXd b(std::ssize(right));
   for (int l = 0; l < lanes; ++l) {
-    for (std::size_t i = 0; i < right.size(); ++i) b[Index(i)] = right[i][l];
+    for (std::size_t i = 0; i < right.size(); ++i) b[Index(i)] = get(right[i], l);
     b = coarsest_[l].solve(b).eval();
-    for (Index i = 0; i < level.a.size(); ++i) level.x[i][l] = static_cast<float>(b[first_coarsest_ + i]);
+    for (Index i = 0; i < level.a.size(); ++i) set(level.x[i], l, static_cast<float>(b[first_coarsest_ + i]));
   }
 }
 
 /// x = (D + L)^-1 b.
-void ComponentMultigrid::smooth_forward(Level& level) {
+template <class Number>
+void AggregationMultigrid<Number>::smooth_forward(Level& level) {
   const Index *offset = level.a.offset.data(), *middle = level.middle.data(), *index = level.a.index.data();
   const Lanes *value = level.a.value.data(), *b = level.b.data(), *inverse = level.inverse_diagonal.data();
   Lanes* x = level.x.data();
@@ -120,7 +130,8 @@ void ComponentMultigrid::smooth_forward(Level& level) {
 }
 
 /// P^T (b - A x) = - P^T U x after smooth_forward().
-void ComponentMultigrid::restrict_residual(const Level& fine, std::vector<Lanes>& coarse) const {
+template <class Number>
+void AggregationMultigrid<Number>::restrict_residual(const Level& fine, std::vector<Lanes>& coarse) const {
   const Index *offset = fine.a.offset.data(), *middle = fine.middle.data(), *index = fine.a.index.data();
   const Lanes *value = fine.a.value.data(), *x = fine.x.data();
   std::fill(coarse.begin(), coarse.end(), Lanes{});
@@ -134,7 +145,8 @@ void ComponentMultigrid::restrict_residual(const Level& fine, std::vector<Lanes>
 }
 
 /// One Gauss-Seidel sweep from the last row to the first.
-void ComponentMultigrid::smooth_backward(Level& level) {
+template <class Number>
+void AggregationMultigrid<Number>::smooth_backward(Level& level) {
   const Index *offset = level.a.offset.data(), *index = level.a.index.data();
   const Lanes *value = level.a.value.data(), *b = level.b.data(), *inverse = level.inverse_diagonal.data();
   Lanes* x = level.x.data();
@@ -145,15 +157,16 @@ void ComponentMultigrid::smooth_backward(Level& level) {
   }
 }
 
-void ComponentMultigrid::cycle() {
+template <class Number>
+void AggregationMultigrid<Number>::cycle(std::size_t first) {
   const std::size_t last = levels_.size() - 1;
-  for (std::size_t l = 0; l < last; ++l) {
+  for (std::size_t l = first; l < last; ++l) {
     smooth_forward(levels_[l]);
     levels_[l].update_ghosts();
     restrict_residual(levels_[l], levels_[l + 1].b);
   }
   solve_coarsest(levels_[last]);
-  for (std::size_t l = last; l-- > 0;) {
+  for (std::size_t l = last; l-- > first;) {
     Level &fine = levels_[l], &coarse = levels_[l + 1];
     for (Index i = 0; i < fine.a.size(); ++i)
       for (Index k = fine.p_offset[i]; k < fine.p_offset[i + 1]; ++k)
@@ -163,7 +176,8 @@ void ComponentMultigrid::cycle() {
   }
 }
 
-void ComponentMultigrid::apply(std::span<const double> b, std::span<double> x, int components) {
+template <class Number>
+void AggregationMultigrid<Number>::apply(std::span<const double> b, std::span<double> x, int components) {
   Level& finest = levels_.front();
   // Single precision holds the shape of b, its size goes around it.
   double largest = 0;
@@ -173,12 +187,15 @@ void ComponentMultigrid::apply(std::span<const double> b, std::span<double> x, i
   for (Index i = 0; i < finest.a.size(); ++i) {
     Lanes value{};
     for (int c = 0; c < components; ++c)
-      value[c] = static_cast<float>(scale * b[std::size_t(i) * components + c]);
+      set(value, c, static_cast<float>(scale * b[std::size_t(i) * components + c]));
     finest.b[i] = value;
   }
-  cycle();
+  cycle(0);
   for (Index i = 0; i < finest.a.size(); ++i)
-    for (int c = 0; c < components; ++c) x[std::size_t(i) * components + c] = largest * finest.x[i][c];
+    for (int c = 0; c < components; ++c) x[std::size_t(i) * components + c] = largest * get(finest.x[i], c);
 }
+
+template class AggregationMultigrid<FourFloats>;
+template class AggregationMultigrid<float>;
 
 }  // namespace couplet::linalg

@@ -15,17 +15,20 @@
 
 namespace couplet::linalg {
 
-/// One smoothed-aggregation V-cycle for up to four scalar M-matrices that share one graph (the components of
-/// a vector field), all of them at once: a preconditioner. Single precision, four components in one register:
-/// a cycle moves a fifth of what four separate hierarchies in double precision would.
+using FourFloats [[gnu::vector_size(16)]] = float;
+
+/// One smoothed-aggregation V-cycle for scalar M-matrices that share one graph, in single precision: a preconditioner. `Number`:
+/// FourFloats for up to four matrices at once (the components of a vector field, in one register: a cycle moves a fifth of what four
+/// separate hierarchies in double precision would), or float for one.
 ///
 /// With other ranks: aggregates and Gauss-Seidel sweeps are each rank's own, residuals and Galerkin products know the
 /// couplings between them, and the coarsest level is gathered, so that a cycle is hardly weaker on many ranks than on one.
 /// Two messages a level. On plate B 0.34 of the time of PETSc's best in its place, ML (benchmarks/linalg).
-class ComponentMultigrid {
+template <class Number>
+class AggregationMultigrid {
  public:
-  static constexpr int lanes = 4;
-  using Lanes [[gnu::vector_size(16)]] = float;
+  static constexpr int lanes = sizeof(Number) / sizeof(float);
+  using Lanes = Number;
 
   /// Symmetric rows without their diagonals: neighbours `index`, `value` = a_ij <= 0. Neighbours on other ranks are the
   /// ghosts of Options::map.
@@ -43,14 +46,13 @@ class ComponentMultigrid {
     MPI_Comm comm = MPI_COMM_SELF;            ///< of the map
   };
   /// Collective over the ranks of the map.
-  explicit ComponentMultigrid(Rows rows) : ComponentMultigrid(std::move(rows), Options{}) {}
-  ComponentMultigrid(Rows rows, const Options& options);
+  explicit AggregationMultigrid(Rows rows) : AggregationMultigrid(std::move(rows), Options{}) {}
+  AggregationMultigrid(Rows rows, const Options& options);
 
   /// x = V(b) with `components` values a row. Collective.
   void apply(std::span<const double> b, std::span<double> x, int components);
   int n_levels() const { return static_cast<int>(levels_.size()); }
 
- private:
   struct Level {
     Rows a;
     const parallel::IndexMap* map = nullptr;      // of x; none: no ghosts
@@ -61,7 +63,17 @@ class ComponentMultigrid {
     std::vector<Lanes> p_value;
     std::vector<Lanes> x, b;  // x: of ghosts, too
     void update_ghosts();
+    /// All but x, b and the map: of levels that are smoothed elsewhere.
+    void forget_matrix() {
+      a = {}, middle = {}, p_offset = {}, p_index = {};
+      inverse_diagonal = {}, p_value = {};
+    }
   };
+  /// x = V(b) of a level and those below it: for what smooths the finest one by itself. Collective.
+  void cycle(std::size_t first);
+  Level& level(std::size_t l) { return levels_[l]; }
+
+ private:
   struct GhostRows;
   static void prolong(Level& fine, const std::vector<Index>& of, const std::vector<std::uint8_t>& is_strong);
   GhostRows rows_of_ghosts(const Level& fine, Index n_coarse) const;
@@ -73,7 +85,6 @@ class ComponentMultigrid {
   static void smooth_forward(Level& level);
   void restrict_residual(const Level& fine, std::vector<Lanes>& coarse) const;
   static void smooth_backward(Level& level);
-  void cycle();
 
   float coarse_factor_;
   MPI_Comm comm_;
@@ -81,5 +92,7 @@ class ComponentMultigrid {
   std::vector<Eigen::LLT<Eigen::MatrixXd>> coarsest_;  // one a component, of the rows of all ranks
   Index first_coarsest_ = 0;                           // of this rank among them
 };
+
+using ComponentMultigrid = AggregationMultigrid<FourFloats>;
 
 }  // namespace couplet::linalg
