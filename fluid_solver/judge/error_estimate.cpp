@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "common/parallel/collective.hpp"
+#include "fluid_solver/judge/differences.hpp"
 #include "fluid_solver/pressure/wave_rule.hpp"
 
 namespace couplet::fluid {
@@ -82,40 +83,53 @@ auto FluidErrorEstimate<D>::weights(double dt, double apart) const -> Weights {
           .of_second = less * (implicit ? held_error : held_explicitly) * held * dt * sub_step * sub_step};
 }
 
-// Divided differences of u at the ends of the last four steps, their lengths nearly alike: the rate over each step,
-// the change of the rate, the change of that. One loop and one sum over the ranks: a cheap step costs little more.
+/// One loop over the cells. `squares`: of u, its rate, the change of that, the change of that; the volume; of what is left, outflow; of
+/// what is carried.
 template <int D>
-void FluidErrorEstimate<D>::accepted(double dt) {
+void FluidErrorEstimate<D>::sum_differences(double per_step, double per_apart, const Weights& weights,
+                                            std::array<double, 8>& squares) {
   const Vectors<D>& u = fluid_.state().u;
   const std::vector<double>& volume = fluid_.state().placement->volume;
-  const auto n = std::size_t(fluid_.mesh().cells.n_owned());
-  const double apart = 0.5 * (dt + dt_old_), per_step = 1 / dt, per_apart = 1 / apart;
-  const bool knows_rate = seen_ > 0, knows_change = seen_ > 1, knows_third = seen_ > 2;
-  u_.resize(n, Vec<D>::Zero()), rate_.resize(n, Vec<D>::Zero()), rate_change_.resize(n, Vec<D>::Zero());
-  // Of u, its rate, the change of that, the change of that; the volume; of what is left, outflow; of what is carried.
-  std::array<double, 8> squares{};
-  const auto [local, of_third, of_second] = weights(dt, apart);
-  if (driving_.is_possible()) left_.resize(n, Vec<D>::Zero());
+  const std::size_t n = u_.size();
+  if (seen_ > 0 && !driving_.is_possible()) {
+    const std::array<double, 5> sums =
+        renew(Differences<D>{std::span(volume).first(n), u.data(), u_.data(), rate_.data(),
+                             rate_change_.data(), per_step, seen_ > 1 ? per_apart : 0});
+    std::ranges::copy(sums, squares.begin());
+    return;
+  }
   const Vectors<D>& carried = fluid_.state().rates_old.rate;  // times the volume; none of other schemes
-  for (std::size_t c = 0; c < n && knows_rate; ++c) {
+  for (std::size_t c = 0; c < n && seen_ > 0; ++c) {
     const Vec<D> rate = (u[c] - u_[c]) * per_step;
-    Vec<D> change = Vec<D>::Zero();
-    if (knows_change) change = (rate - rate_[c]) * per_apart;
-    if (knows_third) {
-      squares[3] += volume[c] * (change - rate_change_[c]).squaredNorm();
-      if (!left_.empty()) {
-        left_[c] += of_third * (change - rate_change_[c]) + of_second * change;
-        squares[5] += volume[c] * left_[c].squaredNorm();
-        squares[7] += carried.empty() ? volume[c] * rate.squaredNorm() : carried[c].squaredNorm() / volume[c];
-      }
+    const Vec<D> change = seen_ > 1 ? Vec<D>((rate - rate_[c]) * per_apart) : Vec<D>(Vec<D>::Zero());
+    const Vec<D> third = change - rate_change_[c];
+    if (seen_ > 2) {
+      left_[c] += weights.of_third * third + weights.of_second * change;
+      squares[5] += volume[c] * left_[c].squaredNorm();
+      squares[7] += carried.empty() ? volume[c] * rate.squaredNorm() : carried[c].squaredNorm() / volume[c];
     }
     squares[0] += volume[c] * u[c].squaredNorm();
     squares[1] += volume[c] * rate.squaredNorm();
     squares[2] += volume[c] * change.squaredNorm();
+    squares[3] += volume[c] * third.squaredNorm();
     squares[4] += volume[c];
     rate_[c] = rate, rate_change_[c] = change;
   }
   std::copy_n(u.begin(), n, u_.begin());
+}
+
+// Divided differences of u at the ends of the last four steps, their lengths nearly alike: the rate over each step,
+// the change of the rate, the change of that. One loop and one sum over the ranks: a cheap step costs little more.
+template <int D>
+void FluidErrorEstimate<D>::accepted(double dt) {
+  const auto n = std::size_t(fluid_.mesh().cells.n_owned());
+  const double apart = 0.5 * (dt + dt_old_);
+  const bool knows_third = seen_ > 2;
+  for (Vectors<D>* v : {&u_, &rate_, &rate_change_}) v->resize(n, Vec<D>::Zero());
+  if (driving_.is_possible()) left_.resize(n, Vec<D>::Zero());
+  std::array<double, 8> squares{};
+  const Weights weights = this->weights(dt, apart);
+  sum_differences(1 / dt, 1 / apart, weights, squares);
   if (knows_third) {
     for (Index f = fluid_.mesh().n_interior; f < fluid_.mesh().n_flux_faces(); ++f)
       squares[6] += std::max(0., fluid_.state().phi[f]);
@@ -129,7 +143,7 @@ void FluidErrorEstimate<D>::accepted(double dt) {
     const double faded = std::exp(-dt / (window * time_));
     left_of_late_ = std::max(mean(5), left_of_late_ * faded);
     carried_ = std::max(mean(7), carried_ * faded), changed_ = std::max(mean(1), changed_ * faded);
-    steps_.add({.error = local * mean(3),
+    steps_.add({.error = weights.local * mean(3),
                 .rate = mean(1),
                 .size = mean(0),
                 .dt = dt,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -45,6 +46,8 @@ class FluidErrorEstimate {
     double local = 0, of_third = 0, of_second = 0;
   };
   Weights weights(double dt, double apart) const;
+  void sum_differences(double per_step, double per_apart, const Weights& weights,
+                       std::array<double, 8>& squares);
   void see_energy(double dt);
   double friction() const;
   double step_part() const;

@@ -245,42 +245,6 @@ void FluidOutput<D>::write_forces(double time) {
   forces_->row(row);
 }
 
-template <int D>
-void FluidOutput<D>::write_balance(double time) {
-  const State<D>& s = fluid_.state();
-  const Placement<D>& at = *s.placement;
-  enum { inflow, outflow, volume, energy, divergence };
-  double sums[5] = {};
-  divergence_.assign(mesh_.cells.n_local(), 0.0);
-  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    divergence_[mesh_.owner[f]] += s.phi[f];
-    if (f < mesh_.n_interior)
-      divergence_[mesh_.neighbour[f]] -= s.phi[f];
-    else
-      (s.phi[f] < 0 ? sums[inflow] : sums[outflow]) += std::abs(s.phi[f]);
-  }
-  double worst = 0;
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    if (s.blocked && (*s.blocked)[c]) divergence_[c] = 0;  // held by its gap as a whole
-    worst = std::max(worst, std::abs(divergence_[c]) / at.volume[c]);
-    sums[divergence] += std::abs(divergence_[c]);
-    sums[volume] += at.volume[c];
-    sums[energy] += 0.5 * fluid_.parameters().density * at.volume[c] * s.u[c].squaredNorm();
-  }
-  MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-  worst = parallel::max(mesh_.comm, worst);
-  if (!root_) return;
-  if (!balance_)
-    balance_.emplace(
-        open("balance.csv", {"time [s]", "inflow [m^3/s]", "outflow [m^3/s]", "volume [m^3]",
-                             "kinetic energy [J]", "largest divergence [1/s]", "mean divergence [1/s]",
-                             "mass defect [m^3/s]", "sub-steps [-]", "pressure iterations so far [-]"}));
-  balance_->row(std::array<double, 10>{time, sums[inflow], sums[outflow], sums[volume], sums[energy], worst,
-                                       sums[divergence] / sums[volume], sums[outflow] - sums[inflow],
-                                       double(fluid_.statistics().sub_steps),
-                                       double(fluid_.statistics().pressure_iterations)});
-}
-
 template class FluidOutput<2>;
 template class FluidOutput<3>;
 

@@ -10,6 +10,7 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
+#include "fluid_solver/state/face_sums.hpp"
 
 namespace couplet::fluid {
 namespace {
@@ -177,12 +178,7 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
   if (absorbing_) absorbing_->foresee(from);
   if (upstream_) upstream_->foresee();
   b_.assign(k_.mesh.cells.n_local(), 0.0);
-  double size = 0;
-  for (Index f = 0; f < k_.mesh.n_interior; ++f) {
-    b_[k_.mesh.owner[f]] -= factor * k_.phi_p[f];
-    b_[k_.mesh.neighbour[f]] += factor * k_.phi_p[f];
-    size += k_.phi_p[f] * k_.phi_p[f];
-  }
+  double size = subtract_outflow(k_.mesh, factor, k_.phi_p, b_);
   for (std::size_t b = 0; b < w.size(); ++b) {
     const Index f = k_.mesh.n_interior + static_cast<Index>(b);
     b_[k_.mesh.owner[f]] -= factor * k_.phi_p[f];
@@ -227,12 +223,7 @@ template <int D>
 void PressureProjection<D>::pressure_gradient(const Placement<D>& at, const std::vector<double>& p,
                                               const std::vector<double>& boundary, Vectors<D>& sum) const {
   sum.assign(k_.mesh.cells.n_local(), Vec<D>::Zero());
-  for (Index f = 0; f < k_.mesh.n_interior; ++f) {
-    const Index o = k_.mesh.owner[f], n = k_.mesh.neighbour[f];
-    const Vec<D> part = (at.weight[f] * p[o] + (1 - at.weight[f]) * p[n]) * at.area[f];
-    sum[o] += part;
-    sum[n] -= part;
-  }
+  add_pressure(k_.mesh, at, p, sum);
   for (std::size_t b = 0; b < boundary.size(); ++b) {
     const Index f = k_.mesh.n_interior + static_cast<Index>(b);
     sum[k_.mesh.owner[f]] += boundary[b] * at.area[f];

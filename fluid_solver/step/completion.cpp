@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "common/base/error.hpp"
+#include "common/base/processor_clones.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/step/fractional_step.hpp"
 
@@ -12,6 +13,37 @@ namespace couplet::fluid {
 namespace {
 
 constexpr double explosion = 1e3;  // growth of the largest speed in one step that is called divergence
+
+/// phi -= dt/rho g (p_N - p_P) at interior faces.
+COUPLET_PROCESSOR_CLONES void correction_pass(const mesh::Mesh& mesh, double factor,
+                                              const double* conductance, const double* p, double* phi) {
+  const Index *owner = mesh.owner.data(), *neighbour = mesh.neighbour.data();
+  for (Index f = 0; f < mesh.n_interior; ++f)
+    phi[f] -= factor * conductance[f] * (p[neighbour[f]] - p[owner[f]]);
+}
+
+COUPLET_PROCESSOR_CLONES void velocity_pass(std::span<const double> predicted, double factor,
+                                            std::span<const double> gradient, std::span<double> u) {
+  for (std::size_t i = 0; i < u.size(); ++i) u[i] = predicted[i] - factor * gradient[i];
+}
+
+/// Infinity if one is not finite.
+template <int D>
+[[gnu::always_inline]] inline double find_largest_square(std::span<const Vec<D>> u) {
+  double largest = 0, all = 0;
+  for (const Vec<D>& v : u) {
+    const double square = v.squaredNorm();
+    largest = std::max(largest, square);
+    all += square;
+  }
+  return std::isfinite(all) ? largest : std::numeric_limits<double>::infinity();
+}
+COUPLET_PROCESSOR_CLONES double largest_square(std::span<const Vec<2>> u) {
+  return find_largest_square<2>(u);
+}
+COUPLET_PROCESSOR_CLONES double largest_square(std::span<const Vec<3>> u) {
+  return find_largest_square<3>(u);
+}
 
 }  // namespace
 
@@ -21,15 +53,15 @@ std::shared_ptr<PressureLevel<D>> FractionalStep<D>::correct() {
   const Placement<D>& now = *k_.step.to;
   const std::vector<double>& conductance = k_.pressure_placement().conductance;
   const double factor = k_.step.dt / k_.rho;
-  for (Index f = 0; f < k_.mesh.n_interior; ++f)
-    k_.phi_p[f] -= factor * conductance[f] * (k_.p[k_.mesh.neighbour[f]] - k_.p[k_.mesh.owner[f]]);
+  correction_pass(k_.mesh, factor, conductance.data(), k_.p.data(), k_.phi_p.data());
   for (const Index b : k_.boundary.rows().of_pressure) {
     const Index f = k_.mesh.n_interior + b;
     k_.phi_p[f] -= factor * now.conductance[f] * (k_.p_boundary[b] - k_.p[k_.mesh.owner[f]]);
   }
   auto level = projection_.pressure_level();
   Vectors<D>& u = k_.right_side;
-  for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) u[c] = k_.u_p[c] - factor * level->gradient[c];
+  velocity_pass(flat<D>(k_.u_p), factor, flat<D>(level->gradient),
+                flat<D>(u).first(std::size_t(k_.mesh.cells.n_owned()) * D));
   k_.mesh.cells.update_ghosts(flat<D>(u), D);
   if (k_.bodies) k_.bodies->force(now, u);
   if (k_.gap_closed()) k_.gaps->hold(u);
@@ -98,12 +130,8 @@ EnergyStep<D> FractionalStep<D>::energy_step(const State<D>& from) const {
 
 template <int D>
 typename FractionalStep<D>::Judgement FractionalStep<D>::judge(const State<D>& from) const {
-  double fastest = 0;
-  for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) {
-    const double square = k_.right_side[c].squaredNorm();
-    if (!(square <= fastest))
-      fastest = std::isfinite(square) ? square : std::numeric_limits<double>::infinity();
-  }
+  const std::span<const Vec<D>> u(k_.right_side.data(), k_.mesh.cells.n_owned());
+  const double fastest = largest_square(u);
   double given = 0;
   for (const Vec<D>& w : k_.w) given = std::max(given, w.squaredNorm());
   double largest[2] = {fastest, given};

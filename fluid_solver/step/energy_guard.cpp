@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/base/processor_clones.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/step/step_size.hpp"
 
@@ -25,13 +26,28 @@ constexpr double fast_frame = 4;
 // some steps, where its own energy is no measure.
 constexpr double remembered = 0.85;
 
+/// sum V |u|^2, in four partial sums, so that additions do not wait for each other.
+template <int D>
+[[gnu::always_inline]] inline double sum_squares(std::span<const double> volume, const Vec<D>* u) {
+  std::array<double, 4> sum{};
+  std::size_t c = 0;
+  for (; c + 4 <= volume.size(); c += 4)
+    for (std::size_t k = 0; k < 4; ++k) sum[k] += volume[c + k] * u[c + k].squaredNorm();
+  for (; c < volume.size(); ++c) sum[0] += volume[c] * u[c].squaredNorm();
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+COUPLET_PROCESSOR_CLONES double squares_pass(std::span<const double> volume, const Vec<2>* u) {
+  return sum_squares<2>(volume, u);
+}
+COUPLET_PROCESSOR_CLONES double squares_pass(std::span<const double> volume, const Vec<3>* u) {
+  return sum_squares<3>(volume, u);
+}
+
 }  // namespace
 
 template <int D>
 double EnergyGuard<D>::kinetic(const Placement<D>& at, const Vectors<D>& u) const {
-  double sum = 0;
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) sum += at.volume[c] * u[c].squaredNorm();
-  return 0.5 * rho_ * sum;
+  return 0.5 * rho_ * squares_pass(std::span(at.volume).first(mesh_.cells.n_owned()), u.data());
 }
 
 template <int D>

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/processor_clones.hpp"
 #include "fluid_solver/step/rates.hpp"
 
 namespace couplet::fluid {
@@ -12,6 +13,53 @@ namespace {
 
 // Decay of the flux memory in one step for which its AB2 is stable and does not overshoot.
 constexpr double largest_decay = 2.0 / 3;
+
+/// Of add_memory().
+struct MemoryWeights {
+  double dt, now, before;  // a step, and delta at its middle from that of two levels
+};
+
+/// sum nu g + |phi - moved|/2 of each cell; `moved`: flux of the mesh, not looked at if it rests.
+template <bool Moving>
+[[gnu::always_inline]] inline void sum_evening(const mesh::Mesh& mesh, double nu, const double* conductance,
+                                               const double* phi, const double* moved, double* sums) {
+  const Index *owner = mesh.owner.data(), *neighbour = mesh.neighbour.data();
+  for (Index f = 0; f < mesh.n_interior; ++f) {
+    const double rate = nu * conductance[f] + 0.5 * std::abs(phi[f] - (Moving ? moved[f] : 0.0));
+    sums[owner[f]] += rate;
+    sums[neighbour[f]] += rate;
+  }
+  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
+    sums[owner[f]] += nu * conductance[f] + 0.5 * std::abs(phi[f] - (Moving ? moved[f] : 0.0));
+}
+COUPLET_PROCESSOR_CLONES void evening_pass(const mesh::Mesh& mesh, double nu, const double* conductance,
+                                           const double* phi, const double* moved, double* sums) {
+  if (moved)
+    sum_evening<true>(mesh, nu, conductance, phi, moved, sums);
+  else
+    sum_evening<false>(mesh, nu, conductance, phi, nullptr, sums);
+}
+
+/// phi += delta - min(decay, largest) delta_mid. Faces whose decay is larger than that go to `far`, which has room for all; gives their
+/// number.
+COUPLET_PROCESSOR_CLONES Index memory_pass(const mesh::Mesh& mesh, const MemoryWeights& w, const double* rate,
+                                           const double* memory, const double* old, double* phi, Index* far) {
+  const Index *owner = mesh.owner.data(), *neighbour = mesh.neighbour.data();
+  const double half = 0.5 * w.dt;
+  Index n = 0;
+  for (Index f = 0; f < mesh.n_interior; ++f) {
+    const double decay = half * (rate[owner[f]] + rate[neighbour[f]]);
+    far[n] = f;
+    n += decay > largest_decay;
+    const double mid = old ? w.now * memory[f] + w.before * old[f] : memory[f];
+    phi[f] += memory[f] - std::min(decay, largest_decay) * mid;
+  }
+  return n;
+}
+
+COUPLET_PROCESSOR_CLONES void subtract_from(std::span<const double> values, std::span<double> from) {
+  for (std::size_t i = 0; i < from.size(); ++i) from[i] = values[i] - from[i];
+}
 
 }  // namespace
 
@@ -44,12 +92,9 @@ void FaceFlux<D>::set_relaxation(const State<D>& from) {
   relaxation_.assign(k_.mesh.cells.n_local(), 0.0);
   const Placement<D>& at = *from.placement;
   const bool moving = !from.mesh_flux.empty();
-  for (Index f = 0; f < k_.mesh.n_flux_faces(); ++f) {
-    const double flux = std::abs(from.phi[f] - (moving ? from.mesh_flux[f] : 0.0));
-    const double rate = k_.nu * at.conductance[f] + 0.5 * flux;
-    relaxation_[k_.mesh.owner[f]] += rate / at.volume[k_.mesh.owner[f]];
-    if (f < k_.mesh.n_interior) relaxation_[k_.mesh.neighbour[f]] += rate / at.volume[k_.mesh.neighbour[f]];
-  }
+  evening_pass(k_.mesh, k_.nu, at.conductance.data(), from.phi.data(),
+               moving ? from.mesh_flux.data() : nullptr, relaxation_.data());
+  for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) relaxation_[c] /= at.volume[c];
   k_.mesh.cells.update_ghosts(relaxation_);
 }
 
@@ -63,18 +108,18 @@ template <int D>
 void FaceFlux<D>::add_memory(const State<D>& from) {
   set_relaxation(from);
   const double ratio = k_.by.dt_old > 0 ? k_.step.dt / k_.by.dt_old : 0;
-  for (Index f = 0; f < k_.mesh.n_interior; ++f) {
+  const double now = 1 + ratio / 2, before = -ratio / 2;
+  far_.resize(std::size_t(k_.mesh.n_interior) + 1);
+  const Index n_far =
+      memory_pass(k_.mesh, {k_.step.dt, now, before}, relaxation_.data(), from.memory.data(),
+                  ratio > 0 ? from.memory_old.data() : nullptr, k_.phi_orthogonal.data(), far_.data());
+  if (!k_.by.pressure[0]) return;
+  for (const Index f : std::span(far_).first(n_far)) {
     const double rate = 0.5 * (relaxation_[k_.mesh.owner[f]] + relaxation_[k_.mesh.neighbour[f]]);
-    const double decay = rate * k_.step.dt;
-    if (decay > largest_decay && k_.by.pressure[0]) {
-      const double share = decay / (1 + decay);
-      k_.phi_orthogonal[f] +=
-          from.memory[f] - share * (from.memory[f] + k_.step.dt * pressure_excess(from, f));
-      continue;
-    }
-    double mid = (1 + ratio / 2) * from.memory[f];
-    if (ratio > 0) mid -= ratio / 2 * from.memory_old[f];
-    k_.phi_orthogonal[f] += from.memory[f] - std::min(decay, largest_decay) * mid;
+    const double decay = rate * k_.step.dt, share = decay / (1 + decay);
+    const double mid = ratio > 0 ? now * from.memory[f] + before * from.memory_old[f] : from.memory[f];
+    k_.phi_orthogonal[f] +=
+        largest_decay * mid - share * (from.memory[f] + k_.step.dt * pressure_excess(from, f));
   }
 }
 
@@ -117,7 +162,7 @@ void FaceFlux<D>::remember(State<D>& s) {
     s.memory.resize(k_.mesh.n_interior);
     mean_flux<D>(k_.mesh, *k_.step.to, s.u, s.u_boundary, k_.velocity_gradient, s.memory);
     if (k_.step.to->skewed()) k_.gradient_of = s.number;
-    for (Index f = 0; f < k_.mesh.n_interior; ++f) s.memory[f] = s.phi[f] - s.memory[f];
+    subtract_from(s.phi, s.memory);
   }
   if (!k_.bodies && !k_.gap_closed()) return;
   for (Index f = 0; f < k_.mesh.n_interior; ++f)

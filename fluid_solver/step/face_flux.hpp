@@ -27,6 +27,7 @@ class FaceFlux {
 
   StepWork<D>& k_;
   std::vector<double> relaxation_;  // [1/s]
+  std::vector<Index> far_;          // faces whose decay is large
   std::vector<double> fading_;      // incremental: of the start's delta, at t^{n+1}
 };
 

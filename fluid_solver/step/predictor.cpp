@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
+#include "common/base/processor_clones.hpp"
 
 namespace couplet::fluid {
 namespace {
@@ -14,6 +15,30 @@ namespace {
 // stiff modes.
 constexpr double c_modified = 1.0 / 16;
 constexpr int most_passes = 60;
+
+/// u + (a R + b R_old)/V, what an explicit step on a mesh at rest without forces comes to; R_old null: without.
+template <int D>
+[[gnu::always_inline]] inline void go_explicitly(std::span<const double> volume, const Vectors<D>& u,
+                                                 double a, const Vec<D>* rate, double b, const Vec<D>* old,
+                                                 Vectors<D>& to) {
+  const Vec<D>* from = u.data();
+  Vec<D>* result = to.data();
+  for (std::size_t c = 0; c < volume.size(); ++c) {
+    const double per_volume = 1 / volume[c], now = a * per_volume, before = b * per_volume;
+    if (old)
+      result[c] = from[c] + now * rate[c] + before * old[c];
+    else
+      result[c] = from[c] + now * rate[c];
+  }
+}
+COUPLET_PROCESSOR_CLONES void explicit_pass(std::span<const double> volume, const Vectors<2>& u, double a,
+                                            const Vec<2>* rate, double b, const Vec<2>* old, Vectors<2>& to) {
+  go_explicitly<2>(volume, u, a, rate, b, old, to);
+}
+COUPLET_PROCESSOR_CLONES void explicit_pass(std::span<const double> volume, const Vectors<3>& u, double a,
+                                            const Vec<3>* rate, double b, const Vec<3>* old, Vectors<3>& to) {
+  go_explicitly<3>(volume, u, a, rate, b, old, to);
+}
 
 }  // namespace
 
@@ -35,16 +60,22 @@ void Predictor<D>::predict(const State<D>& from) {
   const bool given = !k_.step.rate.empty();
   if (!given) set_rates(from, implicit);
   k_.right_side.resize(from.u.size());
+  k_.u_p.resize(from.u.size());
+  k_.viscous_flux.resize(k_.w.size());
+  const bool forced = !body_force_.empty() || k_.frame;
+  if (!moving && !implicit && !given && !forced) {
+    explicit_pass(std::span(from.placement->volume).first(k_.mesh.cells.n_owned()), from.u, dt * e0,
+                  rates_.rate.data(), dt * e1, ratio > 0 ? from.rates_old.rate.data() : nullptr, k_.u_p);
+    return set_explicit_friction(from, e0, e1);
+  }
   const std::vector<double>& volume = from.placement->volume;
   for (Index c = 0; c < k_.mesh.cells.n_local(); ++c)
     k_.right_side[c] = volume[c] * from.u[c] + (given ? dt * k_.step.rate[c] : dt * e0 * rates_.rate[c]);
   if (ratio > 0 && !given)
     for (Index c = 0; c < k_.mesh.cells.n_local(); ++c) k_.right_side[c] += dt * e1 * from.rates_old.rate[c];
-  if (!body_force_.empty() || k_.frame) add_body_force(from, e0, e1);
+  if (forced) add_body_force(from, e0, e1);
   if (moving) add_swept(from, e0, e1);
   if (moving || implicit) add_old_pressure(from, implicit);
-  k_.u_p.resize(from.u.size());
-  k_.viscous_flux.resize(k_.w.size());
   if (implicit) {
     const double c = ratio > 0 ? c_modified : 0, a = ratio > 0 ? 0.5 + c / ratio : 1, b = 1 - a - c;
     for (Index i = 0; i < k_.mesh.cells.n_owned(); ++i) k_.right_side[i] += dt * b * rates_.viscous[i];
@@ -58,12 +89,20 @@ void Predictor<D>::predict(const State<D>& from) {
       if (ratio > 0) k_.viscous_flux[i] += c * from.shear_old[i];
     }
   } else {
-    weight_ = 0;
     for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) k_.u_p[c] = k_.right_side[c] / k_.step.to->volume[c];
-    if (given) k_.viscous_flux = k_.step.shear;
-    for (std::size_t b = 0; b < shear_.size() && !given; ++b)
-      k_.viscous_flux[b] = ratio > 0 ? Vec<D>(e0 * shear_[b] + e1 * from.shear_old[b]) : shear_[b];
+    set_explicit_friction(from, e0, e1);
   }
+}
+
+template <int D>
+void Predictor<D>::set_explicit_friction(const State<D>& from, double e0, double e1) {
+  weight_ = 0;
+  if (!k_.step.rate.empty()) {
+    k_.viscous_flux = k_.step.shear;
+    return;
+  }
+  for (std::size_t b = 0; b < shear_.size(); ++b)
+    k_.viscous_flux[b] = e1 != 0 ? Vec<D>(e0 * shear_[b] + e1 * from.shear_old[b]) : shear_[b];
 }
 
 template <int D>

@@ -30,6 +30,7 @@ class Predictor {
   RateOperator<D>& rate_operator() { return rate_operator_; }
 
  private:
+  void set_explicit_friction(const State<D>& from, double e0, double e1);
   void add_body_force(const State<D>& from, double e0, double e1);
   void add_swept(const State<D>& from, double e0, double e1);
   void part_from_gaps(const State<D>& from, bool implicit);

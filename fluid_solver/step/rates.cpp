@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "common/base/processor_clones.hpp"
 #include "fluid_solver/turbulence/turbulence.hpp"
 
 namespace couplet::fluid {
@@ -27,11 +28,79 @@ void velocity_gradient(const mesh::Mesh& mesh, const Placement<D>& at, const Vec
                            D * D);
 }
 
+namespace {
+
+/// Rates of the interior faces. They stand owner by owner: what is the owner's is read and written once.
+template <bool Split, int D>
+[[gnu::always_inline]] inline void face_rates(const mesh::Mesh& mesh, double nu, const State<D>& s,
+                                              Rates<D>& rates) {
+  const Index *owner = mesh.owner.data(), *neighbour = mesh.neighbour.data();
+  const double *phi = s.phi.data(), *conductance = s.placement->conductance.data();
+  const Vec<D>* u = s.u.data();
+  Vec<D>*rate = rates.rate.data(), *viscous = rates.viscous.data();
+  for (Index f = 0; f < mesh.n_interior;) {
+    const Index p = owner[f];
+    const Vec<D> own = u[p];
+    Vec<D> sum = Vec<D>::Zero(), sum_viscous = Vec<D>::Zero();
+    do {
+      const Index n = neighbour[f];
+      const double half = -0.5 * phi[f], g = nu * conductance[f];
+      if constexpr (Split) {
+        const Vec<D> by_flow = half * (own + u[n]), by_friction = g * (u[n] - own);
+        sum += by_flow;
+        rate[n] -= by_flow;
+        sum_viscous += by_friction;
+        viscous[n] -= by_friction;
+      } else {
+        const Vec<D> both = (half - g) * own + (half + g) * u[n];
+        sum += both;
+        rate[n] -= both;
+      }
+      ++f;
+    } while (f < mesh.n_interior && owner[f] == p);
+    rate[p] += sum;
+    if constexpr (Split) viscous[p] += sum_viscous;
+  }
+}
+
+template <int D>
+[[gnu::always_inline]] inline void rates_by(const mesh::Mesh& mesh, double nu, bool split, const State<D>& s,
+                                            Rates<D>& rates) {
+  split ? face_rates<true>(mesh, nu, s, rates) : face_rates<false>(mesh, nu, s, rates);
+}
+COUPLET_PROCESSOR_CLONES void rates_pass(const mesh::Mesh& mesh, double nu, bool split, const State<2>& s,
+                                         Rates<2>& rates) {
+  rates_by(mesh, nu, split, s, rates);
+}
+COUPLET_PROCESSOR_CLONES void rates_pass(const mesh::Mesh& mesh, double nu, bool split, const State<3>& s,
+                                         Rates<3>& rates) {
+  rates_by(mesh, nu, split, s, rates);
+}
+
+template <int D>
+[[gnu::always_inline]] inline void mean_fluxes(const mesh::Mesh& mesh, const Vectors<D>& area,
+                                               const Vectors<D>& u, std::span<double> flux) {
+  const Index *owner = mesh.owner.data(), *neighbour = mesh.neighbour.data();
+  const Vec<D>*value = u.data(), *s = area.data();
+  double* result = flux.data();
+  for (Index f = 0; f < mesh.n_interior; ++f)
+    result[f] = 0.5 * (value[owner[f]] + value[neighbour[f]]).dot(s[f]);
+}
+COUPLET_PROCESSOR_CLONES void mean_flux_pass(const mesh::Mesh& mesh, const Vectors<2>& area,
+                                             const Vectors<2>& u, std::span<double> flux) {
+  mean_fluxes<2>(mesh, area, u, flux);
+}
+COUPLET_PROCESSOR_CLONES void mean_flux_pass(const mesh::Mesh& mesh, const Vectors<3>& area,
+                                             const Vectors<3>& u, std::span<double> flux) {
+  mean_fluxes<3>(mesh, area, u, flux);
+}
+
+}  // namespace
+
 template <int D>
 void mean_flux(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
                const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient, std::span<double> flux) {
-  for (Index f = 0; f < mesh.n_interior; ++f)
-    flux[f] = 0.5 * (u[mesh.owner[f]] + u[mesh.neighbour[f]]).dot(at.area[f]);
+  mean_flux_pass(mesh, at.area, u, flux);
   if (!at.skewed()) return;
   velocity_gradient<D>(mesh, at, u, u_boundary, gradient);
   for (Index f = 0; f < mesh.n_interior; ++f)
@@ -39,31 +108,16 @@ void mean_flux(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>&
 }
 
 template <int D>
-template <bool Split>
-void RateOperator<D>::face_loop(const State<D>& s, Rates<D>& rates) const {
+void RateOperator<D>::face_loop(const State<D>& s, bool split, Rates<D>& rates) const {
   const Placement<D>& at = *s.placement;
   const std::vector<double>& inflow = boundary_.rows().inflow;
-  for (Index f = 0; f < mesh_.n_interior; ++f) {
-    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
-    const Vec<D> convective = -0.5 * s.phi[f] * (s.u[p] + s.u[n]);
-    const Vec<D> viscous = nu_ * at.conductance[f] * (s.u[n] - s.u[p]);
-    if constexpr (Split) {
-      rates.rate[p] += convective;
-      rates.rate[n] -= convective;
-      rates.viscous[p] += viscous;
-      rates.viscous[n] -= viscous;
-    } else {
-      const Vec<D> both = convective + viscous;
-      rates.rate[p] += both;
-      rates.rate[n] -= both;
-    }
-  }
+  rates_pass(mesh_, nu_, split, s, rates);
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
     const Index p = mesh_.owner[f];
     const Index b = f - mesh_.n_interior;
     const Vec<D>& on_face = s.u_boundary[b];
     rates.rate[p] -= (s.phi[f] < 0 ? inflow[b] : 1.0) * s.phi[f] * on_face;
-    (Split ? rates.viscous : rates.rate)[p] += nu_ * at.conductance[f] * (on_face - s.u[p]);
+    (split ? rates.viscous : rates.rate)[p] += nu_ * at.conductance[f] * (on_face - s.u[p]);
   }
 }
 
@@ -125,7 +179,7 @@ void RateOperator<D>::apply(const State<D>& state, bool split, bool correct_obli
                             const std::vector<Tensor<D>>* gradient) {
   rates.rate.assign(mesh_.cells.n_local(), Vec<D>::Zero());
   rates.viscous.assign(split ? mesh_.cells.n_local() : 0, Vec<D>::Zero());
-  split ? face_loop<true>(state, rates) : face_loop<false>(state, rates);
+  face_loop(state, split, rates);
   if (compressible_) add_dilatation(state, rates.rate);
   if (!correct_oblique && state.eddy.empty()) return;
   if (!gradient) {

@@ -55,8 +55,7 @@ class RateOperator {
  private:
   void add_eddies(const State<D>& state, const std::vector<Tensor<D>>& gradient, Vectors<D>& rate) const;
   void add_oblique(const Placement<D>& at, const std::vector<Tensor<D>>& gradient, Vectors<D>& rate) const;
-  template <bool Split>
-  void face_loop(const State<D>& state, Rates<D>& rates) const;
+  void face_loop(const State<D>& state, bool split, Rates<D>& rates) const;
   void add_dilatation(const State<D>& state, Vectors<D>& rate);
   const mesh::Mesh& mesh_;
   const Boundary<D>& boundary_;
