@@ -10,7 +10,6 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/state/face_sums.hpp"
 
 namespace couplet::fluid {
 namespace {
@@ -145,7 +144,7 @@ void PressureProjection<D>::project(const State<D>& from, const Vectors<D>& w, d
           passes, k_.by.time + k_.step.dt, k_.degrees);
     if (pass == passes) break;
     if (to_the_end) gradient_before_ = k_.gradient_guess;
-    pressure_gradient(*k_.step.to, k_.p, k_.p_boundary, k_.gradient_guess);
+    pressure_gradient(*k_.step.to, k_.p, k_.p_boundary, nullptr, k_.gradient_guess);
     for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) k_.gradient_guess[c] /= k_.step.to->volume[c];
     k_.mesh.cells.update_ghosts(flat<D>(k_.gradient_guess), D);
     if (to_the_end && pass >= oblique_passes && gradient_stands()) break;
@@ -221,9 +220,10 @@ void PressureProjection<D>::set_boundary_pressure(const State<D>& from) {
 /// by the gradient of that: exact for linear p.
 template <int D>
 void PressureProjection<D>::pressure_gradient(const Placement<D>& at, const std::vector<double>& p,
-                                              const std::vector<double>& boundary, Vectors<D>& sum) const {
+                                              const std::vector<double>& boundary,
+                                              const FluxCorrection* correction, Vectors<D>& sum) const {
   sum.assign(k_.mesh.cells.n_local(), Vec<D>::Zero());
-  add_pressure(k_.mesh, at, p, sum);
+  add_pressure(k_.mesh, at, p, correction, sum);
   for (std::size_t b = 0; b < boundary.size(); ++b) {
     const Index f = k_.mesh.n_interior + static_cast<Index>(b);
     sum[k_.mesh.owner[f]] += boundary[b] * at.area[f];
@@ -242,19 +242,21 @@ void PressureProjection<D>::pressure_gradient(const Placement<D>& at, const std:
 }
 
 template <int D>
-void PressureProjection<D>::set_gradient(const Placement<D>& at, PressureLevel<D>& level) const {
-  pressure_gradient(at, level.p, level.boundary, level.gradient);
+void PressureProjection<D>::set_gradient(const Placement<D>& at, PressureLevel<D>& level,
+                                         const FluxCorrection* correction) const {
+  pressure_gradient(at, level.p, level.boundary, correction, level.gradient);
   for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) level.gradient[c] /= at.volume[c];
   k_.mesh.cells.update_ghosts(flat<D>(level.gradient), D);
 }
 
 template <int D>
-std::shared_ptr<PressureLevel<D>> PressureProjection<D>::pressure_level() const {
+std::shared_ptr<PressureLevel<D>> PressureProjection<D>::pressure_level(
+    const FluxCorrection* correction) const {
   auto level = std::make_shared<PressureLevel<D>>();
   level->time = k_.by.time + k_.step.dt / 2;
   level->p = k_.p;
   level->boundary = k_.p_boundary;
-  set_gradient(*k_.step.to, *level);
+  set_gradient(*k_.step.to, *level, correction);
   if (compression_) compression_->complete(*level);
   if (upstream_) upstream_->complete(*level);
   return level;

@@ -11,6 +11,7 @@
 #include "fluid_solver/pressure/pressure.hpp"
 #include "fluid_solver/pressure/upstream_volume.hpp"
 #include "fluid_solver/pressure/yielding_walls.hpp"
+#include "fluid_solver/state/face_sums.hpp"
 
 namespace couplet::fluid {
 
@@ -53,10 +54,11 @@ class PressureProjection {
   /// phi^p at the boundary from w. Collective.
   void set_boundary_flux(const Vectors<D>& w);
   void set_obliqueness(const Placement<D>& at);
-  /// The result of the last project() as a level of history. Collective.
-  std::shared_ptr<PressureLevel<D>> pressure_level() const;
+  /// The result of the last project() as a level of history; `correction`: made of fluxes by the way. Collective.
+  std::shared_ptr<PressureLevel<D>> pressure_level(const FluxCorrection* correction = nullptr) const;
   /// Fills level.gradient from p and boundary. Collective.
-  void set_gradient(const Placement<D>& at, PressureLevel<D>& level) const;
+  void set_gradient(const Placement<D>& at, PressureLevel<D>& level,
+                    const FluxCorrection* correction = nullptr) const;
   void mark_bodies(double time);
   /// Of the work's step: which cells of gaps are blocked; the matrix that follows. Collective.
   void mark_gaps();
@@ -77,7 +79,8 @@ class PressureProjection {
   void solve_pressure(const State<D>& from, const Vectors<D>& w, double tolerance, double answer);
   void set_boundary_pressure(const State<D>& from);
   void pressure_gradient(const Placement<D>& at, const std::vector<double>& p,
-                         const std::vector<double>& boundary, Vectors<D>& sum) const;
+                         const std::vector<double>& boundary, const FluxCorrection* correction,
+                         Vectors<D>& sum) const;
   void fill_pressure_in_bodies();
   void clear_gaps(std::vector<double>& b) const;
   void part_from_gaps(const Placement<D>& at, const std::vector<double>& p, Vectors<D>& sum) const;

@@ -21,9 +21,10 @@ COUPLET_PROCESSOR_CLONES double subtract_outflow(const mesh::Mesh& mesh, double 
 
 namespace {
 
-template <int D>
+template <bool Corrects, int D>
 [[gnu::always_inline]] inline void add_pressures(const mesh::Mesh& mesh, const Placement<D>& at,
-                                                 const double* p, Vectors<D>& sum) {
+                                                 const double* p, const FluxCorrection& correction,
+                                                 Vectors<D>& sum) {
   const Index *owner = mesh.owner.data(), *neighbour = mesh.neighbour.data();
   const double* weight = at.weight.data();
   const Vec<D>* area = at.area.data();
@@ -35,7 +36,9 @@ template <int D>
     Vec<D> all = Vec<D>::Zero();
     do {
       const Index n = neighbour[f];
-      const Vec<D> part = (p[n] + weight[f] * (own - p[n])) * area[f];
+      const double less = own - p[n];
+      if constexpr (Corrects) correction.phi[f] += correction.factor * correction.conductance[f] * less;
+      const Vec<D> part = (p[n] + weight[f] * less) * area[f];
       all += part;
       of[n] -= part;
       ++f;
@@ -44,15 +47,27 @@ template <int D>
   }
 }
 
+template <int D>
+[[gnu::always_inline]] inline void choose(const mesh::Mesh& mesh, const Placement<D>& at,
+                                          std::span<const double> p, const FluxCorrection* correction,
+                                          Vectors<D>& sum) {
+  if (correction)
+    add_pressures<true>(mesh, at, p.data(), *correction, sum);
+  else
+    add_pressures<false>(mesh, at, p.data(), FluxCorrection{}, sum);
+}
+
 }  // namespace
 
 COUPLET_PROCESSOR_CLONES void add_pressure(const mesh::Mesh& mesh, const Placement<2>& at,
-                                           std::span<const double> p, Vectors<2>& sum) {
-  add_pressures<2>(mesh, at, p.data(), sum);
+                                           std::span<const double> p, const FluxCorrection* correction,
+                                           Vectors<2>& sum) {
+  choose(mesh, at, p, correction, sum);
 }
 COUPLET_PROCESSOR_CLONES void add_pressure(const mesh::Mesh& mesh, const Placement<3>& at,
-                                           std::span<const double> p, Vectors<3>& sum) {
-  add_pressures<3>(mesh, at, p.data(), sum);
+                                           std::span<const double> p, const FluxCorrection* correction,
+                                           Vectors<3>& sum) {
+  choose(mesh, at, p, correction, sum);
 }
 
 }  // namespace couplet::fluid

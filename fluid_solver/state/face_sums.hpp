@@ -13,8 +13,16 @@ namespace couplet::fluid {
 /// sum -= factor times what flows out by phi; gives the sum of the squares of phi.
 double subtract_outflow(const mesh::Mesh& mesh, double factor, std::span<const double> phi,
                         std::span<double> sum);
-/// sum += p_f S, p_f linear between the cells.
-void add_pressure(const mesh::Mesh& mesh, const Placement<2>& at, std::span<const double> p, Vectors<2>& sum);
-void add_pressure(const mesh::Mesh& mesh, const Placement<3>& at, std::span<const double> p, Vectors<3>& sum);
+/// phi -= factor g (p_N - p_P).
+struct FluxCorrection {
+  double factor;
+  const double* conductance;  ///< g
+  double* phi;
+};
+/// sum += p_f S, p_f linear between the cells; `correction`: made in the same pass; null: none.
+void add_pressure(const mesh::Mesh& mesh, const Placement<2>& at, std::span<const double> p,
+                  const FluxCorrection* correction, Vectors<2>& sum);
+void add_pressure(const mesh::Mesh& mesh, const Placement<3>& at, std::span<const double> p,
+                  const FluxCorrection* correction, Vectors<3>& sum);
 
 }  // namespace couplet::fluid

@@ -14,14 +14,6 @@ namespace {
 
 constexpr double explosion = 1e3;  // growth of the largest speed in one step that is called divergence
 
-/// phi -= dt/rho g (p_N - p_P) at interior faces.
-COUPLET_PROCESSOR_CLONES void correction_pass(const mesh::Mesh& mesh, double factor,
-                                              const double* conductance, const double* p, double* phi) {
-  const Index *owner = mesh.owner.data(), *neighbour = mesh.neighbour.data();
-  for (Index f = 0; f < mesh.n_interior; ++f)
-    phi[f] -= factor * conductance[f] * (p[neighbour[f]] - p[owner[f]]);
-}
-
 COUPLET_PROCESSOR_CLONES void velocity_pass(std::span<const double> predicted, double factor,
                                             std::span<const double> gradient, std::span<double> u) {
   for (std::size_t i = 0; i < u.size(); ++i) u[i] = predicted[i] - factor * gradient[i];
@@ -53,12 +45,12 @@ std::shared_ptr<PressureLevel<D>> FractionalStep<D>::correct() {
   const Placement<D>& now = *k_.step.to;
   const std::vector<double>& conductance = k_.pressure_placement().conductance;
   const double factor = k_.step.dt / k_.rho;
-  correction_pass(k_.mesh, factor, conductance.data(), k_.p.data(), k_.phi_p.data());
+  const FluxCorrection correction{factor, conductance.data(), k_.phi_p.data()};
   for (const Index b : k_.boundary.rows().of_pressure) {
     const Index f = k_.mesh.n_interior + b;
     k_.phi_p[f] -= factor * now.conductance[f] * (k_.p_boundary[b] - k_.p[k_.mesh.owner[f]]);
   }
-  auto level = projection_.pressure_level();
+  auto level = projection_.pressure_level(&correction);
   Vectors<D>& u = k_.right_side;
   velocity_pass(flat<D>(k_.u_p), factor, flat<D>(level->gradient),
                 flat<D>(u).first(std::size_t(k_.mesh.cells.n_owned()) * D));

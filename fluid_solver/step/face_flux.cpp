@@ -57,10 +57,6 @@ COUPLET_PROCESSOR_CLONES Index memory_pass(const mesh::Mesh& mesh, const MemoryW
   return n;
 }
 
-COUPLET_PROCESSOR_CLONES void subtract_from(std::span<const double> values, std::span<double> from) {
-  for (std::size_t i = 0; i < from.size(); ++i) from[i] = values[i] - from[i];
-}
-
 }  // namespace
 
 /// phi^p = (mean u^p).S^{n+1} + delta' - (dt/rho) grad p~ . k, delta' on interior faces only.
@@ -160,9 +156,8 @@ void FaceFlux<D>::remember(State<D>& s) {
     s.memory.swap(fading_);
   } else {
     s.memory.resize(k_.mesh.n_interior);
-    mean_flux<D>(k_.mesh, *k_.step.to, s.u, s.u_boundary, k_.velocity_gradient, s.memory);
+    subtract_mean_flux<D>(k_.mesh, *k_.step.to, s.u, s.u_boundary, k_.velocity_gradient, s.phi, s.memory);
     if (k_.step.to->skewed()) k_.gradient_of = s.number;
-    subtract_from(s.phi, s.memory);
   }
   if (!k_.bodies && !k_.gap_closed()) return;
   for (Index f = 0; f < k_.mesh.n_interior; ++f)

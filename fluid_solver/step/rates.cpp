@@ -77,22 +77,41 @@ COUPLET_PROCESSOR_CLONES void rates_pass(const mesh::Mesh& mesh, double nu, bool
   rates_by(mesh, nu, split, s, rates);
 }
 
-template <int D>
+/// (mean u).S, or what `whole` has beyond that.
+template <bool Rest, int D>
 [[gnu::always_inline]] inline void mean_fluxes(const mesh::Mesh& mesh, const Vectors<D>& area,
-                                               const Vectors<D>& u, std::span<double> flux) {
+                                               const Vectors<D>& u, const double* whole, double* flux) {
   const Index *owner = mesh.owner.data(), *neighbour = mesh.neighbour.data();
   const Vec<D>*value = u.data(), *s = area.data();
-  double* result = flux.data();
-  for (Index f = 0; f < mesh.n_interior; ++f)
-    result[f] = 0.5 * (value[owner[f]] + value[neighbour[f]]).dot(s[f]);
+  for (Index f = 0; f < mesh.n_interior; ++f) {
+    const double mean = 0.5 * (value[owner[f]] + value[neighbour[f]]).dot(s[f]);
+    flux[f] = Rest ? whole[f] - mean : mean;
+  }
+}
+template <int D>
+[[gnu::always_inline]] inline void choose_flux(const mesh::Mesh& mesh, const Vectors<D>& area,
+                                               const Vectors<D>& u, const double* whole, double* flux) {
+  whole ? mean_fluxes<true>(mesh, area, u, whole, flux) : mean_fluxes<false>(mesh, area, u, nullptr, flux);
 }
 COUPLET_PROCESSOR_CLONES void mean_flux_pass(const mesh::Mesh& mesh, const Vectors<2>& area,
-                                             const Vectors<2>& u, std::span<double> flux) {
-  mean_fluxes<2>(mesh, area, u, flux);
+                                             const Vectors<2>& u, const double* whole, double* flux) {
+  choose_flux<2>(mesh, area, u, whole, flux);
 }
 COUPLET_PROCESSOR_CLONES void mean_flux_pass(const mesh::Mesh& mesh, const Vectors<3>& area,
-                                             const Vectors<3>& u, std::span<double> flux) {
-  mean_fluxes<3>(mesh, area, u, flux);
+                                             const Vectors<3>& u, const double* whole, double* flux) {
+  choose_flux<3>(mesh, area, u, whole, flux);
+}
+
+/// flux += sign times what the mean gradient carries on to the faces' centres. Collective.
+template <int D>
+void carry_on(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
+              const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient, double sign,
+              std::span<double> flux) {
+  if (!at.skewed()) return;
+  velocity_gradient<D>(mesh, at, u, u_boundary, gradient);
+  for (Index f = 0; f < mesh.n_interior; ++f)
+    flux[f] +=
+        sign * 0.5 * ((gradient[mesh.owner[f]] + gradient[mesh.neighbour[f]]) * at.offset(f)).dot(at.area[f]);
 }
 
 }  // namespace
@@ -100,11 +119,16 @@ COUPLET_PROCESSOR_CLONES void mean_flux_pass(const mesh::Mesh& mesh, const Vecto
 template <int D>
 void mean_flux(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
                const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient, std::span<double> flux) {
-  mean_flux_pass(mesh, at.area, u, flux);
-  if (!at.skewed()) return;
-  velocity_gradient<D>(mesh, at, u, u_boundary, gradient);
-  for (Index f = 0; f < mesh.n_interior; ++f)
-    flux[f] += 0.5 * ((gradient[mesh.owner[f]] + gradient[mesh.neighbour[f]]) * at.offset(f)).dot(at.area[f]);
+  mean_flux_pass(mesh, at.area, u, nullptr, flux.data());
+  carry_on<D>(mesh, at, u, u_boundary, gradient, 1, flux);
+}
+
+template <int D>
+void subtract_mean_flux(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
+                        const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient,
+                        std::span<const double> flux, std::span<double> rest) {
+  mean_flux_pass(mesh, at.area, u, flux.data(), rest.data());
+  carry_on<D>(mesh, at, u, u_boundary, gradient, -1, rest);
 }
 
 template <int D>
@@ -208,6 +232,12 @@ template void mean_flux<2>(const mesh::Mesh&, const Placement<2>&, const Vectors
                            std::vector<Tensor<2>>&, std::span<double>);
 template void mean_flux<3>(const mesh::Mesh&, const Placement<3>&, const Vectors<3>&, const Vectors<3>&,
                            std::vector<Tensor<3>>&, std::span<double>);
+template void subtract_mean_flux<2>(const mesh::Mesh&, const Placement<2>&, const Vectors<2>&,
+                                    const Vectors<2>&, std::vector<Tensor<2>>&, std::span<const double>,
+                                    std::span<double>);
+template void subtract_mean_flux<3>(const mesh::Mesh&, const Placement<3>&, const Vectors<3>&,
+                                    const Vectors<3>&, std::vector<Tensor<3>>&, std::span<const double>,
+                                    std::span<double>);
 template class RateOperator<2>;
 template class RateOperator<3>;
 template void wall_flux<2>(const mesh::Mesh&, const Placement<2>&, double, const Vectors<2>&,

@@ -20,6 +20,12 @@ template <int D>
 void mean_flux(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
                const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient, std::span<double> flux);
 
+/// `flux` less the same.
+template <int D>
+void subtract_mean_flux(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
+                        const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient,
+                        std::span<const double> flux, std::span<double> rest);
+
 /// nu_t (grad u + grad u^T).S at an interior face between p and n [m^4/s^2], force per density.
 template <int D>
 Vec<D> eddy_stress(const Placement<D>& at, const State<D>& s, const std::vector<Tensor<D>>& gradient, Index f,

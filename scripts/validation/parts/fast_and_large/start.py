@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What small jobs pay before they compute: libraries, and processor time beside a program that only starts and ends MPI."""
+import re
+import shutil
+import statistics
+
+from couplet.runs import launch
+from validation.job import Bar
+from validation.parts.fast_and_large import step
+
+EMPTY = """#include <mpi.h>
+int main(int argc, char** argv) { MPI_Init(&argc, &argv); MPI_Finalize(); return 0; }
+"""
+TURNS = 15
+# Of the modules that common/linalg/lazy and common/mesh/gmsh open where they are needed.
+HEAVY = re.compile(r"calling init: \S*/(lib(?:couplet_petsc|petsc|slepc|scotch|ptscotch|openblas|gmsh)[^/\s]*)")
+
+
+def solid(job):
+    """Folder of a cantilever of 1000 cells from a .msh of its own."""
+    def make():
+        folder = job.scratch / "small-solid"
+        folder.mkdir()
+        shutil.copy(job.root / "configs/cantilever/cantilever.geo", folder)
+        made = job.run(["gmsh", "-3", "-setnumber", "n_length", "40", "-setnumber", "n_side", "5", "cantilever.geo", "-o", "mesh.msh"], cwd=folder)
+        if made.returncode != 0:
+            raise RuntimeError(made.stderr[-300:])
+        case = (job.root / "configs/cantilever/case.yaml").read_text().split("\n# scripts/study")[0]
+        case = re.sub(r"^ *mesh-parameters:.*\n", "", case, flags=re.M).replace("cantilever.geo", "mesh.msh")
+        (folder / "case.yaml").write_text(case)
+        return folder
+    return job.once(("small solid",), make)
+
+
+def cpu(command, folder):
+    return launch(command, folder / "start.log", folder).cpu
+
+
+def beside_empty(job):
+    folder = solid(job)
+    (folder / "empty.c").write_text(EMPTY)
+    job.run(["mpicc", "-O2", "empty.c", "-o", "empty"], cwd=folder)
+    turns = [(cpu([folder / "empty"], folder), cpu([job.build / "bin/solid_solver", "case.yaml"], folder)) for _ in range(TURNS)]
+    more = statistics.median(b - a for a, b in turns)
+    return f"{more:.3f} s more than {statistics.median(a for a, _ in turns):.3f} s, median of {TURNS} pairs", more <= 0.04
+
+
+def heavy_libraries(job, program, folder):
+    result = job.run(["env", "LD_DEBUG=files", job.build / "bin" / program, "case.yaml"], cwd=folder)
+    if result.returncode != 0:
+        raise RuntimeError((result.stdout + result.stderr)[-300:])
+    return sorted(set(HEAVY.findall(result.stderr)))
+
+
+def small_jobs(job):
+    """On one rank, from meshes that are there."""
+    folders = {"solid, 1000 cells": ("solid_solver", solid(job)), "fluid 2-D, 16384 cells": ("fluid_solver", step.scene(job, (128, 2), 10)),
+               "fluid 3-D, 32768 cells": ("fluid_solver", step.scene(job, (32, 3), 20))}
+    found = {}
+    for name, (program, folder) in folders.items():
+        job.run([job.build / "bin" / program, "case.yaml"], cwd=folder)  # makes the mesh where it is not there
+        found[name] = heavy_libraries(job, program, folder)
+    return "; ".join(f"{name}: {', '.join(names) or 'none'}" for name, names in found.items()), not any(found.values())
+
+
+BARS = [
+    Bar("start-up: solid of 1000 cells from .msh beside an empty MPI program, processor time", "<= 0.04 s more", beside_empty,
+        but="its solve and the judgement of its answer are in the time"),
+    Bar("start-up: libraries of PETSc, SLEPc, Scotch, BLAS and gmsh opened by small jobs on one rank", "none", small_jobs),
+]
