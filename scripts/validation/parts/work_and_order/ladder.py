@@ -1,7 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The flap from heavy to light and from viscous to thin fluids, refined in the step: order of the tip, by default settings."""
+"""The flap from heavy to light and from viscous to thin fluids, refined in the step: order of the tip and cost, by default settings. Cost needs a build of
+commit b350924: COUPLET_OTHER_BUILD names its folder."""
 import json
 import math
+import os
+import pathlib
+import resource
+import subprocess
 
 import couplet
 from couplet.runs.process import RunFailed
@@ -12,15 +17,46 @@ STEPS = (0.01, 0.005, 0.0025, 0.00125)  # s
 RHO, MU = (1000, 100, 10, 1), (10, 1, 0.1, 0.01)
 
 
+def changes(rho, mu, step):
+    return ("simulation.end-time=0.2", f"simulation.time-step={step}", "simulation.output.interval=0", "simulation.checkpoint.interval=0",
+            "participants.fluid.boundaries.inlet.ramp=0.4", f"participants.fluid.viscosity={mu}", f"participants.solid.material.density={rho}",
+            "coupling.convergence.max-iterations=100", *COARSE)
+
+
+def processor_seconds(job, build, rho, mu, step):
+    """Of all programs of that build; None where the run ended before."""
+    keys = (f"simulation.output.folder={job.scratch / 'cost'}", *changes(rho, mu, step))
+    command = ["mpirun", "--oversubscribe"]
+    for program in ("coupler", "fluid_solver", "solid_solver", "mesh_mover"):
+        command += ([":"] if len(command) > 2 else []) + ["-n", "1", str(build / "bin" / program), str(job.root / FLAP), *(f"--set={k}" for k in keys)]
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime if result.returncode == 0 else None
+
+
+def cost(job):
+    """Pairs of runs, one build after the other."""
+    other = pathlib.Path(os.environ["COUPLET_OTHER_BUILD"])
+    total, ratios = [0, 0], {}
+    for rho in RHO:
+        for mu in MU:
+            pairs = [(processor_seconds(job, other, rho, mu, step), processor_seconds(job, job.build, rho, mu, step)) for step in STEPS]
+            both = [p for p in pairs if None not in p]
+            sums = [sum(p[i] for p in both) for i in (0, 1)]
+            ratios[rho, mu] = sums[1] / sums[0]
+            total = [a + b for a, b in zip(total, sums)]
+    most = max(ratios, key=ratios.get)
+    return (f"{total[1] / total[0]:.2f} times all rungs together; {min(ratios.values()):.2f} to {ratios[most]:.2f} times, most with rho_s {most[0]}, mu {most[1]}",
+            total[1] <= 1.5 * total[0])
+
+
 def tip_and_estimate(job, rho, mu, step):
     """At 0.2 s [m], and the run's own estimate of the step's error (a share); None where the run ended before."""
 
     def make():
         try:
-            folder = job.case_run(job.root / FLAP, job.scratch / f"rung-{rho}-{mu}-{step}", (
-                "simulation.end-time=0.2", f"simulation.time-step={step}", "simulation.output.interval=0", "simulation.checkpoint.interval=0",
-                "participants.fluid.boundaries.inlet.ramp=0.4", f"participants.fluid.viscosity={mu}", f"participants.solid.material.density={rho}",
-                "coupling.convergence.max-iterations=100", *COARSE), {}, 3000).folder
+            folder = job.case_run(job.root / FLAP, job.scratch / f"rung-{rho}-{mu}-{step}", changes(rho, mu, step), {}, 3000).folder
         except RunFailed:
             return None
         estimate = json.loads((folder / "coupler" / "run.json").read_text())["errors"]["step"]
@@ -69,3 +105,5 @@ BARS = [Bar(f"ladder of flaps, rho_s {rho}, mu {mu}: tip at 0.2 s, steps of 10, 
             rung(rho, mu), long=True) for rho in RHO for mu in MU]
 BARS.append(Bar("ladder of flaps: the run's estimate of the step's error beside the truth", "within a factor of 3 in 80 % of the runs whose error is above 1e-4", estimates,
                 long=True, but="truth: the limit of the two finest steps"))
+BARS.append(Bar("ladder of flaps: processor seconds of the runs that end, beside commit b350924", "at most 1.5 times", cost, long=True,
+                but="all rungs together; needs a build of that commit"))
