@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The estimated error of the displacement of a static run, compared with the true error: committed bodies, several meshes each, default settings, against
+"""The estimated errors of displacement and stress of a static run, compared with the true ones: committed bodies, several meshes each, default settings, against
 a mesh several times as fine."""
 import csv
 import json
+import math
 
 from validation.job import Bar
 
@@ -40,6 +41,11 @@ BODIES = (
     ("elliptic-plate", "hole-top z", rings("nr: {r}, nt: {t}, nz: {z}, shape: 1", (4, 8, 12)), "nr: 32, nt: 48, nz: 24, shape: 0", NONE),
 )
 
+# Where the stress of these bodies is read, in the same order: surfaces, none of them where it is singular.
+STRESSED = (((0.024, 0.022), (0.024, 0.052)), ((0.024, 0.022), (0.024, 0.052)), ((2, 0),), ((7, 0),), ((7, 0),), ((0.1, 0.01),), ((0.1, 0.01),),
+            ((5, 1, 0.5), (2, 1, 0.5)), ((5, 1, 0.5), (2, 1, 0.5)), ((20, 1, 0.5), (8, 1, 0.5)), ((20, 1, 0.5), (8, 1, 0.5)),
+            ((0.0229289322, 0.0229289322, 0.015),), ((2, 0, 0.6),), ((2, 0, 0.6),))
+
 
 def discretisation(folder):
     """What mesh, steps and solvers leave, without what neglected effects change."""
@@ -54,6 +60,38 @@ def look(job, case, column, mesh, keys):
         rows = list(csv.reader(file))
     at = next(i for i, name in enumerate(rows[0]) if name.startswith(column))
     return float(rows[-1][at]), discretisation(run.folder / "solid")
+
+
+def stress(job, case, mesh, keys, place):
+    """(xx, yy, zz and sqrt 2 times xy, yz, xz [Pa]; estimated error over their norm)"""
+    probe = f"participants.solid.probes.surface={{point: {list(place)}, fields: [stress]}}"
+    folder = job.solve_run("solid_solver", case, (f"participants.solid.mesh-parameters={{{mesh}}}", probe, *keys)).folder / "solid"
+    with open(folder / "probes.csv", encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    parts = {name[len("surface stress-"):].split()[0]: float(value) for name, value in zip(rows[0], rows[-1]) if name.startswith("surface stress-")}
+    findings = json.loads((folder / "run.json").read_text())["findings"]
+    told = next(f["number"] for f in findings if f["id"] == "stress-error" and "'surface'" in f["sentence"])
+    return [value * (1 if name[0] == name[1] else math.sqrt(2)) for name, value in parts.items()], told
+
+
+def stress_ratios(job):
+    def make():
+        found = []
+        for (case, _, meshes, fine, keys), places in zip(BODIES, STRESSED):
+            for place in places:
+                right = stress(job, case, fine, keys, place)[0]
+                for mesh in meshes:
+                    value, told = stress(job, case, mesh, keys, place)
+                    found.append(((told or 0) * math.hypot(*right) / math.dist(value, right), f"{case} {{{mesh}}}"))
+        return found
+    return job.once("estimates of stress beside errors", make)
+
+
+def stress_within(job):
+    found = stress_ratios(job)
+    inside = sum(1 / 3 <= r <= 3 for r, _ in found)
+    (small, where), large = min(found), max(found)[0]
+    return f"{inside} of {len(found)}, {100 * inside / len(found):.0f} %; least {small:.2f} ({where}), largest {large:.0f}", inside >= 0.8 * len(found)
 
 
 def ratios(job):
@@ -85,4 +123,6 @@ BUT = "static studies of 14 bodies, by the displacement at a probe"
 BARS = [
     Bar("estimated error of the displacement over the true one, within a factor of 2", "80 %", within(2, 0.8), long=True, but=BUT),
     Bar("... none below a third", "none", least, long=True, but=BUT),
+    Bar("estimated error of the stress at a surface over the true one, within a factor of 3", "80 %", stress_within, long=True,
+        but="static studies of 14 bodies, 81 readings"),
 ]
