@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "common/base/error.hpp"
 #include "common/linalg/lanes/vector_passes.hpp"
@@ -32,7 +33,9 @@ void PressureEquation<D>::make_solver() {
                                 std::span<const Index>(mesh_.owner).first(mesh_.n_interior),
                                 std::span<const Index>(mesh_.neighbour).first(mesh_.n_interior)};
   const bool alone = parallel::comm_size(mesh_.comm) == 1;
-  if (!couplings_ && (alone || !direct_)) {
+  // benchmarks/linalg records solves of PETSc.
+  const bool recorded = std::getenv("COUPLET_RECORD_SOLVE") != nullptr;
+  if (!couplings_ && !recorded && (alone || !direct_)) {
     solver_ = std::make_unique<PoissonSolver>(
         "pressure", graph,
         direct_ ? PoissonSolver::Preconditioner::factors : PoissonSolver::Preconditioner::multigrid);

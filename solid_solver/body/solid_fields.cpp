@@ -116,27 +116,21 @@ DiscreteStress SolidFields::discrete_stress(std::span<const double> points) cons
   return found;
 }
 
-bool SolidFields::recovers_stress() const {
-  return body_.equilibrium().is_linear() && !is_axisymmetric(elastic_);
-}
-
-const StressRecovery& SolidFields::recovery() const {
-  if (!recovery_) recovery_ = std::make_unique<StressRecovery>(mesh_, elastic_);
-  return *recovery_;
-}
-
-std::vector<double> SolidFields::left_of_point_stress(std::span<const double> points,
-                                                      std::span<const std::uint8_t> wanted) const {
-  return recovery().left_at_points(discrete_stress(points), wanted);
+bool recovers_stress(const SolidBody& body) {
+  return body.equilibrium().is_linear() && !is_axisymmetric(body.elastic());
 }
 
 std::vector<double> SolidFields::point_stress(std::span<const double> points,
-                                              std::span<const std::uint8_t> wanted) const {
-  if (!recovers_stress()) {
+                                              std::span<const std::uint8_t> wanted,
+                                              std::vector<double>* left) const {
+  if (!recovers_stress(body_)) {
     const std::vector<Tensor3> faces = face_stress(mesh_.n_interior, mesh_.boundary.n_owned(), points);
     return point_tensors().interpolate(cell_stress(points), faces);
   }
-  std::vector<double> stress = recovery().at_points(discrete_stress(points), wanted);
+  if (!recovery_) recovery_ = std::make_unique<StressRecovery>(mesh_, elastic_);
+  const DiscreteStress found = discrete_stress(points);
+  std::vector<double> stress = recovery_->at_points(found, wanted);
+  if (left) *left = recovery_->left_at_points(found, wanted, stress);
   if (mesh_.dim == 2 && parameters_.plane == SolidParameters::Plane::stress)
     for (std::size_t i = 2; i < stress.size(); i += tensor_size) stress[i] = 0;
   return stress;

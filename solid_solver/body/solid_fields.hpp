@@ -33,13 +33,9 @@ class SolidFields final {
   std::vector<double> point_acceleration() const;
   /// Packed symmetric tensors (see stress.hpp) of all local points: at small strain recovered from patches of cells
   /// (StressRecovery), else interpolated from those in the cells and on the boundary faces. `wanted`: flags of local
-  /// points, empty: all; others may hold anything.
-  std::vector<double> point_stress(std::span<const double> points,
-                                   std::span<const std::uint8_t> wanted = {}) const;
-  /// StressRecovery::left_at_points() of it; not of bodies at large strain and of revolution.
-  std::vector<double> left_of_point_stress(std::span<const double> points,
-                                           std::span<const std::uint8_t> wanted) const;
-  bool recovers_stress() const;
+  /// points, empty: all; others may hold anything. `left`, of a body with recovers_stress(): StressRecovery::left_at_points().
+  std::vector<double> point_stress(std::span<const double> points, std::span<const std::uint8_t> wanted = {},
+                                   std::vector<double>* left = nullptr) const;
   /// On boundary faces of owned cells, `dim` values each, out of the body [Pa]: as the loads have it where it is known (at
   /// small strain), else sigma n of the mean of `point_stress` over the face's points, of which those on a patch suffice for
   /// its faces. `places`: where the local points are; the normal is that of the deformed face at large strain.
@@ -62,7 +58,6 @@ class SolidFields final {
   double share_of_yield(std::span<const double> points) const;
 
  private:
-  const StressRecovery& recovery() const;
   BodyField displacement(std::span<const double> points) const {
     return {state_.cell_u, state_.face_u, points};
   }
@@ -85,5 +80,8 @@ class SolidFields final {
   mutable std::unique_ptr<PointTensors> point_tensors_;  // made when first asked for
   mutable std::unique_ptr<StressRecovery> recovery_;     // likewise
 };
+
+/// Its stress at points is recovered: at small strain, but not of a body of revolution.
+bool recovers_stress(const SolidBody& body);
 
 }  // namespace couplet::solid

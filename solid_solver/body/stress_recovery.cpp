@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <utility>
+#include <iterator>
 
 #include "common/elasticity/vector_at.hpp"
 #include "common/mesh/transpose.hpp"
-#include "common/parallel/collective.hpp"
 #include "solid_solver/body/cell_moment.hpp"
+#include "solid_solver/body/point_medians.hpp"
 
 namespace couplet::solid {
 namespace {
@@ -256,59 +255,37 @@ std::vector<double> StressRecovery::at_points(const DiscreteStress& found,
   return values;
 }
 
-namespace {
-
-/// How far one cell's fit is off at a point.
-struct Deviation {
-  GlobalIndex point;
-  double share;
-};
-
-double norm(std::span<const double> packed) { return unpack(packed).norm(); }
-
-}  // namespace
-
 std::vector<double> StressRecovery::left_at_points(const DiscreteStress& found,
-                                                   std::span<const std::uint8_t> wanted) const {
-  const std::vector<double> mean = at_points(found, wanted);
+                                                   std::span<const std::uint8_t> wanted,
+                                                   std::span<const double> stress) const {
+  const auto has = [&](Index c, std::span<const std::uint8_t> flags) {
+    return std::ranges::any_of(mesh_.cell_points[c], [&](Index v) { return flags[std::size_t(v)] != 0; });
+  };
   std::vector<std::uint8_t> near(wanted.size(), 0);  // points of the cells that touch a wanted one
   for (Index c = 0; c < mesh_.cells.n_local(); ++c)
-    if (std::ranges::any_of(mesh_.cell_points[c], [&](Index v) { return wanted[std::size_t(v)] != 0; }))
+    if (has(c, wanted))
       for (const Index v : mesh_.cell_points[c]) near[std::size_t(v)] = 1;
-  const auto is_near = [&](Index c) {
-    return std::ranges::any_of(mesh_.cell_points[c], [&](Index v) { return near[std::size_t(v)] != 0; });
-  };
-  std::vector<Deviation> mine;
+  std::vector<PointShare> shares;
   std::vector<Index> around;
-  visit(found, is_near, [&](Index c, const auto& stress) {
-    around.clear();
-    for (const Index v : mesh_.cell_points[c])
-      for (const Index d : cells_of_point_[v])
-        if (near[std::size_t(v)] && mesh_.material_of(d) == mesh_.material_of(c))
-          std::ranges::copy_if(mesh_.cell_points[d], std::back_inserter(around),
-                               [&](Index w) { return wanted[std::size_t(w)] != 0; });
-    std::ranges::sort(around);
-    around.erase(std::unique(around.begin(), around.end()), around.end());
-    for (const Index w : around) {
-      if (std::ranges::find(mesh_.cell_points[c], w) != mesh_.cell_points[c].end()) continue;
-      const auto here = std::span(mean).subspan(std::size_t(w) * tensor_size, tensor_size);
-      if (const double size = norm(here); size > 0)
-        mine.push_back({mesh_.point_id[w], (stress(geometry_.points[w]) - unpack(here)).norm() / size});
-    }
-  });
-  std::vector<Deviation> all = parallel::all_gather(mesh_.comm, mine);
-  std::ranges::sort(all, [](const Deviation& a, const Deviation& b) {
-    return std::pair(a.point, a.share) < std::pair(b.point, b.share);
-  });
-  std::vector<double> left(wanted.size(), std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t w = 0; w < wanted.size(); ++w) {
-    if (!wanted[w]) continue;
-    const auto of_it = std::ranges::equal_range(all, mesh_.point_id[w], {}, &Deviation::point);
-    if (of_it.empty()) continue;
-    const std::size_t n = of_it.size();
-    left[w] = 0.5 * (of_it[(n - 1) / 2].share + of_it[n / 2].share);
-  }
-  return left;
+  visit(
+      found, [&](Index c) { return has(c, near); },
+      [&](Index c, const auto& fit) {
+        around.clear();
+        for (const Index v : mesh_.cell_points[c])
+          for (const Index d : cells_of_point_[v])
+            if (mesh_.material_of(d) == mesh_.material_of(c))
+              std::ranges::copy_if(mesh_.cell_points[d], std::back_inserter(around),
+                                   [&](Index w) { return wanted[std::size_t(w)] != 0; });
+        std::ranges::sort(around);
+        around.erase(std::unique(around.begin(), around.end()), around.end());
+        for (const Index w : around) {
+          if (std::ranges::find(mesh_.cell_points[c], w) != mesh_.cell_points[c].end()) continue;
+          const Tensor3 here = unpack(stress.subspan(std::size_t(w) * tensor_size, tensor_size));
+          if (const double size = here.norm(); size > 0)
+            shares.push_back({mesh_.point_id[w], (fit(geometry_.points[w]) - here).norm() / size});
+        }
+      });
+  return medians(mesh_, shares, wanted);
 }
 
 }  // namespace couplet::solid

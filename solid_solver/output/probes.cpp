@@ -123,8 +123,8 @@ std::vector<double> SolidProbes::sample(std::span<const double> points) const {
 
 std::vector<SolidProbes::Stress> SolidProbes::stresses(std::span<const double> points) const {
   if (!watches_stress()) return {};
-  const std::vector<double> stress = derived_.point_stress(points, stressed_);
-  const std::vector<double> left = derived_.left_of_point_stress(points, stressed_);
+  std::vector<double> left;
+  const std::vector<double> stress = derived_.point_stress(points, stressed_, &left);
   std::vector<Stress> found;
   for (const Watched& watched : probes_) {
     if (std::ranges::none_of(watched.fields, is_stress)) continue;

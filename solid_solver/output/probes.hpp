@@ -29,7 +29,7 @@ class SolidProbes {
     std::string probe;
     Vec3 place;
     double equivalent;  ///< von Mises [Pa]
-    double left;        ///< SolidFields::left_of_point_stress() [1]
+    double left;        ///< StressRecovery::left_at_points() [1]
   };
   /// At the accepted state, on rank 0 (empty elsewhere). Collective.
   std::vector<Stress> stresses(std::span<const double> points) const;

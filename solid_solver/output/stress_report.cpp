@@ -47,8 +47,8 @@ ReportedStress largest(const SolidBody& body, const SolidFields& fields, std::sp
                        double mesh_part) {
   const mesh::Mesh& mesh = body.mesh();
   const std::vector<std::uint8_t> wanted = points_of_largest(body, fields, points);
-  const std::vector<double> stress = fields.point_stress(points, wanted),
-                            left = fields.left_of_point_stress(points, wanted);
+  std::vector<double> left;
+  const std::vector<double> stress = fields.point_stress(points, wanted, &left);
   struct Seen {
     double value, left;
     Vec3 place;
@@ -69,7 +69,7 @@ ReportedStress largest(const SolidBody& body, const SolidFields& fields, std::sp
 
 std::vector<ReportedStress> reported_stresses(const SolidBody& body, const SolidFields& fields,
                                               const SolidProbes& probes, double mesh) {
-  if (!fields.recovers_stress()) return {};
+  if (!recovers_stress(body)) return {};
   const std::vector<double> points = fields.point_displacement();
   std::vector<ReportedStress> found;
   for (const SolidProbes::Stress& one : probes.stresses(points))

@@ -20,7 +20,7 @@ struct ReportedStress {
 };
 
 /// At the probes that watch a stress and, of static runs, where it is largest. The error of the tensor over its norm: the larger of
-/// what the fits of the recovery leave there (SolidFields::left_of_point_stress) and of what the mesh leaves in the displacement
+/// what the fits of the recovery leave there (StressRecovery::left_at_points) and of what the mesh leaves in the displacement
 /// (`mesh`, a share), which strains and stresses follow. Where the largest stress grows with each refinement (a clamped or inner corner), the
 /// first of them stays large. Within a factor of 3 of the true error in 83 % of 81 readings on 14 bodies, none below a third
 /// (scripts/validate right-by-default). On rank 0; empty elsewhere, and where nothing is recovered. Collective.

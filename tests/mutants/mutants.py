@@ -84,7 +84,7 @@ MUTANTS = [
            "rate[mesh_.owner[f]] += friction * nu_ * (gradient[mesh_.owner[f]] * at.oblique[f]);",
            "rate[mesh_.owner[f]] += 0 * nu_ * (gradient[mesh_.owner[f]] * at.oblique[f]);", "verification_fluid_face_loops"),
     Mutant("the flux is not carried on to the centre of skew faces", "fluid_solver/step/rates.cpp",
-           "flux[f] += 0.5 * ((gradient", "flux[f] += 0.45 * ((gradient", "verification_fluid_face_loops"),
+           "sign * 0.5 * ((gradient", "sign * 0.45 * ((gradient", "verification_fluid_face_loops"),
     Mutant("the load on the area at the end", "fluid_solver/step/loads.cpp",
            "0.5 * p * (from.placement->area[f] + k_.step.to->area[f])",
            "0.5 * p * (0 * from.placement->area[f] + 2 * k_.step.to->area[f])", "verification_fluid_face_loops"),

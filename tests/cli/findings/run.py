@@ -67,7 +67,7 @@ def strict():
     check("--strict=all is refused", code == 2 and "--strict=effects" in text, (code, text[-200:]))
     slow = [*pulled[:2], "participants.solid.boundaries.tip.value=[1e3, 0, 0]"]
     code, _, found = run("solid_solver", "cantilever", "--strict=effects", sets=slow)
-    check("a small load passes --strict=effects", code == 0 and not found["solid"], (code, found))
+    check("a small load passes --strict=effects", code == 0 and all(f["severity"] == "note" for f in found["solid"].values()), (code, found))
 
 
 def in_folder(make, program, *words, sets=()):
