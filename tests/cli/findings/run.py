@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Findings act: exit code 4 for a useless answer, what is accepted passes, what is neglected is another channel, ten halvings end a run,
 all programs of a job agree. Each is shown to fire and not to fire.
-Usage: run.py BIN CONFIGS accept|strict|scenes|sound|coupled"""
+Usage: run.py BIN CONFIGS accept|strict|stress|scenes|sound|coupled"""
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -12,6 +13,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
 import scenes  # noqa: E402
 from checks import check, end  # noqa: E402
 
+LE1 = 92.66e6  # Pa, stress yy at D (NAFEMS); the other components are zero there
 programs, configs, kind = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3]
 
 
@@ -70,6 +72,20 @@ def strict():
     check("a small load passes --strict=effects", code == 0 and all(f["severity"] == "note" for f in found["solid"].values()), (code, found))
 
 
+def stress():
+    """LE1's stress at D, 92.66 MPa: its estimated error is near the true one, a coarse mesh is told as doubtful, a fine one is not."""
+    for rings in (8, 16):
+        _, _, found = run("solid_solver", "le1", sets=[f"participants.solid.mesh-parameters={{nr: {rings}, nt: {3 * rings // 2}}}"])
+        finding = found["solid"]["stress-error"]
+        value = float(re.search(r": (\S+) Pa at \(2, 0, 0\)", finding["sentence"]).group(1))
+        truth = abs(value / LE1 - 1)
+        check(f"{rings} cells across: estimated and true error", truth / 3 < finding["number"] < 3 * truth, (finding, truth))
+    code, _, _ = run("solid_solver", "le1", "--strict", sets=["participants.solid.mesh-parameters={nr: 4, nt: 6}"])
+    check("a coarse mesh is doubtful", code == 1, code)
+    code, text, _ = run("solid_solver", "le1", "--strict")
+    check("the shipped one is not", code == 0, (code, text[-300:]))
+
+
 def in_folder(make, program, *words, sets=()):
     with tempfile.TemporaryDirectory() as folder:
         return run(program, make(pathlib.Path(folder)), *words, sets=sets)
@@ -123,5 +139,5 @@ def coupled():
     check("accepted by all it ends with 0", code == 0, (code, text[-300:]))
 
 
-{"accept": accept, "strict": strict, "scenes": scenes_, "sound": sound, "coupled": coupled}[kind]()
+{"accept": accept, "strict": strict, "stress": stress, "scenes": scenes_, "sound": sound, "coupled": coupled}[kind]()
 end()
