@@ -22,7 +22,7 @@ struct ReportedStress {
 /// At the probes that watch a stress and, of static runs, where it is largest. The error of the tensor over its norm: the larger of
 /// what the fits of the recovery leave there (StressRecovery::left_at_points) and of what the mesh leaves in the displacement
 /// (`mesh`, a share), which strains and stresses follow. Where the largest stress grows with each refinement (a clamped or inner corner), the
-/// first of them stays large. Within a factor of 3 of the true error in 83 % of 81 readings on 14 bodies, none below a third
+/// first of them stays large. Within a factor of 3 of the true error in 81 % of 81 readings on 14 bodies, none below a third
 /// (scripts/validate right-by-default). On rank 0; empty elsewhere, and where nothing is recovered. Collective.
 std::vector<ReportedStress> reported_stresses(const SolidBody& body, const SolidFields& fields,
                                               const SolidProbes& probes, double mesh);
