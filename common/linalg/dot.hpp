@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <mpi.h>
+
 #include <array>
 #include <cstddef>
 #include <span>
@@ -21,5 +23,12 @@ double sum_of_products(std::span<const Number> a, std::span<const double> b) {
 
 inline double dot_here(std::span<const double> a, std::span<const double> b) { return sum_of_products(a, b); }
 inline double dot_here(std::span<const float> a, std::span<const double> b) { return sum_of_products(a, b); }
+
+/// Sums over all ranks. Collective.
+template <std::size_t N>
+std::array<double, N> over_ranks(MPI_Comm comm, std::array<double, N> local) {
+  MPI_Allreduce(MPI_IN_PLACE, local.data(), N, MPI_DOUBLE, MPI_SUM, comm);
+  return local;
+}
 
 }  // namespace couplet::linalg

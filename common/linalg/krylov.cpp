@@ -23,12 +23,6 @@ constexpr double at_rounding = 10;
 // Iterations of BiCGStab after which the spectrum is taken to be one that it is slow on.
 constexpr int patience = 50;
 
-template <std::size_t N>
-std::array<double, N> over_ranks(MPI_Comm comm, std::array<double, N> local) {
-  MPI_Allreduce(MPI_IN_PLACE, local.data(), N, MPI_DOUBLE, MPI_SUM, comm);
-  return local;
-}
-
 }  // namespace
 
 KrylovSolver::KrylovSolver(std::string what, MPI_Comm comm, std::size_t n, LinearMap apply,

@@ -85,7 +85,9 @@ std::vector<ReportedStress> reported_stresses(const SolidBody& body, const Solid
 void tell_stresses(MPI_Comm comm, const std::vector<ReportedStress>& stresses) {
   for (const ReportedStress& s : stresses) {
     const bool is_doubtful = s.where != "largest" && s.error > doubtful;
-    const std::string error = std::isnan(s.error) ? "unknown" : fmt::format("{:.2g} %", 100 * s.error);
+    const std::string error = std::isnan(s.error) ? "unknown"
+                              : s.error < 0.995   ? fmt::format("{:.2g} %", 100 * s.error)
+                                                  : fmt::format("{:.0f} %", 100 * s.error);
     log::finding(parallel::comm_rank(comm),
                  {.id = "stress-error",
                   .severity = is_doubtful ? base::Severity::warning : base::Severity::note,

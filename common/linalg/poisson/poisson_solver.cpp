@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/linalg/dot.hpp"
 #include "common/linalg/lanes/vector_passes.hpp"
 #include "common/linalg/multigrid/coloured_multigrid.hpp"
 #include "common/linalg/single_factors.hpp"
@@ -24,12 +25,6 @@ constexpr int most_with_old_factors = 8;
 // Fresh factors in double precision need one iteration, two at very tight tolerances: more than this many with factors in single
 // precision mean that cells are too thin for them.
 constexpr int most_with_fresh_single_factors = 6;
-
-template <std::size_t N>
-std::array<double, N> over_ranks(MPI_Comm comm, std::array<double, N> local) {
-  MPI_Allreduce(MPI_IN_PLACE, local.data(), N, MPI_DOUBLE, MPI_SUM, comm);
-  return local;
-}
 
 }  // namespace
 

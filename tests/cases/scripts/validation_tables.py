@@ -31,6 +31,8 @@ for wanted, met, verdict in (("<= 1", True, "met"), ("<= 1", False, "not met"), 
     assert table.verdict_of(wanted, met) == verdict, (wanted, met)
 assert table.counts(["met", "not met", "reported", "stale (met)", "stale (reported)"]) == "1 of 3 bars met, 2 rows only report, 2 stale"
 
+assert table.without_paths("saved in /home/me/a-b/run.1, 3 m/s, see https://a.org/b/c and docs/x.md") == "saved in ..., 3 m/s, see https://a.org/b/c and docs/x.md"
+
 with tempfile.TemporaryDirectory() as name:
     folder = pathlib.Path(name)
     git(folder, "init", "-qb", "main")

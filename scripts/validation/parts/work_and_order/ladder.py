@@ -6,11 +6,10 @@ import math
 import os
 import pathlib
 import resource
-import subprocess
 
 import couplet
 from couplet.runs.process import RunFailed
-from validation.job import Bar
+from validation.job import Bar, Job
 from validation.strong_coupling import COARSE, FLAP
 
 STEPS = (0.01, 0.005, 0.0025, 0.00125)  # s
@@ -23,25 +22,24 @@ def changes(rho, mu, step):
             "coupling.convergence.max-iterations=100", *COARSE)
 
 
-def processor_seconds(job, build, rho, mu, step):
-    """Of all programs of that build; None where the run ended before."""
-    keys = (f"simulation.output.folder={job.scratch / 'cost'}", *changes(rho, mu, step))
-    command = ["mpirun", "--oversubscribe"]
-    for program in ("coupler", "fluid_solver", "solid_solver", "mesh_mover"):
-        command += ([":"] if len(command) > 2 else []) + ["-n", "1", str(build / "bin" / program), str(job.root / FLAP), *(f"--set={k}" for k in keys)]
+def processor_seconds(job, out, rho, mu, step):
+    """Of all programs of the job's build; None where the run ended before."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    try:
+        job.case_run(job.root / FLAP, out, changes(rho, mu, step), {}, 3000)
+    except RunFailed:
+        return None
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime if result.returncode == 0 else None
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
 def cost(job):
     """Pairs of runs, one build after the other."""
-    other = pathlib.Path(os.environ["COUPLET_OTHER_BUILD"])
+    other = Job(job.root, pathlib.Path(os.environ["COUPLET_OTHER_BUILD"]), job.quick)
     total, ratios = [0, 0], {}
     for rho in RHO:
         for mu in MU:
-            pairs = [(processor_seconds(job, other, rho, mu, step), processor_seconds(job, job.build, rho, mu, step)) for step in STEPS]
+            pairs = [[processor_seconds(j, job.scratch / "cost", rho, mu, step) for j in (other, job)] for step in STEPS]
             both = [p for p in pairs if None not in p]
             sums = [sum(p[i] for p in both) for i in (0, 1)]
             ratios[rho, mu] = sums[1] / sums[0]
