@@ -67,6 +67,7 @@ void Solid::collect_errors() {
 coupling::ErrorParts Solid::error_parts() const {
   if (!errors_) return {};
   const coupling::ErrorParts parts = errors_->parts();
+  // Here, where the mesh's part has just been estimated, which costs more than the stresses do.
   if (stepper_.state().steps > 0) output_->tell_stresses(parts.mesh);
   return parts;
 }

@@ -47,8 +47,7 @@ class StressRecovery {
   std::vector<double> at_points(const DiscreteStress& found, std::span<const std::uint8_t> wanted = {}) const;
   /// What the fits leave of the stress at the `wanted` points, over its size [1]: the quadratics of the cells one ring on, continued
   /// to the point, differ from the stress there by so much, in the median. NaN: of other points, and where there is no such cell.
-  /// It does not see what is wrong with the displacement as a whole. Collective;
-  /// `stress`: at_points() of them.
+  /// It does not see what is wrong with the displacement as a whole. `stress`: at_points() of them. Collective.
   std::vector<double> left_at_points(const DiscreteStress& found, std::span<const std::uint8_t> wanted,
                                      std::span<const double> stress) const;
 
