@@ -23,6 +23,7 @@
 #include "coupler/judge/guards.hpp"
 #include "coupler/judge/lag_estimate.hpp"
 #include "coupler/judge/mechanics.hpp"
+#include "coupler/judge/scheme_choice.hpp"
 #include "coupler/judge/still_guard.hpp"
 #include "coupler/output/interface_output.hpp"
 #include "coupler/output/monitor.hpp"
@@ -83,6 +84,10 @@ class Coupler {
   void save(const std::filesystem::path& folder);
   parallel::GlobalOrder order_of_wall(std::size_t i) const;
   std::optional<app::StepFailure> attempt(const coupling::Step& step);
+  std::optional<app::StepFailure> attempt_once(const coupling::Step& step);
+  void map_changed();
+  /// Forgets what was learnt of other passes than those that follow.
+  void start_acceleration();
   /// Why a step failed: what the coupling itself does comes before what a participant reports.
   app::StepFailure cause_of(const std::string& reported) const;
   void solve(const coupling::Step& step);
@@ -124,8 +129,9 @@ class Coupler {
   std::optional<InterfaceOutput> interface_output_;  // none: not asked for
   std::optional<WatchIntegrals> watched_;            // the same
   app::StepLoop loop_;
-  std::unique_ptr<Accelerator> accelerator_;       // none: one pass a step
-  History history_;                                // of accepted steps; empty before all has been given
+  std::unique_ptr<Accelerator> accelerator_;  // none: one pass a step
+  History history_;                           // of accepted steps; empty before all has been given
+  SchemeChoice scheme_;
   FixedPointResult last_;                          // of the step just solved
   std::vector<coupling::Exchange> given_, taken_;  // by each in its last pass
   coupling::Exchange guess_;                       // of the motion, that the mover has been given
@@ -145,6 +151,7 @@ class Coupler {
   bool answered_anew_ = false;  // somebody in the last pass
   double last_dt_ = 0;
   long iterations_ = 0;
+  int passes_ = 0;  // of the step under way
   std::function<void(app::Phase, std::optional<double>)> enter_ = [](app::Phase, std::optional<double>) {};
 };
 

@@ -50,11 +50,11 @@ void Coupler::watch(double time, const std::vector<SideBalance>& balances) {
   double given = 0, taken = 0;
   for (const SideBalance& side : balances) (side.gives ? given : taken) += side.balance.work;
   std::optional<std::string> reason =
-      oscillation_guard_.accepted(unknown_->motion(last_.image), last_dt_, parameters_.scheme);
+      oscillation_guard_.accepted(unknown_->motion(last_.image), last_dt_, scheme_.now());
   const bool swings = reason.has_value();
   if (!balances.empty() && mechanics_->knows_work()) {
     work_guard_.energy(energy_of_structures(sides_, partners_));
-    const auto parted = work_guard_.accepted(given, taken, parameters_.scheme);
+    const auto parted = work_guard_.accepted(given, taken, scheme_.now());
     if (!reason) reason = parted;
   }
   for (std::string& still : still_guard_->accepted(given_, taken_))
@@ -135,8 +135,8 @@ app::StepFailure Coupler::cause_of(const std::string& reported) const {
     return {then(*returns), false};
   }
   // What swings already is not saved by halving.
-  auto swings = oscillation_guard_.suspects(parameters_.scheme);
-  if (!swings && mechanics_->knows_work()) swings = work_guard_.suspects(parameters_.scheme);
+  auto swings = oscillation_guard_.suspects(scheme_.now());
+  if (!swings && mechanics_->knows_work()) swings = work_guard_.suspects(scheme_.now());
   if (swings && parameters_.on_divergence == CouplingParameters::OnDivergence::stop)
     return {then(*swings), false};
   return app::StepFailure(reported + data_guard_->silent());

@@ -70,9 +70,10 @@ void Coupler::guess_motion(const std::vector<coupling::Exchange>& known, bool fi
 }
 
 std::vector<coupling::Exchange> Coupler::pass(std::vector<coupling::Exchange> known, bool first) {
-  const bool move_mesh = schedule_.mover && (first || schedule_.moves_in_each_pass);
+  const bool move_mesh = schedule_.mover && (first || scheme_.now() != coupling::Scheme::semi_implicit);
   if (move_mesh) guess_motion(known, first);
   ++iterations_;
+  ++passes_;
   answered_anew_ = false;
   if (!schedule_.side_by_side) {
     for (const std::size_t i : group_) {

@@ -39,6 +39,7 @@ void Coupler::save(const std::filesystem::path& folder) {
   for (std::size_t i = 0; i < mechanics_->walls().size(); ++i)
     file.write(order_of_wall(i), "wall-" + std::to_string(i), mechanics_->walls()[i]);
   file.write_common("work", work_guard_.totals());
+  file.write_common("scheme", scheme_.state());
   if (accelerator_) accelerator_->save(file, unknown_->order(true));
   if (volume_level_) volume_level_->save(file, sides_);
   for (const Partner& partner : partners_)
@@ -67,6 +68,9 @@ void Coupler::load() {
   std::array<double, 6> work{};
   file.read_common("work", work);
   work_guard_.restore(work);
+  std::array<double, 2> scheme{};
+  file.read_common("scheme", scheme);
+  scheme_.restore(scheme);
   if (accelerator_) accelerator_->load(file, unknown_->order(true));
   if (volume_level_) volume_level_->load(file, sides_);
   for (const Partner& partner : partners_)

@@ -158,7 +158,7 @@ std::vector<std::string> FluidParticipant<D>::finish() {
         "Semi-implicit coupling: the friction was recomputed with an updated wall velocity in {} of {} "
         "steps; max error at the end of a step {:.2g} of the load{}",
         renewed_steps_, steps_, largest_unseen_,
-        largest_unseen_ < near_limit
+        largest_unseen_ < near_limit || step_.scheme != coupling::Scheme::semi_implicit
             ? "."
             : ": the scheme is near its limit, where friction drags more than a third of the moving mass; "
               "use 'scheme: implicit' or a smaller step."));

@@ -19,7 +19,7 @@ coupling::Scheme scheme_of(const Job& job) {
   const bool moves_alone = !config::text_of(*job.document, "coupling.structure.participant") &&
                            config::texts_of(*job.document, "coupling.exchange.participants").empty();
   if (moves_alone) return coupling::Scheme::explicit_;  // a fluid and its mesh: there is nothing to iterate
-  const std::string word = config::text_of(*job.document, "coupling.scheme").value_or("semi-implicit");
+  const std::string word = config::text_of(*job.document, "coupling.scheme").value_or("auto");
   if (word == "explicit") return coupling::Scheme::explicit_;
   return word == "implicit" ? coupling::Scheme::implicit : coupling::Scheme::semi_implicit;
 }

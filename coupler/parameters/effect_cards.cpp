@@ -16,6 +16,9 @@ using AccelerationType = AccelerationParameters::Type;
 using MappingType = MappingParameters::Type;
 
 std::string when(bool on, const char* reason) { return on ? reason : ""; }
+const char* semi_implicit_of(const P& p) {
+  return p.scheme.adapts ? "scheme: auto" : "scheme: semi-implicit";
+}
 bool iterates(const P& p) { return p.scheme != coupling::Scheme::explicit_; }
 /// Whether participants see the motion of the guess before the structure has given its own.
 bool predicts(const P& p) { return predictor_order_of(p) > 0; }
@@ -50,25 +53,29 @@ const std::array cards{
     CouplingCard{"exchange among any participants", "`exchange`",
                  [](const P& p) { return when(p.exchange.has_value(), "exchange"); },
                  "sums of the exchanged amounts"},
-    CouplingCard{"iteration of the whole step", "`scheme: implicit`",
-                 [](const P& p) { return when(p.scheme == coupling::Scheme::implicit, "scheme: implicit"); },
+    CouplingCard{"iteration of the whole step", "`scheme: implicit`, or `auto` where friction asks for it",
+                 [](const P& p) {
+                   return when(
+                       p.scheme.adapts || p.scheme == coupling::Scheme::implicit,
+                       p.scheme.adapts ? "scheme: auto, where friction asks for it" : "scheme: implicit");
+                 },
                  "all participants and the mesh motion once per pass"},
     CouplingCard{
-        "iteration of pressure and structure", "`scheme: semi-implicit`",
-        [](const P& p) { return when(p.scheme == coupling::Scheme::semi_implicit, "scheme: semi-implicit"); },
+        "iteration of pressure and structure", "`scheme: auto` or `semi-implicit`",
+        [](const P& p) { return when(p.scheme.is_semi_implicit(), semi_implicit_of(p)); },
         "a pressure solve and a structure step per pass; mesh motion and predictor once per step",
         "explicit: share of a change of the motion that the next pass returns, 0.5 (predictor of order 2: "
         "0.17); two additional passes in the second step and in steps 4, 16, 64, ...",
         judge_one_pass},
-    CouplingCard{
-        "friction of the current wall velocity", "`scheme: semi-implicit`, implicit viscous term",
-        [](const P& p) { return when(p.scheme == coupling::Scheme::semi_implicit, "scheme: semi-implicit"); },
-        "two vectors per interface face, a loop over it per pass"},
+    CouplingCard{"friction of the current wall velocity",
+                 "`scheme: auto` or `semi-implicit`, implicit viscous term",
+                 [](const P& p) { return when(p.scheme.is_semi_implicit(), semi_implicit_of(p)); },
+                 "two vectors per interface face, a loop over it per pass"},
     CouplingCard{
         "prediction renewed",
-        "`scheme: semi-implicit`, where the friction error exceeds 0.1 % of the load (heavy structures: 5 "
+        "`scheme: auto` or `semi-implicit`, where the friction error exceeds 0.1 % of the load (heavy structures: 5 "
         "%), up to four times per step",
-        [](const P& p) { return when(p.scheme == coupling::Scheme::semi_implicit, "scheme: semi-implicit"); },
+        [](const P& p) { return when(p.scheme.is_semi_implicit(), semi_implicit_of(p)); },
         "sums over the interface per pass; where active, the first part of the fluid's step is repeated "
         "each time"},
     CouplingCard{

@@ -100,7 +100,7 @@ std::string problem_of_sub_steps(const CouplingParameters& p) {
     if (n != std::round(n) || n < 1 || n > 10000)
       return fmt::format("'{}' needs a whole number of sub-steps from 1 to 10000", name);
     if (n == 1 || !p.fluid || name != p.fluid->participant) continue;
-    if (p.scheme == coupling::Scheme::semi_implicit)
+    if (p.scheme.is_semi_implicit())
       return "the fluid supports no sub-steps in the semi-implicit scheme, which splits its step in two; "
              "use `scheme: implicit` or `explicit`";
     if (p.mesh)
@@ -184,17 +184,23 @@ void declare_sub_steps(config::Section& section, CouplingParameters& p) {
   section.check([&p] { return problem_of_sub_steps(p); }, "sub-steps");
 }
 
-}  // namespace
-
-void declare(config::Section& section, CouplingParameters& p) {
+void declare_scheme(config::Section& section, CouplingParameters& p) {
   section
       .choice("scheme", p.scheme,
-              {{"explicit", coupling::Scheme::explicit_},
+              {{"auto", {}},
+               {"explicit", coupling::Scheme::explicit_},
                {"semi-implicit", coupling::Scheme::semi_implicit},
                {"implicit", coupling::Scheme::implicit}})
       .doc(
-          "explicit: one pass per step; semi-implicit: mesh motion and momentum predictor once per step, "
-          "pressure and structure iterated; implicit: everything iterated");
+          "explicit: one pass per step; semi-implicit: mesh motion and momentum predictor once per step, pressure and "
+          "structure iterated; implicit: everything iterated; auto: semi-implicit, and implicit from the step on in which "
+          "the fluid's friction drags too much of the moving mass for it");
+}
+
+}  // namespace
+
+void declare(config::Section& section, CouplingParameters& p) {
+  declare_scheme(section, p);
   declare_participants(section, p);
   section.section(
       "acceleration", [&](config::Section& s) { declare(s, p.acceleration); },

@@ -48,7 +48,16 @@ struct ExchangeParameters {
 };
 
 struct CouplingParameters {
-  coupling::Scheme scheme = coupling::Scheme::semi_implicit;
+  /// `adapts`: auto, implicit from the step on that shows the need (see SchemeChoice).
+  struct CaseScheme {
+    coupling::Scheme first = coupling::Scheme::semi_implicit;
+    bool adapts = true;
+    CaseScheme() = default;
+    CaseScheme(coupling::Scheme only)
+        : first(only), adapts(false) {}  // NOLINT: a scheme is a scheme of a case
+    bool operator==(const CaseScheme&) const = default;
+    bool is_semi_implicit() const { return first == coupling::Scheme::semi_implicit; }
+  } scheme;
   struct Role {
     std::string participant;
   };

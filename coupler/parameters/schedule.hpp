@@ -16,13 +16,11 @@ namespace couplet::coupler {
 /// The fluid prepares its step (mesh, momentum predictor) in its first pass by itself: that part of the
 /// semi-implicit scheme is the participants' (Step::scheme).
 struct Schedule {
-  coupling::Scheme scheme = coupling::Scheme::semi_implicit;
   std::vector<std::string> group;  ///< in the order of a pass
   bool side_by_side = false;
   bool iterates = true;
   std::optional<std::string> mover, moved;  ///< who moves the mesh, and of whom (one of the group)
-  bool moves_in_each_pass = false;
-  bool mesh_on_guess = false;  ///< moved in each pass, but to the same place: that of the first
+  bool mesh_on_guess = false;               ///< moved in each pass, but to the same place: that of the first
   int predictor = 2;
   std::map<std::string, int> sub_steps;  ///< of those that take several
   bool waveform = true;                  ///< input of sub-steps as a line in time

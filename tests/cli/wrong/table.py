@@ -346,7 +346,7 @@ case.yaml:38:3: coupling.exchange: with an exchange give either both `fluid` and
     coupler("sub-steps of nobody", "\ncase.yaml:40:3: coupling.sub-steps: there is no participant 'slid' that supports sub-steps.\n", (
         "  mesh: {participant: mover}\n", "  mesh: {participant: mover}\n  sub-steps: {slid: 2}\n")),
     coupler("unknown scheme", """
-case.yaml:36:3: coupling.scheme: 'semiimplicit' is not one of: explicit, semi-implicit, implicit. Did you mean 'semi-implicit'?
+case.yaml:36:3: coupling.scheme: 'semiimplicit' is not one of: auto, explicit, semi-implicit, implicit. Did you mean 'semi-implicit'?
 """, ("scheme: implicit", "scheme: semiimplicit")),
     coupler("unknown acceleration", """
 case.yaml:40:18: coupling.acceleration.type: 'anderson' is not one of: constant, aitken, iqn-ils, iqn-mvj.
