@@ -81,6 +81,8 @@ void Coupler::watch(double time, const std::vector<SideBalance>& balances) {
 void Coupler::finalise(const std::string& problem) {
   enter_(app::Phase::finalise, {});
   log::info("{}", monitor_->summary(loop_.halvings()));
+  if (const std::string waiting = monitor_->waiting(partners_, schedule_); !waiting.empty())
+    log::info("{}", waiting);
   tell_work();
   audit_->tell_at_end(parameters_, problem.empty());
   std::vector<coupling::NamedErrors> parts = finalise_all(everyone(), problem);

@@ -21,6 +21,8 @@ class Channel {
   virtual Reply receive() = 0;
   /// Arrays of an earlier reply, for the values of the next: what has its size need not be made and zeroed anew.
   virtual void reuse(Exchange) {}
+  /// Of the participant.
+  virtual int ranks() const { return 1; }
   /// Processor seconds that this process has spent waiting for replies so far, or has lent to the participant.
   virtual double waiting_seconds() const { return 0; }
 };
@@ -38,6 +40,7 @@ class MpiChannel final : public Channel {
   void reuse(Exchange old) override {
     if (!old.empty()) spare_ = std::move(old);
   }
+  int ranks() const override;
   double waiting_seconds() const override { return waiting_seconds_; }
 
  private:

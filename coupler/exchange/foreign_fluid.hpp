@@ -23,6 +23,7 @@ class ForeignFluid final : public coupling::Channel {
   const std::string& name() const override { return channel_->name(); }
   void send(const coupling::Command& command) override;
   coupling::Reply receive() override;
+  int ranks() const override { return channel_->ranks(); }
   double waiting_seconds() const override { return channel_->waiting_seconds(); }
 
  private:

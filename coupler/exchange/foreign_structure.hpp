@@ -32,6 +32,7 @@ class ForeignStructure final : public coupling::Channel {
   const std::string& name() const override { return channel_->name(); }
   void send(const coupling::Command& command) override;
   coupling::Reply receive() override;
+  int ranks() const override { return channel_->ranks(); }
   double waiting_seconds() const override { return channel_->waiting_seconds(); }
 
   /// The displacements that its velocity follows from, between steps; nothing where it gives its velocity.

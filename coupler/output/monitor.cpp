@@ -9,6 +9,7 @@
 #include "common/log/log.hpp"
 #include "common/log/progress.hpp"
 #include "common/parallel/collective.hpp"
+#include "coupler/output/waiting.hpp"
 
 namespace couplet::coupler {
 namespace {
@@ -177,6 +178,17 @@ std::string Monitor::summary(int halvings) const {
   text += fmt::format("\n  {:<20} {:>9.2f} s {:>11} {:>9.3f} ms per step (processor time)", "coupler", own_,
                       "", 1e3 * own_ / steps);
   return text;
+}
+
+std::string Monitor::waiting(const std::vector<Partner>& partners, const Schedule& schedule) const {
+  std::vector<Worker> workers;
+  for (std::size_t i = 0; i < partners.size(); ++i)
+    workers.push_back({partners[i].name(), partners[i].channel->ranks(), worked_[i]});
+  // Its first pass holds the mesh mover's, which is the first of them.
+  for (Worker& worker : workers)
+    if (schedule.mover && worker.name == *schedule.moved)
+      worker.seconds = std::max(0., worker.seconds - workers.front().seconds);
+  return waiting_sentence(workers, schedule.side_by_side);
 }
 
 }  // namespace couplet::coupler

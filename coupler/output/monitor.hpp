@@ -16,6 +16,7 @@
 #include "coupler/exchange/partners.hpp"
 #include "coupler/judge/mechanics.hpp"
 #include "coupler/mapping/links.hpp"
+#include "coupler/parameters/schedule.hpp"
 
 namespace couplet::coupler {
 
@@ -40,6 +41,8 @@ class Monitor {
             const std::vector<Partner>& partners);
   /// Mean and largest number of iterations, time by participant.
   std::string summary(int halvings) const;
+  /// Who waited for whom, and how ranks are better divided; may be empty.
+  std::string waiting(const std::vector<Partner>& partners, const Schedule& schedule) const;
 
  private:
   using Clock = std::chrono::steady_clock;

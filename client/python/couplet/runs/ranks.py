@@ -26,12 +26,19 @@ def expected(case):
     return found
 
 
-def shares(work, total):
-    """Whole numbers from 1 on that sum to `total` and keep the longest work a rank as short as can be."""
+def side_by_side(case):
+    """Whether the participants work at the same time; else one after another."""
+    coupling = case.data.get("coupling") or {}
+    return "parallel" in (coupling.get("order"), (coupling.get("exchange") or {}).get("order"))
+
+
+def shares(work, total, together=False):
+    """Whole numbers from 1 on that sum to `total`: of participants that work one after another the sum of work / ranks is the least that
+    can be, of those that work `together` the longest of them."""
     ranks = dict.fromkeys(work, 1)
     for _ in range(total - len(work)):
-        slowest = max(ranks, key=lambda name: work[name] / ranks[name])
-        ranks[slowest] += 1
+        best = max(ranks, key=lambda name: work[name] / (ranks[name] if together else ranks[name] * (ranks[name] + 1)))
+        ranks[best] += 1
     return ranks
 
 
@@ -42,4 +49,4 @@ def divide(case, total):
     free = total - (len(case.participants) - len(names)) - (1 if case.coupled else 0)
     expect(free >= len(names), f"-n {total}: '{case.file}' needs at least {total - free + len(names)} ranks" + (f", one of them for the {COUPLER}" if case.coupled else ""))
     work = measured(case, output_of(case, ())) or expected(case)
-    return shares({name: work.get(name, 0.0) for name in names}, free)
+    return shares({name: work.get(name, 0.0) for name in names}, free, side_by_side(case))
