@@ -30,8 +30,8 @@ int main(int argc, char** argv) {
                 return couplet::coupling::make_mesh_motion_source(peer, m, points);
               };
             return couplet::fluid::make_participant(
-                std::move(loaded), parameters, {context.name, context.output_folder, context.restart_time},
-                link);
+                std::move(loaded), parameters,
+                {context.name, context.output_folder, context.restart_time, context.simulation.fields}, link);
           },
       .environment = couplet::linalg::petsc_environment,
       .effects =

@@ -256,13 +256,13 @@ void FluidParticipant<D>::load(io::CheckpointReader& file) {
 }
 
 template <int D>
-void FluidParticipant<D>::write_output(double time, int) {
+void FluidParticipant<D>::write_output(double time, int number) {
   const RunningStatistics<D>* statistics = statistics_ ? &*statistics_ : nullptr;
   std::optional<RunningStatistics<D>> none;
   if (statistics && !(statistics->duration() > 0))
     statistics =
         &none.emplace(RunningStatistics<D>::nothing_yet(statistics->cells(), mesh_.boundary.n_owned()));
-  output_.write_fields(time, statistics);
+  output_.write_fields(time, number, statistics);
   output_.write_surfaces(time);
   output_.write_samples(time, statistics);
 }

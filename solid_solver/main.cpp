@@ -20,7 +20,8 @@ int main(int argc, char** argv) {
             context.comm, context.case_folder / parameters.mesh, parameters.dimension,
             parameters.mesh_parameters, {}, couplet::solid::zones_of(parameters.materials), true,
             parameters.mesh_scale);
-        const couplet::solid::SolidContext where{context.name, context.output_folder, context.restart_time};
+        const couplet::solid::SolidContext where{context.name, context.output_folder, context.restart_time,
+                                                 context.simulation.fields};
         if (parameters.analysis == couplet::solid::SolidParameters::Analysis::thermal)
           return std::make_unique<couplet::solid::ThermalSolid>(std::move(body), parameters, where);
         return std::make_unique<couplet::solid::Solid>(std::move(body), parameters, where);

@@ -90,11 +90,11 @@ std::vector<std::string> Solid::finish() {
   return sentences;
 }
 
-void Solid::write_output(double time, int) {
+void Solid::write_output(double time, int number) {
   const std::vector<double> points = fields_.point_displacement();
   judge_.see_gradient(points);
   if (body_.is_dynamic()) judge_.look();
-  output_->write_fields(time, points);
+  output_->write_fields(time, number, points);
 }
 
 void Solid::write_monitors(double time) {

@@ -49,16 +49,17 @@ void ThermalSolid::load(io::CheckpointReader& file) {
   if (file.read_scalar("has-errors") != 0 && errors_) errors_->load(file);
 }
 
-void ThermalSolid::write_output(double time, int) {
+void ThermalSolid::write_output(double time, int number) {
   if (context_.output_folder.empty()) return;
+  const std::vector<double> points = heat_->point_temperature(heat_->accepted());
+  if (surfaces_) write_surfaces(time, points);
+  if (!context_.fields.due(number)) return;
   if (!fields_)
     fields_.emplace(mesh_, geometry_.points, context_.output_folder, context_.name, false,
-                    context_.restart_time);
-  const std::vector<double> points = heat_->point_temperature(heat_->accepted());
+                    context_.restart_time, context_.fields);
   fields_->write(time, geometry_.points,
                  {{"temperature", "K", io::OutputField::Place::points, 1, points},
                   {"cell-temperature", "K", io::OutputField::Place::cells, 1, heat_->accepted().cells}});
-  if (surfaces_) write_surfaces(time, points);
 }
 
 void ThermalSolid::write_surfaces(double time, std::span<const double> points) {

@@ -60,6 +60,25 @@ Topology make_topology(const mesh::Mesh& mesh) {
 
 }  // namespace
 
+namespace {
+
+/// Of the owned cells.
+std::vector<std::uint8_t> cells_within(const mesh::Mesh& mesh, std::span<const Vec3> places,
+                                       const FieldChoice::Box& box) {
+  std::vector<std::uint8_t> flags(mesh.cells.n_owned(), 0);
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+    Vec3 mean = Vec3::Zero();
+    for (const Index v : mesh.cell_points[c]) mean += places[v];
+    mean /= double(mesh.cell_points[c].size());
+    bool within = true;
+    for (int d = 0; d < mesh.dim; ++d) within = within && mean[d] >= box.from[d] && mean[d] <= box.to[d];
+    flags[c] = within;
+  }
+  return flags;
+}
+
+}  // namespace
+
 struct FieldWriter::State {
   const mesh::Mesh& mesh;
   std::filesystem::path folder;
@@ -71,6 +90,7 @@ struct FieldWriter::State {
   hdf5::Rows point_rows, cell_rows;
   std::vector<GlobalIndex> points_there{},
       cells_there{};  // numbers on file, of as many rows as this rank has
+  int compression = 0;
   std::optional<parallel::GlobalOrder> point_order{}, cell_order{};  // of the file; none: as they stand here
 
   std::filesystem::path file() const { return folder / (name + ".h5"); }
@@ -86,6 +106,7 @@ struct FieldWriter::State {
                   std::span<const double> values) const {
     hdf5::Rows rows = on_cells ? cell_rows : point_rows;
     rows.width = width;
+    rows.compression = compression;
     const auto& order = on_cells ? cell_order : point_order;
     if (!order) return hdf5::write_table(id, path, rows, values.data());
     rows.first = std::uint64_t(order->first()), rows.count = order->count();
@@ -240,10 +261,15 @@ void FieldWriter::State::begin(std::span<const Vec3> places, double restart_time
 }
 
 FieldWriter::FieldWriter(const mesh::Mesh& mesh, std::span<const Vec3> places, std::filesystem::path folder,
-                         std::string name, bool moving, double restart_time)
-    : state_(std::make_unique<State>(
-          State{mesh, std::move(folder), std::move(name), moving, fields_format, {}, 0, {}, {}})) {
-  state_->begin(places, restart_time);
+                         std::string name, bool moving, double restart_time, const FieldChoice& choice) {
+  if (choice.box) {
+    part_ = make_part(mesh, places, cells_within(mesh, places, *choice.box));
+    if (parallel::sum(mesh.comm, GlobalIndex(part_->cells.size())) == 0) return;
+  }
+  state_ = std::make_unique<State>(State{
+      part_ ? part_->mesh : mesh, std::move(folder), std::move(name), moving, fields_format, {}, 0, {}, {}});
+  state_->compression = choice.compression;
+  state_->begin(part_ ? part_->places : places, restart_time);
 }
 
 FieldWriter::FieldWriter(const SurfaceMesh& surface, std::filesystem::path folder, std::string name,
@@ -255,19 +281,41 @@ FieldWriter::FieldWriter(const SurfaceMesh& surface, std::filesystem::path folde
 
 FieldWriter::~FieldWriter() = default;
 
+namespace {
+
+/// Of its cells and points; the values go to `values`.
+OutputField part_of(const OutputField& field, const CellPart& part, std::vector<double>& values) {
+  const std::size_t n = field.components;
+  values.clear();
+  for (const Index i : field.place == OutputField::Place::cells ? part.cells : part.points) {
+    const auto one = field.values.subspan(std::size_t(i) * n, n);
+    values.insert(values.end(), one.begin(), one.end());
+  }
+  OutputField here = field;
+  here.values = values;
+  return here;
+}
+
+}  // namespace
+
 void FieldWriter::write(double time, std::span<const Vec3> points, const std::vector<OutputField>& fields) {
+  if (!state_) return;
   State& s = *state_;
+  std::vector<Vec3> places;
+  if (part_ && s.moving)
+    for (const Index v : part_->points) places.push_back(points[v]);
   xdmf::Entry entry{step_name(s.number), time, {}};
   {
     const hdf5::Handle id = hdf5::open_file_to_write(s.mesh.comm, s.file());
     const hdf5::Handle group = hdf5::make_group(id, entry.group);
     hdf5::write_attribute(group, "time", time);
-    if (s.moving) s.write_points(id, entry.group + "/coordinates", points);
+    if (s.moving) s.write_points(id, entry.group + "/coordinates", part_ ? places : points);
+    std::vector<double> values;
     for (const OutputField& field : fields) {
       const bool on_cells = field.place == OutputField::Place::cells;
       const std::string path =
           fmt::format("{}/{}/{}", entry.group, on_cells ? "cells" : "points", field.name);
-      s.write_field(id, path, field);
+      s.write_field(id, path, part_ ? part_of(field, *part_, values) : field);
       const hdf5::Handle table = hdf5::open_written(id, path);
       const int components = field.components == 2 ? 3 : field.components;
       hdf5::write_attribute(table, "unit", field.unit);

@@ -3,10 +3,12 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "common/io/field_choice.hpp"
 #include "common/io/surface_mesh.hpp"
 #include "common/mesh/mesh.hpp"
 
@@ -28,9 +30,10 @@ struct OutputField {
 class FieldWriter {
  public:
   /// restart_time: entries later than this in an existing series are dropped; NaN starts a new series.
-  /// `places`: of the local points [m], written once; looked at while the writer is made.
+  /// `places`: of the local points [m], written once; looked at while the writer is made. Of `choice` box and compression;
+  /// where no cell lies in the box there is no file.
   FieldWriter(const mesh::Mesh& mesh, std::span<const Vec3> places, std::filesystem::path folder,
-              std::string name, bool moving, double restart_time);
+              std::string name, bool moving, double restart_time, const FieldChoice& choice = {});
   /// Of a surface, which `cells` are the faces of.
   FieldWriter(const SurfaceMesh& surface, std::filesystem::path folder, std::string name, bool moving,
               double restart_time);
@@ -41,7 +44,8 @@ class FieldWriter {
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  std::optional<CellPart> part_;
+  std::unique_ptr<State> state_;  // none: nothing lies in the box
 };
 
 }  // namespace couplet::io

@@ -75,6 +75,7 @@ void remove(hid_t place, const std::string& path);
 /// Rows of a distributed table that this rank holds: [first, first + count) of total, `width` values each.
 struct Rows {
   std::uint64_t first = 0, count = 0, total = 0, width = 1;
+  int compression = 0;  ///< level of deflate; 0: the table is one block
 };
 /// The rows of this rank when every rank brings `count`. Collective.
 Rows distribute_rows(MPI_Comm comm, std::size_t count, std::size_t width);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/surface_mesh.hpp"
 
+#include <utility>
+
 #include "common/parallel/collective.hpp"
 
 namespace couplet::io {
@@ -8,13 +10,10 @@ namespace {
 
 constexpr Index unused = -1;
 
-/// Numbers of the surface's points by local point of the body, owned ones first: also those that only faces of other ranks
-/// use. Collective.
-std::vector<Index> number_points(const mesh::Mesh& body, const mesh::Patch& patch,
+/// Numbers of the part's points by local point of the body, owned ones first: also those that only other ranks use. `uses`:
+/// 1 for those that are used here. Collective.
+std::vector<Index> number_points(const mesh::Mesh& body, std::vector<double> uses,
                                  std::vector<Index>& points) {
-  std::vector<double> uses(body.points.n_local(), 0);
-  for (Index f = patch.first; f < patch.first + patch.count; ++f)
-    for (const Index v : body.face_points[f]) uses[v] = 1;
   body.points.add_to_owners(uses);
   std::vector<Index> number(uses.size(), unused);
   for (std::size_t v = 0; v < uses.size(); ++v) {
@@ -42,20 +41,28 @@ parallel::IndexMap map_points(const mesh::Mesh& body, std::span<const Index> poi
   return {body.comm, static_cast<Index>(points.size() - owner.size()), owner, remote};
 }
 
+void set_points(mesh::Mesh& part, std::vector<Vec3>& there, const mesh::Mesh& body,
+                std::span<const Vec3> places, std::span<const Index> points, std::span<const Index> number) {
+  part.comm = body.comm;
+  part.points = map_points(body, points, number);
+  for (const Index v : points) {
+    part.point_id.push_back(body.point_id[v]);
+    there.push_back(places[v]);
+  }
+}
+
 }  // namespace
 
 SurfaceMesh make_surface(const mesh::Mesh& body, std::span<const Vec3> places, const mesh::Patch& patch) {
   SurfaceMesh surface;
   mesh::Mesh& mesh = surface.mesh;
-  mesh.comm = body.comm;
   mesh.dim = body.dim - 1;
-  const std::vector<Index> number = number_points(body, patch, surface.points);
-  mesh.points = map_points(body, surface.points, number);
+  std::vector<double> uses(body.points.n_local(), 0);
+  for (Index f = patch.first; f < patch.first + patch.count; ++f)
+    for (const Index v : body.face_points[f]) uses[v] = 1;
+  const std::vector<Index> number = number_points(body, std::move(uses), surface.points);
+  set_points(mesh, surface.places, body, places, surface.points, number);
   mesh.cells = parallel::IndexMap(body.comm, patch.count, {}, {});
-  for (const Index v : surface.points) {
-    mesh.point_id.push_back(body.point_id[v]);
-    surface.places.push_back(places[v]);
-  }
   std::vector<Index> corners;
   for (Index f = patch.first; f < patch.first + patch.count; ++f) {
     corners.clear();
@@ -66,6 +73,31 @@ SurfaceMesh make_surface(const mesh::Mesh& body, std::span<const Vec3> places, c
     mesh.cell_id.push_back(body.boundary_id[f - body.n_interior]);
   }
   return surface;
+}
+
+CellPart make_part(const mesh::Mesh& body, std::span<const Vec3> places,
+                   const std::vector<std::uint8_t>& flags) {
+  CellPart part;
+  mesh::Mesh& mesh = part.mesh;
+  mesh.dim = body.dim;
+  std::vector<double> uses(body.points.n_local(), 0);
+  for (Index c = 0; c < body.cells.n_owned(); ++c) {
+    if (!flags[c]) continue;
+    part.cells.push_back(c);
+    for (const Index v : body.cell_points[c]) uses[v] = 1;
+  }
+  const std::vector<Index> number = number_points(body, std::move(uses), part.points);
+  set_points(mesh, part.places, body, places, part.points, number);
+  mesh.cells = parallel::IndexMap(body.comm, static_cast<Index>(part.cells.size()), {}, {});
+  std::vector<Index> corners;
+  for (const Index c : part.cells) {
+    corners.clear();
+    for (const Index v : body.cell_points[c]) corners.push_back(number[v]);
+    mesh.cell_points.push_row(corners);
+    mesh.cell_type.push_back(body.cell_type[c]);
+    mesh.cell_id.push_back(body.cell_id[c]);
+  }
+  return part;
 }
 
 }  // namespace couplet::io

@@ -59,11 +59,11 @@ void FluidOutput<D>::write_coefficients(double time) {
 }
 
 template <int D>
-void FluidOutput<D>::write_fields(double time, const RunningStatistics<D>* statistics) {
-  if (context_.output_folder.empty()) return;
+void FluidOutput<D>::write_fields(double time, int number, const RunningStatistics<D>* statistics) {
+  if (context_.output_folder.empty() || !context_.fields.due(number)) return;
   if (!fields_)
     fields_.emplace(mesh_, fluid_.points_at_rest(), context_.output_folder, context_.name, fluid_.moving(),
-                    context_.restart_time);
+                    context_.restart_time, context_.fields);
   using Place = io::OutputField::Place;
   const State<D>& s = fluid_.state();
   const FluidOutputParameters& wanted = fluid_.parameters().output;

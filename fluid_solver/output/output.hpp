@@ -21,6 +21,7 @@ struct FluidContext {
   std::string name = "fluid";
   std::filesystem::path output_folder;  ///< empty: nothing is written
   double restart_time = std::numeric_limits<double>::quiet_NaN();
+  io::FieldChoice fields{};
 };
 
 /// The files of a fluid: fields, forces.csv, coefficients.csv, walls.csv, fluxes.csv, flow-areas.csv, balance.csv, energy.csv,
@@ -30,8 +31,8 @@ class FluidOutput {
  public:
   /// `geometry`: of the mesh at rest, looked at while this is made.
   FluidOutput(const Fluid<D>& fluid, const mesh::Geometry& geometry, FluidContext context);
-  /// `statistics` may be null.
-  void write_fields(double time, const RunningStatistics<D>* statistics);
+  /// Where output `number` has fields in the volume. `statistics` may be null.
+  void write_fields(double time, int number, const RunningStatistics<D>* statistics);
   void write_series(double time);
   /// Of patches, where they are asked for. Collective.
   void write_surfaces(double time);

@@ -5,6 +5,8 @@
 #include <limits>
 #include <string>
 
+#include "common/io/field_choice.hpp"
+
 namespace couplet::solid {
 
 /// Where a solid stands among the other programs.
@@ -12,6 +14,7 @@ struct SolidContext {
   std::string name = "solid";
   std::filesystem::path output_folder;  ///< empty: nothing is written
   double restart_time = std::numeric_limits<double>::quiet_NaN();
+  io::FieldChoice fields{};
 };
 
 }  // namespace couplet::solid

@@ -60,19 +60,24 @@ SolidOutput::SolidOutput(const SolidFields& derived, const SolidStepper& stepper
   if (!body.parameters().output.surfaces.empty()) surfaces_.emplace(derived, body, context);
 }
 
-void SolidOutput::write_fields(double time, std::span<const double> points) {
+void SolidOutput::write_fields(double time, int number, std::span<const double> points) {
   if (context_.output_folder.empty()) return;
+  const int dim = body_.mesh().dim;
+  std::vector<Vec3> places = body_.geometry().points;
+  for (std::size_t v = 0; v < places.size(); ++v)
+    for (int a = 0; a < dim; ++a) places[v][a] += points[v * dim + a];
+  if (context_.fields.due(number)) write_volume(time, points, places);
+  if (surfaces_) surfaces_->write(time, points, places);
+}
+
+void SolidOutput::write_volume(double time, std::span<const double> points, std::span<const Vec3> places) {
   const mesh::Mesh& mesh = body_.mesh();
-  const mesh::Geometry& geometry = body_.geometry();
   const SolidOutputParameters& chosen = body_.parameters().output;
   const SolidState& state = stepper_.state();
   const int dim = mesh.dim;
   if (!fields_)
-    fields_.emplace(mesh, geometry.points, context_.output_folder, context_.name, chosen.deformed,
-                    context_.restart_time);
-  std::vector<Vec3> places = geometry.points;
-  for (std::size_t v = 0; v < places.size(); ++v)
-    for (int a = 0; a < dim; ++a) places[v][a] += points[v * dim + a];
+    fields_.emplace(mesh, body_.geometry().points, context_.output_folder, context_.name, chosen.deformed,
+                    context_.restart_time, context_.fields);
   FieldList fields;
   fields.list.push_back({"displacement", "m", Place::points, dim, points});
   if (body_.parameters().analysis == SolidParameters::Analysis::dynamic)
@@ -89,7 +94,6 @@ void SolidOutput::write_fields(double time, std::span<const double> points) {
     fields.add_tensor("point-stress", "Pa", Place::points, dim, derived_.point_stress(points));
   for (const auto& effect : body_.effects()) effect->add_fields(fields.list);
   fields_->write(time, places, fields.list);
-  if (surfaces_) surfaces_->write(time, points, places);
 }
 
 void SolidOutput::write_series(double time, std::span<const double> points) {

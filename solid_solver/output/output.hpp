@@ -26,8 +26,8 @@ class SolidOutput {
   SolidOutput(const SolidFields& derived, const SolidStepper& stepper, const SolidBody& body,
               const SolidContext& context);
 
-  /// `points`: displacement of all local points.
-  void write_fields(double time, std::span<const double> points);
+  /// Of output `number`, and surfaces. `points`: displacement of all local points.
+  void write_fields(double time, int number, std::span<const double> points);
   void write_series(double time, std::span<const double> points);
   /// spectrum.csv and a sentence in the log, for steps of dt. Collective.
   void write_spectrum(double dt);
@@ -43,6 +43,7 @@ class SolidOutput {
   void write_buckling();
 
  private:
+  void write_volume(double time, std::span<const double> points, std::span<const Vec3> places);
   void write_vibrations(const SolidProblem& problem, const modes::EigenModes& found, const char* of,
                         const std::string& errs);
   void write_probes(double time, std::span<const double> points);

@@ -10,6 +10,32 @@ namespace couplet::app {
 
 namespace {
 
+void declare_fields(config::Section& s, io::FieldChoice& f) {
+  s.value("every", f.every)
+      .range(0, 1000000)
+      .doc(
+          "fields in the volume at each n-th output only; surfaces, samples and the interface at each; 0: no fields in the "
+          "volume");
+  s.value("compression", f.compression)
+      .range(0, 9)
+      .doc("level of compression (deflate) of fields in the volume: 0 none, 1 quick, 9 small");
+  s.optional_section<io::FieldChoice::Box>(
+      "box", f.box,
+      [](config::Section& b, io::FieldChoice::Box& box) {
+        b.value("from", box.from).unit("m").required().doc("lowest corner");
+        b.value("to", box.to)
+            .unit("m")
+            .required()
+            .doc("highest corner; in two dimensions the third number counts for nothing");
+        b.check(
+            [&box] {
+              return (box.to - box.from).minCoeff() < 0 ? "it must not be below 'from' in any direction" : "";
+            },
+            "to");
+      },
+      "fields in the volume of the cells in this box only, as they lie at the start; absent: all");
+}
+
 void declare_files(config::Section& section, SimulationParameters& p) {
   section.section(
       "output",
@@ -23,6 +49,7 @@ void declare_files(config::Section& section, SimulationParameters& p) {
             .doc("time between field outputs; 0: only start and end");
         s.value("steps", p.output_steps)
             .doc("steps.csv: step, iterations, error, energy and wall time of each accepted step");
+        declare_fields(s, p.fields);
       },
       "fields for visualisation");
   section.section(

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/config/section.hpp"
+#include "common/io/field_choice.hpp"
 
 namespace couplet::app {
 
@@ -17,6 +18,7 @@ struct SimulationParameters {
   std::string output_folder = "out";   // relative to the YAML's folder unless absolute
   double output_interval = 0;          // [s]; 0: only the start and the end
   bool output_steps = true;            // steps.csv
+  io::FieldChoice fields;              // in the volume
   double checkpoint_interval = 0;      // [s]; 0: only at the end
   int checkpoints_kept = 2;
   double hang_timeout = 600;    // [s]; 0: never
