@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
+#include "common/io/cut/load_mesh.hpp"
 #include "common/linalg/petsc_environment.hpp"
-#include "common/mesh/load.hpp"
 #include "fluid_solver/parameters/auto_effects.hpp"
 #include "fluid_solver/parameters/effect_cards.hpp"
 #include "fluid_solver/parameters/files.hpp"
@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
       .declare = [&](couplet::config::Section& section) { couplet::fluid::declare(section, parameters); },
       .make =
           [&](const couplet::app::ParticipantContext& context) {
-            couplet::mesh::LoadedMesh loaded = couplet::mesh::load_mesh(
+            couplet::mesh::LoadedMesh loaded = couplet::io::load_mesh(
                 context.comm, context.case_folder / parameters.mesh, parameters.dimension,
                 parameters.mesh_parameters, couplet::fluid::periodic_patches(parameters), {}, false,
                 parameters.mesh_scale);
@@ -44,15 +44,15 @@ int main(int argc, char** argv) {
           [&](const couplet::effects::ChoiceScene& scene) {
             return couplet::fluid::choose_effects(
                 parameters,
-                couplet::mesh::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters,
-                                             parameters.mesh_scale),
+                couplet::io::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters,
+                                           parameters.mesh_scale),
                 scene);
           },
       .expected =
           [&](const couplet::effects::ChoiceScene& scene) {
             return couplet::fluid::expected_cost(
-                parameters, couplet::mesh::facts_of_file(scene.folder / parameters.mesh,
-                                                         parameters.mesh_parameters, parameters.mesh_scale));
+                parameters, couplet::io::facts_of_file(scene.folder / parameters.mesh,
+                                                       parameters.mesh_parameters, parameters.mesh_scale));
           },
       .problems_of_files =
           [&](const std::filesystem::path& folder) {

@@ -5,8 +5,8 @@
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
+#include "common/io/cut/load_mesh.hpp"
 #include "common/log/log.hpp"
-#include "common/mesh/load.hpp"
 #include "common/mesh/quality.hpp"
 #include "common/parallel/collective.hpp"
 #include "mesh_mover/barrier/barrier_motion.hpp"
@@ -24,9 +24,9 @@ mesh::LoadedMesh load_checked(const Parameters& parameters, const app::Participa
   std::map<std::string, std::string> partner_of;
   for (const auto& [name, boundary] : parameters.boundaries)
     if (boundary.motion == BoundaryMotion::periodic) partner_of[name] = boundary.partner;
-  mesh::LoadedMesh loaded = mesh::load_mesh(
-      context.comm, context.case_folder / parameters.mesh, parameters.dimension, parameters.mesh_parameters,
-      mesh::periodic_pairs(partner_of), {}, false, parameters.mesh_scale);
+  mesh::LoadedMesh loaded = io::load_mesh(context.comm, context.case_folder / parameters.mesh,
+                                          parameters.dimension, parameters.mesh_parameters,
+                                          mesh::periodic_pairs(partner_of), {}, false, parameters.mesh_scale);
   const mesh::Mesh& mesh = loaded.mesh;
   std::string patches;
   for (const mesh::Patch& p : mesh.patches) patches += (patches.empty() ? "'" : ", '") + p.name + "'";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
+#include "common/io/cut/load_mesh.hpp"
 #include "common/linalg/petsc_environment.hpp"
-#include "common/mesh/load.hpp"
 #include "solid_solver/effects/auto_effects.hpp"
 #include "solid_solver/effects/effect_cards.hpp"
 #include "solid_solver/solid.hpp"
@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
       .declare = [&](couplet::config::Section& section) { declare(section, parameters); },
       .make = [&](const couplet::app::ParticipantContext& context)
           -> std::unique_ptr<couplet::coupling::Participant> {
-        couplet::mesh::LoadedMesh body = couplet::mesh::load_mesh(
+        couplet::mesh::LoadedMesh body = couplet::io::load_mesh(
             context.comm, context.case_folder / parameters.mesh, parameters.dimension,
             parameters.mesh_parameters, {}, couplet::solid::zones_of(parameters.materials), true,
             parameters.mesh_scale);
@@ -36,15 +36,15 @@ int main(int argc, char** argv) {
           [&](const couplet::effects::ChoiceScene& scene) {
             return couplet::solid::choose_effects(
                 parameters,
-                couplet::mesh::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters,
-                                             parameters.mesh_scale),
+                couplet::io::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters,
+                                           parameters.mesh_scale),
                 scene);
           },
       .expected =
           [&](const couplet::effects::ChoiceScene& scene) {
             return couplet::solid::expected_cost(
-                parameters, couplet::mesh::facts_of_file(scene.folder / parameters.mesh,
-                                                         parameters.mesh_parameters, parameters.mesh_scale));
+                parameters, couplet::io::facts_of_file(scene.folder / parameters.mesh,
+                                                       parameters.mesh_parameters, parameters.mesh_scale));
           }};
   return couplet::app::run_program(argc, argv, program);
 }

@@ -22,7 +22,7 @@ class Reader final {
  public:
   static constexpr std::uint64_t most_expansion = 64u
                                                   << 20;  ///< [bytes], of a compressed table; also of a chunk
-  static constexpr std::uint64_t largest_table = 1u << 30;  ///< values of one table
+  static constexpr std::uint64_t largest_table = 1ull << 36;  ///< values of one table
 
   /// On this rank alone; any number of ranks may do so at once. Messages say "The <what> '<file>' cannot be used: ...
   /// <advice>".

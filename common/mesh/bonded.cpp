@@ -72,9 +72,12 @@ CellPairs connected_cells(const Faces& faces) {
   pairs.first.assign(faces.owner.begin(), faces.owner.begin() + faces.n_interior);
   pairs.second = faces.neighbour;
   if (faces.first_bonded < 0) return pairs;
-  for (Index b = faces.n_interior + faces.first_bonded; b < static_cast<Index>(faces.owner.size()); b += 2) {
-    pairs.first.push_back(faces.owner[b]);
-    pairs.second.push_back(faces.owner[b + 1]);
+  for (Index b = 0; b + 1 < faces.n_boundary(); ++b) {
+    const GlobalIndex side = faces.number_of_boundary(b) - faces.first_bonded;
+    if (side < 0 || side % 2 == 1 || faces.number_of_boundary(b + 1) != faces.number_of_boundary(b) + 1)
+      continue;
+    pairs.first.push_back(faces.owner[faces.n_interior + b]);
+    pairs.second.push_back(faces.owner[faces.n_interior + b + 1]);
   }
   return pairs;
 }

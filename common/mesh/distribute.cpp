@@ -11,12 +11,20 @@
 namespace couplet::mesh {
 namespace {
 
-/// Cuts this rank's part out of the whole mesh.
+/// The numbers in the mesh of entries of a piece of it; `numbers` is empty where the mesh is whole.
+std::vector<GlobalIndex> in_mesh(std::vector<GlobalIndex> entries, const std::vector<GlobalIndex>& numbers) {
+  if (!numbers.empty())
+    for (GlobalIndex& entry : entries) entry = numbers[entry];
+  return entries;
+}
+
+/// Cuts this rank's part out of the whole mesh, or out of a piece of it, whose numbers it has until the end.
 class LocalPart {
  public:
   LocalPart(MPI_Comm comm, const WholeMesh& whole)
       : comm_(comm),
         rank_(parallel::comm_rank(comm)),
+        whole_(whole),
         raw_(whole.raw),
         faces_(whole.faces),
         part_(whole.part),
@@ -33,6 +41,8 @@ class LocalPart {
     fill_cells();
     fill_interior_faces();
     fill_boundary_faces();
+    mesh_.cell_id = in_mesh(std::move(mesh_.cell_id), whole_.cell_number);
+    mesh_.point_id = in_mesh(std::move(mesh_.point_id), whole_.point_number);
     give_back();
     return {std::move(mesh_), std::move(points_)};
   }
@@ -86,7 +96,7 @@ class LocalPart {
       cell_local_[c] = static_cast<Index>(i);
       if (Index(i) >= n_owned) ghost_owner.push_back(part_[c]);
     }
-    mesh_.cells = make_index_map(comm_, mesh_.cell_id, n_owned, ghost_owner);
+    mesh_.cells = make_index_map(comm_, in_mesh(mesh_.cell_id, whole_.cell_number), n_owned, ghost_owner);
   }
 
   /// Two rings around a wide point: the points of all its cells count as touched.
@@ -104,11 +114,16 @@ class LocalPart {
   }
 
   /// The owner of a point is the smallest rank that owns a cell touching it.
-  void choose_points() {
-    std::vector<int> point_owner(raw_.points.size(), parallel::comm_size(comm_));
+  std::vector<int> owners_of_points() const {
+    if (!whole_.point_owner.empty()) return whole_.point_owner;
+    std::vector<int> owner(raw_.points.size(), parallel::comm_size(comm_));
     for (Index c = 0; c < raw_.cell_points.size(); ++c)
-      for (const Index p : raw_.cell_points[c]) point_owner[p] = std::min(point_owner[p], part_[c]);
+      for (const Index p : raw_.cell_points[c]) owner[p] = std::min(owner[p], part_[c]);
+    return owner;
+  }
 
+  void choose_points() {
+    const std::vector<int> point_owner = owners_of_points();
     std::vector<GlobalIndex> ghosts;
     std::vector<char> seen(raw_.points.size(), 0);
     for (const GlobalIndex c : mesh_.cell_id)
@@ -121,7 +136,7 @@ class LocalPart {
     mesh_.point_id.insert(mesh_.point_id.end(), ghosts.begin(), ghosts.end());
     std::vector<int> ghost_owner;
     for (const GlobalIndex p : ghosts) ghost_owner.push_back(point_owner[p]);
-    mesh_.points = make_index_map(comm_, mesh_.point_id, n_owned, ghost_owner);
+    mesh_.points = make_index_map(comm_, in_mesh(mesh_.point_id, whole_.point_number), n_owned, ghost_owner);
 
     point_local_.assign(raw_.points.size(), -1);
     for (std::size_t i = 0; i < mesh_.point_id.size(); ++i) {
@@ -189,7 +204,7 @@ class LocalPart {
       else
         ++n_owned;
       mesh_.owner.push_back(f.cell);
-      mesh_.boundary_id.push_back(f.id);
+      mesh_.boundary_id.push_back(faces_.number_of_boundary(f.id));
       push_points(mesh_.face_points, faces_.points[faces_.n_interior + f.id]);
     }
     Index at = mesh_.n_interior;
@@ -210,17 +225,22 @@ class LocalPart {
 
   void find_twins() {
     mesh_.patches.back().bonded = true;
-    std::vector<Index> local(faces_.n_boundary() - faces_.first_bonded, -1);
+    std::vector<std::pair<GlobalIndex, Index>> bonded;  // number, entry
     for (std::size_t b = 0; b < mesh_.boundary_id.size(); ++b)
       if (mesh_.boundary_id[b] >= faces_.first_bonded)
-        local[mesh_.boundary_id[b] - faces_.first_bonded] = static_cast<Index>(b);
+        bonded.emplace_back(mesh_.boundary_id[b] - faces_.first_bonded, static_cast<Index>(b));
+    std::ranges::sort(bonded);
     mesh_.twin.assign(mesh_.boundary_id.size(), -1);
-    for (std::size_t i = 0; i < local.size(); ++i)
-      if (local[i] >= 0) mesh_.twin[local[i]] = local[i ^ 1];
+    for (std::size_t i = 1; i < bonded.size(); ++i) {
+      if (bonded[i].first != bonded[i - 1].first + 1 || bonded[i].first % 2 == 0) continue;
+      mesh_.twin[bonded[i].second] = bonded[i - 1].second;
+      mesh_.twin[bonded[i - 1].second] = bonded[i].second;
+    }
   }
 
   MPI_Comm comm_;
   int rank_;
+  const WholeMesh& whole_;
   const RawMesh& raw_;
   const Faces& faces_;
   const std::vector<int>& part_;
@@ -233,10 +253,14 @@ class LocalPart {
 
 }  // namespace
 
-LoadedMesh distribute(MPI_Comm comm, const RawMesh& raw) {
-  auto [mesh, points] = LocalPart(comm, make_whole_mesh(comm, raw)).build();
+LoadedMesh cut_part(MPI_Comm comm, WholeMesh&& whole) {
+  auto [mesh, points] = LocalPart(comm, WholeMesh(std::move(whole))).build();
   Geometry geometry = compute_geometry(mesh, std::move(points));
   return {std::move(mesh), std::move(geometry)};
+}
+
+LoadedMesh distribute(MPI_Comm comm, const RawMesh& raw) {
+  return cut_part(comm, make_whole_mesh(comm, raw));
 }
 
 }  // namespace couplet::mesh

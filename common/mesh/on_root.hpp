@@ -34,6 +34,24 @@ void on_root(MPI_Comm comm, Work&& work) {
   throw Error(text);
 }
 
+/// Runs `work` on every rank; what it throws on the lowest rank that throws is thrown on all. `work` must not use MPI.
+/// Collective.
+template <class Work>
+void on_all(MPI_Comm comm, Work&& work) {
+  int thrower = parallel::comm_size(comm);
+  std::string text;
+  try {
+    work();
+  } catch (const std::exception& e) {
+    thrower = parallel::comm_rank(comm);
+    text = e.what();
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &thrower, 1, MPI_INT, MPI_MIN, comm);
+  if (thrower == parallel::comm_size(comm)) return;
+  parallel::broadcast(comm, text, thrower);
+  throw Error(text);
+}
+
 /// Rank 0's values on every rank, in pieces that MPI's int counts can hold.
 template <class T>
 void broadcast(MPI_Comm comm, std::vector<T>& values) {

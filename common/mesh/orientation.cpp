@@ -41,7 +41,7 @@ double extent(const RawMesh& raw, Index cell) {
 
 }  // namespace
 
-void orient_cells(RawMesh& raw) {
+void orient_cells(RawMesh& raw, GlobalIndex first) {
   if (raw.cell_points.size() == 0)
     throw Error(
         "The mesh has no {} cells. Put the {} into a physical group; otherwise gmsh does not save "
@@ -51,26 +51,23 @@ void orient_cells(RawMesh& raw) {
     const CellShape& shape = shape_of(raw.cell_type[c]);
     Index* points = raw.cell_points.index.data() + raw.cell_points.offset[c];
     if (shape.dim != raw.dim)
-      throw Error("Cell {} at {} is a {}, which does not fit a {}-D mesh.", c,
+      throw Error("Cell {} at {} is a {}, which does not fit a {}-D mesh.", first + c,
                   place(raw.points[points[0]], 3), name_of(raw.cell_type[c]), raw.dim);
     const double volume = signed_volume(raw, c);
     if (!(std::abs(volume) > 1e-13 * std::pow(extent(raw, c), raw.dim)))
       throw Error(
           "Cell {} at {} has zero volume: its points lie in one {}, or some coincide. Repair the mesh there.",
-          c, place(raw.points[points[0]], raw.dim), raw.dim == 2 ? "line" : "plane");
+          first + c, place(raw.points[points[0]], raw.dim), raw.dim == 2 ? "line" : "plane");
     if (volume > 0) continue;
     std::array<Index, 8> as_read{};
     std::copy_n(points, shape.n_points, as_read.begin());
     for (int i = 0; i < shape.n_points; ++i) points[i] = as_read[shape.mirrored[i]];
   }
-  if (raw.dim != 2) return;
-  Vec3 low = raw.points[0], high = low;
-  for (const Vec3& x : raw.points) {
-    low = low.cwiseMin(x);
-    high = high.cwiseMax(x);
-  }
-  for (const Vec3& x : raw.points)
-    if (std::abs(x[2]) > 1e-12 * (high - low).norm())
+}
+
+void check_plane(std::span<const Vec3> points, double diagonal) {
+  for (const Vec3& x : points)
+    if (std::abs(x[2]) > 1e-12 * diagonal)
       throw Error(
           "The 2-D mesh has a point at {}. A 2-D mesh must lie in the plane z = 0; rotate or shift it there.",
           place(x, 3));

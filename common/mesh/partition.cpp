@@ -6,13 +6,16 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <numeric>
 
 extern "C" {
 #include <scotch.h>  // needs FILE
 }
 
+#include "common/base/error.hpp"
 #include "common/linalg/petsc_check.hpp"
+#include "common/parallel/collective.hpp"
 
 namespace couplet::mesh {
 
@@ -35,24 +38,29 @@ Csr make_graph(Index n, std::span<const Index> first, std::span<const Index> sec
   return graph;
 }
 
-std::vector<int> partition(const Csr& graph, int parts) {
-  const Index n = graph.size();
-  if (parts == 1) return std::vector<int>(n, 0);
+namespace {
+
+/// Rows of the graph that this rank has, into `parts` parts.
+std::vector<int> apply_ptscotch(MPI_Comm comm, GlobalIndex n_all, std::span<const Index> offset,
+                                const auto& neighbours, int parts) {
   // With several threads Scotch 7 gives another partition each time, and a restart would not be bit for bit.
   setenv("SCOTCH_PTHREAD_NUMBER", "1", 1);
   // Scotch goes on in its row of random numbers: a second mesh of a process would be shared out in another way.
   SCOTCH_randomReset();
+  const auto n = static_cast<PetscInt>(offset.size()) - 1;
   // PETSc frees both arrays with the matrix.
   PetscInt *rows = nullptr, *columns = nullptr;
   linalg::petsc_check(PetscMalloc1(n + 1, &rows));
-  linalg::petsc_check(PetscMalloc1(std::max<std::size_t>(1, graph.index.size()), &columns));
-  std::copy(graph.offset.begin(), graph.offset.end(), rows);
-  std::copy(graph.index.begin(), graph.index.end(), columns);
+  linalg::petsc_check(PetscMalloc1(std::max<std::size_t>(1, neighbours.size()), &columns));
+  std::copy(offset.begin(), offset.end(), rows);
+  std::transform(neighbours.begin(), neighbours.end(), columns,
+                 [](auto i) { return static_cast<PetscInt>(i); });
   Mat adjacency = nullptr;
   MatPartitioning tool = nullptr;
   IS result = nullptr;
-  linalg::petsc_check(MatCreateMPIAdj(PETSC_COMM_SELF, n, n, rows, columns, nullptr, &adjacency));
-  linalg::petsc_check(MatPartitioningCreate(PETSC_COMM_SELF, &tool));
+  linalg::petsc_check(
+      MatCreateMPIAdj(comm, n, static_cast<PetscInt>(n_all), rows, columns, nullptr, &adjacency));
+  linalg::petsc_check(MatPartitioningCreate(comm, &tool));
   linalg::petsc_check(MatPartitioningSetType(tool, MATPARTITIONINGPTSCOTCH));
   linalg::petsc_check(MatPartitioningSetAdjacency(tool, adjacency));
   linalg::petsc_check(MatPartitioningSetNParts(tool, parts));
@@ -65,6 +73,27 @@ std::vector<int> partition(const Csr& graph, int parts) {
   linalg::petsc_check(MatPartitioningDestroy(&tool));
   linalg::petsc_check(MatDestroy(&adjacency));
   return parts_of;
+}
+
+}  // namespace
+
+std::vector<int> partition(const Csr& graph, int parts) {
+  if (parts == 1) return std::vector<int>(graph.size(), 0);
+  return apply_ptscotch(PETSC_COMM_SELF, graph.size(), graph.offset, graph.index, parts);
+}
+
+std::vector<int> partition(MPI_Comm comm, std::span<const Index> offset,
+                           std::span<const GlobalIndex> neighbours) {
+  const int parts = parallel::comm_size(comm);
+  const auto n = static_cast<Index>(offset.size()) - 1;
+  if (parts == 1) return std::vector<int>(n, 0);
+  const GlobalIndex n_all = parallel::sum(comm, GlobalIndex(n));
+  if (n_all > std::numeric_limits<PetscInt>::max())
+    throw Error(
+        "The mesh has {} cells, more than this build of PETSc can number ({}). Build with a PETSc of 64-bit "
+        "integers.",
+        n_all, std::numeric_limits<PetscInt>::max());
+  return apply_ptscotch(comm, n_all, offset, neighbours, parts);
 }
 
 namespace {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <mpi.h>
+
 #include <span>
 #include <vector>
 
@@ -14,6 +16,11 @@ Csr make_graph(Index n, std::span<const Index> first, std::span<const Index> sec
 /// A part 0 .. parts - 1 for every node, by PT-Scotch through PETSc. Serial: to be called on one rank. The
 /// same in every run and in every call.
 std::vector<int> partition(const Csr& graph, int parts);
+
+/// The same, a part for each rank, of a graph of which each rank has the rows of some nodes, those of rank 0 first;
+/// `neighbours` are numbers over all ranks. Collective.
+std::vector<int> partition(MPI_Comm comm, std::span<const Index> offset,
+                           std::span<const GlobalIndex> neighbours);
 
 /// Reverse Cuthill-McKee: order[i] is the node that comes i-th. Components one after the other.
 std::vector<Index> reverse_cuthill_mckee(const Csr& graph);

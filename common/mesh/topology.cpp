@@ -2,97 +2,12 @@
 #include "common/mesh/topology.hpp"
 
 #include <algorithm>
-#include <array>
-#include <limits>
-#include <numeric>
 
 #include "common/base/error.hpp"
-#include "common/mesh/cell_shapes.hpp"
+#include "common/mesh/half_faces.hpp"
 
 namespace couplet::mesh {
 namespace {
-
-constexpr Index none = std::numeric_limits<Index>::max();
-
-/// One side of a face: seen from a cell, or from a boundary element (then `cell` is -1 - element).
-struct HalfFace {
-  std::array<Index, 3> key;  // the points above the smallest one, ascending, `none` where there is no such
-  Index cell;
-  int face;
-  bool is_element() const { return cell < 0; }
-  Index element() const { return -1 - cell; }
-};
-
-/// Half faces in buckets by their smallest point: matching partners share a bucket, which is small, so that
-/// the sort is linear in the number of faces.
-class HalfFaces {
- public:
-  HalfFaces(const RawMesh& raw, bool with_elements) : raw_(raw) {
-    const auto visit = [&](auto&& use) {
-      std::array<Index, 4> points;
-      for (Index c = 0; c < raw.cell_points.size(); ++c) {
-        const CellShape& shape = shape_of(raw.cell_type[c]);
-        for (int f = 0; f < shape.n_faces; ++f) {
-          const int n = shape.face_size(f);
-          for (int i = 0; i < n; ++i) points[i] = raw.cell_points[c][shape.faces[f][i]];
-          use(points, n, c, f);
-        }
-      }
-      if (!with_elements) return;
-      for (Index e = 0; e < raw.boundary_points.size(); ++e) {
-        const auto element = raw.boundary_points[e];
-        std::copy(element.begin(), element.end(), points.begin());
-        use(points, static_cast<int>(element.size()), -1 - e, 0);
-      }
-    };
-    first_.assign(raw.points.size() + 1, 0);
-    visit([&](const std::array<Index, 4>& p, int n, Index, int) {
-      ++first_[*std::min_element(p.begin(), p.begin() + n) + 1];
-    });
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    halves_.resize(first_.back());
-    std::vector<Index> next(first_.begin(), first_.end() - 1);
-    visit([&](std::array<Index, 4> p, int n, Index cell, int face) {
-      std::fill(p.begin() + n, p.end(), none);
-      std::sort(p.begin(), p.end());
-      halves_[next[p[0]]++] = {{p[1], p[2], p[3]}, cell, face};
-    });
-  }
-
-  /// use(cells, elements): the half faces of one face, cells by ascending number.
-  template <class Use>
-  void for_each_face(Use&& use) {
-    for (std::size_t p = 0; p + 1 < first_.size(); ++p) {
-      const auto begin = halves_.begin() + first_[p], end = halves_.begin() + first_[p + 1];
-      std::sort(begin, end, [](const HalfFace& a, const HalfFace& b) {
-        if (a.key != b.key) return a.key < b.key;
-        if (a.is_element() != b.is_element()) return b.is_element();
-        return a.is_element() ? a.element() < b.element() : a.cell < b.cell;
-      });
-      for (auto run = begin; run != end;) {
-        auto last = run;
-        while (last != end && last->key == run->key) ++last;
-        auto middle = run;
-        while (middle != last && !middle->is_element()) ++middle;
-        use(std::span<const HalfFace>(run, middle), std::span<const HalfFace>(middle, last));
-        run = last;
-      }
-    }
-  }
-
-  std::vector<Index> points(const HalfFace& h) const {
-    const CellShape& shape = shape_of(raw_.cell_type[h.cell]);
-    std::vector<Index> result(shape.face_size(h.face));
-    for (std::size_t i = 0; i < result.size(); ++i)
-      result[i] = raw_.cell_points[h.cell][shape.faces[h.face][i]];
-    return result;
-  }
-
- private:
-  const RawMesh& raw_;
-  std::vector<Index> first_;
-  std::vector<HalfFace> halves_;
-};
 
 Vec3 mean_point(const RawMesh& raw, std::span<const Index> points) {
   Vec3 sum = Vec3::Zero();
@@ -115,37 +30,21 @@ void check_elements(const RawMesh& raw, std::span<const HalfFace> cells, std::sp
     return place(mean_point(raw, raw.boundary_points[elements[0].element()]), raw.dim);
   };
   const std::string& name = raw.patches[raw.boundary_patch[elements[0].element()]];
-  if (cells.empty())
-    throw Error(
-        "Patch '{}' has a face at {} that belongs to no cell. Mesh the boundary and the interior together "
-        "so that their points coincide.",
-        name, where());
-  if (cells.size() == 2)
-    throw Error(
-        "Patch '{}' has a face at {} that lies between two cells. A patch must lie on the boundary; remove "
-        "the inner surface from the physical group (or the mesh contains every cell twice).",
-        name, where());
+  if (cells.empty()) throw Error(face_without_cell(name, where()));
+  if (cells.size() == 2) throw Error(face_inside(name, where()));
   for (const HalfFace& e : elements)
     if (raw.boundary_patch[e.element()] != raw.boundary_patch[elements[0].element()])
-      throw Error(
-          "The boundary face at {} is in two patches, '{}' and '{}'. Every boundary face must be in exactly "
-          "one patch.",
-          where(), name, raw.patches[raw.boundary_patch[e.element()]]);
+      throw Error(face_in_two_patches(name, raw.patches[raw.boundary_patch[e.element()]], where()));
 }
 
 void report_unassigned(const RawMesh& raw, const HalfFaces& halves, const std::vector<HalfFace>& unassigned) {
   if (unassigned.empty()) return;
-  std::string places;
-  for (std::size_t i = 0; i < std::min<std::size_t>(3, unassigned.size()); ++i)
-    places +=
-        fmt::format("{}{}", i ? ", " : "", place(mean_point(raw, halves.points(unassigned[i])), raw.dim));
-  throw Error(
-      "{} boundary face{} in no patch, with centre{} {}{}. Every boundary face must be in exactly one "
-      "patch: add {} to a physical group (for a location inside the domain: the mesh has two coincident "
-      "points there that should be one).",
-      unassigned.size(), unassigned.size() == 1 ? " is" : "s are", unassigned.size() == 1 ? "" : "s", places,
-      unassigned.size() > 3 ? ", ..." : "",
-      raw.dim == 2 ? "the curve (Physical Curve)" : "the surface (Physical Surface)");
+  std::vector<std::string> places;
+  for (const HalfFace& face : unassigned) {
+    if (places.size() == 3) break;
+    places.push_back(place(mean_point(raw, halves.points(face)), raw.dim));
+  }
+  throw Error(faces_in_no_patch(GlobalIndex(unassigned.size()), places, raw.dim));
 }
 
 }  // namespace
@@ -156,6 +55,45 @@ std::string place(const Vec3& x, int dim) {
                   : fmt::format("({:.6g}, {:.6g}, {:.6g})", x[0] + 0.0, x[1] + 0.0, x[2] + 0.0);
 }
 
+std::string face_without_cell(const std::string& patch, const std::string& where) {
+  return fmt::format(
+      "Patch '{}' has a face at {} that belongs to no cell. Mesh the boundary and the interior together so "
+      "that their points coincide.",
+      patch, where);
+}
+
+std::string face_inside(const std::string& patch, const std::string& where) {
+  return fmt::format(
+      "Patch '{}' has a face at {} that lies between two cells. A patch must lie on the boundary; remove the "
+      "inner surface from the physical group (or the mesh contains every cell twice).",
+      patch, where);
+}
+
+std::string face_in_two_patches(const std::string& one, const std::string& other, const std::string& where) {
+  return fmt::format(
+      "The boundary face at {} is in two patches, '{}' and '{}'. Every boundary face must be in exactly one "
+      "patch.",
+      where, one, other);
+}
+
+std::string face_of_many_cells(std::size_t cells, const std::string& where) {
+  return fmt::format(
+      "{} cells share the face at {}, but a face has at most two cells; the mesh has duplicate or "
+      "overlapping cells.",
+      cells, where);
+}
+
+std::string faces_in_no_patch(GlobalIndex n, const std::vector<std::string>& places, int dim) {
+  std::string text;
+  for (const std::string& at : places) text += (text.empty() ? "" : ", ") + at;
+  return fmt::format(
+      "{} boundary face{} in no patch, with centre{} {}{}. Every boundary face must be in exactly one "
+      "patch: add {} to a physical group (for a location inside the domain: the mesh has two coincident "
+      "points there that should be one).",
+      n, n == 1 ? " is" : "s are", n == 1 ? "" : "s", text, n > GlobalIndex(places.size()) ? ", ..." : "",
+      dim == 2 ? "the curve (Physical Curve)" : "the surface (Physical Surface)");
+}
+
 Faces build_faces(const RawMesh& raw) {
   HalfFaces halves(raw, true);
   std::vector<Interior> interior;
@@ -163,10 +101,7 @@ Faces build_faces(const RawMesh& raw) {
   std::vector<HalfFace> unassigned;
   halves.for_each_face([&](std::span<const HalfFace> cells, std::span<const HalfFace> elements) {
     if (cells.size() > 2)
-      throw Error(
-          "{} cells share the face at {}, but a face has at most two cells; the mesh has duplicate or "
-          "overlapping cells.",
-          cells.size(), place(mean_point(raw, halves.points(cells[0])), raw.dim));
+      throw Error(face_of_many_cells(cells.size(), place(mean_point(raw, halves.points(cells[0])), raw.dim)));
     check_elements(raw, cells, elements);
     if (cells.size() == 2)
       interior.push_back({cells[0], cells[1].cell});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,13 +21,26 @@ struct Faces {
   std::vector<Vec3> shift;       ///< interior faces; empty without periodic patches; see Mesh
   /// Boundary faces from here on are the sides of bonded faces: first_bonded + 2 i and first_bonded + 2 i + 1
   /// are one face, the first side that of the cell with the smaller number. -1: none.
-  Index first_bonded = -1;
+  GlobalIndex first_bonded = -1;
+  /// Of a piece of a mesh: the numbers that its boundary faces have in the mesh, ascending. Empty: the mesh is whole.
+  std::vector<GlobalIndex> boundary_number;
+  GlobalIndex number_of_boundary(Index b) const {
+    return boundary_number.empty() ? GlobalIndex(b) : boundary_number[b];
+  }
   Index n_boundary() const { return static_cast<Index>(owner.size()) - n_interior; }
 };
 
 /// Throws Error naming the place if a boundary face is in no patch or in two, if a boundary element is no
 /// boundary face, or if more than two cells share a face.
 Faces build_faces(const RawMesh& raw);
+
+// What is wrong with a face, in words. `where`: its middle.
+std::string face_without_cell(const std::string& patch, const std::string& where);
+std::string face_inside(const std::string& patch, const std::string& where);
+std::string face_in_two_patches(const std::string& one, const std::string& other, const std::string& where);
+std::string face_of_many_cells(std::size_t cells, const std::string& where);
+/// `places`: of the first three.
+std::string faces_in_no_patch(GlobalIndex n, const std::vector<std::string>& places, int dim);
 
 /// Makes interior faces of the faces of periodic patches (RawMesh::periodic). Throws Error naming the place
 /// of a face without a partner.
@@ -52,9 +66,12 @@ std::vector<Index> wide_points(const RawMesh& raw, const Faces& faces, const std
 /// patches).
 Csr outer_faces(const RawMesh& raw);
 
-/// Turns inverted cells (clockwise in 2-D) right side out. Throws Error for a cell without volume, for a 2-D
-/// mesh out of the plane z = 0, and for a mesh without cells.
-void orient_cells(RawMesh& raw);
+/// Turns inverted cells (clockwise in 2-D) right side out. Throws Error for a cell without volume and for a mesh
+/// without cells. `first`: the number of the first cell, for messages.
+void orient_cells(RawMesh& raw, GlobalIndex first = 0);
+
+/// Throws Error for a point out of the plane z = 0 of a 2-D mesh whose points lie in a box of this diagonal.
+void check_plane(std::span<const Vec3> points, double diagonal);
 
 /// Points that no cell uses are dropped (a .msh may carry centres of circles); the order of the others stays.
 void drop_unused_points(RawMesh& raw);

@@ -7,6 +7,15 @@
 #include "common/mesh/partition.hpp"
 
 namespace couplet::mesh {
+namespace {
+
+double diagonal_of(const std::vector<Vec3>& points) {
+  Vec3 low = points[0], high = low;
+  for (const Vec3& x : points) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  return (high - low).norm();
+}
+
+}  // namespace
 
 WholeMesh make_whole_mesh(MPI_Comm comm, const RawMesh& raw) {
   WholeMesh whole;
@@ -14,6 +23,7 @@ WholeMesh make_whole_mesh(MPI_Comm comm, const RawMesh& raw) {
     whole.raw = raw;
     drop_unused_points(whole.raw);
     orient_cells(whole.raw);
+    if (whole.raw.dim == 2) check_plane(whole.raw.points, diagonal_of(whole.raw.points));
     whole.faces = build_faces(whole.raw);
     whole.cell_material = materials_of_cells(whole.raw);
     split_materials(whole.raw, whole.faces, whole.cell_material);
@@ -42,7 +52,7 @@ WholeMesh make_whole_mesh(MPI_Comm comm, const RawMesh& raw) {
   broadcast(comm, whole.faces.neighbour);
   broadcast(comm, whole.faces.patch);
   broadcast(comm, whole.faces.shift);
-  MPI_Bcast(&whole.faces.first_bonded, 1, MPI_INT32_T, 0, comm);
+  MPI_Bcast(&whole.faces.first_bonded, 1, MPI_INT64_T, 0, comm);
   broadcast(comm, whole.cell_material);
   broadcast(comm, whole.part);
   broadcast(comm, whole.wide_points);

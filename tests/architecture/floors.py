@@ -14,9 +14,9 @@ FLOORS = {
     "mesh_mover": [".", "barrier"],
     "plate_modal": ["model", "motion", "."],
     "common/elasticity": [".", "thesis", "symmetric", "axisymmetric", "prestress", "tied", "finite", "solve"],
-    "common/mesh": [".", "order", "msh", "inp", "gmsh"],
-    "common/app": ["watch", "loop", "case", "."],
-    "common/io": [".", "probes"],
+    "common/mesh": [".", "order", "distributed", "msh", "inp", "gmsh"],
+    "common/app": ["watch", "loop", "case", ".", "mesh_tool"],
+    "common/io": [".", "probes", "cut"],
     "common/linalg": ["lazy", "lanes", ".", "multigrid", "poisson"],
 }
 

@@ -7,6 +7,7 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/config/leaves.hpp"
+#include "common/io/cut/cut_mesh.hpp"
 #include "common/mesh/gmsh/geo_script.hpp"
 #include "common/mesh/gmsh/meshio.hpp"
 #include "common/mesh/load.hpp"
@@ -49,9 +50,12 @@ class FileCheck {
         check_patches(mesh::read_inp(file).patches);
       } else if (file.extension() == ".geo") {
         check_geo(mesh::read_geo(file));
+      } else if (io::is_cut_mesh(file)) {
+        check_patches(io::read_cut_mesh_facts(file).patches);
       } else if (const std::string kind = file.extension().string();
                  kind != ".unv" && kind != ".cgns" && !mesh::is_read_by_meshio(kind)) {
-        report("mesh", fmt::format("'{}' is not a .msh, .geo, .inp, .unv, .med, .exo or .cgns file.", name));
+        report("mesh",
+               fmt::format("'{}' is not a .msh, .geo, .inp, .unv, .med, .exo, .cgns or .h5 file.", name));
       }
     } catch (const Error& error) {
       report("mesh", error.what());

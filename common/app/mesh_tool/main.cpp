@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <mpi.h>
+#include <sys/resource.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "common/base/error.hpp"
+#include "common/io/cut/cut_mesh.hpp"
+#include "common/io/cut/load_mesh.hpp"
+#include "common/linalg/petsc_environment.hpp"
+#include "common/mesh/distributed/box_block.hpp"
+#include "common/mesh/gmsh/gmsh.hpp"
+#include "common/mesh/gmsh/mesh_facts.hpp"
+#include "common/parallel/collective.hpp"
+#include "common/parallel/mpi_start.hpp"
+
+namespace {
+
+using namespace couplet;
+namespace fs = std::filesystem;
+
+struct Words {
+  fs::path file, output;
+  std::array<GlobalIndex, 3> cells{1, 1, 1};
+  std::array<double, 3> length{1, 1, 1};
+  bool tetrahedra = false;
+  int dimension = 3;
+};
+
+/// Of this process so far [MB].
+double peak_memory() {
+  rusage used{};
+  ::getrusage(RUSAGE_SELF, &used);
+  return double(used.ru_maxrss) / 1024;
+}
+
+void cut(MPI_Comm comm, const Words& words) {
+  if (parallel::comm_size(comm) > 1)
+    throw Error("A mesh is cut by one process, which reads it as a whole. Start mesh_tool without mpirun.");
+  io::write_cut_mesh(comm, mesh::block_of(comm, mesh::read_finished_mesh(words.file)), words.output);
+}
+
+void box(MPI_Comm comm, const Words& words) {
+  mesh::BlockedBox box;
+  box.tetrahedra = words.tetrahedra;
+  box.n = words.cells;
+  box.upper = Vec3(words.length[0], words.length[1], words.length[2]);
+  io::write_cut_mesh(comm, mesh::box_block(comm, box), words.output);
+}
+
+/// Opens a mesh as the programs do and tells what it took.
+void open(MPI_Comm comm, const Words& words) {
+  const auto petsc = linalg::petsc_environment(comm);
+  const double start = MPI_Wtime(), before = peak_memory();
+  const mesh::LoadedMesh loaded = io::load_mesh(comm, words.file, words.dimension);
+  const double seconds = parallel::max(comm, MPI_Wtime() - start), after = peak_memory();
+  const double cells = loaded.mesh.cells.n_owned(), local = loaded.mesh.cells.n_local();
+  const double most = parallel::max(comm, cells), sum = parallel::sum(comm, cells);
+  const double copies = parallel::sum(comm, local) / sum - 1;
+  const double peaks = parallel::sum(comm, after), peak = parallel::max(comm, after),
+               base = parallel::sum(comm, before);
+  if (parallel::comm_rank(comm) == 0)
+    std::printf(
+        "%d ranks, %.0f cells, at most %.0f a rank, copies %.3f; %.2f s; peak of memory %.1f MB over all ranks, %.1f MB on "
+        "one, of which %.1f MB were there before\n",
+        parallel::comm_size(comm), sum, most, copies, seconds, peaks, peak, base);
+}
+
+int run(int argc, char** argv) {
+  Words words;
+  CLI::App app("makes meshes that any number of ranks opens at once, and opens them");
+  app.require_subcommand(1);
+  CLI::App* of_file = app.add_subcommand("cut", "writes a mesh (.msh, .inp, ...) as a cut mesh");
+  of_file->add_option("file", words.file)->required();
+  CLI::App* of_box = app.add_subcommand("box", "writes a box, each rank its block");
+  of_box->add_option("--cells", words.cells, "hexahedra along x, y, z")->required();
+  of_box->add_option("--length", words.length, "[m]");
+  of_box->add_flag("--tetrahedra", words.tetrahedra, "cuts each hexahedron into six");
+  for (CLI::App* writer : {of_file, of_box})
+    writer->add_option("-o,--output", words.output, "the cut mesh, .h5")->required();
+  CLI::App* opening = app.add_subcommand("open", "opens a mesh as the programs do; prints time and memory");
+  opening->add_option("file", words.file)->required();
+  opening->add_option("--dimension", words.dimension);
+  CLI11_PARSE(app, argc, argv);
+  if (!*opening && words.output.extension() != ".h5")
+    throw Error("The cut mesh '{}' must be named .h5, by which programs know it.", words.output.string());
+  (*of_file ? cut : *of_box ? box : open)(MPI_COMM_WORLD, words);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  parallel::prepare_mpi_start();
+  MPI_Init(&argc, &argv);
+  int code = 1;
+  try {
+    code = run(argc, argv);
+  } catch (const std::exception& error) {
+    int rank = parallel::comm_rank(MPI_COMM_WORLD);
+    if (rank == 0) std::fprintf(stderr, "mesh_tool: %s\n", error.what());
+  }
+  MPI_Finalize();
+  return code;
+}

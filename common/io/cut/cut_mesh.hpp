@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mpi.h>
+
+#include <filesystem>
+
+#include "common/mesh/distributed/mesh_block.hpp"
+
+namespace couplet::io {
+
+/// What a cut mesh tells of itself without being read.
+struct CutMeshFacts {
+  int dim = 3;
+  GlobalIndex cells = 0;
+  Vec3 size = Vec3::Zero();  ///< of the box around its points [m]
+  double shortest_edge = 0;  ///< of a cell, diagonals included [m]
+  std::vector<std::string> patches;
+};
+
+/// Whether the name says so: it ends in .h5.
+bool is_cut_mesh(const std::filesystem::path& file);
+
+/// Writes the blocks of a mesh into one HDF5 file, under another name until it is complete; see docs/formats.md. Points
+/// that no cell has must not be among them. Collective.
+void write_cut_mesh(MPI_Comm comm, const mesh::MeshBlock& block, const std::filesystem::path& file);
+
+/// Reads this rank's block, whatever number of ranks wrote the file. Throws Error, on all ranks, for a file that is
+/// damaged or of another version. Collective.
+mesh::MeshBlock read_cut_mesh(MPI_Comm comm, const std::filesystem::path& file);
+
+/// On this rank alone.
+CutMeshFacts read_cut_mesh_facts(const std::filesystem::path& file);
+
+}  // namespace couplet::io

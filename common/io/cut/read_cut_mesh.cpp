@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/io/cut/cut_mesh_format.hpp"
+#include "common/io/rehearse.hpp"
+#include "common/mesh/cell_shapes.hpp"
+#include "common/mesh/on_root.hpp"
+
+namespace couplet::io {
+namespace {
+
+constexpr const char* what = "cut mesh";
+constexpr const char* advice = "Write it again with 'couplet mesh cut'.";
+
+/// A whole number of an attribute, at most `most`.
+std::uint64_t whole_number(const hdf5::Reader& in, const char* name, double most) {
+  const double value = in.number("/", name);
+  if (!(value >= 0) || value > most || value != std::floor(value))
+    in.refuse(
+        fmt::format("its attribute '{}' is {}; expected a whole number from 0 to {}", name, value, most));
+  return static_cast<std::uint64_t>(value);
+}
+
+/// Refuses what is no cut mesh of this version.
+hdf5::Reader open_cut_mesh(const std::filesystem::path& file) {
+  hdf5::Reader in(file, what, advice);
+  if (!in.has_attribute("/", cut::version_name))
+    in.refuse("it is an HDF5 file, but no cut mesh (it has no 'cut-mesh-version')");
+  const double version = in.number("/", cut::version_name);
+  if (version != cut::version)
+    in.refuse(fmt::format("it is of version {}; this program reads version {}", version, cut::version));
+  return in;
+}
+
+std::vector<std::string> names_of(const hdf5::Reader& in, const std::string& kind) {
+  constexpr double most = 100000;
+  std::vector<std::string> names;
+  const std::uint64_t n = whole_number(in, (kind + "s").c_str(), most);
+  for (std::uint64_t i = 0; i < n; ++i)
+    names.push_back(in.text("/", fmt::format("{}-{}", kind, i), cut::longest_name));
+  return names;
+}
+
+/// Reads the block of one rank; the digests of its rows are summed up for all ranks to compare.
+class CutMeshBlock {
+ public:
+  CutMeshBlock(const std::filesystem::path& file, int rank, int ranks)
+      : in_(open_cut_mesh(file)), rank_(rank), ranks_(ranks) {}
+
+  mesh::MeshBlock read() {
+    block_.dim = whole_number(in_, cut::dimension_name, 3) == 2 ? 2 : 3;
+    block_.zones = names_of(in_, "zone");
+    block_.patches = names_of(in_, "patch");
+    read_points();
+    read_cells();
+    read_boundary();
+    return std::move(block_);
+  }
+
+  /// Of each table that was read: its name, the digest of this rank's rows, and what all should give.
+  struct Digest {
+    const char* table;
+    std::uint64_t here;
+    std::string wanted;
+  };
+  std::vector<Digest> digests;
+
+ private:
+  template <class T>
+  std::vector<T> rows(const char* table, std::uint64_t first, std::uint64_t count, std::uint64_t width) {
+    std::vector<T> values(count * width);
+    in_.read(table, {first, count, in_.rows(table, width), width}, values.data());
+    return values;
+  }
+  template <class T>
+  void add_digest(const char* table, std::span<const T> values, std::uint64_t first) {
+    digests.push_back({table, cut::digest_of(values, first), in_.text(table, "digest", 16)});
+  }
+
+  void read_points() {
+    block_.point_shares = {GlobalIndex(in_.rows(cut::points_table, 3)), ranks_};
+    const auto first = std::uint64_t(block_.point_shares.first(rank_));
+    const std::vector<double> x =
+        rows<double>(cut::points_table, first, std::uint64_t(block_.point_shares.count(rank_)), 3);
+    add_digest<double>(cut::points_table, x, 3 * first);
+    for (std::size_t i = 0; i < x.size(); i += 3) block_.points.emplace_back(x[i], x[i + 1], x[i + 2]);
+  }
+
+  void read_cells() {
+    mesh::CellList& cells = block_.cells;
+    block_.cell_shares = {GlobalIndex(in_.rows(cut::kind_table, 1)), ranks_};
+    const auto first = std::uint64_t(block_.cell_shares.first(rank_)),
+               n = std::uint64_t(block_.cell_shares.count(rank_));
+    const std::vector<std::int64_t> kinds = rows<std::int64_t>(cut::kind_table, first, n, 1);
+    add_digest<std::int64_t>(cut::kind_table, kinds, first);
+    const std::vector<std::int64_t> starts = rows<std::int64_t>(cut::first_table, first, n + 1, 1);
+    const bool is_last = rank_ == ranks_ - 1;
+    add_digest<std::int64_t>(cut::first_table, std::span(starts).first(n + (is_last ? 1 : 0)), first);
+    for (std::uint64_t c = 0; c < n; ++c) {
+      const auto type = kinds[c] & 0xff, zone = kinds[c] >> 8;
+      if (type > std::int64_t(mesh::CellType::pyramid) || zone < 0 || zone >= std::ssize(block_.zones))
+        in_.refuse(fmt::format("cell {} has an unknown type or zone", first + c));
+      cells.type.push_back(mesh::CellType(type));
+      cells.zone.push_back(static_cast<int>(zone));
+      if (starts[c + 1] - starts[c] != mesh::shape_of(cells.type.back()).n_points)
+        in_.refuse(fmt::format("cell {} has not as many points as a {}", first + c,
+                               mesh::name_of(cells.type.back())));
+      cells.point_offset.push_back(cells.point_offset.back() + mesh::shape_of(cells.type.back()).n_points);
+    }
+    const auto from = std::uint64_t(starts.front());
+    cells.points =
+        rows<std::int64_t>(cut::cell_points_table, from, std::uint64_t(cells.point_offset.back()), 1);
+    add_digest<std::int64_t>(cut::cell_points_table, cells.points, from);
+    for (const GlobalIndex p : cells.points) check_point(p, "a cell");
+  }
+
+  void read_boundary() {
+    const std::uint64_t width = cut::element_width(block_.dim);
+    const mesh::Shares shares{GlobalIndex(in_.rows(cut::element_patch_table, 1)), ranks_};
+    const auto first = std::uint64_t(shares.first(rank_)), n = std::uint64_t(shares.count(rank_));
+    const std::vector<std::int64_t> patches = rows<std::int64_t>(cut::element_patch_table, first, n, 1),
+                                    points = rows<std::int64_t>(cut::element_points_table, first, n, width);
+    add_digest<std::int64_t>(cut::element_patch_table, patches, first);
+    add_digest<std::int64_t>(cut::element_points_table, points, first * width);
+    for (std::uint64_t e = 0; e < n; ++e) {
+      if (patches[e] < 0 || patches[e] >= std::ssize(block_.patches))
+        in_.refuse(fmt::format("boundary face {} has an unknown patch", first + e));
+      std::span<const std::int64_t> element = std::span(points).subspan(e * width, width);
+      if (width == 4 && element[3] == -1) element = element.first(3);
+      for (const GlobalIndex p : element) check_point(p, "a boundary face");
+      block_.push_element(static_cast<int>(patches[e]), element);
+    }
+  }
+
+  void check_point(GlobalIndex p, const char* of) const {
+    if (p < 0 || p >= block_.point_shares.n)
+      in_.refuse(fmt::format("{} has the point {}, but there are {}", of, p, block_.point_shares.n));
+  }
+
+  hdf5::Reader in_;
+  int rank_, ranks_;
+  mesh::MeshBlock block_;
+};
+
+CutMeshFacts facts_in(const std::filesystem::path& file) {
+  const hdf5::Reader in = open_cut_mesh(file);
+  CutMeshFacts facts;
+  facts.dim = whole_number(in, cut::dimension_name, 3) == 2 ? 2 : 3;
+  facts.cells = GlobalIndex(in.rows(cut::kind_table, 1));
+  for (int a = 0; a < 3; ++a) facts.size[a] = in.number("/", fmt::format("size-{}", "xyz"[a]));
+  facts.shortest_edge = in.number("/", cut::edge_name);
+  facts.patches = names_of(in, "patch");
+  return facts;
+}
+
+/// What HDF5 does with the file, tried elsewhere: the first and last of very many blocks.
+void rehearse_cut_mesh(const std::filesystem::path& file) {
+  rehearse(file, what, [&] {
+    const GlobalIndex cells = std::max<GlobalIndex>(1, facts_in(file).cells);
+    const int blocks = static_cast<int>(std::min<GlobalIndex>(cells, 1000000));
+    for (const int block : {0, blocks - 1}) CutMeshBlock(file, block, blocks).read();
+  });
+}
+
+}  // namespace
+
+bool is_cut_mesh(const std::filesystem::path& file) { return file.extension() == ".h5"; }
+
+mesh::MeshBlock read_cut_mesh(MPI_Comm comm, const std::filesystem::path& file) {
+  mesh::on_root(comm, [&] { rehearse_cut_mesh(file); });
+  mesh::MeshBlock block;
+  std::vector<CutMeshBlock::Digest> digests;
+  mesh::on_all(comm, [&] {
+    CutMeshBlock reader(file, parallel::comm_rank(comm), parallel::comm_size(comm));
+    block = reader.read();
+    digests = reader.digests;
+  });
+  for (const CutMeshBlock::Digest& digest : digests) {
+    std::uint64_t all = digest.here;
+    MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_UINT64_T, MPI_SUM, comm);
+    if (fmt::format("{:016x}", all) != digest.wanted)
+      hdf5::Reader(file, what, advice)
+          .refuse(fmt::format("the table '{}' is damaged: its digest differs", digest.table));
+  }
+  return block;
+}
+
+CutMeshFacts read_cut_mesh_facts(const std::filesystem::path& file) {
+  CutMeshFacts facts;
+  rehearse(file, what, [&] { facts_in(file); });
+  return facts_in(file);
+}
+
+}  // namespace couplet::io

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/mesh/distributed/block_faces.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+#include "common/base/error.hpp"
+#include "common/mesh/distributed/match_faces.hpp"
+#include "common/mesh/half_faces.hpp"
+#include "common/mesh/on_root.hpp"
+#include "common/mesh/topology.hpp"
+
+namespace couplet::mesh {
+namespace {
+
+/// Box around the points of all blocks: its diagonal.
+double diagonal_of_all(MPI_Comm comm, const std::vector<Vec3>& points) {
+  Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
+  for (const Vec3& x : points) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  for (int a = 0; a < 3; ++a) low[a] = parallel::min(comm, low[a]), high[a] = parallel::max(comm, high[a]);
+  return (high - low).norm();
+}
+
+/// Record of a cell of another block, or of this one.
+struct RecordOfCell {
+  GlobalIndex cell;
+  FaceRecord record;
+};
+
+class BlockFaces {
+ public:
+  BlockFaces(MPI_Comm comm, MeshBlock& block)
+      : comm_(comm), block_(block), first_cell_(block.cell_shares.first(parallel::comm_rank(comm))) {}
+
+  BlockGraph build() {
+    const GlobalIndex before = parallel::exclusive_scan(comm_, GlobalIndex(block_.n_elements()));
+    const std::vector<GlobalIndex> first_element =
+        parallel::all_gather(comm_, std::vector<GlobalIndex>{before});
+    match_within_block(before);
+    MatchedFaces matched = match_faces(comm_, block_, sides_, first_element);
+    sides_ = {};
+    number_boundary(matched.bounded, before);
+    block_.element_points = {}, block_.element_offset = {0}, block_.element_patch = {};
+    split_materials_of(matched.pairs);
+    fill_graph(matched.pairs);
+    fill_records();
+    return std::move(graph_);
+  }
+
+ private:
+  /// Numbers of this block's points, as far as its cells use them, and cells turned right side out.
+  RawMesh local_cells() {
+    CellList& cells = block_.cells;
+    const PointNumbers numbers(cells.points);
+    RawMesh raw;
+    raw.dim = block_.dim;
+    raw.cell_type = cells.type;
+    raw.cell_points.offset = cells.point_offset;
+    raw.cell_points.index.reserve(cells.points.size());
+    for (const GlobalIndex p : cells.points) raw.cell_points.index.push_back(numbers.place(p));
+    raw.points = fetch(comm_, block_.point_shares, std::span<const Vec3>(block_.points), numbers.numbers());
+    const double diagonal = block_.dim == 2 ? diagonal_of_all(comm_, block_.points) : 0;
+    on_all(comm_, [&] {
+      if (cells.size() > 0) orient_cells(raw, first_cell_);
+      if (block_.dim == 2) check_plane(raw.points, diagonal);
+    });
+    for (std::size_t i = 0; i < cells.points.size(); ++i)
+      cells.points[i] = numbers.numbers()[raw.cell_points.index[i]];
+    return raw;
+  }
+
+  std::vector<GlobalIndex> face_points(Index cell, int face) const {
+    const CellShape& shape = shape_of(block_.cells.type[cell]);
+    std::vector<GlobalIndex> points;
+    for (int i = 0; i < shape.face_size(face); ++i)
+      points.push_back(block_.cells.points_of(cell)[shape.faces[face][i]]);
+    return points;
+  }
+
+  FaceSide side_of(const HalfFace& half) const {
+    return make_side(face_points(half.cell, half.face), first_cell_ + half.cell, block_.cells.zone[half.cell],
+                     half.face);
+  }
+
+  void match_within_block(GlobalIndex first_element) {
+    const RawMesh raw = local_cells();
+    material_of_zone_ = materials_of_zones();
+    HalfFaces halves(raw, false);
+    // A face of three cells or more is refused here if they are all in this block, and else where the parts are put together.
+    FaceFaults faults;
+    halves.for_each_face([&](std::span<const HalfFace> cells, std::span<const HalfFace>) {
+      if (cells.size() == 1) {
+        sides_.push_back(side_of(cells[0]));
+      } else if (cells.size() > 2) {
+        faults.faults.push_back({side_of(cells[0]).key, [n = cells.size()](const std::string& at) {
+                                   return face_of_many_cells(n, at);
+                                 }});
+      } else {
+        within_.emplace_back(cells[0].cell, cells[1].cell);
+        if (is_bonded(block_.cells.zone[cells[0].cell], block_.cells.zone[cells[1].cell]))
+          bonded_.push_back(make_pair(side_of(cells[0]), side_of(cells[1])));
+      }
+    });
+    throw_face_faults(comm_, block_, faults);
+    for (Index e = 0; e < block_.n_elements(); ++e)
+      sides_.push_back(make_side(block_.element(e), -1 - (first_element + e), block_.element_patch[e], 0));
+  }
+
+  /// Empty with fewer than two materials.
+  std::vector<int> materials_of_zones() const {
+    RawMesh names;  // one cell of each zone
+    names.dim = block_.dim, names.zones = block_.zones, names.materials = block_.materials;
+    for (std::size_t z = 0; z < block_.zones.size(); ++z) names.cell_zone.push_back(static_cast<int>(z));
+    return materials_of_cells(names);
+  }
+
+  bool is_bonded(int zone, int other) const {
+    return !material_of_zone_.empty() && material_of_zone_[zone] != material_of_zone_[other];
+  }
+
+  /// Boundary faces are numbered in the order of their elements; of elements that are there twice the first counts.
+  void number_boundary(const std::vector<BoundedCell>& bounded, GlobalIndex first_element) {
+    GlobalIndex number = parallel::exclusive_scan(comm_, GlobalIndex(bounded.size()));
+    n_boundary_ = parallel::sum(comm_, GlobalIndex(bounded.size()));
+    for (const BoundedCell& b : bounded)
+      records_.push_back({b.cell, {b.face, 0, block_.element_patch[b.element - first_element], number++}});
+  }
+
+  /// Two boundary faces of each face between two materials, numbered by the cells of the face.
+  void split_materials_of(const std::vector<FacePair>& pairs) {
+    for (const FacePair& p : pairs)
+      if (p.cell < p.other && is_bonded(block_.cells.zone[p.cell - first_cell_], p.other_zone))
+        bonded_.push_back(p);
+    if (parallel::sum(comm_, GlobalIndex(bonded_.size())) == 0) return;
+    std::ranges::sort(bonded_, {}, [](const FacePair& p) { return std::pair(p.cell, p.other); });
+    graph_.first_bonded = n_boundary_;
+    GlobalIndex number = n_boundary_ + 2 * parallel::exclusive_scan(comm_, GlobalIndex(bonded_.size()));
+    const int patch = static_cast<int>(block_.patches.size());
+    for (const FacePair& p : bonded_) {
+      records_.push_back({p.cell, {p.face, 0, patch, number++}});
+      records_.push_back(
+          {p.other, {p.other_face, block_.dim == 2 ? std::int8_t(0) : p.turn, patch, number++}});
+    }
+  }
+
+  void fill_graph(const std::vector<FacePair>& pairs) {
+    graph_.offset.assign(block_.cells.size() + 1, 0);
+    for (const auto& [a, b] : within_) ++graph_.offset[a + 1], ++graph_.offset[b + 1];
+    for (const FacePair& p : pairs) ++graph_.offset[p.cell - first_cell_ + 1];
+    std::partial_sum(graph_.offset.begin(), graph_.offset.end(), graph_.offset.begin());
+    graph_.neighbours.resize(graph_.offset.back());
+    std::vector<Index> next(graph_.offset.begin(), graph_.offset.end() - 1);
+    for (const auto& [a, b] : within_) {
+      graph_.neighbours[next[a]++] = first_cell_ + b;
+      graph_.neighbours[next[b]++] = first_cell_ + a;
+    }
+    within_ = {};
+    for (const FacePair& p : pairs) graph_.neighbours[next[p.cell - first_cell_]++] = p.other;
+    for (Index c = 0; c < block_.cells.size(); ++c)
+      std::sort(graph_.neighbours.begin() + graph_.offset[c],
+                graph_.neighbours.begin() + graph_.offset[c + 1]);
+  }
+
+  void fill_records() {
+    const auto at_cell = [&](const RecordOfCell& r) { return block_.cell_shares.rank_of(r.cell); };
+    std::vector<RecordOfCell> all =
+        parallel::exchange(comm_, parallel::sort_by_rank(comm_, records_, at_cell)).items;
+    records_ = {};
+    std::ranges::sort(all, {}, [](const RecordOfCell& r) { return std::pair(r.cell, r.record.face); });
+    CellList& cells = block_.cells;
+    cells.record_offset.assign(1, 0);
+    auto at = all.begin();
+    for (Index c = 0; c < cells.size(); ++c) {
+      for (; at != all.end() && at->cell == first_cell_ + c; ++at) cells.records.push_back(at->record);
+      cells.record_offset.push_back(static_cast<Index>(cells.records.size()));
+    }
+  }
+
+  MPI_Comm comm_;
+  MeshBlock& block_;
+  GlobalIndex first_cell_, n_boundary_ = 0;
+  std::vector<int> material_of_zone_;
+  std::vector<FaceSide> sides_;                  // without another side in this block
+  std::vector<std::pair<Index, Index>> within_;  // cells of this block that share a face
+  std::vector<FacePair> bonded_;                 // as the cell with the smaller number sees them
+  std::vector<RecordOfCell> records_;
+  BlockGraph graph_;
+};
+
+}  // namespace
+
+BlockGraph find_block_faces(MPI_Comm comm, MeshBlock& block) { return BlockFaces(comm, block).build(); }
+
+}  // namespace couplet::mesh

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "common/mesh/mesh.hpp"
+
+namespace couplet::mesh {
+
+/// What one face of a cell is that no other cell shares, or that is bonded.
+struct FaceRecord {
+  std::int8_t face = 0;  ///< position among the faces of the cell's shape
+  std::int8_t turn = 0;  ///< bonded: which of the cell's points of the face comes first
+  int patch = 0;
+  GlobalIndex number = 0;  ///< of the boundary face
+};
+
+/// Cells with numbers of the mesh, as they travel from rank to rank.
+struct CellList {
+  std::vector<GlobalIndex> id;
+  std::vector<CellType> type;
+  std::vector<int> zone;
+  std::vector<GlobalIndex> points;
+  std::vector<Index> point_offset{0};
+  std::vector<FaceRecord> records;
+  std::vector<Index> record_offset{0};
+
+  Index size() const { return static_cast<Index>(type.size()); }
+  std::span<const GlobalIndex> points_of(Index c) const {
+    return {points.data() + point_offset[c], std::size_t(point_offset[c + 1] - point_offset[c])};
+  }
+  std::span<const FaceRecord> records_of(Index c) const {
+    return {records.data() + record_offset[c], std::size_t(record_offset[c + 1] - record_offset[c])};
+  }
+  /// Cell `c` of another list, under the number `number`.
+  void push(const CellList& other, Index c, GlobalIndex number);
+};
+
+/// Numbers that a packed cell takes.
+std::size_t packed_size(const CellList& cells, Index c);
+/// Writes a cell under the number `id`; gives the end of what is written.
+GlobalIndex* pack(const CellList& cells, Index c, GlobalIndex id, GlobalIndex* to);
+/// Appends all cells that are packed there.
+void unpack(std::span<const GlobalIndex> packed, CellList& cells);
+
+/// The cells in ascending order of their numbers, each once.
+CellList sorted(const CellList& cells);
+
+/// Numbers of points in ascending order, each once, and the place of each there.
+class PointNumbers {
+ public:
+  explicit PointNumbers(std::span<const GlobalIndex> all);
+  const std::vector<GlobalIndex>& numbers() const { return numbers_; }
+  /// Of a number that is among them.
+  Index place(GlobalIndex number) const;
+
+ private:
+  std::vector<GlobalIndex> numbers_;
+  std::vector<Index>
+      table_;  // by number, from the smallest; empty where there would be many more than there are numbers
+};
+
+}  // namespace couplet::mesh

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/mesh/distributed/surroundings.hpp"
+
+#include <algorithm>
+
+namespace couplet::mesh {
+namespace {
+
+using Shipments = std::vector<std::pair<int, Index>>;  // to which rank, which cell
+
+/// Sends cells under the numbers that `number` gives; what comes is unpacked by rank. Collective.
+template <class Number>
+parallel::Parcels<GlobalIndex> ship(MPI_Comm comm, const CellList& cells, const Shipments& shipments,
+                                    Number&& number) {
+  std::vector<std::size_t> size(parallel::comm_size(comm), 0);
+  for (const auto& [rank, c] : shipments) size[rank] += packed_size(cells, c);
+  auto out = parallel::make_parcels<GlobalIndex>(size);
+  std::vector<GlobalIndex*> next;
+  for (std::size_t r = 0; r < size.size(); ++r) next.push_back(out.items.data() + out.first[r]);
+  for (const auto& [rank, c] : shipments) next[rank] = pack(cells, c, number(c), next[rank]);
+  return parallel::exchange(comm, out);
+}
+
+void sort_once(Shipments& shipments) {
+  std::ranges::sort(shipments);
+  shipments.erase(std::ranges::unique(shipments).begin(), shipments.end());
+}
+
+/// Sends own cells to other ranks and takes in, beside what is there, what comes. Collective.
+void exchange_cells(MPI_Comm comm, const Shipments& shipments, LocalCells& local) {
+  const auto come = ship(comm, local.cells, shipments, [&](Index c) { return local.cells.id[c]; });
+  CellList all = std::move(local.cells);
+  std::vector<std::pair<GlobalIndex, int>> owners;
+  for (Index c = 0; c < all.size(); ++c) owners.emplace_back(all.id[c], local.owner[c]);
+  for (int r = 0; r < parallel::comm_size(comm); ++r) {
+    const Index before = all.size();
+    unpack(come.of(r), all);
+    for (Index c = before; c < all.size(); ++c) owners.emplace_back(all.id[c], r);
+  }
+  local.cells = sorted(all);
+  std::ranges::sort(owners);
+  owners.erase(std::ranges::unique(owners).begin(), owners.end());
+  local.owner.clear();
+  for (const auto& [id, rank] : owners) local.owner.push_back(rank);
+}
+
+}  // namespace
+
+CellList send_to_owners(MPI_Comm comm, const MeshBlock& block, std::span<const int> part) {
+  Shipments shipments;
+  for (Index c = 0; c < block.cells.size(); ++c) shipments.emplace_back(part[c], c);
+  const GlobalIndex first = block.cell_shares.first(parallel::comm_rank(comm));
+  CellList cells;
+  // Blocks hold ascending numbers, rank by rank: what comes is in order.
+  unpack(ship(comm, block.cells, shipments, [&](Index c) { return first + c; }).items, cells);
+  return cells;
+}
+
+LocalCells with_one_ring(MPI_Comm comm, CellList own, const std::vector<GlobalIndex>& own_points,
+                         const PointDirectory& directory) {
+  const int rank = parallel::comm_rank(comm);
+  const Csr ranks = directory.ranks_at(own_points);
+  std::vector<GlobalIndex> shared;
+  Csr sharers;
+  for (std::size_t i = 0; i < own_points.size(); ++i)
+    if (ranks[Index(i)].size() > 1) {
+      shared.push_back(own_points[i]);
+      sharers.push_row(ranks[Index(i)]);
+    }
+  Shipments shipments;
+  for (Index c = 0; c < own.size() && !shared.empty(); ++c)
+    for (const GlobalIndex p : own.points_of(c)) {
+      const auto at = std::ranges::lower_bound(shared, p);
+      if (at == shared.end() || *at != p) continue;
+      for (const int r : sharers[Index(at - shared.begin())])
+        if (r != rank) shipments.emplace_back(r, c);
+    }
+  sort_once(shipments);
+  LocalCells local{std::move(own), {}};
+  local.owner.assign(local.cells.size(), rank);
+  exchange_cells(comm, shipments, local);
+  return local;
+}
+
+void add_cells_at(MPI_Comm comm, const std::vector<GlobalIndex>& points, const PointDirectory& directory,
+                  LocalCells& local) {
+  const int rank = parallel::comm_rank(comm);
+  const Csr ranks = directory.ranks_at(points);
+  std::vector<std::size_t> count(parallel::comm_size(comm), 0);
+  for (const Index r : ranks.index) count[r] += r != rank;
+  auto wanted = parallel::make_parcels<GlobalIndex>(count);
+  std::vector<std::size_t> next(wanted.first.begin(), wanted.first.end() - 1);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (const Index r : ranks[Index(i)])
+      if (r != rank) wanted.items[next[r]++] = points[i];
+  const auto asked = parallel::exchange(comm, wanted);
+  Shipments shipments;
+  for (int r = 0; r < parallel::comm_size(comm); ++r) {
+    const auto of_rank = asked.of(r);  // ascending
+    if (of_rank.empty()) continue;
+    for (Index c = 0; c < local.cells.size(); ++c)
+      if (local.owner[c] == rank && std::ranges::any_of(local.cells.points_of(c), [&](GlobalIndex p) {
+            return std::ranges::binary_search(of_rank, p);
+          }))
+        shipments.emplace_back(r, c);
+  }
+  exchange_cells(comm, shipments, local);
+}
+
+}  // namespace couplet::mesh

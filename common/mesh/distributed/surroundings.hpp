@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/mesh/distributed/mesh_block.hpp"
+#include "common/mesh/distributed/point_directory.hpp"
+
+namespace couplet::mesh {
+
+/// This rank's cells and copies of those around them.
+struct LocalCells {
+  CellList cells;          ///< in ascending order of their numbers
+  std::vector<int> owner;  ///< rank that owns each
+};
+
+/// The cells of the blocks to the ranks that own them (`part`, of each cell of the block), in ascending order. Collective.
+CellList send_to_owners(MPI_Comm comm, const MeshBlock& block, std::span<const int> part);
+
+/// Own cells and one ring of copies: the cells of other ranks that share a point with an own one. Collective.
+LocalCells with_one_ring(MPI_Comm comm, CellList own, const std::vector<GlobalIndex>& own_points,
+                         const PointDirectory& directory);
+
+/// Adds the cells of other ranks that have one of these points, ascending. Collective.
+void add_cells_at(MPI_Comm comm, const std::vector<GlobalIndex>& points, const PointDirectory& directory,
+                  LocalCells& local);
+
+}  // namespace couplet::mesh
