@@ -4,15 +4,16 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 
 #include "common/base/error.hpp"
+#include "common/base/text.hpp"
 #include "common/io/cut/cut_mesh.hpp"
 #include "common/io/cut/load_mesh.hpp"
 #include "common/linalg/petsc_environment.hpp"
 #include "common/mesh/distributed/box_block.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
-#include "common/mesh/gmsh/mesh_facts.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/parallel/mpi_start.hpp"
 
@@ -27,6 +28,7 @@ struct Words {
   std::array<double, 3> length{1, 1, 1};
   bool tetrahedra = false;
   int dimension = 3;
+  mesh::MeshParameters parameters;
 };
 
 /// Of this process so far [MB].
@@ -39,7 +41,11 @@ double peak_memory() {
 void cut(MPI_Comm comm, const Words& words) {
   if (parallel::comm_size(comm) > 1)
     throw Error("A mesh is cut by one process, which reads it as a whole. Start mesh_tool without mpirun.");
-  io::write_cut_mesh(comm, mesh::block_of(comm, mesh::read_finished_mesh(words.file)), words.output);
+  const mesh::MeshBlock block =
+      mesh::block_of(comm, mesh::read_mesh(words.file, words.dimension, words.parameters));
+  io::write_cut_mesh(comm, block, words.output);
+  std::printf("%s: %lld cells, patches %s\n", words.output.c_str(),
+              static_cast<long long>(block.cells.size()), base::join(block.patches).c_str());
 }
 
 void box(MPI_Comm comm, const Words& words) {
@@ -68,12 +74,28 @@ void open(MPI_Comm comm, const Words& words) {
         parallel::comm_size(comm), sum, most, copies, seconds, peaks, peak, base);
 }
 
+/// NAME=VALUE.
+mesh::MeshParameters parameters_of(const std::vector<std::string>& assignments) {
+  mesh::MeshParameters parameters;
+  for (const std::string& text : assignments) {
+    const auto sign = text.find('=');
+    char* end = nullptr;
+    const double value = sign == std::string::npos ? 0 : std::strtod(text.c_str() + sign + 1, &end);
+    if (end == nullptr || *end != 0 || sign + 1 == text.size())
+      throw Error("--parameter {}: expected NAME=NUMBER.", text);
+    parameters[text.substr(0, sign)] = value;
+  }
+  return parameters;
+}
+
 int run(int argc, char** argv) {
   Words words;
+  std::vector<std::string> assignments;
   CLI::App app("makes meshes that any number of ranks opens at once, and opens them");
   app.require_subcommand(1);
-  CLI::App* of_file = app.add_subcommand("cut", "writes a mesh (.msh, .inp, ...) as a cut mesh");
+  CLI::App* of_file = app.add_subcommand("cut", "writes a mesh (.msh, .geo, .inp, ...) as a cut mesh");
   of_file->add_option("file", words.file)->required();
+  of_file->add_option("--parameter", assignments, "NAME=VALUE of the .geo; repeatable");
   CLI::App* of_box = app.add_subcommand("box", "writes a box, each rank its block");
   of_box->add_option("--cells", words.cells, "hexahedra along x, y, z")->required();
   of_box->add_option("--length", words.length, "[m]");
@@ -82,12 +104,28 @@ int run(int argc, char** argv) {
     writer->add_option("-o,--output", words.output, "the cut mesh, .h5")->required();
   CLI::App* opening = app.add_subcommand("open", "opens a mesh as the programs do; prints time and memory");
   opening->add_option("file", words.file)->required();
-  opening->add_option("--dimension", words.dimension);
-  CLI11_PARSE(app, argc, argv);
+  for (CLI::App* reader : {of_file, opening})
+    reader->add_option("--dimension", words.dimension, "of the mesh (3)")->check(CLI::Range(2, 3));
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
   if (!*opening && words.output.extension() != ".h5")
     throw Error("The cut mesh '{}' must be named .h5, by which programs know it.", words.output.string());
+  words.parameters = parameters_of(assignments);
   (*of_file ? cut : *of_box ? box : open)(MPI_COMM_WORLD, words);
   return 0;
+}
+
+/// Exit code; what is thrown is printed by rank 0.
+int run_or_report(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    if (parallel::comm_rank(MPI_COMM_WORLD) == 0) std::fprintf(stderr, "mesh_tool: %s\n", error.what());
+    return dynamic_cast<const Error*>(&error) != nullptr ? 2 : 1;
+  }
 }
 
 }  // namespace
@@ -95,13 +133,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   parallel::prepare_mpi_start();
   MPI_Init(&argc, &argv);
-  int code = 1;
-  try {
-    code = run(argc, argv);
-  } catch (const std::exception& error) {
-    int rank = parallel::comm_rank(MPI_COMM_WORLD);
-    if (rank == 0) std::fprintf(stderr, "mesh_tool: %s\n", error.what());
-  }
+  const int code = run_or_report(argc, argv);
   MPI_Finalize();
   return code;
 }

@@ -18,8 +18,7 @@ void MeshBlock::push_element(int patch, std::span<const GlobalIndex> points_of_e
   element_offset.push_back(static_cast<Index>(element_points.size()));
 }
 
-MeshBlock block_of(MPI_Comm comm, const RawMesh& whole) {
-  RawMesh raw = whole;
+MeshBlock block_of(MPI_Comm comm, RawMesh raw) {
   drop_unused_points(raw);
   const int ranks = parallel::comm_size(comm), rank = parallel::comm_rank(comm);
   MeshBlock block;

@@ -40,7 +40,7 @@ struct MeshBlock {
 };
 
 /// The block of this rank of a mesh that every rank has as a whole.
-MeshBlock block_of(MPI_Comm comm, const RawMesh& raw);
+MeshBlock block_of(MPI_Comm comm, RawMesh raw);
 
 /// From blocks to this rank's part: faces are matched, cells shared out by PT-Scotch and sent to their ranks, and what
 /// surrounds them fetched, all in parallel: no rank ever holds more than its block and its part with its surroundings.

@@ -35,4 +35,8 @@ bool gmsh_has(const std::string& library);
 /// A mesh that is finished: .msh, .inp, or of another program. Throws Error.
 RawMesh read_finished_mesh(const std::filesystem::path& file);
 
+/// That, or the mesh that gmsh makes of a .geo with these parameters. Throws Error if it has not `dim` dimensions. On this rank
+/// alone.
+RawMesh read_mesh(const std::filesystem::path& file, int dim, const MeshParameters& parameters);
+
 }  // namespace couplet::mesh

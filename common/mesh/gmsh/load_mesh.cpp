@@ -35,6 +35,40 @@ RawMesh read_finished_mesh(const std::filesystem::path& file) {
   return read_msh(convert_mesh(file));
 }
 
+RawMesh read_mesh(const std::filesystem::path& file, int dim, const MeshParameters& parameters) {
+  if (!std::filesystem::is_regular_file(file))
+    throw Error("The mesh file '{}' does not exist. The path is relative to the folder of the YAML file.",
+                file.string());
+  const std::string kind = file.extension().string();
+  const bool foreign = kind == ".unv" || kind == ".cgns" || is_read_by_meshio(kind);
+  if (kind == ".vtk")
+    throw Error(
+        "Cannot read the mesh file '{}': this format does not name its parts. Convert it with meshio to "
+        ".msh 4.1 with physical names, or export it as .unv, whose groups become patches and zones.",
+        file.string());
+  if (kind != ".msh" && kind != ".inp" && kind != ".geo" && !foreign)
+    throw Error(
+        "The mesh file '{}' is not a .msh, .geo, .inp, .unv, .med, .exo or .cgns file. Convert it with "
+        "gmsh or meshio to .msh 4.1 with physical names.",
+        file.string());
+  if (kind != ".geo" && !parameters.empty())
+    throw Error(
+        "The mesh '{}' is already meshed, so 'mesh-parameters' cannot change it. Remove them, or give the "
+        ".geo it was made from.",
+        file.string());
+  RawMesh raw = kind == ".geo" ? read_geo_mesh(file, dim, parameters) : read_finished_mesh(file);
+  if (raw.cell_type.empty())
+    throw Error(
+        "The mesh '{}' has no cells. Put the {} into a physical group; otherwise gmsh does not "
+        "save {}.",
+        file.string(), dim == 2 ? "surface" : "volume", dim == 2 ? "its triangles" : "its cells");
+  if (raw.dim != dim)
+    throw Error(
+        "The mesh '{}' is {}-dimensional, but the case sets 'dimension: {}'.{}", file.string(), raw.dim, dim,
+        dim == 3 ? " Put the volume into a physical group; otherwise gmsh does not save its cells." : "");
+  return raw;
+}
+
 LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
                      const MeshParameters& parameters,
                      const std::vector<std::array<std::string, 2>>& periodic,
@@ -42,38 +76,8 @@ LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
                      double scale) {
   RawMesh raw;
   on_root(comm, [&] {
-    if (!std::filesystem::is_regular_file(file))
-      throw Error("The mesh file '{}' does not exist. The path is relative to the folder of the YAML file.",
-                  file.string());
-    const std::string kind = file.extension().string();
-    const bool foreign = kind == ".unv" || kind == ".cgns" || is_read_by_meshio(kind);
-    if (kind == ".vtk")
-      throw Error(
-          "Cannot read the mesh file '{}': this format does not name its parts. Convert it with meshio to "
-          ".msh 4.1 with physical names, or export it as .unv, whose groups become patches and zones.",
-          file.string());
-    if (kind != ".msh" && kind != ".inp" && kind != ".geo" && !foreign)
-      throw Error(
-          "The mesh file '{}' is not a .msh, .geo, .inp, .unv, .med, .exo or .cgns file. Convert it with "
-          "gmsh or meshio to .msh 4.1 with physical names.",
-          file.string());
-    if (kind != ".geo" && !parameters.empty())
-      throw Error(
-          "The mesh '{}' is already meshed, so 'mesh-parameters' cannot change it. Remove them, or give the "
-          ".geo it was made from.",
-          file.string());
-    raw = kind == ".geo" ? read_geo_mesh(file, dim, parameters) : read_finished_mesh(file);
+    raw = read_mesh(file, dim, parameters);
     for (Vec3& x : raw.points) x *= scale;
-    if (raw.cell_type.empty())
-      throw Error(
-          "The mesh '{}' has no cells. Put the {} into a physical group; otherwise gmsh does not "
-          "save {}.",
-          file.string(), dim == 2 ? "surface" : "volume", dim == 2 ? "its triangles" : "its cells");
-    if (raw.dim != dim)
-      throw Error(
-          "The mesh '{}' is {}-dimensional, but the case sets 'dimension: {}'.{}", file.string(), raw.dim,
-          dim,
-          dim == 3 ? " Put the volume into a physical group; otherwise gmsh does not save its cells." : "");
     raw.periodic = periodic;
     raw.materials = materials;
     raw.find_wide_points = find_wide_points;

@@ -23,6 +23,7 @@ SUBCOMMANDS = {
     "plot": ("plot", "plots the results of a run"),
     "compare": ("command.compare", "lists the differences of two runs"),
     "study": ("study.main", "runs the study of a case: variants, error against time, the best of some variables"),
+    "mesh": ("command.mesh", "makes meshes that no rank has to hold, and opens them"),
     "export": ("command.export", "writes a case as input of CalculiX or OpenFOAM"),
     "accuracy": ("study.accuracy", "measures error against time of a case of the gallery"),
     "atlas": ("atlas.main", "maps where each scheme is stable"),
