@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <malloc.h>
+
 #include <algorithm>
 #include <numeric>
 
@@ -21,15 +23,8 @@ std::vector<GlobalIndex> in_mesh(std::vector<GlobalIndex> entries, const std::ve
 /// Cuts this rank's part out of the whole mesh, or out of a piece of it, whose numbers it has until the end.
 class LocalPart {
  public:
-  LocalPart(MPI_Comm comm, const WholeMesh& whole)
-      : comm_(comm),
-        rank_(parallel::comm_rank(comm)),
-        whole_(whole),
-        raw_(whole.raw),
-        faces_(whole.faces),
-        part_(whole.part),
-        cell_material_(whole.cell_material),
-        wide_points_(whole.wide_points) {}
+  LocalPart(MPI_Comm comm, WholeMesh&& whole)
+      : comm_(comm), rank_(parallel::comm_rank(comm)), whole_(std::move(whole)) {}
 
   /// The mesh and its points.
   std::pair<Mesh, std::vector<Vec3>> build() {
@@ -38,7 +33,9 @@ class LocalPart {
     mesh_.zones = raw_.zones;
     choose_cells();
     choose_points();
+    raw_.points = {};
     fill_cells();
+    raw_.cell_points = {}, raw_.cell_type = {}, raw_.cell_zone = {};
     fill_interior_faces();
     fill_boundary_faces();
     mesh_.cell_id = in_mesh(std::move(mesh_.cell_id), whole_.cell_number);
@@ -139,6 +136,7 @@ class LocalPart {
     mesh_.points = make_index_map(comm_, in_mesh(mesh_.point_id, whole_.point_number), n_owned, ghost_owner);
 
     point_local_.assign(raw_.points.size(), -1);
+    points_.reserve(mesh_.point_id.size());
     for (std::size_t i = 0; i < mesh_.point_id.size(); ++i) {
       point_local_[mesh_.point_id[i]] = static_cast<Index>(i);
       points_.push_back(raw_.points[mesh_.point_id[i]]);
@@ -153,7 +151,18 @@ class LocalPart {
     rows.offset.push_back(static_cast<Index>(rows.index.size()));
   }
 
+  /// Room for the rows of `chosen` and as many entries.
+  static void reserve(Csr& to, const Csr& from, const auto& chosen) {
+    std::size_t n = 0;
+    for (const auto row : chosen) n += from[static_cast<Index>(row)].size();
+    to.offset.reserve(chosen.size() + 1);
+    to.index.reserve(n);
+  }
+
   void fill_cells() {
+    reserve(mesh_.cell_points, raw_.cell_points, mesh_.cell_id);
+    mesh_.cell_type.reserve(mesh_.cell_id.size());
+    mesh_.cell_zone.reserve(mesh_.cell_id.size());
     for (const GlobalIndex c : mesh_.cell_id) {
       mesh_.cell_type.push_back(raw_.cell_type[c]);
       mesh_.cell_zone.push_back(raw_.cell_zone[c]);
@@ -171,6 +180,10 @@ class LocalPart {
       return std::pair(cell_local_[faces_.owner[f]], cell_local_[faces_.neighbour[f]]);
     };
     std::stable_sort(chosen.begin(), chosen.end(), [&](Index a, Index b) { return key(a) < key(b); });
+    const std::size_t all = chosen.size() + std::size_t(faces_.n_boundary());
+    reserve(mesh_.face_points, faces_.points, chosen);
+    mesh_.owner.reserve(all);
+    mesh_.neighbour.reserve(chosen.size());
     for (const Index f : chosen) {
       mesh_.owner.push_back(key(f).first);
       mesh_.neighbour.push_back(key(f).second);
@@ -240,12 +253,12 @@ class LocalPart {
 
   MPI_Comm comm_;
   int rank_;
-  const WholeMesh& whole_;
-  const RawMesh& raw_;
-  const Faces& faces_;
-  const std::vector<int>& part_;
-  const std::vector<int>& cell_material_;
-  const std::vector<Index>& wide_points_;
+  WholeMesh whole_;  // what the part has is given back as it goes
+  RawMesh& raw_ = whole_.raw;
+  const Faces& faces_ = whole_.faces;
+  const std::vector<int>& part_ = whole_.part;
+  const std::vector<int>& cell_material_ = whole_.cell_material;
+  const std::vector<Index>& wide_points_ = whole_.wide_points;
   std::vector<Index> cell_local_, point_local_;  // -1: not on this rank
   Mesh mesh_;
   std::vector<Vec3> points_;  // per local point, as read
@@ -254,7 +267,8 @@ class LocalPart {
 }  // namespace
 
 LoadedMesh cut_part(MPI_Comm comm, WholeMesh&& whole) {
-  auto [mesh, points] = LocalPart(comm, WholeMesh(std::move(whole))).build();
+  auto [mesh, points] = LocalPart(comm, std::move(whole)).build();
+  malloc_trim(0);  // with MPI, memory that is given back stays with the process otherwise
   Geometry geometry = compute_geometry(mesh, std::move(points));
   return {std::move(mesh), std::move(geometry)};
 }

@@ -60,6 +60,8 @@ class HalfFaces {
     });
   }
 
+  std::size_t size() const { return halves_.size(); }
+
   /// use(cells, elements): the half faces of one face, cells by ascending number.
   template <class Use>
   void for_each_face(Use&& use) {

@@ -26,7 +26,7 @@ struct Words {
   fs::path file, output;
   std::array<GlobalIndex, 3> cells{1, 1, 1};
   std::array<double, 3> length{1, 1, 1};
-  bool tetrahedra = false;
+  bool tetrahedra = false, solid = false;
   int dimension = 3;
   mesh::MeshParameters parameters;
 };
@@ -60,7 +60,7 @@ void box(MPI_Comm comm, const Words& words) {
 void open(MPI_Comm comm, const Words& words) {
   const auto petsc = linalg::petsc_environment(comm);
   const double start = MPI_Wtime(), before = peak_memory();
-  const mesh::LoadedMesh loaded = io::load_mesh(comm, words.file, words.dimension);
+  const mesh::LoadedMesh loaded = io::load_mesh(comm, words.file, words.dimension, {}, {}, {}, words.solid);
   const double seconds = parallel::max(comm, MPI_Wtime() - start), after = peak_memory();
   const double cells = loaded.mesh.cells.n_owned(), local = loaded.mesh.cells.n_local();
   const double most = parallel::max(comm, cells), sum = parallel::sum(comm, cells);
@@ -104,6 +104,7 @@ int run(int argc, char** argv) {
     writer->add_option("-o,--output", words.output, "the cut mesh, .h5")->required();
   CLI::App* opening = app.add_subcommand("open", "opens a mesh as the programs do; prints time and memory");
   opening->add_option("file", words.file)->required();
+  opening->add_flag("--solid", words.solid, "as solid_solver does, which extrapolates to the surface");
   for (CLI::App* reader : {of_file, opening})
     reader->add_option("--dimension", words.dimension, "of the mesh (3)")->check(CLI::Range(2, 3));
   try {

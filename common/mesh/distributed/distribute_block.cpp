@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <malloc.h>
+
 #include <algorithm>
 
 #include "common/base/error.hpp"
@@ -51,6 +53,9 @@ std::vector<Index> wide_points_here(MPI_Comm comm, const Shares& shares,
   return result;
 }
 
+/// With MPI's own allocator settings, memory that is given back stays with the process until it is asked for.
+void give_back() { malloc_trim(0); }
+
 }  // namespace
 
 LoadedMesh distribute(MPI_Comm comm, MeshBlock block, std::span<const int> part) {
@@ -63,15 +68,19 @@ LoadedMesh distribute(MPI_Comm comm, MeshBlock block, std::span<const int> part)
         "Periodic patches ('{}' and '{}') are not joined in a mesh that is shared out in parallel. Give the mesh "
         "file it was cut from (.msh, .geo, ...) instead.",
         block.periodic[0][0], block.periodic[0][1]);
+  give_back();
   BlockGraph graph = find_block_faces(comm, block);
+  give_back();
   std::vector<int> own_part(part.begin(), part.end());
   if (part.empty()) own_part = partition(comm, graph.offset, graph.neighbours);
   graph.offset = {}, graph.neighbours = {};
   CellList own = send_to_owners(comm, block, own_part);
-  block.cells = {};
+  block.cells = {}, own_part = {};
+  give_back();
   const std::vector<GlobalIndex> own_points = PointNumbers(own.points).numbers();
   const PointDirectory directory(comm, block.point_shares, own_points);
   LocalCells local = with_one_ring(comm, std::move(own), own_points, directory);
+  give_back();
   const PieceSource source{comm, block, graph};
   WholeMesh piece = make_piece(source, local);
   if (block.find_wide_points) {
@@ -85,6 +94,7 @@ LoadedMesh distribute(MPI_Comm comm, MeshBlock block, std::span<const int> part)
     piece.wide_points = wide_points_here(comm, block.point_shares, wide, piece.point_number);
   }
   local = {};
+  give_back();
   const Csr ranks = directory.ranks_at(piece.point_number);
   for (Index p = 0; p < ranks.size(); ++p) piece.point_owner.push_back(ranks[p].front());
   block.points = {};

@@ -67,6 +67,7 @@ class Piece {
 
   void find_interior() {
     HalfFaces halves(piece_.raw, false);
+    inner_.reserve(halves.size() / 2);
     halves.for_each_face([&](std::span<const HalfFace> cells, std::span<const HalfFace>) {
       const HalfFace& first = cells[0];
       const FaceRecord* record = record_of(first.cell, first.face);
@@ -104,6 +105,14 @@ class Piece {
       return std::tuple(a.owner, a.neighbour, a.face) < std::tuple(b.owner, b.neighbour, b.face);
     });
     piece_.faces.n_interior = static_cast<Index>(inner_.size());
+    std::size_t n_points = 0;
+    for (const Inner& f : inner_)
+      n_points += std::size_t(shape_of(piece_.raw.cell_type[f.owner]).face_size(f.face));
+    const std::size_t n_faces = inner_.size() + local_.cells.records.size();
+    piece_.faces.points.index.reserve(n_points + 4 * local_.cells.records.size());
+    piece_.faces.points.offset.reserve(n_faces + 1);
+    piece_.faces.owner.reserve(n_faces);
+    piece_.faces.neighbour.reserve(inner_.size());
     for (const Inner& f : inner_) {
       push_face(f.owner, f.face, 0);
       piece_.faces.neighbour.push_back(f.neighbour);
