@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Meshes of which no rank has the whole: memory of their set-up on several ranks, by `mesh_tool open`, which does what the programs do, and its
+time beside the fluid's steps. Boxes made in parallel by `mesh_tool box`."""
+import re
+
+from couplet.runs import launch
+from validation.job import Bar
+
+# name: (cells a side, cut into tetrahedra, further words of `open`)
+MESHES = {"hexahedra": (160, False, ()), "tetrahedra": (70, True, ("--solid",))}
+RANKS = (2, 8, 16)
+SIZE = {"hexahedra": "4.1 M", "tetrahedra": "2.1 M"}
+STEPS = (3, 13)  # the step is what one run takes more than the other, a tenth of it
+SMALLER = "{} cells for 10 M: 16 ranks on two shared cores"
+
+
+def cut(job, n, tetrahedra=False):
+    """The box with n hexahedra a side."""
+    def make():
+        file = job.scratch / f"box-{n}-{tetrahedra}.h5"
+        made = job.run([job.build / "bin/mesh_tool", "box", "--cells", n, n, n, "-o", file, *(["--tetrahedra"] if tetrahedra else [])])
+        if made.returncode != 0:
+            raise RuntimeError(made.stderr[-300:])
+        return file
+    return job.once(("cut mesh", n, tetrahedra), make)
+
+
+def opened(job, kind, ranks):
+    """Peak over all ranks, the largest of one, and what was there before [MB]."""
+    n, tetrahedra, words = MESHES[kind]
+
+    def make():
+        launcher = ["mpirun", "--oversubscribe", "-n", ranks]
+        result = job.run([*launcher, job.build / "bin/mesh_tool", "open", cut(job, n, tetrahedra), *words], timeout=3600)
+        found = re.search(r"peak of memory ([\d.]+) MB over all ranks, ([\d.]+) MB on one, of which ([\d.]+) MB", result.stdout)
+        if result.returncode != 0 or not found:
+            raise RuntimeError((result.stdout + result.stderr)[-300:])
+        return tuple(map(float, found.groups()))
+    return job.once(("opened", kind, ranks), make)
+
+
+def together(kind):
+    def measure(job):
+        one = opened(job, kind, 1)[0]
+        all_ = {ranks: opened(job, kind, ranks) for ranks in RANKS}
+        words = ", ".join(f"{peak / one:.2f} on {ranks} ({peak / 1000:.2f} GB, of them {before / 1000:.2f} before the mesh)" for ranks, (peak, _, before) in all_.items())
+        return f"{words}; one rank {one / 1000:.2f} GB", max(peak / one for peak, *_ in all_.values()) <= 1.3
+    return measure
+
+
+def per_rank(kind):
+    def measure(job):
+        peak, _, before = opened(job, kind, 1)
+        shares = {ranks: (most - there / ranks) * ranks / (peak - before) for ranks in RANKS for _, most, there in [opened(job, kind, ranks)]}
+        return "; ".join(f"{share:.2f} on {ranks}" for ranks, share in shares.items()), max(shares.values()) <= 1.2
+    return measure
+
+
+def steps(job, n, count, ranks):
+    """Processor seconds of a run of so many steps of a cavity, its peak of memory over all ranks [MB], and its output."""
+    folder = job.scratch / f"large-{n}-{count}-{ranks}"
+    folder.mkdir(exist_ok=True)
+    dt = 0.2 / n
+    (folder / "case.yaml").write_text(f"""simulation: {{end-time: {count * dt:.10g}, time-step: {dt}, output: {{folder: out, interval: {count * dt:.10g}}}, accept: [error-estimate]}}
+participants:
+  fluid:
+    program: fluid_solver
+    mesh: {cut(job, n)}
+    dimension: 3
+    density: 1
+    viscosity: 0.001
+    viscous: explicit
+    time-step: {dt}
+    pressure-tolerance: 1e-6
+    boundaries: {{zmax: {{type: moving-wall, velocity: [1, 0, 0]}}, {', '.join(f'{side}: {{type: no-slip}}' for side in ('xmin', 'xmax', 'ymin', 'ymax', 'zmin'))}}}
+""")
+    launcher = ["mpirun", "--oversubscribe", "-n", ranks] if ranks > 1 else []
+    cost = launch([*launcher, job.build / "bin/fluid_solver", "case.yaml"], folder / "log", folder)
+    return cost.cpu, float(re.search(r"peak memory of .*, (\d+) MB in total", (folder / "log").read_text())[1])
+
+
+def beside_steps(job):
+    """All that a run does but its steps: opening the mesh, matrices, files."""
+    found = []
+    for ranks in (1, 2):
+        short, long = (steps(job, 100, count, ranks)[0] for count in STEPS)
+        step = (long - short) / (STEPS[1] - STEPS[0])
+        found.append((ranks, (short - STEPS[0] * step) / step, step))
+    words = "; ".join(f"{ratio:.1f} steps of {step:.2f} s on {ranks}" for ranks, ratio, step in found)
+    return words, max(ratio for _, ratio, _ in found) <= 20
+
+
+def largest(job):
+    n = MESHES["hexahedra"][0]
+    cpu, memory = steps(job, n, 3, 2)
+    return f"{n ** 3 / 1e6:.1f} M hexahedra, 3 steps on 2 ranks: {memory / 1000:.1f} GB, {cpu:.0f} s of processor time", None
+
+
+BARS = [
+    Bar("large meshes: set-up's peak of all ranks together beside one rank's, hexahedra on 2, 8, 16 ranks", "<= 1.3 times", together("hexahedra"), long=True,
+        but=SMALLER.format(SIZE["hexahedra"])),
+    Bar("large meshes: the same of tetrahedra as the solid opens them", "<= 1.3 times", together("tetrahedra"), long=True, but=SMALLER.format(SIZE["tetrahedra"])),
+    Bar("large meshes: memory of the fullest rank beyond the fixed part, times ranks, beside one rank's, hexahedra", "<= 1.2 times", per_rank("hexahedra"), long=True,
+        but=SMALLER.format(SIZE["hexahedra"])),
+    Bar("large meshes: the same of tetrahedra", "<= 1.2 times", per_rank("tetrahedra"), long=True, but=SMALLER.format(SIZE["tetrahedra"])),
+    Bar("large meshes: set-up of the fluid from a cut mesh beside its step, 1 M hexahedra, processor time", "<= 20 steps", beside_steps, long=True,
+        but="1 M cells for 10 M; with what it does after the steps"),
+    Bar("large meshes: the largest that made a few steps here", "reported", largest, long=True),
+]
+NOTE = ""
