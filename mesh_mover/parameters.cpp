@@ -95,7 +95,9 @@ void declare_method(config::Section& s, Parameters& p) {
 }  // namespace
 
 void declare(config::Section& section, Parameters& p) {
-  section.value("mesh", p.mesh).required().doc("mesh file of the fluid (.msh, or .geo to be meshed by gmsh)");
+  section.value("mesh", p.mesh)
+      .required()
+      .doc("mesh file of the fluid (.msh, .geo to be meshed by gmsh, or a cut mesh, .h5)");
   section.value("mesh-scale", p.mesh_scale)
       .positive()
       .doc(

@@ -10,8 +10,6 @@
 namespace couplet::mesh {
 namespace {
 
-constexpr double tolerance = 1e-4;  // of the face's size
-
 /// One boundary face of a periodic patch.
 struct Side {
   Index face;  // index into Faces
@@ -21,7 +19,7 @@ struct Side {
 
 int patch_index(const RawMesh& raw, const std::string& name) {
   const auto found = std::find(raw.patches.begin(), raw.patches.end(), name);
-  if (found == raw.patches.end()) throw Error("The periodic patch '{}' does not exist.", name);
+  if (found == raw.patches.end()) throw Error(no_periodic_patch(name));
   return static_cast<int>(found - raw.patches.begin());
 }
 
@@ -44,16 +42,16 @@ Vec3 middle(const std::vector<Side>& sides) {
   return sum / double(sides.size());
 }
 
-/// Finds faces by their centres: sorted along a direction in which meshes have no order.
+/// Finds faces by their centres, sorted by periodic_key().
 class Finder {
  public:
   explicit Finder(const std::vector<Side>& sides) {
-    for (std::size_t i = 0; i < sides.size(); ++i) order_.emplace_back(key(sides[i].centre), i);
+    for (std::size_t i = 0; i < sides.size(); ++i) order_.emplace_back(periodic_key(sides[i].centre), i);
     std::sort(order_.begin(), order_.end());
   }
   /// Index into `sides`, or its size.
   std::size_t find(const std::vector<Side>& sides, const Vec3& x, double reach) const {
-    const double at = key(x);
+    const double at = periodic_key(x);
     auto i = std::lower_bound(order_.begin(), order_.end(), std::pair(at - reach, std::size_t(0)));
     for (; i != order_.end() && i->first <= at + reach; ++i)
       if ((sides[i->second].centre - x).norm() <= reach) return i->second;
@@ -61,7 +59,6 @@ class Finder {
   }
 
  private:
-  static double key(const Vec3& x) { return 0.5377 * x[0] + 0.3315 * x[1] + 0.7751 * x[2]; }
   std::vector<std::pair<double, std::size_t>> order_;
 };
 
@@ -75,19 +72,14 @@ void join(const RawMesh& raw, const Faces& faces, const std::array<std::string, 
   const std::vector<Side> first = sides_of(raw, faces, patch_index(raw, names[0])),
                           second = sides_of(raw, faces, patch_index(raw, names[1]));
   if (first.size() != second.size() || first.empty())
-    throw Error(
-        "The periodic patches '{}' and '{}' have {} and {} faces. Mesh both identically (gmsh: Periodic "
-        "Curve or Periodic Surface).",
-        names[0], names[1], first.size(), second.size());
+    throw Error(periodic_counts_differ(names, GlobalIndex(first.size()), GlobalIndex(second.size())));
   const Vec3 translation = middle(second) - middle(first);
   const Finder finder(second);
   for (const Side& side : first) {
-    const std::size_t found = finder.find(second, side.centre + translation, tolerance * side.size);
+    const std::size_t found = finder.find(second, side.centre + translation, periodic_tolerance * side.size);
     if (found == second.size() || gone[second[found].face - faces.n_interior])
       throw Error(
-          "The face at {} of the periodic patch '{}' has no match on '{}' at {}. The patches must be "
-          "translated copies of each other.",
-          place(side.centre, raw.dim), names[0], names[1], place(side.centre + translation, raw.dim));
+          no_periodic_match(names, place(side.centre, raw.dim), place(side.centre + translation, raw.dim)));
     const Index a = side.face, b = second[found].face;
     gone[a - faces.n_interior] = gone[b - faces.n_interior] = 1;
     if (faces.owner[a] <= faces.owner[b])
@@ -98,6 +90,26 @@ void join(const RawMesh& raw, const Faces& faces, const std::array<std::string, 
 }
 
 }  // namespace
+
+std::string no_periodic_patch(const std::string& patch) {
+  return fmt::format("The periodic patch '{}' does not exist.", patch);
+}
+
+std::string periodic_counts_differ(const std::array<std::string, 2>& patches, GlobalIndex first,
+                                   GlobalIndex second) {
+  return fmt::format(
+      "The periodic patches '{}' and '{}' have {} and {} faces. Mesh both identically (gmsh: Periodic "
+      "Curve or Periodic Surface).",
+      patches[0], patches[1], first, second);
+}
+
+std::string no_periodic_match(const std::array<std::string, 2>& patches, const std::string& where,
+                              const std::string& there) {
+  return fmt::format(
+      "The face at {} of the periodic patch '{}' has no match on '{}' at {}. The patches must be "
+      "translated copies of each other.",
+      where, patches[0], patches[1], there);
+}
 
 void join_periodic(const RawMesh& raw, Faces& faces) {
   if (raw.periodic.empty()) return;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,6 +42,18 @@ std::string face_in_two_patches(const std::string& one, const std::string& other
 std::string face_of_many_cells(std::size_t cells, const std::string& where);
 /// `places`: of the first three.
 std::string faces_in_no_patch(GlobalIndex n, const std::vector<std::string>& places, int dim);
+
+std::string no_periodic_patch(const std::string& patch);
+std::string periodic_counts_differ(const std::array<std::string, 2>& patches, GlobalIndex first,
+                                   GlobalIndex second);
+/// `where`, `there`: the middle of a face, and where its partner should be.
+std::string no_periodic_match(const std::array<std::string, 2>& patches, const std::string& where,
+                              const std::string& there);
+
+/// How far the middle of a face may be from its partner's, as a share of its size.
+constexpr double periodic_tolerance = 1e-4;
+/// Place along a direction in which meshes have no order.
+inline double periodic_key(const Vec3& x) { return 0.5377 * x[0] + 0.3315 * x[1] + 0.7751 * x[2]; }
 
 /// Makes interior faces of the faces of periodic patches (RawMesh::periodic). Throws Error naming the place
 /// of a face without a partner.

@@ -56,7 +56,9 @@ void declare_gap(config::Section& s, GapParameters& gap) {
 
 /// Mesh and fluid.
 void declare_scene(config::Section& s, FluidParameters& p) {
-  s.value("mesh", p.mesh).required().doc("mesh file, .msh or .geo, relative to the case's folder");
+  s.value("mesh", p.mesh)
+      .required()
+      .doc("mesh file, .msh, .geo or a cut mesh (.h5), relative to the case's folder");
   s.value("mesh-scale", p.mesh_scale)
       .positive()
       .doc(

@@ -14,7 +14,7 @@ void declare_scene(config::Section& s, SolidParameters& p) {
   using Plane = SolidParameters::Plane;
   s.value("mesh", p.mesh)
       .required()
-      .doc("mesh file, .msh, .geo or .inp (others: docs/formats.md), relative to the YAML");
+      .doc("mesh file, .msh, .geo, .inp or a cut mesh, .h5 (others: docs/formats.md), relative to the YAML");
   s.value("mesh-scale", p.mesh_scale)
       .positive()
       .doc(

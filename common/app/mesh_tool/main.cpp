@@ -4,11 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
+#include <optional>
+#include <string_view>
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/csv/cells.hpp"
 #include "common/io/cut/cut_mesh.hpp"
 #include "common/io/cut/load_mesh.hpp"
 #include "common/linalg/petsc_environment.hpp"
@@ -79,11 +81,10 @@ mesh::MeshParameters parameters_of(const std::vector<std::string>& assignments) 
   mesh::MeshParameters parameters;
   for (const std::string& text : assignments) {
     const auto sign = text.find('=');
-    char* end = nullptr;
-    const double value = sign == std::string::npos ? 0 : std::strtod(text.c_str() + sign + 1, &end);
-    if (end == nullptr || *end != 0 || sign + 1 == text.size())
-      throw Error("--parameter {}: expected NAME=NUMBER.", text);
-    parameters[text.substr(0, sign)] = value;
+    const auto value =
+        sign == std::string::npos ? std::nullopt : csv::number_of(std::string_view(text).substr(sign + 1));
+    if (!value) throw Error("--parameter {}: expected NAME=NUMBER.", text);
+    parameters[text.substr(0, sign)] = *value;
   }
   return parameters;
 }

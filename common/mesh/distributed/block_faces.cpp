@@ -6,6 +6,7 @@
 
 #include "common/base/error.hpp"
 #include "common/mesh/distributed/match_faces.hpp"
+#include "common/mesh/distributed/periodic_faces.hpp"
 #include "common/mesh/half_faces.hpp"
 #include "common/mesh/on_root.hpp"
 #include "common/mesh/topology.hpp"
@@ -39,6 +40,7 @@ class BlockFaces {
     match_within_block(before);
     MatchedFaces matched = match_faces(comm_, block_, sides_, first_element);
     sides_ = {};
+    join_periodic_of(matched.bounded, before);
     number_boundary(matched.bounded, before);
     block_.element_points = {}, block_.element_offset = {0}, block_.element_patch = {};
     split_materials_of(matched.pairs);
@@ -118,6 +120,22 @@ class BlockFaces {
     return !material_of_zone_.empty() && material_of_zone_[zone] != material_of_zone_[other];
   }
 
+  /// Joined faces leave the boundary.
+  void join_periodic_of(std::vector<BoundedCell>& bounded, GlobalIndex first_element) {
+    if (block_.periodic.empty()) return;
+    PeriodicFaces found = find_periodic_faces(comm_, block_, bounded, first_element);
+    graph_.translation = std::move(found.translation);
+    for (const JoinedFace& f : found.joined) {
+      records_.push_back({f.cell, {f.face, 0, patch_of_joined(f.pair, f.side), f.other}});
+      if (f.cell != f.other) joined_.push_back({f.cell, f.other});
+    }
+    std::erase_if(bounded, [&](const BoundedCell& b) {
+      return std::ranges::binary_search(found.joined, b.element, {}, &JoinedFace::element);
+    });
+    const auto at_cell = [&](const auto& pair) { return block_.cell_shares.rank_of(pair[0]); };
+    joined_ = parallel::exchange(comm_, parallel::sort_by_rank(comm_, joined_, at_cell)).items;
+  }
+
   /// Boundary faces are numbered in the order of their elements; of elements that are there twice the first counts.
   void number_boundary(const std::vector<BoundedCell>& bounded, GlobalIndex first_element) {
     GlobalIndex number = parallel::exclusive_scan(comm_, GlobalIndex(bounded.size()));
@@ -147,6 +165,7 @@ class BlockFaces {
     graph_.offset.assign(block_.cells.size() + 1, 0);
     for (const auto& [a, b] : within_) ++graph_.offset[a + 1], ++graph_.offset[b + 1];
     for (const FacePair& p : pairs) ++graph_.offset[p.cell - first_cell_ + 1];
+    for (const auto& [cell, other] : joined_) ++graph_.offset[cell - first_cell_ + 1];
     std::partial_sum(graph_.offset.begin(), graph_.offset.end(), graph_.offset.begin());
     graph_.neighbours.resize(graph_.offset.back());
     std::vector<Index> next(graph_.offset.begin(), graph_.offset.end() - 1);
@@ -156,9 +175,18 @@ class BlockFaces {
     }
     within_ = {};
     for (const FacePair& p : pairs) graph_.neighbours[next[p.cell - first_cell_]++] = p.other;
-    for (Index c = 0; c < block_.cells.size(); ++c)
-      std::sort(graph_.neighbours.begin() + graph_.offset[c],
-                graph_.neighbours.begin() + graph_.offset[c + 1]);
+    for (const auto& [cell, other] : joined_) graph_.neighbours[next[cell - first_cell_]++] = other;
+    // Cells that share an inner and a periodic face, or two of these, are neighbours once.
+    GlobalIndex* to = graph_.neighbours.data();
+    for (Index c = 0, first = 0; c < block_.cells.size(); ++c) {
+      const auto begin = graph_.neighbours.begin() + first,
+                 end = graph_.neighbours.begin() + graph_.offset[c + 1];
+      first = graph_.offset[c + 1];
+      std::sort(begin, end);
+      to = std::copy(begin, std::unique(begin, end), to);
+      graph_.offset[c + 1] = static_cast<Index>(to - graph_.neighbours.data());
+    }
+    graph_.neighbours.resize(std::size_t(graph_.offset.back()));
   }
 
   void fill_records() {
@@ -182,7 +210,9 @@ class BlockFaces {
   std::vector<int> material_of_zone_;
   std::vector<FaceSide> sides_;                  // without another side in this block
   std::vector<std::pair<Index, Index>> within_;  // cells of this block that share a face
-  std::vector<FacePair> bonded_;                 // as the cell with the smaller number sees them
+  std::vector<std::array<GlobalIndex, 2>>
+      joined_;                    // cells that share a periodic face, the first of this block
+  std::vector<FacePair> bonded_;  // as the cell with the smaller number sees them
   std::vector<RecordOfCell> records_;
   BlockGraph graph_;
 };

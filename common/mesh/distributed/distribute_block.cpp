@@ -63,11 +63,6 @@ LoadedMesh distribute(MPI_Comm comm, MeshBlock block, std::span<const int> part)
   if (n < parallel::comm_size(comm))
     throw Error("The mesh has {} cells, fewer than the {} ranks that share it. Start fewer processes.", n,
                 parallel::comm_size(comm));
-  if (!block.periodic.empty())
-    throw Error(
-        "Periodic patches ('{}' and '{}') are not joined in a mesh that is shared out in parallel. Give the mesh "
-        "file it was cut from (.msh, .geo, ...) instead.",
-        block.periodic[0][0], block.periodic[0][1]);
   give_back();
   BlockGraph graph = find_block_faces(comm, block);
   give_back();
@@ -75,11 +70,12 @@ LoadedMesh distribute(MPI_Comm comm, MeshBlock block, std::span<const int> part)
   if (part.empty()) own_part = partition(comm, graph.offset, graph.neighbours);
   graph.offset = {}, graph.neighbours = {};
   CellList own = send_to_owners(comm, block, own_part);
+  const std::vector<CellAcross> across = cells_across(comm, block.cell_shares, own_part, own);
   block.cells = {}, own_part = {};
   give_back();
   const std::vector<GlobalIndex> own_points = PointNumbers(own.points).numbers();
   const PointDirectory directory(comm, block.point_shares, own_points);
-  LocalCells local = with_one_ring(comm, std::move(own), own_points, directory);
+  LocalCells local = with_one_ring(comm, std::move(own), own_points, directory, across);
   give_back();
   const PieceSource source{comm, block, graph};
   WholeMesh piece = make_piece(source, local);

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "common/base/error.hpp"
+#include "common/mesh/distributed/periodic_faces.hpp"
 #include "common/mesh/half_faces.hpp"
 #include "common/mesh/on_root.hpp"
 
@@ -20,6 +21,7 @@ class Piece {
   WholeMesh make() {
     fill_cells();
     on_all(source_.comm, [&] { find_interior(); });
+    find_joined();
     fill_interior();
     fill_boundary();
     return std::move(piece_);
@@ -63,6 +65,7 @@ class Piece {
   struct Inner {
     Index owner, neighbour;
     std::int8_t face;  // of the owner's shape
+    Index joined = 0;  // 0: no periodic face, else what its record says for a patch
   };
 
   void find_interior() {
@@ -86,6 +89,27 @@ class Piece {
     });
   }
 
+  /// Periodic faces of own cells, seen from the cell with the smaller number.
+  void find_joined() {
+    const CellList& cells = local_.cells;
+    for (Index c = 0; c < cells.size(); ++c)
+      for (const FaceRecord& r : cells.records_of(c)) {
+        if (!is_joined(r.patch) || cells.id[c] > r.number) continue;
+        if (cells.id[c] == r.number && side_of(r.patch) == 1) continue;
+        const auto other = std::ranges::lower_bound(cells.id, r.number);
+        if (other == cells.id.end() || *other != r.number) continue;
+        const auto beyond = static_cast<Index>(other - cells.id.begin());
+        if (is_own(c) || is_own(beyond)) inner_.push_back({c, beyond, r.face, r.patch});
+      }
+  }
+
+  /// From the neighbour to the owner's side.
+  Vec3 shift_of(const Inner& f) const {
+    if (f.joined == 0) return Vec3::Zero();
+    const Vec3& translation = source_.graph.translation[pair_of(f.joined)];
+    return side_of(f.joined) == 0 ? Vec3(-translation) : translation;
+  }
+
   std::string lost(const HalfFaces& halves, const HalfFace& half) const {
     return fmt::format("The face at {} has lost its other side while the mesh was shared out.",
                        place_of(halves, half));
@@ -102,7 +126,8 @@ class Piece {
 
   void fill_interior() {
     std::ranges::sort(inner_, [](const Inner& a, const Inner& b) {
-      return std::tuple(a.owner, a.neighbour, a.face) < std::tuple(b.owner, b.neighbour, b.face);
+      return std::tuple(a.owner, a.neighbour, a.joined != 0, a.face) <
+             std::tuple(b.owner, b.neighbour, b.joined != 0, b.face);
     });
     piece_.faces.n_interior = static_cast<Index>(inner_.size());
     std::size_t n_points = 0;
@@ -116,6 +141,7 @@ class Piece {
     for (const Inner& f : inner_) {
       push_face(f.owner, f.face, 0);
       piece_.faces.neighbour.push_back(f.neighbour);
+      if (!source_.graph.translation.empty()) piece_.faces.shift.push_back(shift_of(f));
     }
     inner_ = {};
   }
@@ -128,7 +154,8 @@ class Piece {
     };
     std::vector<Outer> outer;
     for (Index c = 0; c < local_.cells.size(); ++c)
-      for (const FaceRecord& r : local_.cells.records_of(c)) outer.push_back({r.number, c, &r});
+      for (const FaceRecord& r : local_.cells.records_of(c))
+        if (!is_joined(r.patch)) outer.push_back({r.number, c, &r});
     std::ranges::sort(outer, {}, &Outer::number);
     for (const Outer& f : outer) {
       push_face(f.cell, f.record->face, f.record->turn);

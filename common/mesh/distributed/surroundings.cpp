@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "common/mesh/distributed/periodic_faces.hpp"
+
 namespace couplet::mesh {
 namespace {
 
@@ -56,8 +58,22 @@ CellList send_to_owners(MPI_Comm comm, const MeshBlock& block, std::span<const i
   return cells;
 }
 
+std::vector<CellAcross> cells_across(MPI_Comm comm, const Shares& shares, std::span<const int> part,
+                                     const CellList& own) {
+  std::vector<GlobalIndex> beyond;
+  for (const FaceRecord& r : own.records)
+    if (is_joined(r.patch)) beyond.push_back(r.number);
+  const PointNumbers numbers(beyond);
+  const std::vector<int> rank = fetch(comm, shares, part, numbers.numbers());
+  std::vector<CellAcross> across;
+  for (Index c = 0; c < own.size(); ++c)
+    for (const FaceRecord& r : own.records_of(c))
+      if (is_joined(r.patch)) across.push_back({c, rank[numbers.place(r.number)]});
+  return across;
+}
+
 LocalCells with_one_ring(MPI_Comm comm, CellList own, const std::vector<GlobalIndex>& own_points,
-                         const PointDirectory& directory) {
+                         const PointDirectory& directory, const std::vector<CellAcross>& across) {
   const int rank = parallel::comm_rank(comm);
   const Csr ranks = directory.ranks_at(own_points);
   std::vector<GlobalIndex> shared;
@@ -75,6 +91,9 @@ LocalCells with_one_ring(MPI_Comm comm, CellList own, const std::vector<GlobalIn
       for (const int r : sharers[Index(at - shared.begin())])
         if (r != rank) shipments.emplace_back(r, c);
     }
+  // Whom a cell is beyond a periodic face, to him it goes: he has the other side.
+  for (const CellAcross& a : across)
+    if (a.rank != rank) shipments.emplace_back(a.rank, a.cell);
   sort_once(shipments);
   LocalCells local{std::move(own), {}};
   local.owner.assign(local.cells.size(), rank);

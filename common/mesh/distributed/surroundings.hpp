@@ -15,9 +15,19 @@ struct LocalCells {
 /// The cells of the blocks to the ranks that own them (`part`, of each cell of the block), in ascending order. Collective.
 CellList send_to_owners(MPI_Comm comm, const MeshBlock& block, std::span<const int> part);
 
-/// Own cells and one ring of copies: the cells of other ranks that share a point with an own one. Collective.
+/// Own cell `cell` and the rank of the one beyond its periodic face.
+struct CellAcross {
+  Index cell;
+  int rank;
+};
+/// `part`: as for send_to_owners(). Collective.
+std::vector<CellAcross> cells_across(MPI_Comm comm, const Shares& shares, std::span<const int> part,
+                                     const CellList& own);
+
+/// Own cells and one ring of copies: the cells of other ranks that share a point, or a periodic face (`across`), with an own
+/// one. Collective.
 LocalCells with_one_ring(MPI_Comm comm, CellList own, const std::vector<GlobalIndex>& own_points,
-                         const PointDirectory& directory);
+                         const PointDirectory& directory, const std::vector<CellAcross>& across);
 
 /// Adds the cells of other ranks that have one of these points, ascending. Collective.
 void add_cells_at(MPI_Comm comm, const std::vector<GlobalIndex>& points, const PointDirectory& directory,

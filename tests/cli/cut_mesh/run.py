@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs from a cut mesh, beside the same from the mesh it was cut from. Usage: run.py BIN PART; parts: fluid, solid, mover, command, refused"""
+"""Runs from a cut mesh, beside the same from the mesh it was cut from. Usage: run.py BIN PART; parts: fluid, periodic, solid, mover, command, refused"""
 import pathlib
 import re
 import subprocess
@@ -20,6 +20,8 @@ SCENES = {
     # Pressure and velocity are solved so tightly that what is left of a tolerance is not seen.
     "fluid": "fluid_solver, dimension: 2, density: 1, viscosity: 0.01, pressure-tolerance: 1e-11, probes: {middle: {point: [0.5, 0.4]}}, boundaries: {left: {type: no-slip}, "
              "right: {type: no-slip}, bottom: {type: no-slip}, top: {type: moving-wall, velocity: [1, 0]}}",
+    "periodic": "fluid_solver, dimension: 2, density: 1, viscosity: 0.01, pressure-tolerance: 1e-11, probes: {middle: {point: [0.5, 0.4]}}, body-force: [1, 0], boundaries: "
+                "{left: {type: periodic, partner: right}, right: {type: periodic, partner: left}, bottom: {type: no-slip}, top: {type: moving-wall, velocity: [1, 0]}}",
     # Two materials: the faces between them are found in parallel, too.
     "solid": "solid_solver, dimension: 2, probes: {middle: {point: [0.5, 0.4]}}, materials: {soft: {zones: [west], density: 1000, youngs-modulus: 1 MPa, poissons-ratio: 0.3}, "
              "hard: {zones: [east], density: 3000, youngs-modulus: 50 MPa, poissons-ratio: 0.2}}, boundaries: {left: {type: fixed-displacement, value: [0, 0]}, "
@@ -28,7 +30,7 @@ SCENES = {
 }
 
 # Of the largest value: what the solvers leave.
-TOLERANCE = {"fluid": 1e-7, "solid": 1e-7, "mover": 1e-7}
+TOLERANCE = {"fluid": 1e-7, "periodic": 1e-7, "solid": 1e-7, "mover": 1e-7}
 
 
 def square(n):

@@ -135,6 +135,21 @@ TEST_P(Blocks, with_two_materials_give_the_same_bonded_faces) {
   expect_same_by_blocks(raw);
 }
 
+TEST_P(Blocks, with_periodic_patches_give_the_same_faces_and_shifts) {
+  RawMesh raw = shuffled(test::distorted_box(GetParam().cells));
+  raw.periodic = {{"xmin", "xmax"}};
+  expect_same_by_blocks(raw);
+}
+
+TEST(BlocksShared, that_are_periodic_in_every_direction_give_the_same_faces_down_to_one_cell) {
+  for (const int n : {1, 2, 5}) {
+    RawMesh raw = make_box(BoxCells::hexahedra, {n, 4, 3}, test::lower, test::upper);
+    raw.periodic = {{"xmin", "xmax"}, {"ymax", "ymin"}, {"zmin", "zmax"}};
+    expect_same_by_blocks(raw);
+    EXPECT_NO_THROW(distribute(MPI_COMM_WORLD, block_of(MPI_COMM_WORLD, raw)));
+  }
+}
+
 TEST_P(Blocks, shared_out_in_parallel_fill_the_box_with_every_cell_owned_once) {
   const RawMesh raw = make_box(GetParam().cells, {12, 10, 8}, test::lower, test::upper);
   const LoadedMesh alone = distribute(MPI_COMM_SELF, raw);
@@ -245,11 +260,24 @@ TEST(BlocksOfWrongMeshes, of_a_face_that_three_cells_share_are_refused_wherever_
   }
 }
 
-TEST(BlocksOfWrongMeshes, with_periodic_patches_name_the_way_that_serves) {
+TEST(BlocksOfWrongMeshes, whose_periodic_patches_do_not_match_are_refused_in_the_same_words) {
   RawMesh raw = box();
+  raw.periodic = {{"xmin", "outlet"}};
+  expect_same_error(raw, "The periodic patch 'outlet' does not exist");
+
   raw.periodic = {{"xmin", "xmax"}};
-  EXPECT_THAT(test::error_of([&] { distribute(MPI_COMM_WORLD, block_of(MPI_COMM_WORLD, raw)); }),
-              ::testing::HasSubstr("Give the mesh file it was cut from"));
+  for (int& patch : raw.boundary_patch)
+    if (patch == 0) {
+      patch = 2;
+      break;
+    }
+  expect_same_error(raw, "have 8 and 9 faces");
+
+  raw = box();
+  raw.periodic = {{"xmin", "xmax"}};
+  for (Vec3& x : raw.points)
+    if (x == Vec3(3, 1, 1)) x[1] += 0.2;
+  expect_same_error(raw, "has no match on 'xmax'");
 }
 
 TEST(BlocksOfWrongMeshes, with_fewer_cells_than_ranks_are_refused) {
