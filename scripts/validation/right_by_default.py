@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bars of "right by default": what static solids give with no key of the method set."""
-from validation.parts.right_by_default import estimates, loads, modes, motion, revolved, scenes, stability, stress
+from validation.parts.right_by_default import before, elements, estimates, kept, loads, modes, motion, revolved, rubber, scenes, stability, stress
 
-BARS = scenes.BARS + stress.BARS + motion.BARS + estimates.BARS + loads.BARS + modes.BARS + stability.BARS + revolved.BARS
+PARTS = (scenes, stress, motion, before, elements, estimates, loads, modes, stability, rubber, kept, revolved)
+BARS = [bar for part in PARTS for bar in part.BARS]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A static solid as input of CalculiX, and its results. Tractions and pressures become the forces at the points that do the same
-work (integrated over the faces with their shape functions)."""
+work (integrated over the faces with their shape functions). Of a field CalculiX reads no more than 20 characters: numbers have 13 digits."""
 import pathlib
 import re
 
@@ -62,21 +62,21 @@ class Input:
 
     def text(self):
         points, cells, solid = self.body.points, self.connections(), self.solid
-        lines = ["** written by couplet export", "*NODE, NSET=ALL", *("%d, %.15g, %.15g, %.15g" % (i + 1, *p) for i, p in enumerate(points)),
+        lines = ["** written by couplet export", "*NODE, NSET=ALL", *("%d, %.13g, %.13g, %.13g" % (i + 1, *p) for i, p in enumerate(points)),
                  f"*ELEMENT, TYPE={self.element}, ELSET=ALL"]
         for i, row in enumerate(cells.tolist()):
             words = [str(i + 1), *map(str, row)]
             lines += [", ".join(words[:12]) + ("," if len(words) > 12 else ""), *([", ".join(words[12:])] if len(words) > 12 else [])]
-        lines += ["*MATERIAL, NAME=M", "*ELASTIC", f"{solid.young:.15g}, {solid.poisson:.15g}", "*DENSITY", f"{solid.density:.15g}",
-                  "*SOLID SECTION, ELSET=ALL, MATERIAL=M", *([f"{self.depth:.15g}"] if not self.layer and solid.dimension == 2 else []), "*BOUNDARY",
-                  *(f"{n + 1}, {a + 1}, {a + 1}, {v:.15g}" for (n, a), v in sorted(self.held().items())), "*STEP", f"*STATIC, SOLVER={self.solver()}"]
+        lines += ["*MATERIAL, NAME=M", "*ELASTIC", f"{solid.young:.13g}, {solid.poisson:.13g}", "*DENSITY", f"{solid.density:.13g}",
+                  "*SOLID SECTION, ELSET=ALL, MATERIAL=M", *([f"{self.depth:.13g}"] if not self.layer and solid.dimension == 2 else []), "*BOUNDARY",
+                  *(f"{n + 1}, {a + 1}, {a + 1}, {v:.13g}" for (n, a), v in sorted(self.held().items())), "*STEP", f"*STATIC, SOLVER={self.solver()}"]
         forces = solid.forces(self.body) * (1 if self.layer else self.depth)
-        loads = [f"{n + 1}, {a + 1}, {forces[n, a]:.15g}" for n, a in zip(*np.nonzero(forces))]
+        loads = [f"{n + 1}, {a + 1}, {forces[n, a]:.13g}" for n, a in zip(*np.nonzero(forces))]
         lines += ["*CLOAD", *loads] if loads else []
         g = solid.gravity()
         if np.any(g):
             size = np.linalg.norm(g)
-            lines += ["*DLOAD", "ALL, GRAV, " + ", ".join(f"{v:.15g}" for v in (size, *(g / size)))]
+            lines += ["*DLOAD", "ALL, GRAV, " + ", ".join(f"{v:.13g}" for v in (size, *(g / size)))]
         plane = ", OUTPUT=2D" if not self.layer and solid.dimension == 2 else ""
         return "\n".join([*lines, f"*NODE FILE{plane}", "U", f"*EL FILE{plane}", "S", "*END STEP"]) + "\n"
 

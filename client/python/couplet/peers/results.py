@@ -7,6 +7,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from couplet.peers import elements
+from couplet.peers.values import number
 
 XDMF = {"triangle": 4, "quadrilateral": 5, "tetrahedron": 6, "prism": 8, "hexahedron": 9}
 STRESS = ("xx", "yy", "zz", "xy", "yz", "xz")
@@ -78,7 +79,7 @@ def write_solid(folder, mesh, solid, cells, at, points=None):
     write_fields(folder / f"{solid.name}.h5", mesh, solid.time, fields, points)
     table = {"time [s]": [solid.time]}
     for name, probe in (solid.section.get("probes") or {}).items():
-        found = at([float(v) for v in probe["point"]])
+        found = at([number(v, f"{solid.where}.probes.{name}.point") for v in probe["point"]])
         table |= {f"{name} {c} [m]": [v] for c, v in zip("xyz"[:mesh.dimension], found)}
         table |= {f"{name} stress-{c} [Pa]": [v] for c, v in zip(STRESS, found[3:])} | {f"{name} equivalent-stress [Pa]": [von_mises(found[None, 3:])[0]]}
     write_table(folder / "probes.csv", table)

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Beside CalculiX's quadratic tetrahedra (C3D10) at equal error, both in wall seconds of whole processes on one core; meshes are made before."""
+import csv
+import re
+import shutil
+import statistics
+
+import couplet
+from couplet.peers import calculix
+from couplet.peers.solid import Solid
+from couplet.runs import Case
+from couplet.runs.process import launch
+from validation.job import Bar
+from validation.parts.right_by_default.scenes import probe
+
+S = "participants.solid."
+TIP, FORK = -2.4535e-4, "tuning-fork"
+TURNS, MODES = 3, 8
+# Each from the coarsest.
+BRACKET = {"ours": (0.012, 0.01, 0.009, 0.008, 0.007, 0.006), "C3D10": (0.02, 0.015, 0.012, 0.01)}
+PRONGS = {"ours": (0.0025, 0.00175, 0.00125, 0.001, 0.0008), "C3D10": (0.005, 0.004, 0.0035, 0.003, 0.0025)}
+FINEST = 0.00125
+
+
+def solid(job, case, h):
+    """The case as CalculiX is given it; motion is no obstacle where only modes are asked for."""
+    data = Case(job.root / "configs" / case / "case.yaml").data
+    section = data["participants"]["solid"]
+    data = {**data, "participants": {"solid": {**section, "analysis": "static", "mesh-parameters": {"h": h}}}}
+    return Solid(data, "solid", job.root / "configs" / case, job.scratch / "meshes", "CalculiX")
+
+
+def written(job, case, h, step=None):
+    """Folder with the input of the case, and the input; `step`: other lines in place of the static step."""
+    def make():
+        what, folder = calculix.Input(solid(job, case, h), "C3D10"), job.scratch / f"ccx-{case}-{h}"
+        what.write(folder)
+        if step:
+            text = (folder / "case.inp").read_text()
+            (folder / "case.inp").write_text(text[:text.index("*STEP")] + step)
+        return folder, what
+    return job.once(("ccx", case, h, step), make)
+
+
+def calculix_seconds(folder, turns=TURNS):
+    return statistics.median(launch(["ccx", "case"], folder / "log", folder).wall for _ in range(turns))
+
+
+def our_run(job, case, h):
+    return job.case_run(job.root / "configs" / case / "case.yaml", job.scratch / "ours", (f"{S}mesh-parameters={{h: {h}}}",), {"solid": 1}, 3600)
+
+
+def our_seconds(job, case, h):
+    """(whole process, that before the first step and after the last: start-up, reading, writing)"""
+    runs = sorted(((run := our_run(job, case, h)).cost.wall, run.log) for _ in range(TURNS))
+    wall, log = runs[TURNS // 2]
+    steps = sum(float(x) for x in re.findall(r"^(?:begin_step|solve|accept_step)\s+([\d.]+)", log, re.M))
+    return wall, wall - steps
+
+
+def cheapest(meshes, error, limit):
+    """(h, error) of the coarsest mesh from which on all finer ones are within the limit."""
+    found = None
+    for h in reversed(meshes):
+        e = error(h)
+        if abs(e) > limit:
+            break
+        found = h, e
+    if found is None:
+        raise LookupError(f"h = {meshes[-1]}, the finest of those tried, is {100 * abs(e):.2f} % off, limit {100 * limit:.2f} %")
+    return found
+
+
+def our_tip(job, h):
+    return probe(our_run(job, "filleted-bracket", h), "tip y [m]") / TIP - 1
+
+
+def their_tip(job, h):
+    folder, what = written(job, "filleted-bracket", h)
+    launch(["ccx", "case"], folder / "log", folder)
+    what.read(folder, folder / "out" / "solid")
+    return couplet.read_csv(folder / "out" / "solid" / "probes.csv")["tip y [m]"][-1] / TIP - 1
+
+
+def installed(measure):
+    def of(job):
+        return measure(job) if shutil.which("ccx") else ("CalculiX is not installed", False)
+    return of
+
+
+@installed
+def bracket(job):
+    (h, mine), (k, theirs) = (cheapest(BRACKET[who], lambda x, f=f: f(job, x), 0.005) for who, f in (("ours", our_tip), ("C3D10", their_tip)))
+    wall, around = our_seconds(job, "filleted-bracket", h)
+    other = calculix_seconds(written(job, "filleted-bracket", k)[0])
+    return (f"h {h:g} {100 * mine:+.2f} % in {wall:.2f} s, {around:.2f} s of it start-up, reading and writing; C3D10 h {k:g} {100 * theirs:+.2f} % in {other:.2f} s: "
+            f"{wall / other:.2f} times", wall <= 2 * other)
+
+
+STEP = f"*STEP\n*FREQUENCY\n{MODES}\n*END STEP\n"
+
+
+def their_modes(job, h, turns=1):
+    folder, _ = written(job, FORK, h, STEP)
+    seconds = calculix_seconds(folder, turns)
+    rows = re.findall(r"^\s+\d+\s+\S+E\S+\s+\S+E\S+\s+(\S+E\S+)\s+\S+E\S+\s*$", (folder / "case.dat").read_text(), re.M)
+    return [float(f) for f in rows[:MODES]], seconds
+
+
+def our_modes(job, h):
+    with open(our_run(job, FORK, h).folder / "solid" / "modes.csv", encoding="utf-8") as file:
+        return [float(row[1]) for row in list(csv.reader(file))[1:]]
+
+
+def worst(found, right):
+    return max(abs(a / b - 1) for a, b in zip(found, right, strict=True))
+
+
+@installed
+def fork(job):
+    right, _ = job.once("fine fork", lambda: their_modes(job, FINEST))
+    (h, mine), (k, theirs) = (cheapest(PRONGS[who], lambda x, f=f: worst(f(x), right), 0.01)
+                              for who, f in (("ours", lambda x: our_modes(job, x)), ("C3D10", lambda x: their_modes(job, x)[0])))
+    wall, other = our_seconds(job, FORK, h)[0], their_modes(job, k, TURNS)[1]
+    return f"h {h:g} {100 * mine:.2f} % in {wall:.2f} s; C3D10 h {k:g} {100 * theirs:.2f} % in {other:.2f} s: {wall / other:.1f} times", wall <= 2 * other
+
+
+BARS = [
+    Bar("L-bracket, tip to 0.5 %, beside CalculiX's C3D10 to 0.5 %: wall seconds", "<= 2 times", bracket, long=True, but="CalculiX on this machine, too; meshes are made before"),
+    Bar("tuning fork, 8 modes, largest error 1 %, beside CalculiX's C3D10 to 1 %: wall seconds", "<= 2 times", fork, long=True,
+        but="1 % of C3D10 refined once, h = 1.25 mm; refined twice it does not fit into this machine's time"),
+]

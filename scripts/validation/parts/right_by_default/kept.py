@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the issue asks for beside its scenes: guards, findings, meshes and loads that tests hold, the maps of the solid, and no equilibrium called unstable
+that is not."""
+import json
+
+from couplet.runs import Case
+from validation import table
+from validation.job import Bar
+from validation.parts.measures import all_pass
+
+PEAK = 3e6  # Kirsch, at the hole across the pull [Pa]
+MAPS = ("solid-energy", "solid-stretch", "solid-nu", "solid-buckling", "large-nu", "large-swing", "large-load")
+TABLES = ("solid-linear", "solid-gradients", "solid-energy", "finite-strain")
+
+
+def kirsch(job):
+    run = job.solve_run("solid_solver", "kirsch-hole", ("participants.solid.probes.rim={point: [0, 0.5], fields: [stress]}",))
+    found = run.column("solid", "probes.csv", "rim stress-xx [Pa]")[-1]
+    return f"{found / 1e6:.3f} MPa ({100 * (found / PEAK - 1):+.2f} %)", abs(found / PEAK - 1) <= 0.01
+
+
+def maps(job):
+    """Of the tables that `couplet atlas` wrote."""
+    from couplet.atlas import atlas
+    squares = [s for name in MAPS for s in atlas.read(job.root / f"docs/stability/{name}.csv").values()]
+    counts = {o: sum(s.outcome == o for s in squares) for o in (atlas.HOLDS, atlas.POOR, atlas.WARNED, atlas.REFUSED, atlas.RED)}
+    return f"{len(MAPS)} maps: {', '.join(f'{n} {o}' for o, n in counts.items())}", len(squares) > 500 and counts[atlas.RED] == 0
+
+
+def stable_cases(job):
+    """Every committed case of a static solid at large strain, each file of it."""
+    flagged, seen = [], []
+    for file in sorted((job.root / "configs").glob("*/*.yaml")):
+        try:
+            parts = Case(file).participants
+        except Exception:  # no case: the settings of a study
+            continue
+        chosen = {n for n, p in parts.items() if p.get("program") == "solid_solver" and p.get("analysis") == "static" and p.get("kinematics") == "finite-strain"}
+        if len(parts) != 1 or not chosen:
+            continue
+        name = f"{file.parent.name}/{file.stem}"
+        run = job.case_run(file, job.scratch / name.replace("/", "-"), (), dict.fromkeys(chosen, 1), 3600)
+        seen.append(name)
+        findings = json.loads((run.folder / next(iter(chosen)) / "run.json").read_text())["findings"]
+        flagged += [name for f in findings if f["id"] == "unstable-equilibrium"]
+    return f"{len(flagged)} of {len(seen)}: {', '.join(flagged) or ', '.join(seen)}", len(seen) >= 5 and not flagged
+
+
+def tables(job):
+    """As their tables have them, not measured again."""
+    rows = {name: table.read(job.root / f"docs/validation/{name}.md") for name in TABLES}
+    missed = {name: [q for q, row in found.items() if row.verdict.endswith("not met") or row.verdict.endswith("not met)")] for name, found in rows.items()}
+    text = "; ".join(f"{name} {sum(r.verdict == 'met' for r in rows[name].values())} met, {len(missed[name])} not" for name in TABLES)
+    return text, not any(missed.values())
+
+
+BUCKLING, LOADS = "verification_solid_buckling", "verification_solid_loads"
+BARS = [
+    Bar("Kirsch, shipped mesh: peak stress at the hole", "within 1 % of 3 MPa", kirsch),
+    Bar("static runs in compression: buckling factor below 3 is told, of others not", "2 tests pass", all_pass(BUCKLING, r"BucklingFinding|BucklingEstimate", 2),
+        but="also told above 3 where the load bends the body in that shape"),
+    Bar("free vibrations of a preloaded body", "test passes", all_pass(BUCKLING, "LoadedColumn")),
+    Bar("a motion that grows is ended when it grows, between outputs, too", "2 tests pass", all_pass("verification_solid_audit", r"Audit\.(ends_a_motion|fires_on_undamped)", 2)),
+    Bar("bearing load: cosine over half the hole, its total", "2 tests pass", all_pass(LOADS, r"of_a_pin", 2)),
+    Bar("point and remote loads: force and moment on all kinds of cells", "tests pass", all_pass(LOADS, r"a_remote_load_has|a_point_load_within|a_point_force", 18)),
+    Bar("static cases at large strain called unstable", "none of all committed", stable_cases, long=True),
+    Bar("maps of the solid on the atlas, default settings: squares more than 20 % off without a warning", "0", maps, but="as drawn on 2026-11-24 and 25, not again"),
+    Bar("bars of the solid's other tables", "all met", tables, but="read from solid-linear, solid-gradients, solid-energy and finite-strain, whose rows name what each measured"),
+]
