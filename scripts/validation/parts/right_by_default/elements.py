@@ -16,7 +16,7 @@ S = "participants.solid."
 TIP, FORK = -2.4535e-4, "tuning-fork"
 TURNS, MODES, LONG = 3, 8, 10  # [s] of a run that is measured once
 # Each from the coarsest.
-BRACKET = {"ours": (0.012, 0.01, 0.009, 0.008, 0.007, 0.006), "C3D10": (0.02, 0.015, 0.012, 0.01)}
+BRACKET = {"ours": (0.01, 0.008, 0.006, 0.005, 0.0036, 0.0028, 0.0022), "C3D10": (0.02, 0.015, 0.012, 0.01)}
 PRONGS = {"ours": (0.0025, 0.00175, 0.00125, 0.001), "C3D10": (0.005, 0.004, 0.0035, 0.003, 0.0025)}
 FINEST = 0.00125
 
