@@ -22,7 +22,7 @@ FINEST = 0.00125
 
 
 def solid(job, case, h):
-    """The case as CalculiX is given it; motion is no obstacle where only modes are asked for."""
+    """The case as CalculiX is given it; motion is no obstacle to modes."""
     data = Case(job.root / "configs" / case / "case.yaml").data
     section = data["participants"]["solid"]
     data = {**data, "participants": {"solid": {**section, "analysis": "static", "mesh-parameters": {"h": h}}}}

@@ -63,8 +63,8 @@ def tables(job):
 BUCKLING, LOADS = "verification_solid_buckling", "verification_solid_loads"
 BARS = [
     Bar("Kirsch, shipped mesh: peak stress at the hole", "within 1 % of 3 MPa", kirsch),
-    Bar("static runs in compression: buckling factor below 3 is told, of others not", "2 tests pass", all_pass(BUCKLING, r"BucklingFinding|BucklingEstimate", 2),
-        but="also told above 3 where the load bends the body in that shape"),
+    Bar("static runs in compression: buckling factor below 3 is reported, of others not", "2 tests pass", all_pass(BUCKLING, r"BucklingFinding|BucklingEstimate", 2),
+        but="also reported above 3 where the load bends the body in that shape"),
     Bar("free vibrations of a preloaded body", "test passes", all_pass(BUCKLING, "LoadedColumn")),
     Bar("a motion that grows is ended when it grows, between outputs, too", "2 tests pass", all_pass("verification_solid_audit", r"Audit\.(ends_a_motion|fires_on_undamped)", 2)),
     Bar("bearing load: cosine over half the hole, its total", "2 tests pass", all_pass(LOADS, r"of_a_pin", 2)),
