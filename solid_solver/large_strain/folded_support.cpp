@@ -16,26 +16,43 @@ struct Fold {
   Index support = -1;
 };
 
-Fold largest_fold(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
-                  const std::function<Vec3(Index)>& displacement) {
-  const mesh::Geometry& g = rows.geometry();
-  std::vector<std::vector<Index>> supports(std::size_t(mesh.points.n_local()));
+// Of free faces, from the rim of the support on: the first may be pressed flat while the next ones fold over it.
+constexpr int rings = 3;
+
+using FacesOfPoints = std::vector<std::vector<Index>>;
+
+FacesOfPoints supports_of_points(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows) {
+  FacesOfPoints supports(std::size_t(mesh.points.n_local()));
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
     if (rows.at(f).fixed)
       for (const Index v : mesh.face_points[f]) supports[std::size_t(v)].push_back(f);
+  return supports;
+}
+
+Fold largest_fold(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
+                  const std::function<Vec3(Index)>& displacement) {
+  const mesh::Geometry& g = rows.geometry();
   const auto place = [&](Index f) {
     return Vec3(g.face_centre[f] + displacement(mesh.cells.n_local() + f - mesh.n_interior));
   };
   Fold most;
-  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
-    if (!rows.at(f).is_free()) continue;
-    for (const Index v : mesh.face_points[f])
-      for (const Index support : supports[std::size_t(v)]) {
-        const Vec3 normal = g.face_area[support].normalized();
-        if (normal.dot(g.face_centre[f] - g.face_centre[support]) > 0) continue;  // a step from the start
-        const double height = normal.dot(place(f) - place(support));
-        if (height > most.height) most = {height, support};
-      }
+  FacesOfPoints supports = supports_of_points(mesh, rows);
+  for (int ring = 0; ring < rings; ++ring) {
+    FacesOfPoints next = supports;
+    for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
+      if (!rows.at(f).is_free()) continue;
+      for (const Index v : mesh.face_points[f])
+        for (const Index support : supports[std::size_t(v)]) {
+          const Vec3 normal = g.face_area[support].normalized();
+          if (normal.dot(g.face_centre[f] - g.face_centre[support]) > 0) continue;  // a step from the start
+          const double height = normal.dot(place(f) - place(support));
+          if (height > most.height) most = {height, support};
+          for (const Index w : mesh.face_points[f])
+            if (auto& known = next[std::size_t(w)]; std::ranges::find(known, support) == known.end())
+              known.push_back(support);
+        }
+    }
+    supports = std::move(next);
   }
   return most;
 }
