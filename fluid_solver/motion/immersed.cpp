@@ -53,8 +53,8 @@ bool ImmersedBodies<D>::mark(double t, const Placement<D>& at) {
 
 template <int D>
 double ImmersedBodies<D>::flux(Index f, const Placement<D>& at) const {
-  const Index o = mesh_.owner[f], n = mesh_.neighbour[f];
-  return velocity_of(is_solid(o) ? o : n).dot(at.area[f]);
+  const Index o = mesh_.owner[f];
+  return velocity_of(is_solid(o) ? o : mesh_.neighbour[f]).dot(at.area[f]);
 }
 
 /// u_N = u_b + (u_b - u_P) |level_N| / |level_P|, the mean over the fluid cells beside N. The quotient is

@@ -23,8 +23,10 @@ class ImmersedBodies {
   bool mark(double t, const Placement<D>& at);
   /// Part of a body since the last mark().
   bool is_solid(Index cell) const { return body_[cell] >= 0; }
-  /// Nothing passes this interior face but what the body displaces.
-  bool blocked(Index f) const { return is_solid(mesh_.owner[f]) || is_solid(mesh_.neighbour[f]); }
+  /// Nothing passes this flux face but what the body displaces.
+  bool blocked(Index f) const {
+    return is_solid(mesh_.owner[f]) || (f < mesh_.n_interior && is_solid(mesh_.neighbour[f]));
+  }
   /// Volume flux of the bodies' motion through a blocked face [m^3/s].
   double flux(Index f, const Placement<D>& at) const;
   /// Sets u in the marked cells. Ghosts current before and after. Collective.

@@ -96,6 +96,7 @@ void PressureProjection<D>::set_boundary_flux(const Vectors<D>& w) {
   for (const Index b : k_.boundary.rows().of_flux) {
     const Index f = k_.mesh.n_interior + b;
     k_.phi_p[f] = k_.w[b].dot(k_.step.to->area[f]);
+    if (k_.bodies && k_.bodies->blocked(f)) k_.phi_p[f] = k_.bodies->flux(f, *k_.step.to);
   }
   if (k_.boundary.closed() && !k_.step.yields && !stores()) balance_closed_domain();
 }
@@ -115,7 +116,7 @@ void PressureProjection<D>::add_oblique_pressure() {
   }
   for (const Index b : k_.boundary.rows().of_pressure) {
     const Index f = k_.mesh.n_interior + b;
-    k_.phi_p[f] -= factor * k_.gradient_guess[k_.mesh.owner[f]].dot(now.oblique_of(f));
+    k_.phi_p[f] -= factor * k_.gradient_guess[k_.mesh.owner[f]].dot(around.oblique_of(f));
   }
 }
 
@@ -165,7 +166,7 @@ bool PressureProjection<D>::gradient_stands() const {
 template <int D>
 void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D>& w, double tolerance,
                                            double answer) {
-  const Placement<D>& now = *k_.step.to;
+  const Placement<D>&now = *k_.step.to, &around = k_.pressure_placement();
   const double factor = k_.rho / k_.step.dt;
   set_boundary_flux(w);
   if (k_.step.yields) walls_->foresee(from);
@@ -182,7 +183,7 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
     const Index f = k_.mesh.n_interior + static_cast<Index>(b);
     b_[k_.mesh.owner[f]] -= factor * k_.phi_p[f];
     size += k_.phi_p[f] * k_.phi_p[f];
-    b_[k_.mesh.owner[f]] += k_.boundary.rows().pressure[b] * now.conductance[f] * k_.p_boundary[b];
+    b_[k_.mesh.owner[f]] += k_.boundary.rows().pressure[b] * around.conductance[f] * k_.p_boundary[b];
   }
   if (k_.gap_closed()) clear_gaps(b_);
   if (k_.bodies) {

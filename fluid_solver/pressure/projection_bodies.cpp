@@ -8,7 +8,7 @@ template <int D>
 void PressureProjection<D>::mark_bodies(double time) {
   if (!k_.bodies->mark(time, *k_.step.to) && k_.around_bodies) return;
   auto around = std::make_shared<Placement<D>>(*k_.step.to);
-  for (Index f = 0; f < k_.mesh.n_interior; ++f) {
+  for (Index f = 0; f < k_.mesh.n_flux_faces(); ++f) {
     if (!k_.bodies->blocked(f)) continue;
     around->conductance[f] = 0;
     if (!around->oblique.empty()) around->oblique[f].setZero();

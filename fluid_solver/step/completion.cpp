@@ -48,7 +48,7 @@ std::shared_ptr<PressureLevel<D>> FractionalStep<D>::correct() {
   const FluxCorrection correction{factor, conductance.data(), k_.phi_p.data()};
   for (const Index b : k_.boundary.rows().of_pressure) {
     const Index f = k_.mesh.n_interior + b;
-    k_.phi_p[f] -= factor * now.conductance[f] * (k_.p_boundary[b] - k_.p[k_.mesh.owner[f]]);
+    k_.phi_p[f] -= factor * conductance[f] * (k_.p_boundary[b] - k_.p[k_.mesh.owner[f]]);
   }
   auto level = projection_.pressure_level(&correction);
   Vectors<D>& u = k_.right_side;

@@ -77,7 +77,7 @@ void FaceFlux<D>::predict(const State<D>& from) {
     k_.phi_orthogonal[f] = k_.u_p[k_.mesh.owner[f]].dot(now.area[f]);
   }
   if (!k_.bodies) return;
-  for (Index f = 0; f < k_.mesh.n_interior; ++f)
+  for (Index f = 0; f < k_.mesh.n_flux_faces(); ++f)
     if (k_.bodies->blocked(f)) k_.phi_orthogonal[f] = k_.bodies->flux(f, now);
 }
 

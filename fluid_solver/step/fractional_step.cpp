@@ -109,7 +109,7 @@ void FractionalStep<D>::project_initial(State<D>& s) {
   if (k_.bodies) {
     projection_.mark_bodies(s.time);
     k_.bodies->force(at, s.u);
-    for (Index f = 0; f < k_.mesh.n_interior; ++f)
+    for (Index f = 0; f < k_.mesh.n_flux_faces(); ++f)
       if (k_.bodies->blocked(f)) k_.phi_p[f] = k_.bodies->flux(f, at);
   }
   if (k_.gaps) mark_level(s);

@@ -72,6 +72,33 @@ TEST(ImmersedGate, closes_and_opens_the_channel) {
   EXPECT_LT(parallel::max(MPI_COMM_WORLD, largest), 3);
 }
 
+/// A step that reaches through the outlet, and a body across a part of the inlet: what enters beside the one leaves beside
+/// the other, and nothing through the faces of their cells.
+TEST(ImmersedBody, closes_the_faces_of_inlets_and_outlets_within_it) {
+  FluidParameters p = channel_with("min(max(0.31-x, y-0.1), max(x-0.05, 0.35-y))");
+  p.pressure_tolerance = 1e-12;
+  FluidCase<2> c(MPI_COMM_WORLD,
+                 make_box(BoxCells::quadrilaterals, {60, 41, 1}, Vec3::Zero(), Vec3(0.6, 0.41, 1)), p);
+  double inflow = 0, outflow = 0, within = 0;
+  const auto sum_up = [&] {
+    inflow = outflow = within = 0;
+    for (Index f = c.mesh().n_interior; f < c.mesh().n_flux_faces(); ++f) {
+      const double phi = c.state().phi[f];
+      (phi < 0 ? inflow : outflow) += std::abs(phi);
+      if (c.fluid().bodies()->is_solid(c.mesh().owner[f])) within += std::abs(phi);
+    }
+    for (double* value : {&inflow, &outflow, &within}) *value = parallel::sum(c.mesh().comm, *value);
+  };
+  sum_up();  // of the start
+  EXPECT_EQ(within, 0);
+  c.run(0.2, 40);
+  sum_up();
+  RecordProperty("through_closed_faces", std::to_string(within / inflow));
+  EXPECT_GT(inflow, 0.05);
+  EXPECT_EQ(within, 0) << within / inflow;
+  EXPECT_LT(std::abs(outflow - inflow), 1e-12 * inflow) << outflow / inflow - 1;
+}
+
 /// A square of 4 x 4 cells under p = x and in a uniform flow that stops at it: a pressure at the middles of the cells beside
 /// it, and mu du/h on each of the 16 faces.
 TEST(ImmersedBody, has_the_load_of_a_linear_pressure_and_of_the_shear_beside_it) {
