@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Where immersed bodies are, and what they close.
 #include "fluid_solver/motion/immersed.hpp"
 
 #include <algorithm>
@@ -8,10 +9,18 @@
 #include "common/parallel/collective.hpp"
 
 namespace couplet::fluid {
+namespace {
+
+// Cells are clear of a surface if it is farther from the centre than so many extents.
+constexpr double beside = 1.01;
+
+}  // namespace
 
 template <int D>
 ImmersedBodies<D>::ImmersedBodies(const mesh::Mesh& mesh, const FluidParameters& parameters)
     : mesh_(mesh),
+      cut_(parameters.bodies.begin()->second.surface == BodySurface::cut),
+      nu_(parameters.viscosity / parameters.density),
       body_(mesh.cells.n_local(), -1),
       depth_(mesh.cells.n_local(), 0.0),
       velocity_(mesh.cells.n_local(), Vec<D>::Zero()) {
@@ -22,11 +31,14 @@ ImmersedBodies<D>::ImmersedBodies(const mesh::Mesh& mesh, const FluidParameters&
     if (!body.velocity.empty())
       speed_.back() = fv::make_expressions(body.velocity, D, "bodies." + name + ".velocity");
   }
+  if (!cut_) return;
+  nearest_.assign(mesh.cells.n_local(), 0);
+  shape_.cells.assign(mesh.cells.n_local(), 1.0);
+  shape_.faces.assign(mesh.n_flux_faces(), 1.0);
 }
 
 template <int D>
-bool ImmersedBodies<D>::mark(double t, const Placement<D>& at) {
-  const std::vector<int> before = body_;
+void ImmersedBodies<D>::find_levels(double t, const Placement<D>& at) {
   std::vector<Vec3> places(body_.size(), Vec3::Zero());
   for (std::size_t c = 0; c < places.size(); ++c) places[c].template head<D>() = at.centre[c];
   std::fill(body_.begin(), body_.end(), -1);
@@ -36,81 +48,79 @@ bool ImmersedBodies<D>::mark(double t, const Placement<D>& at) {
     level_[i].evaluate(places, t, level);
     for (std::size_t c = 0; c < level.size(); ++c) {
       if (level[c] < 0 && level[c] < depth_[c]) body_[c] = static_cast<int>(i);
+      if (cut_ && level[c] < depth_[c]) nearest_[c] = static_cast<int>(i);
       depth_[c] = std::min(depth_[c], level[c]);
     }
-  }
-  for (std::size_t c = 0; c < body_.size(); ++c) {
-    if (body_[c] < 0) continue;
-    velocity_[c].setZero();
-    for (std::size_t i = 0; i < speed_[body_[c]].size(); ++i)
-      velocity_[c][static_cast<int>(i)] = speed_[body_[c]][i](places[c], t);
   }
   faces_.clear();
   for (Index f = 0; f < mesh_.n_interior; ++f)
     if (is_solid(mesh_.owner[f]) != is_solid(mesh_.neighbour[f])) faces_.push_back(f);
-  return parallel::any(mesh_.comm, before != body_);
 }
 
 template <int D>
-double ImmersedBodies<D>::flux(Index f, const Placement<D>& at) const {
-  const Index o = mesh_.owner[f];
-  return velocity_of(is_solid(o) ? o : mesh_.neighbour[f]).dot(at.area[f]);
-}
-
-/// u_N = u_b + (u_b - u_P) |level_N| / |level_P|, the mean over the fluid cells beside N. The quotient is
-/// limited to one, where the fluid cell is closer to the surface than N.
-template <int D>
-void ImmersedBodies<D>::force(const Placement<D>& at, Vectors<D>& u) const {
-  std::vector<double> weight(body_.size(), 0.0);
-  Vectors<D> sum(body_.size(), Vec<D>::Zero());
-  for (const Index f : faces_) {
-    const bool owner_solid = is_solid(mesh_.owner[f]);
-    const Index inside = owner_solid ? mesh_.owner[f] : mesh_.neighbour[f],
-                outside = owner_solid ? mesh_.neighbour[f] : mesh_.owner[f];
-    const double quotient = std::min(1.0, -depth_[inside] / std::max(depth_[outside], -depth_[inside]));
-    sum[inside] += at.conductance[f] * quotient * (velocity_of(inside) - u[outside]);
-    weight[inside] += at.conductance[f];
+void ImmersedBodies<D>::find_velocities(double t, const Placement<D>& at) {
+  for (std::size_t c = 0; c < body_.size(); ++c) {
+    if (cut_ ? shape_.open_depth[c] > beside * shape_.extent[c] : body_[c] < 0) continue;
+    const std::vector<fv::Expression>& speed = speed_[cut_ ? nearest_[c] : body_[c]];
+    Vec3 place = Vec3::Zero();
+    place.template head<D>() = at.centre[c];
+    velocity_[c].setZero();
+    for (std::size_t i = 0; i < speed.size(); ++i) velocity_[c][static_cast<int>(i)] = speed[i](place, t);
   }
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
-    if (is_solid(c)) u[c] = velocity_of(c) + (weight[c] > 0 ? Vec<D>(sum[c] / weight[c]) : Vec<D>::Zero());
-  mesh_.cells.update_ghosts(flat<D>(u), D);
 }
 
 template <int D>
-std::vector<std::pair<Vec<D>, Vec<D>>> ImmersedBodies<D>::forces(const Placement<D>& at,
-                                                                 const std::vector<double>& p,
-                                                                 const Vectors<D>& u,
-                                                                 double viscosity) const {
-  std::vector<double> sums(names_.size() * 2 * D, 0.0);
-  for (const Index f : faces_) {
-    const bool owner_solid = is_solid(mesh_.owner[f]);
-    const Index inside = owner_solid ? mesh_.owner[f] : mesh_.neighbour[f],
-                outside = owner_solid ? mesh_.neighbour[f] : mesh_.owner[f];
-    if (outside >= mesh_.cells.n_owned()) continue;  // that rank counts it
-    const Vec<D> pressure = (owner_solid ? -1 : 1) * p[outside] * at.area[f],
-                 friction = viscosity * at.conductance[f] * (u[outside] - u[inside]);
-    double* sum = sums.data() + std::size_t(body_[inside]) * 2 * D;
-    for (int c = 0; c < D; ++c) {
-      sum[c] += pressure[c];
-      sum[D + c] += friction[c];
-    }
+CutCells<D> ImmersedBodies<D>::shape(double t, const Placement<D>& at, std::span<const Vec3> points) const {
+  std::vector<double> lowest(points.size(), std::numeric_limits<double>::infinity()), level(points.size());
+  for (const fv::Expression& of_body : level_) {
+    of_body.evaluate(points, t, level);
+    for (std::size_t v = 0; v < level.size(); ++v) lowest[v] = std::min(lowest[v], level[v]);
   }
-  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, mesh_.comm);
-  std::vector<std::pair<Vec<D>, Vec<D>>> result(names_.size());
-  for (std::size_t i = 0; i < result.size(); ++i)
-    for (int c = 0; c < D; ++c) {
-      result[i].first[c] = sums[i * 2 * D + c];
-      result[i].second[c] = sums[i * 2 * D + D + c];
-    }
-  return result;
+  const Level anywhere = [&](const Vec3& x) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const fv::Expression& of_body : level_) least = std::min(least, of_body(x, t));
+    return least;
+  };
+  return cut<D>(mesh_, at, {points, lowest, depth_, anywhere});
+}
+
+template <int D>
+typename ImmersedBodies<D>::Changed ImmersedBodies<D>::mark(double t, const Placement<D>& at,
+                                                            std::span<const Vec3> points) {
+  if (!cut_) {
+    const std::vector<int> before = body_;
+    find_levels(t, at);
+    find_velocities(t, at);
+    return parallel::any(mesh_.comm, before != body_) ? Changed::cells : Changed::nothing;
+  }
+  find_levels(t, at);
+  const CutCells<D> before = std::exchange(shape_, shape(t, at, points));
+  find_velocities(t, at);
+  bool others = false;
+  for (std::size_t c = 0; c < before.cells.size(); ++c)
+    others |= (before.cells[c] == 0) != (shape_.cells[c] == 0);
+  if (parallel::any(mesh_.comm, others)) return Changed::cells;
+  return parallel::any(mesh_.comm, before.faces != shape_.faces) ? Changed::shares : Changed::nothing;
+}
+
+template <int D>
+double ImmersedBodies<D>::carried(Index f, const Placement<D>& at) const {
+  const double rest = 1 - open(f);
+  if (rest == 0) return 0;
+  const Index o = mesh_.owner[f], n = other(f);
+  const auto knows = [&](Index c) { return cut_ ? shape_.cells[c] < 1 : is_solid(c); };
+  const Vec<D> velocity = cut_ && knows(o) && knows(n) ? Vec<D>(0.5 * (velocity_[o] + velocity_[n]))
+                                                       : velocity_[knows(o) ? o : n];
+  return rest * velocity.dot(at.area[f]);
 }
 
 template <int D>
 double ImmersedBodies<D>::leak(const Placement<D>& at, const std::vector<double>& phi) const {
   double total = 0;
-  for (const Index f : faces_) {
-    const Index fluid = is_solid(mesh_.owner[f]) ? mesh_.neighbour[f] : mesh_.owner[f];
-    if (fluid < mesh_.cells.n_owned()) total += std::abs(phi[f] - flux(f, at));
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Index o = mesh_.owner[f], n = mesh_.neighbour[f];
+    if (open(f) > 0 || is_closed(o) == is_closed(n)) continue;
+    if ((is_closed(o) ? n : o) < mesh_.cells.n_owned()) total += std::abs(phi[f] - carried(f, at));
   }
   return parallel::sum(mesh_.comm, total);
 }

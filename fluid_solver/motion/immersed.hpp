@@ -1,47 +1,77 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/fv/expression.hpp"
+#include "fluid_solver/motion/cut_cells.hpp"
 #include "fluid_solver/parameters/parameters.hpp"
 #include "fluid_solver/state/state.hpp"
 
 namespace couplet::fluid {
 
-/// Rigid bodies inside the mesh (direct forcing): the cells whose centre lies in a body carry its velocity,
-/// no face of theirs lets anything through but what the body displaces, and the velocity in the layer of them
-/// next to the fluid is set so that on the straight line to a fluid cell it passes through the body's
-/// velocity where the level is zero. Cells change between body and fluid as the bodies move.
+/// Rigid bodies inside the mesh (direct forcing): the cells whose centre lies in a body carry its velocity, and the velocity in
+/// the layer of them next to the fluid is set so that on the straight line to a fluid cell it passes through the body's
+/// velocity where the level is zero. What passes a face and what couples two pressures is the face's open share: with
+/// `surface: steps` nothing or all, by the marked cells; with `cut` what of the face lies outside of the bodies, so that cells
+/// which pass the surface close and open gradually. Mesh and bodies may both move. All follows from time and points alone: it is
+/// the same after a restart and in a repeated step.
 template <int D>
 class ImmersedBodies {
  public:
+  /// `parameters`: with the same kind of surface for all bodies.
   ImmersedBodies(const mesh::Mesh& mesh, const FluidParameters& parameters);
 
-  /// Marks the cells at time t. Gives whether any mark changed on any rank. Collective.
-  bool mark(double t, const Placement<D>& at);
-  /// Part of a body since the last mark().
+  enum class Changed { nothing, shares, cells };  ///< `cells`: others are closed
+  /// Marks the cells at time t. `points`: of the placement. The same on all ranks. Collective.
+  Changed mark(double t, const Placement<D>& at, std::span<const Vec3> points);
+  /// Its centre is in a body since the last mark().
   bool is_solid(Index cell) const { return body_[cell] >= 0; }
-  /// Nothing passes this flux face but what the body displaces.
-  bool blocked(Index f) const {
-    return is_solid(mesh_.owner[f]) || (f < mesh_.n_interior && is_solid(mesh_.neighbour[f]));
+  /// Nothing passes any face of this cell but what the body displaces.
+  bool is_closed(Index cell) const { return cut_ ? shape_.cells[cell] == 0 : is_solid(cell); }
+  /// Share of a flux face through which the fluid passes.
+  double open(Index f) const { return cut_ ? shape_.faces[f] : blocked(f) ? 0 : 1; }
+  bool cuts() const { return cut_; }
+  /// One of the cells at a flux face is cut or closed; `cut` only.
+  bool beside_surface(Index f) const {
+    return shape_.cells[mesh_.owner[f]] < 1 || shape_.cells[other(f)] < 1;
   }
-  /// Volume flux of the bodies' motion through a blocked face [m^3/s].
-  double flux(Index f, const Placement<D>& at) const;
-  /// Sets u in the marked cells. Ghosts current before and after. Collective.
-  void force(const Placement<D>& at, Vectors<D>& u) const;
+  /// Volume flux of the bodies' motion through what of a face is not open [m^3/s].
+  double carried(Index flux_face, const Placement<D>& at) const;
+  /// Sets u in the marked cells, and lets it go over to that within `dt` beside the surface if that cuts cells. Ghosts current before
+  /// and after. Collective.
+  void force(const Placement<D>& at, double dt, Vectors<D>& u) const;
+  /// Mean fluxes of whole faces beside the surface with the velocity in the middle of what is open of the cells; `cut` only.
+  /// Collective.
+  void carry_to_open(const Placement<D>& at, const Vectors<D>& u, std::span<double> phi) const;
 
-  /// On each body, from the fluid cells at its faces [N]: pressure, then friction. Collective.
-  std::vector<std::pair<Vec<D>, Vec<D>>> forces(const Placement<D>& at, const std::vector<double>& p,
+  /// On each body [N]: pressure, then friction. `p` with its gradient. Collective.
+  std::vector<std::pair<Vec<D>, Vec<D>>> forces(const Placement<D>& at, const PressureLevel<D>& level,
                                                 const Vectors<D>& u, double viscosity) const;
   const std::vector<std::string>& names() const { return names_; }
-  /// Sum of |phi - what the body displaces| over the faces between body and fluid [m^3/s]. Collective.
+  /// Sum of |phi - what the body displaces| over the closed faces between body and fluid [m^3/s]. Collective.
   double leak(const Placement<D>& at, const std::vector<double>& phi) const;
 
  private:
-  Vec<D> velocity_of(Index solid_cell) const { return velocity_[solid_cell]; }
+  using Sums = std::vector<double>;  // of each body: pressure, then friction
+  Index other(Index f) const { return f < mesh_.n_interior ? mesh_.neighbour[f] : mesh_.owner[f]; }
+  bool blocked(Index f) const { return is_solid(mesh_.owner[f]) || is_solid(other(f)); }
+  void find_levels(double t, const Placement<D>& at);
+  void find_velocities(double t, const Placement<D>& at);
+  CutCells<D> shape(double t, const Placement<D>& at, std::span<const Vec3> points) const;
+  void force_by_steps(const Placement<D>& at, Vectors<D>& u) const;
+  void force_by_cuts(const Placement<D>& at, double dt, Vectors<D>& u) const;
+  Vectors<D> slopes(const Placement<D>& at, const Vectors<D>& u) const;
+  void add_forces_of_steps(const Placement<D>& at, const std::vector<double>& p, const Vectors<D>& u,
+                           double viscosity, Sums& sums) const;
+  void add_forces_of_cuts(const Placement<D>& at, const PressureLevel<D>& level, const Vectors<D>& u,
+                          double viscosity, Sums& sums) const;
   const mesh::Mesh& mesh_;
+  bool cut_;
+  double nu_;  // [m^2/s]
   std::vector<std::string> names_;
   std::vector<fv::Expression> level_;
   std::vector<std::vector<fv::Expression>> speed_;
@@ -49,6 +79,8 @@ class ImmersedBodies {
   std::vector<double> depth_;  // per local cell: lowest level of all bodies [m]
   Vectors<D> velocity_;        // per local cell, of its body
   std::vector<Index> faces_;   // interior faces between body and fluid
+  std::vector<int> nearest_;   // per local cell: the body of the lowest level; `cut` only
+  CutCells<D> shape_;          // `cut` only
 };
 
 }  // namespace couplet::fluid

@@ -47,6 +47,7 @@ struct StepWork {
 
   std::unique_ptr<ImmersedBodies<D>> bodies{};          ///< null: none
   std::shared_ptr<const Placement<D>> around_bodies{};  ///< with bodies only
+  std::shared_ptr<const Placement<D>> bodies_at{};      ///< the placement that it was made from
   std::unique_ptr<Gaps<D>> gaps{};                      ///< null: none
   std::unique_ptr<GapPockets<D>> pockets{};             ///< with gaps only
   bool gap_changed = false;  ///< in this step cells are blocked or freed: an impulse, as in a first step
@@ -73,7 +74,11 @@ struct StepWork {
 
   /// The placement as the pressure equation sees it: blocked faces conduct nothing.
   const Placement<D>& pressure_placement() const {
-    return bodies ? *around_bodies : around_gaps ? *around_gaps : *step.to;
+    return around_bodies ? *around_bodies : around_gaps ? *around_gaps : *step.to;
+  }
+  /// The open share of a face, and what bodies displace through the rest of it [m^3/s].
+  double open_flux(Index f, double flux) const {
+    return bodies->open(f) * flux + bodies->carried(f, *step.to);
   }
   bool gap_closed() const { return gaps && gaps->active(); }
   /// What a value linear between the cells lacks at a face of a skewed mesh.

@@ -172,7 +172,7 @@ void FluidOutput<D>::write_bodies(double time) {
   if (!s.pressure[0]) return;
   std::vector<double> row{time};
   for (const auto& [pressure, friction] :
-       fluid_.bodies()->forces(*s.placement, s.pressure[0]->p, s.u, fluid_.parameters().viscosity))
+       fluid_.bodies()->forces(*s.placement, *s.pressure[0], s.u, fluid_.parameters().viscosity))
     for (const Vec<D>& force : {pressure, friction}) row.insert(row.end(), force.data(), force.data() + D);
   row.push_back(fluid_.bodies()->leak(*s.placement, s.phi));
   if (!root_) return;

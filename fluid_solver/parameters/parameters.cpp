@@ -182,8 +182,15 @@ void declare_moving_parts(config::Section& s, FluidParameters& p) {
             .doc(
                 "one expression of x, y, z [m] and t [s] per component, the velocity of the motion that "
                 "level describes; absent: at rest");
+        b.choice("surface", body.surface,
+                 {{"auto", BodySurface::automatic}, {"steps", BodySurface::steps}, {"cut", BodySurface::cut}})
+            .doc(
+                "what of a cell the body closes; steps: all or nothing, by the cell's centre, so that each cell "
+                "it gains or loses is a shock to the pressure; cut: what lies inside of it, so that cells "
+                "close and open gradually; auto: cut on a moving mesh, steps on one at rest");
       },
-      "body", "rigid bodies in a mesh that does not conform to them; requires an outlet and a mesh at rest");
+      "body",
+      "rigid bodies in a mesh that does not conform to them and may move through them; requires an outlet");
   s.map<GapParameters>(
       "gaps", p.gaps, declare_gap, "gap",
       "gaps that nearly close as the mesh moves: their cells block the flow, do not limit the step size, "

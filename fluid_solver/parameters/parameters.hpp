@@ -32,10 +32,14 @@ struct TurbulenceParameters {
   double constant_of() const { return constant.value_or(model == TurbulenceModel::wale ? 0.325 : 0.17); }
 };
 
+/// How bodies close the cells of a mesh that does not conform to them.
+enum class BodySurface { automatic, steps, cut };
+
 /// A rigid body inside the mesh.
 struct BodyParameters {
   config::ExpressionText level;                  // [m], below zero inside
   std::vector<config::ExpressionText> velocity;  // [m/s]; empty: at rest
+  BodySurface surface = BodySurface::automatic;
 };
 
 /// Two walls between which nothing passes where they are nearer than `opening`.

@@ -96,7 +96,7 @@ void PressureProjection<D>::set_boundary_flux(const Vectors<D>& w) {
   for (const Index b : k_.boundary.rows().of_flux) {
     const Index f = k_.mesh.n_interior + b;
     k_.phi_p[f] = k_.w[b].dot(k_.step.to->area[f]);
-    if (k_.bodies && k_.bodies->blocked(f)) k_.phi_p[f] = k_.bodies->flux(f, *k_.step.to);
+    if (k_.bodies && k_.bodies->open(f) < 1) k_.phi_p[f] = k_.open_flux(f, k_.phi_p[f]);
   }
   if (k_.boundary.closed() && !k_.step.yields && !stores()) balance_closed_domain();
 }
@@ -230,6 +230,7 @@ void PressureProjection<D>::pressure_gradient(const Placement<D>& at, const std:
     sum[k_.mesh.owner[f]] += boundary[b] * at.area[f];
   }
   if (k_.gap_closed()) part_from_gaps(at, p, sum);
+  if (k_.bodies) clear_bodies(sum);
   if (!at.skewed()) return;
   Vectors<D> gradient(sum.size());
   for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c)
@@ -240,6 +241,7 @@ void PressureProjection<D>::pressure_gradient(const Placement<D>& at, const std:
     sum[k_.mesh.owner[f]] += part;
     sum[k_.mesh.neighbour[f]] -= part;
   }
+  if (k_.bodies) clear_bodies(sum);
 }
 
 template <int D>

@@ -85,6 +85,7 @@ class PressureProjection {
   void clear_gaps(std::vector<double>& b) const;
   void part_from_gaps(const Placement<D>& at, const std::vector<double>& p, Vectors<D>& sum) const;
   void clear_bodies(std::vector<double>& values) const;
+  void clear_bodies(Vectors<D>& values) const;
 
   StepWork<D>& k_;
   std::unique_ptr<YieldingWalls<D>> walls_;  // null: none yields

@@ -55,7 +55,7 @@ std::shared_ptr<PressureLevel<D>> FractionalStep<D>::correct() {
   velocity_pass(flat<D>(k_.u_p), factor, flat<D>(level->gradient),
                 flat<D>(u).first(std::size_t(k_.mesh.cells.n_owned()) * D));
   k_.mesh.cells.update_ghosts(flat<D>(u), D);
-  if (k_.bodies) k_.bodies->force(now, u);
+  if (k_.bodies) k_.bodies->force(now, k_.step.dt, u);
   if (k_.gap_closed()) k_.gaps->hold(u);
   return level;
 }

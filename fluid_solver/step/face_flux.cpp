@@ -68,17 +68,18 @@ void FaceFlux<D>::predict(const State<D>& from) {
   if (now.skewed()) k_.boundary.close(k_.mesh, now, k_.u_p, from.w, k_.u_boundary);
   k_.gradient_of = 0;
   mean_flux<D>(k_.mesh, now, k_.u_p, k_.u_boundary, k_.velocity_gradient, k_.phi_orthogonal);
-  if (k_.parameters.projection == Projection::incremental)
-    add_increment(from);
-  else if (!from.memory.empty())
-    add_memory(from);
   for (const Index b : k_.boundary.rows().of_pressure) {
     const Index f = k_.mesh.n_interior + b;
     k_.phi_orthogonal[f] = k_.u_p[k_.mesh.owner[f]].dot(now.area[f]);
   }
+  if (k_.bodies && k_.bodies->cuts()) k_.bodies->carry_to_open(now, k_.u_p, k_.phi_orthogonal);
+  if (k_.parameters.projection == Projection::incremental)
+    add_increment(from);
+  else if (!from.memory.empty())
+    add_memory(from);
   if (!k_.bodies) return;
   for (Index f = 0; f < k_.mesh.n_flux_faces(); ++f)
-    if (k_.bodies->blocked(f)) k_.phi_orthogonal[f] = k_.bodies->flux(f, now);
+    if (k_.bodies->open(f) < 1) k_.phi_orthogonal[f] = k_.open_flux(f, k_.phi_orthogonal[f]);
 }
 
 /// Rate at which friction and convection even out a difference in the cells, per local cell [1/s]. Fluxes
@@ -159,9 +160,25 @@ void FaceFlux<D>::remember(State<D>& s) {
     subtract_mean_flux<D>(k_.mesh, *k_.step.to, s.u, s.u_boundary, k_.velocity_gradient, s.phi, s.memory);
     if (k_.step.to->skewed()) k_.gradient_of = s.number;
   }
+  if (k_.bodies && k_.bodies->cuts()) return remember_cuts(s);
   if (!k_.bodies && !k_.gap_closed()) return;
   for (Index f = 0; f < k_.mesh.n_interior; ++f)
-    if (k_.bodies ? k_.bodies->blocked(f) : k_.gaps->blocked(f)) s.memory[f] = 0;
+    if (k_.bodies ? k_.bodies->open(f) == 0 : k_.gaps->blocked(f)) s.memory[f] = 0;
+}
+
+/// Of the flux that the whole face would have with the velocity in its open part. A closed face remembers that nothing passes: what
+/// opens next begins without a flux, whatever the velocities beside it.
+template <int D>
+void FaceFlux<D>::remember_cuts(State<D>& s) {
+  if (k_.parameters.projection == Projection::incremental) return;
+  mean_.resize(k_.mesh.n_flux_faces());
+  k_.bodies->carry_to_open(*k_.step.to, s.u, mean_);
+  for (Index f = 0; f < k_.mesh.n_interior; ++f) {
+    if (!k_.bodies->beside_surface(f)) continue;
+    const double open = k_.bodies->open(f);
+    const double flux = open > 0 ? (s.phi[f] - k_.bodies->carried(f, *k_.step.to)) / open : s.phi[f];
+    s.memory[f] = flux - mean_[f];
+  }
 }
 
 template class FaceFlux<2>;

@@ -20,6 +20,7 @@ class FaceFlux {
   void remember(State<D>& state);
 
  private:
+  void remember_cuts(State<D>& s);
   void set_relaxation(const State<D>& from);
   void add_memory(const State<D>& from);
   void add_increment(const State<D>& from);
@@ -28,6 +29,7 @@ class FaceFlux {
   StepWork<D>& k_;
   std::vector<double> relaxation_;  // [1/s]
   std::vector<Index> far_;          // faces whose decay is large
+  std::vector<double> mean_;        // fluxes beside the surface of bodies that cut cells
   std::vector<double> fading_;      // incremental: of the start's delta, at t^{n+1}
 };
 

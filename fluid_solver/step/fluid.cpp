@@ -11,7 +11,7 @@ template <int D>
 Fluid<D>::Fluid(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const FluidParameters& parameters,
                 bool moving_mesh, double start_time)
     : mesh_(mesh),
-      parameters_(parameters),
+      parameters_(with_surfaces(parameters, moving_mesh)),
       path_(mesh, geometry, parameters_, moving_mesh),
       boundary_(mesh, geometry, parameters_),
       step_(mesh, path_.points_at_rest(), boundary_, parameters_, moving_mesh && !path_.translates()),

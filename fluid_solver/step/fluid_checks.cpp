@@ -56,6 +56,19 @@ void check_axes(const FluidParameters& parameters, int dim) {
 
 }  // namespace
 
+FluidParameters with_surfaces(FluidParameters parameters, bool moving) {
+  BodySurface all = BodySurface::automatic;
+  for (const auto& [name, body] : parameters.bodies) {
+    if (body.surface == BodySurface::automatic) continue;
+    if (all != BodySurface::automatic && body.surface != all)
+      throw Error("bodies.{}.surface: all bodies have the same kind of surface; choose steps or cut.", name);
+    all = body.surface;
+  }
+  if (all == BodySurface::automatic) all = moving ? BodySurface::cut : BodySurface::steps;
+  for (auto& [name, body] : parameters.bodies) body.surface = all;
+  return parameters;
+}
+
 template <int D>
 void check_together(const mesh::Mesh& mesh, const Boundary<D>& boundary, FluidParameters& parameters,
                     bool moving) {
@@ -64,10 +77,13 @@ void check_together(const mesh::Mesh& mesh, const Boundary<D>& boundary, FluidPa
   if (!parameters.bodies.empty()) {
     if (!parameters.gaps.empty())
       throw Error("gaps: not supported together with immersed bodies; remove 'gaps' or 'bodies'.");
-    if (moving)
-      throw Error("bodies: the mesh of a fluid with immersed bodies must be at rest; remove its mesh mover.");
     if (boundary.closed())
       throw Error("bodies: a fluid with immersed bodies needs an outlet, because they may displace fluid.");
+    if (parameters.bodies.begin()->second.surface == BodySurface::cut &&
+        parameters.projection == Projection::incremental)
+      throw Error(
+          "projection: incremental does not know cells that bodies cut; use flux-memory, or on a mesh at rest "
+          "'surface: steps' of the bodies.");
     if (parameters.viscous == ViscousTreatment::implicit)
       throw Error("viscous: implicit is not possible with immersed bodies, which act on the explicit step.");
     parameters.viscous = ViscousTreatment::explicit_;

@@ -5,6 +5,9 @@
 
 namespace couplet::fluid {
 
+/// What `surface: auto` of bodies is. Throws Error if two bodies differ.
+FluidParameters with_surfaces(FluidParameters parameters, bool moving);
+
 /// Throws Error for effects that do not go together; where one leaves a single choice of another, sets it. `moving`: the
 /// mesh will move. Collective.
 template <int D>

@@ -56,7 +56,7 @@ void FractionalStep<D>::predict(const State<D>& from, const History<D>& by, SubS
   predictor_.predict(from);
   loads_.remember_prediction(predictor_.weight());
   k_.mesh.cells.update_ghosts(flat<D>(k_.u_p), D);
-  if (k_.bodies) k_.bodies->force(*k_.step.to, k_.u_p);
+  if (k_.bodies) k_.bodies->force(*k_.step.to, k_.step.dt, k_.u_p);
   if (k_.gap_closed()) k_.gaps->hold(k_.u_p);
   projection_.extrapolate_pressure();
   projection_.prepare_waves(from);
@@ -81,10 +81,12 @@ void FractionalStep<D>::project(const State<D>& from, const Vectors<D>& w, doubl
 
 template <int D>
 void FractionalStep<D>::mark_level(State<D>& s) {
-  if (!k_.gaps) return;
+  if (!k_.gaps && !k_.bodies) return;
   k_.step.to = s.placement;
   k_.step.points = s.points;
   k_.step.swept.clear();
+  if (k_.bodies) projection_.mark_bodies(s.time);
+  if (!k_.gaps) return;
   projection_.mark_gaps();
   k_.gaps->follow(*s.placement, *s.placement, 0);
   s.blocked = k_.gaps->marks();
@@ -100,19 +102,17 @@ void FractionalStep<D>::project_initial(State<D>& s) {
   const Placement<D>& at = *s.placement;
   projection_.set_obliqueness(at);
   k_.phi_p.assign(k_.mesh.n_flux_faces(), 0.0);
+  k_.step = {k_.rho, s.placement, {}, s.points};  // dt/rho = 1
+  mark_level(s);
+  if (k_.bodies) k_.bodies->force(at, k_.step.dt, s.u);
   mean_flux<D>(k_.mesh, at, s.u, s.u_boundary, k_.velocity_gradient, k_.phi_p);
+  if (k_.bodies && k_.bodies->cuts()) k_.bodies->carry_to_open(at, s.u, k_.phi_p);
   for (std::size_t b = 0; b < s.w.size(); ++b)
     k_.phi_p[k_.mesh.n_interior + b] = s.u_boundary[b].dot(at.area[k_.mesh.n_interior + b]);
-  k_.step = {k_.rho, s.placement, {}, {}};  // dt/rho = 1
   k_.by = s;
   k_.right_side.resize(s.u.size());
-  if (k_.bodies) {
-    projection_.mark_bodies(s.time);
-    k_.bodies->force(at, s.u);
-    for (Index f = 0; f < k_.mesh.n_flux_faces(); ++f)
-      if (k_.bodies->blocked(f)) k_.phi_p[f] = k_.bodies->flux(f, at);
-  }
-  if (k_.gaps) mark_level(s);
+  if (k_.bodies)
+    for (Index f = 0; f < k_.mesh.n_flux_faces(); ++f) k_.phi_p[f] = k_.open_flux(f, k_.phi_p[f]);
   if (k_.gap_closed()) {
     k_.gaps->hold(s.u);
     projection_.block_gaps(k_.phi_p);

@@ -112,7 +112,7 @@ void Predictor<D>::set_rates(const State<D>& from, bool implicit) {
   wall_flux<D>(k_.mesh, *from.placement, k_.parameters.viscosity, from.u, from.u_boundary, shear_);
   if (k_.bodies)
     for (Index c = 0; c < k_.mesh.cells.n_local(); ++c)
-      if (k_.bodies->is_solid(c)) rates_.rate[c].setZero();
+      if (k_.bodies->is_closed(c)) rates_.rate[c].setZero();
   if (!k_.gap_closed()) return;
   for (Index c = 0; c < k_.mesh.cells.n_local(); ++c)
     if (k_.gaps->is_blocked(c)) {

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bars of the reed valve: mesh motion around thin bodies, the weakly compressible fluid."""
+from validation.parts.reed.layer import LAYER
 from validation.parts.reed.mesh import MESH
 from validation.parts.reed.sound import SOUND_BARS
 from validation.parts.reed.valve import VALVE
@@ -9,5 +10,6 @@ SOURCES = ("common/base", "common/parallel", "common/linalg", "common/mesh", "co
 BARS = [
     *MESH,
     *SOUND_BARS,
+    *LAYER,
     *VALVE,
 ]

@@ -31,7 +31,7 @@ TEST(ImmersedCylinder, has_the_drag_of_the_body_fitted_one_within_five_percent_a
   c.run(3.5, 35);
   const State<2>& s = c.state();
   const auto [pressure, friction] =
-      c.fluid().bodies()->forces(*s.placement, s.pressure[0]->p, s.u, p.viscosity).front();
+      c.fluid().bodies()->forces(*s.placement, *s.pressure[0], s.u, p.viscosity).front();
   const double drag = 500 * (pressure[0] + friction[0]), leak = c.fluid().bodies()->leak(*s.placement, s.phi);
   const double inflow = 0.2 * 0.41;
   printf("immersed cylinder: cd %.4f (pressure %.4f), lift %.4f, leak %.1e of the inflow\n", drag,
@@ -108,13 +108,13 @@ TEST(ImmersedBody, has_the_load_of_a_linear_pressure_and_of_the_shear_beside_it)
   c.step(1e-4);
   const ImmersedBodies<2>& bodies = *c.fluid().bodies();
   const Placement<2>& at = *c.state().placement;
-  std::vector<double> pressure;
+  PressureLevel<2> level;
   Vectors<2> u;
   for (Index i = 0; i < c.mesh().cells.n_local(); ++i) {
-    pressure.push_back(at.centre[i].x());
+    level.p.push_back(at.centre[i].x());
     u.push_back(bodies.is_solid(i) ? Vec<2>(0, 0) : Vec<2>(1, 0));
   }
-  const auto [pushed, rubbed] = bodies.forces(at, pressure, u, 1e-3).front();
+  const auto [pushed, rubbed] = bodies.forces(at, level, u, 1e-3).front();
   EXPECT_LT((pushed - Vec<2>(0.4 * (0.25 - 0.75), 0)).norm(), 1e-12);
   EXPECT_LT((rubbed - Vec<2>(16 * 1e-3, 0)).norm(), 1e-12);
 }

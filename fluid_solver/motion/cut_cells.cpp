@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/motion/cut_cells.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace couplet::fluid {
+namespace {
+
+// Shares as near as this to nothing or all are round-off.
+constexpr double least_share = 1e-10;
+// And levels, of the size of a cell: faces along a surface are closed.
+constexpr double level_round_off = 1e-10;
+// The middle of what is open of a cell is at least this share of the cell's size from the surface, times the open share.
+constexpr double least_depth = 0.01;
+
+double snapped(double share) { return share < least_share ? 0 : share > 1 - least_share ? 1 : share; }
+
+/// Part of a face: a segment, or a triangle of a fan around its middle.
+template <int D>
+using Piece = std::array<LevelCorner, D>;
+
+template <int D>
+double size_of(const Piece<D>& piece) {
+  const Vec3 side = piece[1].place - piece[0].place;
+  if constexpr (D == 2) return side.norm();
+  if constexpr (D == 3) return side.cross(piece[2].place - piece[0].place).norm();
+}
+
+/// Of the simplex with its tip at `apex`, times a number that is the same for all.
+template <int D>
+double volume_of(const Piece<D>& piece, const Vec3& apex) {
+  const Vec3 a = piece[0].place - apex, b = piece[1].place - apex;
+  if constexpr (D == 2) return std::abs(a[0] * b[1] - a[1] * b[0]);
+  if constexpr (D == 3) return std::abs(a.cross(b).dot(piece[2].place - apex));
+}
+
+template <int D, class Use>
+void for_pieces(std::span<const Index> face, const Levels& levels, const Use& use) {
+  const auto corner = [&](Index v) { return LevelCorner{levels.points[v], levels.at_points[v]}; };
+  if constexpr (D == 2) {
+    use(Piece<2>{corner(face[0]), corner(face[1])});
+  } else {
+    LevelCorner middle;
+    for (const Index v : face) middle.place += levels.points[v] / double(face.size());
+    middle.level = levels.anywhere(middle.place);
+    for (std::size_t i = 0; i < face.size(); ++i)
+      use(Piece<3>{middle, corner(face[i]), corner(face[(i + 1) % face.size()])});
+  }
+}
+
+/// Of a cell: levels of its corners, and sums over its simplices: volume, open volume, integral of the level over that.
+struct Sums {
+  double low = 0, high = 0, volume = 0, open = 0, moment = 0;
+  bool passes = false;
+};
+
+template <int D>
+class Cutter {
+ public:
+  Cutter(const mesh::Mesh& mesh, const Placement<D>& at, const Levels& levels)
+      : mesh_(mesh), at_(at), levels_(levels), sums_(mesh.cells.n_owned()) {}
+
+  CutCells<D> make() {
+    result_.faces.resize(mesh_.n_flux_faces());
+    result_.wall.assign(mesh_.cells.n_local(), Vec<D>::Zero());
+    find_corners();
+    for (Index f = 0; f < mesh_.n_flux_faces(); ++f) cut_face(f);
+    mesh_.cells.update_ghosts(flat<D>(result_.wall), D);
+    add_up();
+    for (Index f = 0; f < mesh_.n_flux_faces(); ++f)
+      for_cells(f, [&](Index c, int) { result_.faces[f] *= result_.cells[c] > 0; });
+    return std::move(result_);
+  }
+
+ private:
+  template <class Use>
+  void for_cells(Index f, const Use& use) const {
+    use(mesh_.owner[f], 0);
+    if (f < mesh_.n_interior) use(mesh_.neighbour[f], 1);
+  }
+  template <class Use>
+  void for_owned(Index f, const Use& use) const {
+    for_cells(f, [&](Index c, int side) {
+      if (c < mesh_.cells.n_owned()) use(c, side);
+    });
+  }
+  double round_off(Index c) const { return level_round_off * std::pow(at_.volume[c], 1.0 / D); }
+
+  void find_corners() {
+    for (std::size_t c = 0; c < sums_.size(); ++c) sums_[c].low = sums_[c].high = levels_.at_centres[c];
+    for (Index f = 0; f < mesh_.n_flux_faces(); ++f)
+      for_owned(f, [&](Index c, int) {
+        for (const Index v : mesh_.face_points[f]) {
+          sums_[c].low = std::min(sums_[c].low, levels_.at_points[v]);
+          sums_[c].high = std::max(sums_[c].high, levels_.at_points[v]);
+        }
+      });
+  }
+
+  bool is_cut(Index c) const { return sums_[c].low <= round_off(c) && sums_[c].high > round_off(c); }
+
+  void cut_face(Index f) {
+    const double eps = round_off(mesh_.owner[f]);
+    double low = levels_.at_points[mesh_.face_points[f][0]], high = low;
+    for (const Index v : mesh_.face_points[f]) {
+      low = std::min(low, levels_.at_points[v]);
+      high = std::max(high, levels_.at_points[v]);
+    }
+    bool needed = low <= eps && high > eps;
+    for_owned(f, [&](Index c, int) { needed |= is_cut(c); });
+    double share = low > eps;
+    if (needed) {
+      double size = 0, open = 0;
+      for_pieces<D>(mesh_.face_points[f], levels_, [&](const Piece<D>& piece) {
+        size += size_of<D>(piece);
+        open += size_of<D>(piece) * open_part(piece, levels_.anywhere, eps).share;
+        for_owned(f, [&](Index c, int side) {
+          add(piece, c, side == 0 ? Vec3(Vec3::Zero()) : mesh_.shift(f), eps);
+        });
+      });
+      share = size > 0 ? snapped(open / size) : 0;
+    }
+    result_.faces[f] = share;
+    for_owned(f, [&](Index c, int side) {
+      result_.wall[c] += (side == 0 ? -1 : 1) * share * at_.area[f];
+      sums_[c].passes |= share > 0;
+    });
+  }
+
+  /// The simplex of a piece and the centre of the cell, seen from the face at `shift`.
+  void add(const Piece<D>& piece, Index c, const Vec3& shift, double eps) {
+    if (!is_cut(c)) return;
+    LevelCorner apex{shift, levels_.at_centres[c]};
+    apex.place.template head<D>() += at_.centre[c];
+    std::array<LevelCorner, D + 1> corners;
+    std::copy(piece.begin(), piece.end(), corners.begin());
+    corners[D] = apex;
+    const double volume = volume_of<D>(piece, apex.place);
+    const OpenPart open = open_part(corners, levels_.anywhere, eps);
+    sums_[c].volume += volume;
+    sums_[c].open += volume * open.share;
+    sums_[c].moment += volume * open.moment;
+  }
+
+  void add_up() {
+    std::vector<std::array<double, 3>> all(mesh_.cells.n_local(), {0, 0, 0});  // share, depth, extent
+    for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+      const Sums& s = sums_[c];
+      const double centre = levels_.at_centres[c];
+      double share = s.low > round_off(c);
+      if (is_cut(c) && s.volume > 0) share = snapped(s.open / s.volume);
+      if (!s.passes) share = 0;
+      all[c] = {share, share == 1 ? centre : 0, std::max(s.high - centre, centre - s.low)};
+      if (share > 0 && share < 1)
+        all[c][1] = std::max(s.moment / s.open, least_depth * share * std::pow(at_.volume[c], 1.0 / D));
+    }
+    mesh_.cells.update_ghosts({all.empty() ? nullptr : all.front().data(), all.size() * 3}, 3);
+    for (const auto& [share, depth, extent] : all) {
+      result_.cells.push_back(share);
+      result_.open_depth.push_back(depth);
+      result_.extent.push_back(extent);
+    }
+  }
+
+  const mesh::Mesh& mesh_;
+  const Placement<D>& at_;
+  const Levels& levels_;
+  std::vector<Sums> sums_;
+  CutCells<D> result_;
+};
+
+}  // namespace
+
+template <int D>
+CutCells<D> cut(const mesh::Mesh& mesh, const Placement<D>& at, const Levels& levels) {
+  return Cutter<D>(mesh, at, levels).make();
+}
+
+template CutCells<2> cut<2>(const mesh::Mesh&, const Placement<2>&, const Levels&);
+template CutCells<3> cut<3>(const mesh::Mesh&, const Placement<3>&, const Levels&);
+
+}  // namespace couplet::fluid
