@@ -230,8 +230,8 @@ void PressureProjection<D>::pressure_gradient(const Placement<D>& at, const std:
     sum[k_.mesh.owner[f]] += boundary[b] * at.area[f];
   }
   if (k_.gap_closed()) part_from_gaps(at, p, sum);
-  if (k_.bodies) clear_bodies(sum);
   if (!at.skewed()) return;
+  if (k_.bodies) clear_bodies(sum);
   Vectors<D> gradient(sum.size());
   for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c)
     gradient[c] = at.gradient_cure[c].transpose() * sum[c] / at.volume[c];
