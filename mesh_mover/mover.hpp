@@ -12,7 +12,7 @@
 #include "common/coupling/participant.hpp"
 #include "common/effects/position.hpp"
 #include "common/fv/prescribed_motion.hpp"
-#include "common/io/field_writer.hpp"
+#include "common/io/fields/field_writer.hpp"
 #include "common/io/series.hpp"
 #include "common/mesh/periodic_points.hpp"
 #include "mesh_mover/curved_slide.hpp"

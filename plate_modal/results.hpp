@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/io/field_writer.hpp"
+#include "common/io/fields/field_writer.hpp"
 #include "common/io/series.hpp"
 #include "plate_modal/structure.hpp"
 

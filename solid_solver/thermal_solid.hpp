@@ -8,10 +8,10 @@
 
 #include "common/coupling/error_parts.hpp"
 #include "common/coupling/participant.hpp"
-#include "common/io/field_writer.hpp"
+#include "common/io/fields/field_writer.hpp"
+#include "common/io/fields/surface_series.hpp"
 #include "common/io/probes/probe.hpp"
 #include "common/io/series.hpp"
-#include "common/io/surface_series.hpp"
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/body/solid_context.hpp"
 #include "solid_solver/parameters/parameters.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/io/field_writer.hpp"
+#include "common/io/fields/field_writer.hpp"
 #include "common/io/series.hpp"
 #include "fluid_solver/output/samples.hpp"
 #include "fluid_solver/output/surfaces.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "common/io/surface_series.hpp"
+#include "common/io/fields/surface_series.hpp"
 #include "fluid_solver/step/fluid.hpp"
 
 namespace couplet::fluid {

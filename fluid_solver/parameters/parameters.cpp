@@ -8,7 +8,7 @@
 #include "common/base/text.hpp"
 #include "common/config/pairs.hpp"
 #include "common/fv/expression.hpp"
-#include "common/io/surface_series.hpp"
+#include "common/io/fields/surface_series.hpp"
 #include "common/mesh/periodic_points.hpp"
 #include "fluid_solver/conditions/keys.hpp"
 

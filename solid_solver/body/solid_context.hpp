@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-#include "common/io/field_choice.hpp"
+#include "common/io/fields/field_choice.hpp"
 
 namespace couplet::solid {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/io/field_writer.hpp"
+#include "common/io/fields/field_writer.hpp"
 #include "solid_solver/material/stress.hpp"
 
 namespace couplet::solid {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "common/io/field_writer.hpp"
+#include "common/io/fields/field_writer.hpp"
 #include "common/io/series.hpp"
 #include "common/modes/lowest_modes.hpp"
 #include "solid_solver/body/solid_context.hpp"

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "common/io/surface_series.hpp"
+#include "common/io/fields/surface_series.hpp"
 #include "solid_solver/body/solid_body.hpp"
 #include "solid_solver/body/solid_context.hpp"
 #include "solid_solver/body/solid_fields.hpp"

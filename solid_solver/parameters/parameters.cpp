@@ -2,7 +2,7 @@
 #include "solid_solver/parameters/parameters.hpp"
 
 #include <fmt/format.h>
-#include "common/io/surface_series.hpp"
+#include "common/io/fields/surface_series.hpp"
 
 #include "solid_solver/parameters/parameter_checks.hpp"
 

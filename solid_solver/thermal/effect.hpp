@@ -10,7 +10,7 @@
 #include "common/coupling/participant.hpp"
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/elasticity/elasticity.hpp"
-#include "common/io/field_writer.hpp"
+#include "common/io/fields/field_writer.hpp"
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/effects/effect_cards.hpp"
 #include "solid_solver/parameters/parameters.hpp"

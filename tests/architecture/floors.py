@@ -16,7 +16,7 @@ FLOORS = {
     "common/elasticity": [".", "thesis", "symmetric", "axisymmetric", "prestress", "tied", "finite", "solve"],
     "common/mesh": [".", "order", "distributed", "msh", "inp", "gmsh"],
     "common/app": ["watch", "loop", "case", ".", "mesh_tool"],
-    "common/io": [".", "probes", "cut"],
+    "common/io": [".", "fields", "probes", "cut"],
     "common/linalg": ["lazy", "lanes", ".", "multigrid", "poisson"],
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/config/section.hpp"
-#include "common/io/field_choice.hpp"
+#include "common/io/fields/field_choice.hpp"
 
 namespace couplet::app {
 

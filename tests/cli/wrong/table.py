@@ -130,10 +130,10 @@ case.yaml:2:29: simulation.time-step: the time step must not be longer than the 
 case.yaml:2:14: simulation.endtime: unknown key. Did you mean 'end-time'?
 """, ("end-time", "endtime")),
     solid("unknown key below", """
-case.yaml:2:56: simulation.output.every: unknown key. Valid keys: folder, interval, steps.
-""", ("time-step: 0.5 s", "time-step: 0.5 s, output: {every: 1 s}")),
+case.yaml:2:56: simulation.output.each: unknown key. Valid keys: folder, interval, steps, every, compression, box.
+""", ("time-step: 0.5 s", "time-step: 0.5 s, output: {each: 1 s}")),
     solid("value instead of a section", """
-case.yaml:2:47: simulation.output: expected a mapping (keys with values), found 'all'. Its keys: folder, interval, steps.
+case.yaml:2:47: simulation.output: expected a mapping (keys with values), found 'all'. Its keys: folder, interval, steps, every, compression, box.
 """, ("time-step: 0.5 s", "time-step: 0.5 s, output: all")),
 ]
 

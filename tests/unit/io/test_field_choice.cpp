@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/io/field_writer.hpp"
+#include "common/io/fields/field_writer.hpp"
 #include "common/io/hdf5_reader.hpp"
 #include "common/mesh/load.hpp"
 #include "tests/support/world.hpp"

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "common/base/error.hpp"
-#include "common/io/field_writer.hpp"
+#include "common/io/fields/field_writer.hpp"
 #include "common/io/hdf5_reader.hpp"
 #include "common/mesh/load.hpp"
 #include "tests/support/world.hpp"

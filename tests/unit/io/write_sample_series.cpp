@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "common/io/field_writer.hpp"
+#include "common/io/fields/field_writer.hpp"
 #include "common/linalg/petsc_environment.hpp"
 #include "common/mesh/load.hpp"
 #include "common/parallel/collective.hpp"

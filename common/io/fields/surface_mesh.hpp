@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -19,16 +18,5 @@ struct SurfaceMesh {
 
 /// `places`: per local point of the body [m]. Collective.
 SurfaceMesh make_surface(const mesh::Mesh& body, std::span<const Vec3> places, const mesh::Patch& patch);
-
-/// Some cells of a body as a mesh, for what is written of them.
-struct CellPart {
-  mesh::Mesh mesh;                   ///< ids are those of the body; no faces
-  std::vector<Index> points, cells;  ///< per local point or cell: that of the body
-  std::vector<Vec3> places;          ///< of the points [m]
-};
-
-/// Of the owned cells with a flag. `places`: per local point of the body [m]. Collective.
-CellPart make_part(const mesh::Mesh& body, std::span<const Vec3> places,
-                   const std::vector<std::uint8_t>& flags);
 
 }  // namespace couplet::io

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/io/surface_series.hpp"
+#include "common/io/fields/surface_series.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
-#include "common/io/surface_mesh.hpp"
+#include "common/io/fields/surface_mesh.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::io {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "common/io/field_writer.hpp"
+#include "common/io/fields/field_writer.hpp"
 #include "common/mesh/mesh.hpp"
 
 namespace couplet::io {

@@ -8,20 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "common/io/field_choice.hpp"
-#include "common/io/surface_mesh.hpp"
+#include "common/io/fields/cell_part.hpp"
+#include "common/io/fields/field_choice.hpp"
+#include "common/io/fields/output_field.hpp"
+#include "common/io/fields/surface_mesh.hpp"
 #include "common/mesh/mesh.hpp"
 
 namespace couplet::io {
-
-struct OutputField {
-  enum class Place { cells, points };
-  std::string name;  ///< "velocity"
-  std::string unit;  ///< "m/s"; shown in ParaView as "velocity [m/s]"
-  Place place = Place::cells;
-  int components = 1;              ///< 1, 2 or 3; 2 is padded to 3 in the file
-  std::span<const double> values;  ///< per local cell or point (ghosts are ignored), entry by entry
-};
 
 /// Time series of one participant: <folder>/<name>.h5 with an XDMF index <folder>/<name>.xdmf that Debian's
 /// ParaView opens while the run goes on. The HDF5 file is opened, written and closed each time; the index is

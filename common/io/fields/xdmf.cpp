@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/io/xdmf.hpp"
+#include "common/io/fields/xdmf.hpp"
 
 #include <fmt/format.h>
 

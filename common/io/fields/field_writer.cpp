@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/io/field_writer.hpp"
+#include "common/io/fields/field_writer.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <tuple>
 
+#include "common/io/fields/xdmf.hpp"
 #include "common/io/hdf5_reader.hpp"
 #include "common/io/rehearse.hpp"
-#include "common/io/xdmf.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/parallel/global_order.hpp"
 
@@ -56,25 +56,6 @@ Topology make_topology(const mesh::Mesh& mesh) {
           mesh.points.global(points[mesh.cell_type[c] == mesh::CellType::prism ? std::size_t(prism[i]) : i]));
   }
   return topology;
-}
-
-}  // namespace
-
-namespace {
-
-/// Of the owned cells.
-std::vector<std::uint8_t> cells_within(const mesh::Mesh& mesh, std::span<const Vec3> places,
-                                       const FieldChoice::Box& box) {
-  std::vector<std::uint8_t> flags(mesh.cells.n_owned(), 0);
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
-    Vec3 mean = Vec3::Zero();
-    for (const Index v : mesh.cell_points[c]) mean += places[v];
-    mean /= double(mesh.cell_points[c].size());
-    bool within = true;
-    for (int d = 0; d < mesh.dim; ++d) within = within && mean[d] >= box.from[d] && mean[d] <= box.to[d];
-    flags[c] = within;
-  }
-  return flags;
 }
 
 }  // namespace
@@ -280,23 +261,6 @@ FieldWriter::FieldWriter(const SurfaceMesh& surface, std::filesystem::path folde
 }
 
 FieldWriter::~FieldWriter() = default;
-
-namespace {
-
-/// Of its cells and points; the values go to `values`.
-OutputField part_of(const OutputField& field, const CellPart& part, std::vector<double>& values) {
-  const std::size_t n = field.components;
-  values.clear();
-  for (const Index i : field.place == OutputField::Place::cells ? part.cells : part.points) {
-    const auto one = field.values.subspan(std::size_t(i) * n, n);
-    values.insert(values.end(), one.begin(), one.end());
-  }
-  OutputField here = field;
-  here.values = values;
-  return here;
-}
-
-}  // namespace
 
 void FieldWriter::write(double time, std::span<const Vec3> points, const std::vector<OutputField>& fields) {
   if (!state_) return;
