@@ -22,9 +22,10 @@ void declare_fields(config::Section& s, io::FieldChoice& f) {
   s.optional_section<io::FieldChoice::Box>(
       "box", f.box,
       [](config::Section& b, io::FieldChoice::Box& box) {
-        b.value("from", box.from).unit("m").required().doc("lowest corner");
+        b.value("from", box.from).unit("m").plausible(1e-9, 1e4).required().doc("lowest corner");
         b.value("to", box.to)
             .unit("m")
+            .plausible(1e-9, 1e4)
             .required()
             .doc("highest corner; in two dimensions the third number counts for nothing");
         b.check(

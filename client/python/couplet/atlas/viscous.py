@@ -26,7 +26,7 @@ def run(panel, ratio, dt, runner):
     folder = runner.folder("viscous", panel, ratio, dt)
     text = changed((CASE / "case.yaml").read_text(), (r"end-time: .*", f"end-time: {STEPS * dt}"),
                    (r"time-step: .*", f"time-step: {dt}"), (r"interval: 0.05 s", "interval: 1000 s"), (r"interval: 1 s", "interval: 1000 s"),
-                   (r"density: 3000 kg/m\^3", f"density: {ratio * VISCOSITY}"), (r"scheme: semi-implicit", f"scheme: {PANELS[panel]}"),
+                   (r"density: 3000 kg/m\^3", f"density: {ratio * VISCOSITY}"), (r"coupling:\n", f"coupling:\n  scheme: {PANELS[panel]}\n"),
                    (r"inlet, velocity: \[10 m/s, 0 m/s\]", f"inlet, velocity: [1 m/s, 0 m/s], ramp: {STEPS * dt}"),
                    (r"max-iterations: 30", "max-iterations: 100"), (r"initial-relaxation: 1", "initial-relaxation: 0.3"),
                    (r"(solid:\n    program: solid_solver)\n    mesh: solid.geo", r"\1\n    mesh: solid.geo\n    mesh-parameters: {n_side: 16, n_tip: 2}"),
