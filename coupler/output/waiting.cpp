@@ -61,12 +61,11 @@ std::string waiting_sentence(const std::vector<Worker>& workers, bool side_by_si
   }
   if (workers.size() < 2 || sum < too_short) return {};
   const auto slowest = std::ranges::max_element(workers, {}, &Worker::seconds);
-  const double share = side_by_side ? 1 : slowest->seconds / sum;
   std::string text =
       side_by_side
           ? fmt::format("waiting: side by side, all wait for '{}', which takes longest", slowest->name)
           : fmt::format("waiting: one after another, the others wait for '{}' {:.0f} % of the time at work",
-                        slowest->name, 100 * share);
+                        slowest->name, 100 * slowest->seconds / sum);
   if (total == int(workers.size()))
     return text + fmt::format("; a further rank is best given to it ('-n {}={}')", slowest->name, 2);
   const std::vector<int> better = divide_ranks(workers, total, side_by_side);

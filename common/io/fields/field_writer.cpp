@@ -9,6 +9,7 @@
 #include "common/io/fields/xdmf.hpp"
 #include "common/io/hdf5_reader.hpp"
 #include "common/io/rehearse.hpp"
+#include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/parallel/global_order.hpp"
 
@@ -245,7 +246,11 @@ FieldWriter::FieldWriter(const mesh::Mesh& mesh, std::span<const Vec3> places, s
                          std::string name, bool moving, double restart_time, const FieldChoice& choice) {
   if (choice.box) {
     part_ = make_part(mesh, places, cells_within(mesh, places, *choice.box));
-    if (parallel::sum(mesh.comm, GlobalIndex(part_->cells.size())) == 0) return;
+    if (parallel::sum(mesh.comm, GlobalIndex(part_->cells.size())) == 0) {
+      if (parallel::comm_rank(mesh.comm) == 0)
+        log::warn("simulation.output.box: no cell of '{}' lies in it; none of its fields are written.", name);
+      return;
+    }
   }
   state_ = std::make_unique<State>(State{
       part_ ? part_->mesh : mesh, std::move(folder), std::move(name), moving, fields_format, {}, 0, {}, {}});
