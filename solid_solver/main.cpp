@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
 #include "common/app/program.hpp"
 #include "common/io/cut/load_mesh.hpp"
 #include "common/linalg/petsc_environment.hpp"
@@ -6,6 +9,19 @@
 #include "solid_solver/effects/effect_cards.hpp"
 #include "solid_solver/solid.hpp"
 #include "solid_solver/thermal_solid.hpp"
+
+namespace {
+
+// Of a coupling over each step, each of which solves once.
+constexpr double passes = 3;
+
+/// About as many solves with one matrix as the run will make.
+double solves_of(const couplet::app::ParticipantContext& context) {
+  const double steps = std::max(1.0, std::round(context.simulation.end_time / context.simulation.time_step));
+  return context.coupled ? passes * steps : steps;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   couplet::solid::SolidParameters parameters;
@@ -22,6 +38,7 @@ int main(int argc, char** argv) {
             parameters.mesh_scale);
         const couplet::solid::SolidContext where{context.name, context.output_folder, context.restart_time,
                                                  context.simulation.fields};
+        parameters.method.solves = solves_of(context);
         if (parameters.analysis == couplet::solid::SolidParameters::Analysis::thermal)
           return std::make_unique<couplet::solid::ThermalSolid>(std::move(body), parameters, where);
         return std::make_unique<couplet::solid::Solid>(std::move(body), parameters, where);

@@ -62,6 +62,7 @@ LinearSolver::LinearSolver(std::string what, const SparseMatrix& matrix, const L
   PC pc = nullptr;
   petsc_check(KSPGetPC(ksp_, &pc));
   choose_method(ksp_, pc, matrix, options.method);
+  if (options.as_preconditioner) petsc_check(KSPSetNormType(ksp_, KSP_NORM_NONE));
   if (options.method == LinearMethod::cg_single && parallel::comm_size(matrix.comm()) == 1)
     use_single_precision();
   if (!is_direct(options.method)) petsc_check(KSPSetInitialGuessNonzero(ksp_, PETSC_TRUE));

@@ -16,7 +16,7 @@ namespace couplet::linalg {
 /// are those of accepted solves only, so that a solve that is done again starts from the same place.
 class ResidualProjection {
  public:
-  static constexpr int most = 8;
+  static constexpr int most = 16;
 
   /// `depth`: corrections kept, 1 to `most`.
   ResidualProjection(MPI_Comm comm, int depth) : comm_(comm), depth_(depth) {}

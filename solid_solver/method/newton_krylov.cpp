@@ -8,6 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
+#include "common/elasticity/tied/tied_matrix.hpp"
 #include "common/log/timer.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -105,7 +106,7 @@ NewtonKrylov::NewtonKrylov(const SolidProblem& problem, const MethodParameters& 
   krylov_ = std::make_unique<linalg::KrylovSolver>(
       "displacement", problem.mesh.comm, n, apply,
       [this](std::span<const double> r, std::span<double> z) { approximate_inverse(r, z); });
-  if (!problem.is_static() && parameters.corrections_kept > 0)
+  if (multigrid_ && !problem.is_static() && parameters.corrections_kept > 0)
     projection_ =
         std::make_unique<linalg::ResidualProjection>(problem.mesh.comm, parameters.corrections_kept);
 }
@@ -113,6 +114,8 @@ NewtonKrylov::NewtonKrylov(const SolidProblem& problem, const MethodParameters& 
 bool NewtonKrylov::approximate_inverse(std::span<const double> r, std::span<double> z) {
   if (multigrid_)
     multigrid_->apply(r, z);
+  else if (tied_)
+    tied_->solve(r, z);
   else
     factors_->solve(r, z);
   if (modes_) modes_->add_correction(r, z);
@@ -181,9 +184,20 @@ void NewtonKrylov::add_rigid_motions(const std::vector<double>& inertia, double 
 
 void NewtonKrylov::choose_factors() {
   linalg::LinearOptions of_factors;
+  of_factors.as_preconditioner = true;
   if (problem_.is_symmetric()) {
+    std::vector<double> inertia(problem_.inertia.begin(), problem_.inertia.end());  // of a unit of volume
+    for (std::size_t c = 0; c < inertia.size(); ++c) inertia[c] /= problem_.geometry().volume[Index(c)];
+    if (problem_.mesh.dim == 3 && elastic::TiedMatrix::suits(problem_.mesh)) {
+      elastic::TiedParts parts;
+      if (!inertia.empty()) parts.mass = 1, parts.density = inertia;
+      tied_ = std::make_unique<elastic::TiedMatrix>(problem_.mesh, problem_.elastic, parts);
+      tied_->factorise();
+      name_ = "newton-krylov (conjugate gradients, factors with the vertices)";
+      return;
+    }
     matrix_ = std::make_unique<linalg::SparseMatrix>(
-        elastic::symmetric_matrix(problem_.mesh, problem_.elastic, node_inertia(problem_)));
+        elastic::symmetric_matrix(problem_.mesh, problem_.elastic, inertia));
     of_factors.method =
         problem_.mesh.dim == 2 ? linalg::LinearMethod::direct_planar : linalg::LinearMethod::direct_symmetric;
     factors_ = std::make_unique<linalg::LinearSolver>("displacement", *matrix_, of_factors);
@@ -191,9 +205,8 @@ void NewtonKrylov::choose_factors() {
     return;
   }
   matrix_ = std::make_unique<linalg::SparseMatrix>(problem_.elastic.matrix(problem_.inertia));
-  linalg::LinearOptions options;
-  options.method = linalg::LinearMethod::direct;
-  factors_ = std::make_unique<linalg::LinearSolver>("displacement", *matrix_, options);
+  of_factors.method = linalg::LinearMethod::direct;
+  factors_ = std::make_unique<linalg::LinearSolver>("displacement", *matrix_, of_factors);
   name_ = "newton-krylov (BiCGStab, factors of the least-squares operator)";
 }
 

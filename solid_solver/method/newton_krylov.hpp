@@ -8,6 +8,7 @@
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/elasticity/solve/current_rigid_modes.hpp"
 #include "common/elasticity/solve/elastic_preconditioner.hpp"
+#include "common/elasticity/tied/tied_matrix.hpp"
 #include "common/linalg/krylov.hpp"
 #include "common/linalg/matrix.hpp"
 #include "solid_solver/method/solution_method.hpp"
@@ -36,6 +37,7 @@ class NewtonKrylov final : public SolutionMethod {
   std::unique_ptr<elastic::CurrentRigidModes> modes_;  // of slender bodies with the symmetric operator
   std::unique_ptr<linalg::SparseMatrix> matrix_;
   std::unique_ptr<linalg::LinearSolver> factors_;
+  std::unique_ptr<elastic::TiedMatrix> tied_;  // in space
   std::unique_ptr<linalg::KrylovSolver> krylov_;
 };
 

@@ -9,6 +9,7 @@
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/method/block_coupled.hpp"
+#include "solid_solver/method/factor_cost.hpp"
 #include "solid_solver/method/mixed_form.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
 #include "solid_solver/method/segregated.hpp"
@@ -19,14 +20,14 @@ namespace {
 using MethodType = MethodParameters::Type;
 using Preconditioner = MethodParameters::Preconditioner;
 
-// Cells up to which factors kept for all steps win: in the plane they stay thin, in space they fill quickly.
+// Cells up to which factors of the least-squares gradient win, kept for all steps: in the plane they stay thin, in space they
+// fill quickly.
 constexpr GlobalIndex factors_up_to_2d = 60000, factors_up_to_3d = 1500;
-// The symmetric gradient's matrix is several times as wide. A beam of 10:1, processor seconds of one solve and of 100
-// steps, factors for multigrid: 2-D 160 cells .05 for .06 and .10 for .20, 2560 .17 for .06 and .93 for 1.09, 16000 1.5
-// for .2 and 8.0 for 7.9; in space 80 hexahedra .11 for .04 and .36 for .25, 640 1.6 for .07 and 4.7 for 1.0, 480
-// tetrahedra 1.2 for .09 and 16 for 1.5: there factors never pay, in the plane for a motion alone. Bodies of few cells
-// have no coarser mesh.
-constexpr GlobalIndex wide_factors_in_motion = 20000, wide_factors_2d = 200, wide_factors_3d = 64;
+// Bodies of so few cells have no coarser mesh.
+constexpr GlobalIndex fewest_for_multigrid = 64;
+// Set-up of factors that spare a hard system the iterations, whatever the number of solves [s]: 60 000 cells in the plane and
+// 1500 hexahedra in space.
+constexpr double set_up_of_hard = 4.5;
 // In the plane, from so many cells up, steps in which a wave crosses less than a cell (heaviness 1) need so few iterations
 // that the factors cost more than they save: 9216 cells, 100 steps: 2.6 s of factors against 0.6, 1.0, 1.4 s at Courant
 // numbers of 0.1, 0.3, 1, in pairs; with 4096 cells factors still win. From about 3 up they win again, with any mesh.
@@ -62,13 +63,11 @@ bool is_easy(const SolidProblem& problem) {
          heaviness(problem) >= 1 && !wants_mixed_form(problem);
 }
 
-/// Of the symmetric gradient's matrix.
-bool factors_pay(const SolidProblem& problem, bool easy, bool small) {
-  if (parallel::any(problem.mesh.comm, !problem.mesh.cell_material.empty()))
-    return small;  // stiffnesses may be far apart
-  const GlobalIndex cells = problem.mesh.cells.n_global();
-  if (problem.mesh.dim == 3) return cells <= wide_factors_3d;
-  return cells <= (problem.is_static() || easy ? wide_factors_2d : wide_factors_in_motion);
+/// Whether the symmetric gradient's matrix is better factorised: the set-up is shared by all solves of the run.
+bool factors_pay(const SolidProblem& problem, const MethodParameters& parameters, bool is_hard) {
+  if (is_axisymmetric(problem.elastic) || problem.mesh.cells.n_global() <= fewest_for_multigrid) return true;
+  const FactorCost cost = factor_cost(problem.mesh, problem.geometry(), heaviness(problem));
+  return cost.fits() && (is_hard ? cost.set_up <= set_up_of_hard : parameters.solves >= cost.pays_after());
 }
 
 /// Fills in what is left to the program; gives the reason.
@@ -88,8 +87,9 @@ std::string decide(const SolidProblem& problem, MethodParameters& parameters) {
           "'corrected'.");
     if (parameters.preconditioner == Preconditioner::automatic) {
       const bool mixed = wants_mixed_form(problem);
-      const bool direct =
-          is_axisymmetric(problem.elastic) || (mixed ? small : factors_pay(problem, easy, small));
+      // Stiffnesses of several materials may be far apart.
+      const bool is_hard = mixed || parallel::any(problem.mesh.comm, !problem.mesh.cell_material.empty());
+      const bool direct = factors_pay(problem, parameters, is_hard);
       parameters.preconditioner = direct  ? Preconditioner::factors
                                   : mixed ? Preconditioner::mixed
                                           : Preconditioner::multigrid;

@@ -79,10 +79,11 @@ void declare_linear_solver(config::Section& s, MethodParameters& m) {
             {"mixed", Preconditioner::mixed}})
       .doc(
           "for newton-krylov; multigrid: compact component-wise operator and rigid motions of aggregates; "
-          "factors: LU of the thesis operator (symmetric: its own Cholesky factors), reused for all steps "
+          "factors: LU of the thesis operator (symmetric: its own factors, mass included), reused for all steps "
           "of one size; mixed: for the symmetric gradient with one volume strain per cell, with the mean "
           "stresses as additional unknowns, so that nu close to 0.5 takes hardly more iterations than 0.3; "
-          "auto: factors for small bodies, otherwise mixed from nu = 0.49, otherwise multigrid");
+          "auto: factors where the run makes so many steps that they pay, for several materials and from "
+          "nu = 0.49 where they are set up in seconds; otherwise mixed from nu = 0.49, otherwise multigrid");
 }
 
 void declare_iteration(config::Section& s, MethodParameters& m) {

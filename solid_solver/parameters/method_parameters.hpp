@@ -23,7 +23,8 @@ struct MethodParameters {
   int aitken_interval = 5;
   int anderson_history = 10;
   Predictor predictor = Predictor::euler;
-  int corrections_kept = 4;
+  int corrections_kept = 12;
+  double solves = 1;  // no key: with one matrix, as many as the run will make
   double relative_tolerance = 1e-10;
   int max_iterations = 2000;
 };

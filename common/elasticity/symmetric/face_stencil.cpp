@@ -80,6 +80,12 @@ const std::vector<FaceStencil::Term>& FaceStencil::of_mean(Index f) {
   return terms_;
 }
 
+const std::vector<FaceStencil::Term>& FaceStencil::of_point(Index v) {
+  terms_.clear();
+  take_point(v, Vec3(1, 0, 0));
+  return terms_;
+}
+
 template const std::vector<FaceStencil::Term>& FaceStencil::of_mean<2>(Index);
 template const std::vector<FaceStencil::Term>& FaceStencil::of_mean<3>(Index);
 template const std::vector<FaceStencil::Term>& FaceStencil::of<2>(const SymmetricFace<2>&, Index);

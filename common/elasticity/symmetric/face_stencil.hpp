@@ -31,6 +31,8 @@ class FaceStencil {
   /// Of the mean displacement on a boundary face by the trial functions, u = sum_i b_x T_i u_i; valid until the next call.
   template <int D>
   const std::vector<Term>& of_mean(Index f);
+  /// Of a point, u = sum_i b_x T_i u_i; none where it is fixed; valid until the next call.
+  const std::vector<Term>& of_point(Index v);
   Index node_of(Index f) const { return mesh_.cells.n_local() + f - mesh_.n_interior; }
 
  private:

@@ -41,6 +41,28 @@ void NodeAssembly::add_diagonals(std::span<const double> of_nodes) {
     add_diagonal(node_of(rows_.unknown_faces()[i]), of_nodes[std::size_t(n_cells) + i]);
 }
 
+template <int D>
+void NodeAssembly::add_mass(double factor, const SymmetricSpace<D>& space) {
+  for (Index i = 0; i < Index(number_.size()); ++i) {
+    const double mass = factor * space.node_mass()[std::size_t(i)];
+    if (number_[i] < 0 || mass == 0) continue;
+    Tensor3 open = Tensor3::Identity();
+    if (i >= mesh_.cells.n_local()) open -= rows_.at(i - mesh_.cells.n_local() + mesh_.n_interior).known;
+    add_block(i, i, mass * open);
+  }
+  for (Index v = 0; v < mesh_.points.n_local(); ++v) {
+    const double mass = factor * space.point_mass()[std::size_t(v)];
+    if (mass == 0) continue;
+    const std::vector<FaceStencil::Term>& terms = stencil_.of_point(v);
+    for (const FaceStencil::Term& i : terms)
+      for (const FaceStencil::Term& j : terms)
+        add_block(i.node, j.node, mass * i.b[0] * j.b[0] * (i.turn.transpose() * j.turn));
+  }
+}
+
+template void NodeAssembly::add_mass<2>(double, const SymmetricSpace<2>&);
+template void NodeAssembly::add_mass<3>(double, const SymmetricSpace<3>&);
+
 linalg::SparseMatrix NodeAssembly::matrix() const {
   return pairs_.matrix(mesh_.comm, static_cast<GlobalIndex>(rows_.n_unknowns()), mesh_.dim,
                        [this](Index node) { return number_[node]; });

@@ -9,6 +9,7 @@
 
 #include "common/elasticity/block_pairs.hpp"
 #include "common/elasticity/symmetric/face_stencil.hpp"
+#include "common/elasticity/symmetric/symmetric_space.hpp"
 
 namespace couplet::elastic {
 
@@ -30,6 +31,9 @@ class NodeAssembly {
   void add_supports();
   /// On the diagonals, one value an unknown node; empty: none.
   void add_diagonals(std::span<const double> of_nodes);
+  /// A mass that is lumped at nodes and points times `factor` [1/s^2]: between the nodes that a point is interpolated from.
+  template <int D>
+  void add_mass(double factor, const SymmetricSpace<D>& space);
   /// Collective.
   linalg::SparseMatrix matrix() const;
 

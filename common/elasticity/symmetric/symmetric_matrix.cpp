@@ -72,10 +72,18 @@ void add_ring(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f, Node
     }
 }
 
+template <int D>
+void add_mass(const mesh::Mesh& mesh, const ElasticOperator& rows, std::span<const double> inertia,
+              NodeAssembly& to) {
+  SymmetricSpace<D> space(mesh, rows);
+  space.set_density(inertia);
+  to.add_mass(1, space);
+}
+
 }  // namespace
 
 linalg::SparseMatrix symmetric_matrix(const mesh::Mesh& mesh, const ElasticOperator& rows,
-                                      std::span<const double> of_nodes) {
+                                      std::span<const double> inertia) {
   const mesh::Geometry& geometry = rows.geometry();
   NodeAssembly assembly(mesh, rows);
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
@@ -91,7 +99,8 @@ linalg::SparseMatrix symmetric_matrix(const mesh::Mesh& mesh, const ElasticOpera
   assembly.finish_volumes(
       [&](Index c) { return bulk_of_cells(rows.lame(c), rows.volume_strain()) / volume[std::size_t(c)]; });
   assembly.add_supports();
-  assembly.add_diagonals(of_nodes);
+  if (!inertia.empty())
+    mesh.dim == 2 ? add_mass<2>(mesh, rows, inertia, assembly) : add_mass<3>(mesh, rows, inertia, assembly);
   return assembly.matrix();
 }
 

@@ -314,6 +314,34 @@ TEST(SolidMethods, auto_makes_no_factors_for_many_cells_where_inertia_makes_the_
   EXPECT_THAT(chosen_for(20, 0.5), HasSubstr("block-coupled (direct)"));
 }
 
+/// What `auto` takes for the symmetric gradient of a bar ten times as long as thick, for so many solves.
+std::string chosen_for(BoxCells cells, int across, double solves) {
+  const int dim = dimension_of(cells);
+  const auto [mesh, geometry] =
+      distribute(MPI_COMM_WORLD,
+                 make_box(cells, {10 * across, across, across}, Vec3::Zero(), Vec3(10, 1, dim == 3 ? 1 : 0)));
+  const std::vector<BoundaryRow> held(mesh.patches.size(), fixed_row());
+  const ElasticOperator elastic(mesh, geometry, held, LameConstants{4e6, 6e6});
+  const ElasticKernel kernel(mesh, elastic, FaceGradientScheme::symmetric);
+  std::vector<double> inertia;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) inertia.push_back(1e3 * geometry.volume[c]);
+  MethodParameters parameters;
+  parameters.solves = solves;
+  kernel.set_density(inertia);
+  return make_solution_method({mesh, elastic, inertia, kernel, 1}, parameters)->name();
+}
+
+TEST(SolidMethods, auto_makes_factors_where_the_run_makes_so_many_solves_that_they_pay) {
+  for (const BoxCells cells : {BoxCells::quadrilaterals, BoxCells::tetrahedra}) {
+    EXPECT_THAT(chosen_for(cells, cells == BoxCells::quadrilaterals ? 12 : 3, 1000), HasSubstr("factors"))
+        << name(cells);
+    EXPECT_THAT(chosen_for(cells, cells == BoxCells::quadrilaterals ? 12 : 3, 10), HasSubstr("multigrid"))
+        << name(cells);
+  }
+  EXPECT_THAT(chosen_for(BoxCells::hexahedra, 5, 1e6), HasSubstr("multigrid"))
+      << "a cycle is cheaper than a solve by factors";
+}
+
 TEST(SolidMethods, a_solve_that_does_not_converge_names_method_iterations_residual_and_what_to_try) {
   SolidParameters p = box_parameters(2);
   p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
