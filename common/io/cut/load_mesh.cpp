@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/cut/load_mesh.hpp"
 
-#include <malloc.h>
-
 #include <cmath>
 
 #include "common/base/error.hpp"
 #include "common/io/cut/cut_mesh.hpp"
-#include "common/mesh/on_root.hpp"
-#include "common/mesh/quality.hpp"
 
 namespace couplet::io {
 
@@ -28,18 +24,10 @@ mesh::LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int
   if (block.dim != dim)
     throw Error("The mesh '{}' is {}-dimensional, but the case sets 'dimension: {}'.", file.string(),
                 block.dim, dim);
-  for (Vec3& x : block.points) x *= scale;
   block.periodic = periodic;
   block.materials = materials;
   block.find_wide_points = find_wide_points;
-  try {
-    mesh::LoadedMesh loaded = mesh::distribute(comm, std::move(block));
-    malloc_trim(0);
-    mesh::check_and_report(loaded.mesh, loaded.geometry);
-    return loaded;
-  } catch (const Error& e) {
-    throw Error("Cannot use the mesh '{}'. {}", file.string(), e.what());
-  }
+  return mesh::load_block(comm, std::move(block), file, scale);
 }
 
 mesh::MeshFacts facts_of_file(const std::filesystem::path& file, const mesh::MeshParameters& parameters,

@@ -6,6 +6,7 @@
 #include "common/base/error.hpp"
 #include "common/mesh/distributed/piece.hpp"
 #include "common/mesh/partition.hpp"
+#include "common/mesh/quality.hpp"
 
 namespace couplet::mesh {
 namespace {
@@ -95,6 +96,18 @@ LoadedMesh distribute(MPI_Comm comm, MeshBlock block, std::span<const int> part)
   for (Index p = 0; p < ranks.size(); ++p) piece.point_owner.push_back(ranks[p].front());
   block.points = {};
   return cut_part(comm, std::move(piece));
+}
+
+LoadedMesh load_block(MPI_Comm comm, MeshBlock block, const std::filesystem::path& file, double scale) {
+  for (Vec3& x : block.points) x *= scale;
+  try {
+    LoadedMesh loaded = distribute(comm, std::move(block));
+    give_back();
+    check_and_report(loaded.mesh, loaded.geometry);
+    return loaded;
+  } catch (const Error& e) {
+    throw Error("Cannot use the mesh '{}'. {}", file.string(), e.what());
+  }
 }
 
 }  // namespace couplet::mesh

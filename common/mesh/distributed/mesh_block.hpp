@@ -4,6 +4,7 @@
 #include <mpi.h>
 
 #include <array>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -47,5 +48,8 @@ MeshBlock block_of(MPI_Comm comm, RawMesh raw);
 /// The parts are those that distribute() would give if it shared the cells out in the same way. `part`: the rank of each
 /// cell of the block, in place of PT-Scotch's. Collective.
 LoadedMesh distribute(MPI_Comm comm, MeshBlock block, std::span<const int> part = {});
+
+/// The same of a block of this file, all lengths times `scale`, checked and reported as load_mesh() does. Collective.
+LoadedMesh load_block(MPI_Comm comm, MeshBlock block, const std::filesystem::path& file, double scale);
 
 }  // namespace couplet::mesh

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <malloc.h>
 
+#include <optional>
+
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
 #include "common/mesh/gmsh/meshio.hpp"
 #include "common/mesh/load.hpp"
+#include "common/mesh/msh/msh_block.hpp"
 #include "common/mesh/on_root.hpp"
 #include "common/mesh/quality.hpp"
 
@@ -23,6 +26,19 @@ RawMesh read_geo_mesh(const std::filesystem::path& geo, int dim, const MeshParam
   }
   std::filesystem::remove(cached);
   return read_msh(mesh_geo(geo, dim, parameters));
+}
+
+// From here on no rank should hold the file and the mesh: some 500 000 cells.
+constexpr std::uintmax_t bytes_of_large_msh = std::uintmax_t(64) << 20;
+
+/// The .msh that all ranks read together, this file or what gmsh makes of it; empty: none.
+std::string large_msh(MPI_Comm comm, const std::filesystem::path& file, int dim,
+                      const MeshParameters& parameters) {
+  const bool is_geo = file.extension() == ".geo";
+  if (parallel::comm_size(comm) == 1 || !std::filesystem::is_regular_file(file)) return {};
+  if (!is_geo && (file.extension() != ".msh" || !parameters.empty())) return {};
+  const std::filesystem::path finished = is_geo ? mesh_geo(file, dim, parameters) : file;
+  return std::filesystem::file_size(finished) < bytes_of_large_msh ? std::string() : finished.string();
 }
 
 }  // namespace
@@ -74,6 +90,18 @@ LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
                      const std::vector<std::array<std::string, 2>>& periodic,
                      const std::vector<std::vector<std::string>>& materials, bool find_wide_points,
                      double scale) {
+  std::string large;
+  on_root(comm, [&] { large = large_msh(comm, file, dim, parameters); });
+  parallel::broadcast(comm, large);
+  if (!large.empty()) {
+    std::optional<MeshBlock> block = read_msh_block(comm, large);
+    if (block && block->dim == dim && block->cell_shares.n > 0) {
+      block->periodic = periodic;
+      block->materials = materials;
+      block->find_wide_points = find_wide_points;
+      return load_block(comm, std::move(*block), file, scale);
+    }
+  }
   RawMesh raw;
   on_root(comm, [&] {
     raw = read_mesh(file, dim, parameters);

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
-#include <cstdlib>
-#include <limits>
 
 #include "common/mesh/msh/msh_file.hpp"
 
@@ -15,11 +13,7 @@ void MshReader41::read_entities(MshCursor& in) {
       const int tag = in.integer();
       for (int k = 0; k < (dim == 0 ? 3 : 6); ++k) in.real();  // point or bounding box
       std::vector<int>& groups = groups_of_entity_[{dim, tag}];
-      for (std::size_t n = in.count(); n > 0; --n) {
-        const int group =
-            in.integer();  // negative: turned around; the least int has no counterpart and names no group
-        groups.push_back(group == std::numeric_limits<int>::min() ? group : std::abs(group));
-      }
+      for (std::size_t n = in.count(); n > 0; --n) groups.push_back(msh_group(in.integer()));
       if (dim == 0) continue;
       for (std::size_t n = in.count(); n > 0; --n) in.integer();  // entities that bound this one
     }

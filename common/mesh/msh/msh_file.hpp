@@ -12,13 +12,13 @@
 
 #include "common/base/error.hpp"
 #include "common/mesh/load.hpp"
+#include "common/mesh/msh/msh_groups.hpp"
 
 namespace couplet::mesh {
 
 /// What versions 2.2 and 4.1 have in common: points, elements with gmsh's type numbers, physical groups.
 struct MshContent {
-  /// Name of a physical group by (dimension, tag), in the order of the file.
-  std::vector<std::pair<std::pair<int, int>, std::string>> names;
+  MshNames names;
   std::vector<Vec3> points;
   std::unordered_map<std::size_t, Index> point_of_tag;
 

@@ -5,6 +5,7 @@
 
 #include "common/mesh/msh/msh_entities.hpp"
 #include "common/mesh/msh/msh_file.hpp"
+#include "common/mesh/msh/msh_groups.hpp"
 
 namespace couplet::mesh {
 namespace {
@@ -49,76 +50,6 @@ void read_names(MshCursor& in, MshContent& content) {
   in.end_section();
 }
 
-/// Gives out patch (or zone) numbers for the physical groups of one dimension: names in the order of
-/// $PhysicalNames, then unnamed groups as "physical_<tag>" in the order in which elements use them. Groups
-/// without elements are left out.
-class Groups {
- public:
-  Groups(const MshContent& content, int dim) {
-    for (const auto& [key, name] : content.names)
-      if (key.first == dim) number(key.second, name);
-  }
-  int use(int tag) {
-    const auto found = number_of_tag_.find(tag);
-    const int g =
-        found != number_of_tag_.end() ? found->second : number(tag, fmt::format("physical_{}", tag));
-    used_[g] = true;
-    return g;
-  }
-  int use_default() {
-    if (default_ < 0) default_ = number(0, "default");
-    used_[default_] = true;
-    return default_;
-  }
-  /// Drops the unused names; `numbers` are renumbered.
-  std::vector<std::string> finish(std::vector<int>& numbers) const {
-    std::vector<std::string> kept;
-    std::vector<int> renumbered(names_.size(), -1);
-    for (std::size_t g = 0; g < names_.size(); ++g) {
-      if (!used_[g]) continue;
-      renumbered[g] = static_cast<int>(kept.size());
-      kept.push_back(names_[g]);
-    }
-    for (int& n : numbers) n = renumbered[n];
-    return kept;
-  }
-
-  const std::string& name(int number) const { return names_[number]; }
-
- private:
-  /// Two tags may carry the same name: one patch.
-  int number(int tag, const std::string& name) {
-    const auto same = std::find(names_.begin(), names_.end(), name);
-    const int g = static_cast<int>(same - names_.begin());
-    if (same == names_.end()) {
-      names_.push_back(name);
-      used_.push_back(false);
-    }
-    return number_of_tag_[tag] = g;
-  }
-  std::vector<std::string> names_;
-  std::vector<bool> used_;
-  std::map<int, int> number_of_tag_;
-  int default_ = -1;
-};
-
-CellType cell_type(int gmsh) {
-  switch (gmsh) {
-    case 2:
-      return CellType::triangle;
-    case 3:
-      return CellType::quadrilateral;
-    case 4:
-      return CellType::tetrahedron;
-    case 5:
-      return CellType::hexahedron;
-    case 6:
-      return CellType::prism;
-    default:
-      return CellType::pyramid;
-  }
-}
-
 int dimension(const MshContent& content) {
   int dim = 2;
   for (const auto& e : content.elements)
@@ -130,7 +61,7 @@ RawMesh to_raw(const MshContent& content, const std::filesystem::path& file) {
   RawMesh raw;
   raw.dim = dimension(content);
   raw.points = content.points;
-  Groups zones(content, raw.dim), patches(content, raw.dim - 1);
+  MshGroups zones(content.names, raw.dim), patches(content.names, raw.dim - 1);
   for (const auto& e : content.elements) {
     const MshElementType& type = *find_msh_type(e.type);
     const std::span<const Index> nodes(content.nodes.data() + e.first_node, std::size_t(type.n_nodes));
@@ -141,7 +72,7 @@ RawMesh to_raw(const MshContent& content, const std::filesystem::path& file) {
         if (zones.use(other) != zone)
           throw Error("{}: a {} is in two physical groups, '{}' and '{}'. A cell must be in exactly one.",
                       file.string(), type.name, zones.name(zone), zones.name(zones.use(other)));
-      raw.cell_type.push_back(cell_type(e.type));
+      raw.cell_type.push_back(msh_cell_type(e.type));
       raw.cell_points.push_row(nodes);
       raw.cell_zone.push_back(zone);
     } else if (type.dim == raw.dim - 1) {

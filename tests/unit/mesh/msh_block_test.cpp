@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/mesh/msh/msh_block.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "common/parallel/collective.hpp"
+#include "support.hpp"
+
+namespace couplet {
+using namespace mesh;
+using namespace parallel;
+namespace {
+
+/// One file for all ranks, written by rank 0.
+class MshBlocks : public ::testing::Test {
+ protected:
+  MshBlocks() {
+    std::string name = own_.path.string();
+    broadcast(MPI_COMM_WORLD, name);
+    folder_ = name;
+  }
+  ~MshBlocks() override { MPI_Barrier(MPI_COMM_WORLD); }
+  std::filesystem::path write(const std::string& text) {
+    if (comm_rank(MPI_COMM_WORLD) == 0) std::ofstream(folder_ / "mesh.msh", std::ios::binary) << text;
+    MPI_Barrier(MPI_COMM_WORLD);
+    return folder_ / "mesh.msh";
+  }
+
+ private:
+  test::TemporaryFolder own_;
+  std::filesystem::path folder_;
+};
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void expect_as_whole(const std::filesystem::path& file) {
+  SCOPED_TRACE(file.string());
+  const std::optional<MeshBlock> read = read_msh_block(MPI_COMM_WORLD, file);
+  ASSERT_TRUE(read);
+  const MeshBlock cut = block_of(MPI_COMM_WORLD, read_msh(file));
+  EXPECT_EQ(read->dim, cut.dim);
+  EXPECT_EQ(read->points, cut.points);
+  EXPECT_EQ(read->point_shares.n, cut.point_shares.n);
+  EXPECT_EQ(read->cell_shares.n, cut.cell_shares.n);
+  EXPECT_EQ(read->cells.type, cut.cells.type);
+  EXPECT_EQ(read->cells.points, cut.cells.points);
+  EXPECT_EQ(read->cells.point_offset, cut.cells.point_offset);
+  EXPECT_EQ(read->cells.zone, cut.cells.zone);
+  EXPECT_EQ(read->element_points, cut.element_points);
+  EXPECT_EQ(read->element_offset, cut.element_offset);
+  EXPECT_EQ(read->element_patch, cut.element_patch);
+  EXPECT_EQ(read->zones, cut.zones);
+  EXPECT_EQ(read->patches, cut.patches);
+}
+
+TEST_F(MshBlocks, are_those_of_the_whole_mesh) {
+  for (const char* name :
+       {"plane_41_ascii.msh", "plane_41_binary.msh", "solid_41_ascii.msh", "solid_41_binary.msh"})
+    expect_as_whole(test::data / name);
+}
+
+// Nodes 8, 7, then 1 to 3 and 5; 7 belongs to nothing. The line along the bottom is in two groups.
+const std::string drawn =
+    "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
+    "$PhysicalNames\n3\n1 4 \"bottom\"\n1 5 \"rest\"\n2 9 \"all of it\"\n$EndPhysicalNames\n"
+    "$Entities\n0 2 1 0\n1 0 0 0 1 0 0 2 4 5 0\n2 0 0 0 1 1 0 1 -5 0\n1 0 0 0 1 1 0 1 9 0\n$EndEntities\n"
+    "$Nodes\n2 6 1 8\n2 1 0 2\n8\n7\n0 1 0\n5 5 0\n2 1 0 4\n1\n2\n3\n5\n0 0 0\n1 0 0\n1 1 0\n0.5 0.5 0\n$EndNodes\n"
+    "$Elements\n3 8 1 8\n1 1 1 1\n1 1 2\n1 2 1 3\n2 2 3\n3 3 8\n4 8 1\n2 1 2 4\n5 1 2 5\n6 2 3 5\n7 3 8 5\n8 8 1 5\n"
+    "$EndElements\n";
+
+TEST_F(MshBlocks, with_scattered_numbers_and_points_that_nothing_has) { expect_as_whole(write(drawn)); }
+
+TEST_F(MshBlocks, are_left_to_the_whole_reader_where_it_alone_can_tell) {
+  const auto is_read = [](const std::filesystem::path& file) {
+    return read_msh_block(MPI_COMM_WORLD, file).has_value();
+  };
+  EXPECT_FALSE(is_read(test::data / "solid_22_binary.msh"));
+  for (const char* name : {"solid_41_ascii.msh", "solid_41_binary.msh"}) {
+    const std::string text = text_of(test::data / name);
+    EXPECT_FALSE(is_read(write(text.substr(0, text.size() / 2)))) << name;
+    EXPECT_FALSE(is_read(write(text.substr(0, text.size() - 40)))) << name;
+  }
+  std::string unknown = drawn;
+  unknown.replace(unknown.find("8 8 1 5\n"), 8, "8 8 1 6\n");
+  EXPECT_FALSE(is_read(write(unknown))) << "node 6 is not there";
+  std::string twice = drawn;
+  twice.replace(twice.find("\n7\n0 1 0"), 3, "\n5\n");
+  EXPECT_FALSE(is_read(write(twice))) << "node 5 is there twice";
+}
+
+}  // namespace
+}  // namespace couplet
