@@ -31,7 +31,7 @@ def run(job, n, ranks=1, method="newton-krylov", extra=()):
     file, tets, _ = mesh_of(job, n)
     sets = (f"participants.solid.mesh={file}", "participants.solid.solution-method={%s}" % METHODS[method],
             "participants.solid.output={stress: false}", *extra)
-    results = job.solve_run("solid_solver", "porous-body", sets, ranks, timeout=7200)
+    results = job.alone("porous-body", sets, ranks, timeout=7200)
     reactions, solver, report = results.table("solid", "reactions.csv"), results.table("solid", "solver.csv"), results.report("solid")
     return {"cells": tets, "force": reactions["bottom z [N]"][-1], "iterations": int(solver["iterations"][-1]),
             "inner": int(solver["inner iterations"][-1]), "seconds": report["wall"],

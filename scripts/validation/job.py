@@ -121,17 +121,21 @@ class Job:
         """The folder of coupled_run()."""
         return self.coupled_run(*what, **more).folder
 
-    def solve_run(self, program, case, overrides=(), ranks=1, timeout=3600):
-        """Results of configs/<case>/case.yaml, whose one participant `program` runs; runs with the same overrides are made once."""
+    def alone(self, case, overrides=(), ranks=1, timeout=3600):
+        """Results of configs/<case>, a folder or a file 'folder/name' of it, and the `participant`, the only one. An override '.key' is one of the participant.
+        Runs with the same overrides are made once."""
         def make():
-            file = self.root / "configs" / case / "case.yaml"
-            participant = next(n for n, p in Case(file).participants.items() if p.get("program") == program)
-            return self.case_run(file, self.scratch / f"solve-{len(self._kept)}", overrides, {participant: ranks}, timeout)
-        return self.once(("solve", program, case, tuple(overrides), ranks), make)
+            file = self.root / "configs" / (f"{case}.yaml" if "/" in case else f"{case}/case.yaml")
+            (participant,) = Case(file).participants
+            keys = [f"participants.{participant}{o}" if o.startswith(".") else o for o in overrides]
+            results = self.case_run(file, self.scratch / f"solve-{len(self._kept)}", keys, {participant: ranks}, timeout)
+            results.participant = participant
+            return results
+        return self.once(("solve", case, tuple(overrides), ranks), make)
 
     def solve(self, *what, **more):
-        """Folder and log of solve_run()."""
-        run = self.solve_run(*what, **more)
+        """Folder and log of alone()."""
+        run = self.alone(*what, **more)
         return run.folder, run.log
 
     def beside(self, file):

@@ -7,14 +7,6 @@ import platform
 import re
 import subprocess
 
-KERNEL = ("common/base", "common/parallel", "common/linalg", "common/mesh", "common/fv", "common/time")
-SOURCES = {  # folders whose change may change the rows of a table; a validation module may have its own SOURCES
-    "main-job": ("common", "coupler", "fluid_solver", "solid_solver", "mesh_mover", "configs/perpendicular-flap"),
-    "solid-linear": (*KERNEL, "solid_solver"),
-    "fluid": (*KERNEL, "fluid_solver"),
-    "thermocline": ("common/time", "thermocline"),
-}
-
 
 def verdict_of(wanted, met):
     """`met` is True, False, or None. A row that only reports is not met where its measure reports a failure."""

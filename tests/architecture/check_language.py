@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Holds the first table of docs/glossary.md: none of its avoided words in hand-written Markdown or in string literals of programs, client and scripts.
+"""Holds the first table of docs/glossary.md: none of its avoided words in hand-written Markdown or in string literals of programs, client and scripts,
+rows of tables among them.
 Usage: check_language.py PROJECT_ROOT [--messages | --documents]      prints file:line, the word and what to write; exit 1 if there is any"""
 import functools
 import io
@@ -9,6 +10,8 @@ import re
 import subprocess
 import sys
 import tokenize
+
+import yaml
 
 SOURCES = ("common/", "coupler/", "fluid_solver/", "solid_solver/", "mesh_mover/", "thermocline/", "plate_modal/", "client/", "scripts/", "configs/")
 GENERATED = r"docs/(?:config|effects|command|stability)\.md|docs/validation/(?!studies/README).*"  # from literals, which are searched themselves
@@ -85,9 +88,21 @@ def python_literals(text):
     return joined(found, text)
 
 
+def yaml_texts(text):
+    """[(line, text)] of all names and values."""
+    def texts(node):
+        if isinstance(node, yaml.ScalarNode):
+            yield node.start_mark.line + 1 + (node.style == "|"), node.value
+            return
+        for child in node.value:
+            for part in child if isinstance(child, tuple) else (child,):
+                yield from texts(part)
+    return [(line, re.sub(r"`[^`\n]+`", blank, value)) for line, value in texts(yaml.compose(text, yaml.SafeLoader))]
+
+
 def check(path, text, words, allowed):
     """Avoided words of one file: path:line: 'word': what to write."""
-    chunks = {".md": prose, ".cpp": cpp_literals, ".hpp": cpp_literals}.get(pathlib.PurePosixPath(path).suffix, python_literals)(text)
+    chunks = {".md": prose, ".cpp": cpp_literals, ".hpp": cpp_literals, ".yaml": yaml_texts}.get(pathlib.PurePosixPath(path).suffix, python_literals)(text)
     found, any_of = set(), one_of(tuple(word for word, _ in words))
     for first, chunk in chunks:
         if " " not in chunk or not any_of.search(chunk):
@@ -111,6 +126,8 @@ def is_document(path):
 def is_message(path, root):
     if not path.startswith(SOURCES) or path.endswith((".md", ".h")):
         return False
+    if path.endswith(".yaml"):
+        return path.startswith("scripts/validation/tables/")
     return path.endswith((".cpp", ".hpp", ".py")) or (root / path).read_bytes().startswith((b"#!/usr/bin/python", b"#!/usr/bin/env python"))
 
 

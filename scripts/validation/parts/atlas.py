@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of the atlas: its squares as committed, and the positions that runs between its squares report."""
+"""Measures of the atlas: its squares as committed, and the positions that runs between its squares report."""
 import csv
 import json
 import pathlib
 import tempfile
 
-from validation.job import Bar
 
 # Of each map: its panels, places between its squares, and the quantity whose number is the map's own axis (by a factor).
 BETWEEN = [
@@ -64,10 +63,3 @@ def positions(job):
                     wrong.append(f"{name} {panel} {x:g}, {y:g}: {used if used is None else round(used, 2)} of the way, {square.outcome}")
     total = right + early + saved + len(wrong)
     return f"{right} of {total} agree, {early} hold up to 1.5 times the limit, {saved} begin beyond it and hold by halved steps" + (f"; not: {'; '.join(wrong)}" if wrong else ""), total >= 50 and not wrong
-
-
-BARS = [
-    Bar("atlas: default settings in all maps, squares more than 20 % off without a warning", "0", colours),
-    Bar("atlas: runs between squares, their printed position inside or beyond the limit as the run holds or not", "50 of 50", positions, long=True,
-        but="a run that holds up to 1.5 times the printed limit counts: the limits are bounds; so does one that is printed beyond it and was held by the halving of its steps"),
-]

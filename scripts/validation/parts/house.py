@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of the house, counted from the sources: geometry, conditions, folders, namespaces, lengths, lines; minutes of a build."""
+"""Measures of the house, counted from the sources: geometry, conditions, folders, namespaces, lengths, lines; minutes of a build."""
 import importlib
 import os
 import pathlib
@@ -8,11 +8,8 @@ import resource
 import shutil
 import sys
 
-from validation.job import Bar
-
 PROGRAMS = ("solid_solver", "fluid_solver", "mesh_mover", "thermocline", "plate_modal", "coupler")
 HOUSE = ("common", *PROGRAMS)
-DEMO = ("coupler", "fluid_solver", "solid_solver", "mesh_mover")
 LONGEST_FUNCTION, MOST_MEMBERS = 60, 25
 # Of b350924, the commit that the plan was measured at.
 LINES_BEFORE, SCRIPT_LINES_BEFORE = 72600, 11437
@@ -38,13 +35,10 @@ def checks(job, name):
     return importlib.import_module(name)
 
 
-def matches(pattern, *folders, apart=""):
-    """Lines of programs and common (or some of their folders) that hold the pattern, and the first files."""
-    def measure(job):
-        found = {f: n for f, text in texts(job).items() if (not folders or f.startswith(folders)) and not (apart and re.search(apart, f))
-                 for n in [sum(bool(re.search(pattern, line)) for line in text.splitlines())] if n}
-        return found
-    return measure
+def matches(job, pattern, folders, apart=""):
+    """{file: lines that hold the pattern} of programs and common, or of some of their folders."""
+    return {f: n for f, text in texts(job).items() if (not folders or f.startswith(folders)) and not (apart and re.search(apart, f))
+             for n in [sum(bool(re.search(pattern, line)) for line in text.splitlines())] if n}
 
 
 def most(found, limit, what):
@@ -52,19 +46,15 @@ def most(found, limit, what):
     return f"{what}{': ' + ', '.join(f'{f} {found[f]}' for f in worst) + (' ...' if len(found) > 3 else '') if found else ''}", limit
 
 
-def lines_with(pattern, *folders, limit=0, apart=""):
-    def measure(job):
-        found = matches(pattern, *folders, apart=apart)(job)
-        n = sum(found.values())
-        return most(found, n <= limit, f"{n} lines in {len(found)} files")
-    return measure
+def lines_with(job, pattern, folders=(), apart=""):
+    found = matches(job, pattern, folders, apart)
+    n = sum(found.values())
+    return most(found, n == 0, f"{n} lines in {len(found)} files")
 
 
-def files_with(pattern, *folders, limit):
-    def measure(job):
-        found = matches(pattern, *folders)(job)
-        return most(found, len(found) <= limit, f"{len(found)} files")
-    return measure
+def files_with(job, pattern, folders, limit):
+    found = matches(job, pattern, folders)
+    return most(found, len(found) <= limit, f"{len(found)} files")
 
 
 def crowded(job):
@@ -142,42 +132,16 @@ def comparison(job):
     return f"{len({r['system'] for r in rows})} systems, {len(rows)} rows; {text}{'; ' + '; '.join(lacking) if lacking else ''}", not lacking
 
 
-def minutes(limit, *targets):
+def minutes(job, limit, *targets):
     """Processor minutes of compiler and linker from an empty folder, two jobs, no compiler cache."""
-    def measure(job):
-        folder = job.scratch / "house-build"
-        shutil.rmtree(folder, ignore_errors=True)
-        result = job.run(["cmake", "-G", "Ninja", "-S", job.root, "-B", folder], 600)
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        if result.returncode == 0:
-            result = job.run(["env", "CCACHE_DISABLE=1", "ninja", "-C", folder, "-j", min(2, os.cpu_count()), *targets], 4 * 3600)
-        if result.returncode != 0:
-            raise RuntimeError((result.stderr or result.stdout)[-300:])
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        used = (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime) / 60
-        return f"{used:.1f} min", used <= limit
-    return measure
-
-
-BARS = [
-    Bar("lines that read mesh.reference outside common/mesh", "0 (209 before)", lines_with(r"\bmesh_?\.reference", apart=r"^common/mesh/")),
-    Bar("copies of a whole mesh, and geometry emptied to save memory", "0 (3 before)",
-        lines_with(r"\bMesh \w+ = \*?\w*mesh_?;|make_unique<Mesh>\(\w*mesh_?\)|\bmesh_?\.reference = \{\}")),
-    Bar("files of the solid that test the kind of a condition", "<= 3 (29 before)",
-        files_with(r"\b(?:ElasticCondition::|Solid(?:Condition|Boundary)::Type\b)", "solid_solver/", "common/elasticity/", limit=3)),
-    Bar("files of the fluid that test the kind of a face or the type of its condition", "<= 4 (22 before, 13 the former)",
-        files_with(r"\b(?:FaceKind|BoundaryType)::", "fluid_solver/", limit=4)),
-    Bar("branches on the kind of strain", "0 (35 before)", lines_with(r"\b(?:body_?|solid_?)\.(?:finite|newton)\(\)|\.is_linear\(\)", "solid_solver/")),
-    Bar("source folders with more than 25 files", "0 (11 before)", crowded),
-    Bar("a README in each source folder, at most 20 lines in sub-folders", "all", readmes),
-    Bar("headers in the bare namespace couplet", "0 (217 before)", bare),
-    Bar(f"functions of more than {LONGEST_FUNCTION} lines", "0 (14 before)", long_functions),
-    Bar(f"classes with more than {MOST_MEMBERS} member functions", "<= 3, each with its reason", large_classes),
-    Bar("files of more than 300 lines", "0", long_files),
-    Bar("lines of programs and common", "at most 95 % of 72600", mass),
-    Bar("lines of scripts, and of drivers in tests/verification and benchmarks", "at most 85 % of 11437", script_mass),
-    Bar("home-made words: a glossary, enforced by a check", "both", glossary),
-    Bar("our linear solvers against PETSc's on six systems: the comparison is committed", "benchmarks/linalg", comparison),
-    Bar("processor minutes of the demo's build, no compiler cache", "<= 10 (23 before)", minutes(10, *DEMO), long=True),
-    Bar("processor minutes of the whole build with its tests, no compiler cache", "<= 22 (41 before)", minutes(22), long=True),
-]
+    folder = job.scratch / "house-build"
+    shutil.rmtree(folder, ignore_errors=True)
+    result = job.run(["cmake", "-G", "Ninja", "-S", job.root, "-B", folder], 600)
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    if result.returncode == 0:
+        result = job.run(["env", "CCACHE_DISABLE=1", "ninja", "-C", folder, "-j", min(2, os.cpu_count()), *targets], 4 * 3600)
+    if result.returncode != 0:
+        raise RuntimeError((result.stderr or result.stdout)[-300:])
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    used = (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime) / 60
+    return f"{used:.1f} min", used <= limit

@@ -3,7 +3,6 @@
 import json
 
 from couplet.runs.case import Case
-from validation.job import Bar
 from validation.parts.benchmarks import gallery
 
 WORDS = {"fluid_solver": "fluid", "mesh_mover": "moving mesh", "coupler": "coupler"}
@@ -55,9 +54,3 @@ def places(job):
         nearest, name = max(found, key=lambda pair: used(pair[0]))
         texts.append(f"{entry.name}: {name}'s {nearest['quantity']} {nearest['value']:.2g}, {100 * used(nearest):.0f} % of the way to its limit (map {nearest['map']})")
     return "; ".join(texts) + (f"; none: {', '.join(missing)}" if missing else ""), not missing
-
-
-COSTS = [
-    Bar("every case on its own mesh, 5 steps: memory of all programs, work of a step and what it is for", "reported", costs),
-    Bar("every case: its place on a map of the atlas", "each prints one", places),
-]

@@ -8,7 +8,6 @@ from couplet.runs.case import Case
 from couplet.runs.job import surroundings
 from couplet.runs.process import launch
 from couplet.series import find_series
-from validation.job import Bar
 
 MONITORS = ("probes.csv", "forces.csv", "volume.csv", "watch.csv")
 MIDDLE = 3  # steps before the checkpoint
@@ -133,17 +132,10 @@ def apart(job, entry):
     return max((gap, name) for name, gap in found.items())
 
 
-def both(entry):
-    def measure(job):
-        tolerance = float(Case(job.root / "configs" / entry.file, job.build).data["coupling"]["convergence"]["relative"])
-        differs, count = continued(job, entry)
-        gap, whose = apart(job, entry)
-        kept = f"continued: {count} numbers equal bit for bit" if not differs else f"continued: differs in {', '.join(differs[:4])}"
-        return f"{kept}; on 2 ranks {gap:.1e} apart at most ({whose}), tolerance {tolerance:g}", not differs and count > 0 and gap <= tolerance
-    return measure
-
-
-WANTED = "continued in its middle bit for bit; fluid and solid on 2 ranks: displacement, velocity, pressure within the coupling's tolerance"
-ROWS = [Bar(f"restart and ranks: {entry.name}, coarse, {entry.steps} steps, pressure equation to {INNER:g}", WANTED, both(entry),
-            but="a coarse mesh where the case has one, few steps, the pressure equation closer than by default, at which FSI1 is 3e-4 apart; of a solid the displacement alone")
-        for entry in GALLERY]
+def both(job, name):
+    entry = next(e for e in GALLERY if e.name == name)
+    tolerance = float(Case(job.root / "configs" / entry.file, job.build).data["coupling"]["convergence"]["relative"])
+    differs, count = continued(job, entry)
+    gap, whose = apart(job, entry)
+    kept = f"continued: {count} numbers equal bit for bit" if not differs else f"continued: differs in {', '.join(differs[:4])}"
+    return f"{kept}; on 2 ranks {gap:.1e} apart at most ({whose}), tolerance {tolerance:g}", not differs and count > 0 and gap <= tolerance

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of the flap at twice the flow's speed: large deflection, finite strain beside linear."""
+"""Measures of the flap at twice the flow's speed: large deflection, finite strain beside linear."""
 import json
 
 import numpy as np
 
 import couplet
-from validation.job import Bar
 
 CASE = "configs/perpendicular-flap/case.yaml"
 FAST = ["participants.fluid.boundaries.inlet.velocity=[20 m/s, 0 m/s]", "participants.mover.method=barrier", "simulation.end-time=1 s"]
@@ -26,8 +25,3 @@ def verdict(job):
     text = (f"largest motion of the tip {linear[:, 0].max():.4f} m along the flow linear, {finite[:, 0].max():.4f} m at finite strain; {apart:.3f} of the motion apart "
             f"at most, the linear run's verdict {share:.3f}")
     return text, 1 / 1.5 <= share / apart <= 1.5
-
-
-LARGE_FLAP = [
-    Bar("flap at U = 20 m/s, to 1 s, past the first maximum: finite strain beside linear; the linear run's verdict", "the difference within a factor of 1.5", verdict),
-]

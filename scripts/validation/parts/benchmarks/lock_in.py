@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of vibration by vortices: an undamped cylinder on a spring, Re 150, m = 2 rho D^2, over reduced velocities U / (f_n D)."""
+"""Measures of vibration by vortices: an undamped cylinder on a spring, Re 150, m = 2 rho D^2, over reduced velocities U / (f_n D)."""
 import math
 
 import numpy as np
 
 from couplet.runs.process import launch
-from validation.job import Bar
 
 HERE = "configs/spring-cylinder"
 AHN = 0.55  # amplitude over D at 4: Ahn and Kallinderis, J. Comput. Phys. 219 (2006)
@@ -45,20 +44,8 @@ def is_locked(amplitude, ratio):
     return amplitude > 0.25 and abs(ratio - 1) < 0.2
 
 
-def bracket(locked, free):
+def bracket(job, locked, free):
     """Locked at one velocity; at the other the body follows the vortices, at a frequency that is not its own."""
-    def measure(job):
-        at = {u: response(job, u) for u in (locked, free)}
-        text = "; ".join(f"{u:g}: {a:.3f} D, frequency {f:.2f} of that in vacuo" for u, (a, f) in sorted(at.items()))
-        return text, is_locked(*at[locked]) and abs(at[free][1] - 1) > 0.2
-    return measure
-
-
-FREE = "amplitude above D/4 within 20 % of the body's frequency on one side, more than 20 % off it on the other"
-LOCK_IN = [
-    Bar("vibration by vortices, U/(f_n D) = 4: amplitude", "within 10 % of 0.55 D", at_four, long=True),
-    Bar("vibration by vortices, U/(f_n D) = 3, 4, 5, 7, 8: amplitude, frequency over that in vacuo", "reported", over_range, long=True,
-        but="one mesh and one step"),
-    Bar("lower limit of lock-in between U/(f_n D) = 3 and 4", FREE, bracket(4, 3), long=True, but="one mesh and one step"),
-    Bar("upper limit of lock-in between U/(f_n D) = 8 and 10", FREE, bracket(8, 10), long=True, but="one mesh and one step"),
-]
+    at = {u: response(job, u) for u in (locked, free)}
+    text = "; ".join(f"{u:g}: {a:.3f} D, frequency {f:.2f} of that in vacuo" for u, (a, f) in sorted(at.items()))
+    return text, is_locked(*at[locked]) and abs(at[free][1] - 1) > 0.2

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of programs of other people: a cylinder on a spring against Stokes and in a stream, a flap of FEniCSx."""
+"""Measures of programs of other people: a cylinder on a spring against Stokes and in a stream, a flap of FEniCSx."""
 import os
 
 import numpy as np
 
-from validation.job import Bar
-from validation.main_job import FLAP
+from validation.parts.main_job import FLAP
 from validation.parts.coupler.runs import flap, tips
 
 CYLINDER = "configs/spring-cylinder"
@@ -25,15 +24,13 @@ def cylinder(job, case, *sets):
     return job.once(("cylinder", case, sets), make)
 
 
-def stokes(which):
-    def measure(job):
-        time, y = cylinder(job, "case.yaml")
-        decay = job.beside(f"{CYLINDER}/decay.py")
-        wanted = decay.stokes(2, 4, 1, 0.01)
-        late = time > 2 * np.pi / wanted[0]
-        got = decay.fitted(time[late], y[late], *wanted)
-        return f"{got[which]:.5f}, Stokes {wanted[which]:.5f}: {100 * (got[which] / wanted[which] - 1):+.2f} %", bool(abs(got[which] / wanted[which] - 1) <= 0.02)
-    return measure
+def stokes(job, which):
+    time, y = cylinder(job, "case.yaml")
+    decay = job.beside(f"{CYLINDER}/decay.py")
+    wanted = decay.stokes(2, 4, 1, 0.01)
+    late = time > 2 * np.pi / wanted[0]
+    got = decay.fitted(time[late], y[late], *wanted)
+    return f"{got[which]:.5f}, Stokes {wanted[which]:.5f}: {100 * (got[which] / wanted[which] - 1):+.2f} %", bool(abs(got[which] / wanted[which] - 1) <= 0.02)
 
 
 def vortices(job):
@@ -64,11 +61,3 @@ def fenicsx(job):
     n = min(len(theirs), len(ours))
     gap = np.abs(theirs[:n] - ours[:n]).max() / np.abs(ours[:n]).max()
     return f"{100 * gap:.3f} % of the largest motion apart at most, to {n / 100:g} s", bool(gap <= 0.03)
-
-
-STRANGERS = [
-    Bar("external programs: spring-mounted cylinder let go in fluid at rest: frequency", "Stokes' within 2 %", stokes(0), long=True),
-    Bar("external programs: the same: decay", "Stokes' within 2 %", stokes(1), long=True),
-    Bar("external programs: vibration by vortices, Re 150, 2 rho D^2, U/(f_n D) 4", "reported beside 0.55 D", vortices, long=True),
-    Bar("external programs: flap of FEniCSx", "within 3 % of solid_solver's tip", fenicsx, long=True),
-]

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of the elastic tubes: coupling error in one dimension, iterations, peak and step in three."""
+"""Measures of the elastic tubes: coupling error in one dimension, iterations, peak and step in three."""
 import re
 
 import numpy as np
 
 import couplet
-from validation.job import Bar
-from validation.main_job import steps_of
+from validation.parts.main_job import steps_of
 
 TUBE = "configs/tube-3d/case.yaml"
 PEAK = 1.585e-4  # m, backward differences of second order extrapolated to step 0 (solids4foam's benchmark data)
@@ -88,15 +87,3 @@ def unequal(job):
     wanted = radial(matching)[1].max()
     gaps = {kind: radial(tube(job, kind, end, wall, f"coupling.mapping.type={kind}"))[1].max() / wanted - 1 for kind in ("projection", "rbf")}
     return ", ".join(f"{k} {100 * g:+.2f} %" for k, g in gaps.items()) + f" of {wanted:.3e} m (largest radial motion of A)", max(map(abs, gaps.values())) <= 0.01
-
-
-EIGHT = "to 8.5 ms, after the maximum at 7 ms"
-TUBES = [
-    Bar("1-D tube: coupling error against the monolithic solution at the same step", "below 1e-4", tube_1d),
-    Bar("3-D tube, dt 1e-4 s, implicit, relative 1e-6: IQN-ILS with reuse 15", "at most 9.1 iterations on average", iterations, long=True, but=EIGHT),
-    Bar("3-D tube, default schemes, dt 1e-4 s: largest radial motion of A", "1.585e-4 m within 3 %", peak, long=True, but=EIGHT),
-    Bar("3-D tube with an Euler structure: largest radial motion of A", "reported", euler, long=True),
-    Bar("3-D tube: radial motion of A from 3 to 4 ms against the run at dt 2.5e-5 s", "within 1 % of its maximum", step, long=True),
-    Bar("3-D tube: cost", "reported", hours, long=True),
-    Bar("3-D tube with unequal meshes (wall 104 x 26 faces, fluid 80 x 20)", "within 1 % of matching", unequal, long=True, but="to 7.5 ms, after the maximum"),
-]

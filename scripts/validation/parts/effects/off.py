@@ -2,7 +2,6 @@
 """An effect that is off executes none of its own code (callgrind); what one that is on costs is prices.py's."""
 import re
 
-from validation.job import Bar
 from validation.parts.effects.scenes import EFFECTS, watched
 
 
@@ -62,9 +61,3 @@ def off_is_free(job):
             lost.append(f"{own.effect}: {off} off ({name[:60]}), {on} on")
     text = f"{len(EFFECTS) - len(lost)} of {len(EFFECTS)} execute nothing of theirs when off, and at least {least} instructions when on"
     return text + (f"; not: {'; '.join(lost)}" if lost else ""), not lost
-
-
-BARS = [
-    Bar("an effect that is off executes no instruction of its own files (callgrind)", "0, and more than 0 with it on", off_is_free, long=True,
-        but="the release build, for any x86-64: the preset v3 compiles the same functions, but its whole build was too expensive for this row"),
-]

@@ -8,7 +8,6 @@ import dataclasses
 import math
 import re
 
-from validation.job import Bar
 from validation.parts.effects.scenes import EFFECTS, SHELL, Own, Scene, watched
 
 LIST = "common/effects/price_list.cpp"
@@ -130,24 +129,12 @@ def again(job):
     return [(listed.get((p.program, p.effect, p.dimension)), p) for p in measure(job)]
 
 
-def claims(kind):
-    def measure_(job):
-        pairs = job.once("prices", lambda: again(job))
-        least = LEAST_BYTES if kind == "bytes" else LEAST_SHARE
-        wrong = [f"{p.program} {p.effect} in {p.dimension} dimensions: {getattr(p, kind)} for {s and getattr(s, kind)}" for s, p in pairs
-                 if not s or not holds(getattr(s, kind), getattr(p, kind), 0.2, least)]
-        named = sum(getattr(p, kind)[1] > 0 for _, p in pairs)
-        wide = max((getattr(p, kind)[1] / getattr(p, kind)[0] for _, p in pairs if getattr(p, kind)[0] > 0), default=math.nan)
-        text = f"{len(pairs) - len(wrong)} of {len(pairs)} prices of {len(PRICED)} effects of five programs, {named} of them not next to nothing, spread up to a factor of {wide:.2g}"
-        return text + (f"; not: {'; '.join(wrong)}" if wrong else ""), not wrong and len(pairs) == len(read(job.root))
-    return measure_
-
-
-BUT = ("one rank, two scenes of each dimension: 32 x 32 squares and 512 triangles, 8 x 8 x 8 cubes and 750 tetrahedra, beds of 100 and 400 cells; "
-       "ends of the spread; {}")
-BARS = [
-    Bar("the list's memory of effects against the heap of the run (massif)", "within 20 %", claims("bytes"), long=True,
-        but=BUT.format("below 16 B per cell and what is not proportional to cells, the ground's column, count as 0")),
-    Bar("the list's share of a step of effects against the instructions of the run (massif)", "within 20 %", claims("step"), long=True,
-        but=BUT.format("in instructions; below 3 % counts as 0")),
-]
+def claims(job, kind):
+    pairs = job.once("prices", lambda: again(job))
+    least = LEAST_BYTES if kind == "bytes" else LEAST_SHARE
+    wrong = [f"{p.program} {p.effect} in {p.dimension} dimensions: {getattr(p, kind)} for {s and getattr(s, kind)}" for s, p in pairs
+             if not s or not holds(getattr(s, kind), getattr(p, kind), 0.2, least)]
+    named = sum(getattr(p, kind)[1] > 0 for _, p in pairs)
+    wide = max((getattr(p, kind)[1] / getattr(p, kind)[0] for _, p in pairs if getattr(p, kind)[0] > 0), default=math.nan)
+    text = f"{len(pairs) - len(wrong)} of {len(pairs)} prices of {len(PRICED)} effects of five programs, {named} of them not next to nothing, spread up to a factor of {wide:.2g}"
+    return text + (f"; not: {'; '.join(wrong)}" if wrong else ""), not wrong and len(pairs) == len(read(job.root))

@@ -1,17 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of the solid's free vibrations: frequencies against closed forms, their order, the same motion by modes."""
+"""Measures of the solid's free vibrations: frequencies against closed forms, their order, the same motion by modes."""
 import csv
 import math
-
-from validation.job import Bar
-from validation.parts.trust.runs import tests
 
 THIN_PLATE = (13.468, 19.596, 24.271)  # omega a^2 sqrt(rho h / D), Leissa 1969
 SCALE = math.sqrt(210e9 * 0.01**3 / (12 * (1 - 0.3**2)) / (7800 * 0.01))
 
 
 def frequencies(job, case, name, *overrides):
-    folder, _ = job.solve("solid_solver", case, overrides)
+    folder, _ = job.solve(case, overrides)
     with open(folder / name / "modes.csv", encoding="utf-8") as file:
         return [float(row["frequency [Hz]"]) for row in csv.DictReader(file)]
 
@@ -46,13 +43,3 @@ def free_plate(job):
     order = [slope([mesh[i] for mesh in meshes]) for i in range(3)]
     return (f"{', '.join(f'{f:.3f}' for f in meshes[-1])} ({', '.join(f'{o:+.2f}' for o in off)} %), slopes {', '.join(f'{o:.2f}' for o in order)}",
             max(map(abs, off)) <= 0.5 and min(order) >= 1.8)
-
-
-BARS = [
-    Bar("first period of cantilever C on 20x2, 40x4, 80x8 hexahedra per side", "within 0.5 % of 20.03 s, slope >= 1.8", first_period),
-    Bar("free square plate, a/h = 100, first three frequencies on 32 x 32 x 4", "within 0.5 % of 13.468, 19.596, 24.271, slope >= 1.8",
-        free_plate, long=True),
-    Bar("free vibrations without factors are those of the dense problem, five kinds of bodies, 1 to 3 ranks", "tests pass",
-        tests("^verification_solid_modes(_2|_3)?$", 3)),
-    Bar("a bracket as finite volumes and as twelve modes in plate_modal", "within 0.2 %", tests("^coupling_plate_solid_modes$")),
-]

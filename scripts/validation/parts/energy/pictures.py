@@ -3,8 +3,6 @@
 import csv
 import re
 
-from validation.job import Bar
-
 GRADIENTS = {"thesis", "corrected", "symmetric"}
 SPACE, PLANE = {"hexahedra", "prisms", "tetrahedra"}, {"quadrilaterals", "triangles"}
 STUDIES = {  # name: (folder in docs/validation/studies, quantity, cells)
@@ -72,7 +70,3 @@ def pictures(job):
                      + (f"; lacking: {', '.join(missing)}" if missing else ""))
         met = met and not missing
     return "; ".join(texts), met
-
-
-BARS = [Bar("pictures: three gradients x cell kinds x methods, CalculiX beside: plate B, LE1, LE10, LE11, beam C",
-            "all series in the committed runs.csv, pictures", pictures)]

@@ -4,14 +4,11 @@ time beside the fluid's steps. Boxes made in parallel by `mesh_tool box`."""
 import re
 
 from couplet.runs import launch
-from validation.job import Bar
 
 # name: (cells along each side, cut into tetrahedra, further words of `open`)
 MESHES = {"hexahedra": (160, False, ()), "tetrahedra": (70, True, ("--solid",))}
 RANKS = (2, 8, 16)
-SIZE = {"hexahedra": "4.1 M", "tetrahedra": "2.1 M"}
 STEPS = 13
-SMALLER = "{} cells for 10 M: 16 ranks on two shared cores"
 
 
 def cut(job, n, tetrahedra=False):
@@ -39,21 +36,17 @@ def opened(job, kind, ranks):
     return job.once(("opened", kind, ranks), make)
 
 
-def together(kind):
-    def measure(job):
-        one = opened(job, kind, 1)[0]
-        all_ = {ranks: opened(job, kind, ranks) for ranks in RANKS}
-        words = ", ".join(f"{peak / one:.2f} on {ranks} ({peak / 1000:.2f} GB, of them {before / 1000:.2f} before the mesh)" for ranks, (peak, _, before) in all_.items())
-        return f"{words}; one rank {one / 1000:.2f} GB", max(peak / one for peak, *_ in all_.values()) <= 1.3
-    return measure
+def together(job, kind):
+    one = opened(job, kind, 1)[0]
+    all_ = {ranks: opened(job, kind, ranks) for ranks in RANKS}
+    words = ", ".join(f"{peak / one:.2f} on {ranks} ({peak / 1000:.2f} GB, of them {before / 1000:.2f} before the mesh)" for ranks, (peak, _, before) in all_.items())
+    return f"{words}; one rank {one / 1000:.2f} GB", max(peak / one for peak, *_ in all_.values()) <= 1.3
 
 
-def per_rank(kind):
-    def measure(job):
-        peak, _, before = opened(job, kind, 1)
-        shares = {ranks: (most - there / ranks) * ranks / (peak - before) for ranks in RANKS for _, most, there in [opened(job, kind, ranks)]}
-        return "; ".join(f"{share:.2f} on {ranks}" for ranks, share in shares.items()), max(shares.values()) <= 1.2
-    return measure
+def per_rank(job, kind):
+    peak, _, before = opened(job, kind, 1)
+    shares = {ranks: (most - there / ranks) * ranks / (peak - before) for ranks in RANKS for _, most, there in [opened(job, kind, ranks)]}
+    return "; ".join(f"{share:.2f} on {ranks}" for ranks, share in shares.items()), max(shares.values()) <= 1.2
 
 
 def steps(job, n, count, ranks):
@@ -95,19 +88,3 @@ def largest(job):
     cost, text = steps(job, n, 3, 2)
     memory = float(re.search(r"peak memory of .*, (\d+) MB in total", text)[1])
     return f"{n ** 3 / 1e6:.1f} M hexahedra, 3 steps on 2 ranks: {memory / 1000:.1f} GB, {cost.cpu:.0f} s of processor time", None
-
-
-BARS = [
-    Bar("large meshes: set-up's peak of all ranks together beside one rank's, hexahedra on 2, 8, 16 ranks", "<= 1.3 times", together("hexahedra"), long=True,
-        but=SMALLER.format(SIZE["hexahedra"])),
-    Bar("large meshes: the same of tetrahedra as the solid opens them", "<= 1.3 times", together("tetrahedra"), long=True, but=SMALLER.format(SIZE["tetrahedra"])),
-    Bar("large meshes: memory of the fullest rank beyond the fixed part, times ranks, beside one rank's, hexahedra", "<= 1.2 times", per_rank("hexahedra"), long=True,
-        but=SMALLER.format(SIZE["hexahedra"])),
-    Bar("large meshes: the same of tetrahedra", "<= 1.2 times", per_rank("tetrahedra"), long=True, but=SMALLER.format(SIZE["tetrahedra"])),
-    Bar("large meshes: set-up of the fluid from a cut mesh beside its step, 1 M hexahedra, wall time", "<= 20 steps", beside_steps, long=True,
-        but="1 M cells for 10 M"),
-    Bar("large meshes: the largest that made a few steps here", "reported", largest, long=True),
-]
-NOTE = """Large meshes, not met: every process of MPI takes 40 MB before it opens anything, a sixth of the sum on 16 ranks of 4 M cells and more of smaller meshes; without these, all ranks
-together take 1.24 and 1.28 times what one takes (hexahedra on 8 and 16). The rest is copies of cells around the parts, which grow with the surface of a part (5 % on 4 ranks, 7 % on 8
-of a million), and what is sent and received at the same time. Measured on a machine that others used, memory as the system counts it, libraries that processes share in each."""

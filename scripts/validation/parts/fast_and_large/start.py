@@ -5,7 +5,6 @@ import shutil
 import statistics
 
 from couplet.runs import launch
-from validation.job import Bar
 from validation.parts.fast_and_large import step
 
 EMPTY = """#include <mpi.h>
@@ -72,13 +71,3 @@ def small_jobs(job):
         job.run([job.build / "bin" / program, "case.yaml"], cwd=folder)  # makes the mesh where it is not there
         found[name] = heavy_libraries(job, program, folder)
     return "; ".join(f"{name}: {', '.join(names) or 'none'}" for name, names in found.items()), not any(found.values())
-
-
-NOTE = """Start-up, not met: what the solid takes more is its own work, by callgrind of the whole process 38 % the solve and 44 % the search for a load factor of buckling, a verdict on the
-answer; opening libraries is 3 % (6 ms by LD_DEBUG=statistics: HDF5 and what that needs), reading the mesh 2 %, files 3 %. PETSc's are not among them."""
-
-BARS = [
-    Bar("start-up: solid of 1000 cells from .msh beside an empty MPI program, processor time", "<= 0.04 s more", beside_empty,
-        but="its solve and the judgement of its answer are in the time"),
-    Bar("start-up: libraries of PETSc, SLEPc, Scotch, BLAS and gmsh opened by small jobs on one rank", "none", small_jobs),
-]

@@ -9,7 +9,6 @@ import re
 import statistics
 
 import couplet
-from validation.job import Bar
 
 BEFORE = "b350924"
 # (cells a side, dimension): dt [s], the steps between which is counted, and the instructions of b350924 by the same count
@@ -52,11 +51,9 @@ def instructions(job, program, what):
     return (totals[1] - totals[0]) / (n**dimension * (last - first))
 
 
-def counted(what, share):
-    def measure(job):
-        got, before = instructions(job, job.build / "bin/fluid_solver", what), COUNTED[what][3]
-        return f"{got:.0f}, {got / before:.2f} of the {before} of {BEFORE}", got <= share * before
-    return measure
+def counted(job, what, share):
+    got, before = instructions(job, job.build / "bin/fluid_solver", what), COUNTED[what][3]
+    return f"{got:.0f}, {got / before:.2f} of the {before} of {BEFORE}", got <= share * before
 
 
 def timed(job, program, what, steps):
@@ -81,32 +78,12 @@ def pairs(job, what):
     return job.once(("pairs", what), make)
 
 
-def faster(what, wanted):
-    def measure(job):
-        turns, *_ = pairs(job, what)
-        ratio = statistics.median(before / now for before, now in turns)
-        return f"{ratio:.2f} times, median of {len(turns)} pairs, tolerance {TOLERANCE:g}", ratio >= wanted
-    return measure
+def faster(job, what, wanted):
+    turns, *_ = pairs(job, what)
+    ratio = statistics.median(before / now for before, now in turns)
+    return f"{ratio:.2f} times, median of {len(turns)} pairs, tolerance {TOLERANCE:g}", ratio >= wanted
 
 
-def divergence(what):
-    def measure(job):
-        _, before, now = pairs(job, what)
-        return f"{now:.1e} for {before:.1e} 1/s", now <= before
-    return measure
-
-
-NOTE = """Speed of 64^3, not met: the step waits for memory. The conjugate gradients' product alone, double precision, moves 22 MB at 14 GB/s (perf: two thirds of its samples on loads of
-the matrix), the multigrid's sweeps in single precision half as much, the fluid's own face loops by count of their arrays some 300 MB per step, most of it area vectors and the
-two cells of each face. Instructions are not what is left to save there.
-
-Divergence of 128^2, not met: one iteration with factors in single precision leaves what the tolerance allows; those in double precision left rounding, for a tenth more instructions."""
-
-BARS = [
-    Bar("instructions per cell and step: cavity 128^2 (callgrind)", "<= 0.75 of b350924", counted((128, 2), 0.75)),
-    Bar("instructions per cell and step: cavity 32^3 (callgrind)", "<= 0.6 of b350924", counted((32, 3), 0.6)),
-    Bar("speed: cavity 128^2 beside b350924", ">= 1.35 times", faster((128, 2), 1.35)),
-    Bar("mean divergence: cavity 128^2 beside b350924, the same tolerance", "the same or smaller", divergence((128, 2))),
-    Bar("speed: cavity 64^3 beside b350924", ">= 1.8 times", faster((64, 3), 1.8), long=True),
-    Bar("mean divergence: cavity 64^3 beside b350924, the same tolerance", "the same or smaller", divergence((64, 3)), long=True),
-]
+def divergence(job, what):
+    _, before, now = pairs(job, what)
+    return f"{now:.1e} for {before:.1e} 1/s", now <= before

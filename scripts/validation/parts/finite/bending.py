@@ -3,7 +3,6 @@
 import math
 
 import couplet
-from validation.job import Bar
 
 S = "participants.solid."
 # u1 / L of converged three-dimensional finite elements (L = 10 sides).
@@ -19,7 +18,7 @@ def last(run_folder, name="probes.csv"):
 def beam(job, across, along, law, load, length=2.0, steps=1):
     """Deflection over the length and the iterations of each load step."""
     pull = load * 15.293e6 * (0.2**4 / 12) / (0.04 * length**2) / math.sqrt(2)
-    run = job.solve_run("solid_solver", "bent-beam", (
+    run = job.alone("bent-beam", (
         "%smesh-parameters={n: %d, m: %d, L: %g}" % (S, across, along, length), f"{S}material.law={law}",
         f"{S}boundaries.tip.value=[{pull!r}*t, {pull!r}*t, 0]", f"{S}probes={{tip: {{point: [0, 0, {length}]}}}}",
         f"simulation.time-step={1 / steps!r}"))
@@ -28,19 +27,15 @@ def beam(job, across, along, law, load, length=2.0, steps=1):
     return math.hypot(tip["tip x [m]"], tip["tip y [m]"]) / length, newton
 
 
-def kirchhoff(across):
-    def measure(job):
-        errors = {K: 100 * (beam(job, across, 10 * across, "saint-venant-kirchhoff", K)[0] / u - 1) for K, u in SVK.items()}
-        return ", ".join(f"K {K}: {e:+.3f} %" for K, e in errors.items()), all(abs(e) <= 0.3 for e in errors.values())
-    return measure
+def kirchhoff(job, across):
+    errors = {K: 100 * (beam(job, across, 10 * across, "saint-venant-kirchhoff", K)[0] / u - 1) for K, u in SVK.items()}
+    return ", ".join(f"K {K}: {e:+.3f} %" for K, e in errors.items()), all(abs(e) <= 0.3 for e in errors.values())
 
 
-def hook(across, sides, wanted):
-    def measure(job):
-        u, newton = beam(job, across, sides * across, "neo-hookean", 10, 0.2 * sides)
-        error = 100 * (u / wanted - 1)
-        return f"{u:.5f}, {error:+.3f} %, {len(newton)} load steps that were accepted", abs(error) <= 0.3
-    return measure
+def hook(job, across, sides, wanted):
+    u, newton = beam(job, across, sides * across, "neo-hookean", 10, 0.2 * sides)
+    error = 100 * (u / wanted - 1)
+    return f"{u:.5f}, {error:+.3f} %, {len(newton)} load steps that were accepted", abs(error) <= 0.3
 
 
 EDGE = {"quarter": (0.1, 0.1, 0.5), "middle": (0.1, 0.1, 1.0)}  # places on an edge of the section
@@ -50,7 +45,7 @@ def edge_stress(job, across):
     """The stress tensors [Pa] there, as two rows xx, yy, zz, xy, yz, xz."""
     pull = 5 * 15.293e6 * (0.2**4 / 12) / (0.04 * 4) / math.sqrt(2)
     probes = ", ".join("%s: {point: [%g, %g, %g], fields: [stress]}" % (name, *x) for name, x in EDGE.items())
-    run = job.solve_run("solid_solver", "bent-beam", (
+    run = job.alone("bent-beam", (
         "%smesh-parameters={n: %d, m: %d, L: 2}" % (S, across, 10 * across), f"{S}material.law=neo-hookean",
         f"{S}boundaries.tip.value=[{pull!r}*t, {pull!r}*t, 0]", "%sprobes={%s}" % (S, probes), "simulation.time-step=1"))
     tip = last(run.folder)
@@ -73,11 +68,9 @@ def slopes(job):
             of_u >= 1.7 and min(of_stress) >= 0.9)
 
 
-def thin(across, along):
-    def measure(job):
-        u, _ = beam(job, across, along, "saint-venant-kirchhoff", 1.6)
-        return f"{u:.5f}, {100 * (u / SVK[1.6] - 1):+.2f} % of the converged value", True
-    return measure
+def thin(job, across, along):
+    u, _ = beam(job, across, along, "saint-venant-kirchhoff", 1.6)
+    return f"{u:.5f}, {100 * (u / SVK[1.6] - 1):+.2f} % of the converged value", True
 
 
 def newton_steps(job):
@@ -87,33 +80,11 @@ def newton_steps(job):
         worst, hooked) <= 10
 
 
-def bar(modulus, wanted):
-    def measure(job):
-        run = job.solve_run("solid_solver", "elastic-bar", (f"{S}material.youngs-modulus={modulus}",
-                                                            "%smesh-parameters={n: 16, m: 280}" % S))
-        tip = last(run.folder)
-        got = (1e3 * tip["A x [m]"], 1e3 * tip["A y [m]"])
-        errors = [100 * (g / w - 1) for g, w in zip(got, wanted)]
-        return f"{got[0]:.4f}, {got[1]:.3f} mm: {errors[0]:+.2f}, {errors[1]:+.2f} %", max(map(abs, errors)) <= 1
-    return measure
-
-
-def cook(law, wanted):
-    def measure(job):
-        run = job.solve_run("solid_solver", "cook", (
-            "%smesh-parameters={n: 32, shape: 0}" % S, f"{S}kinematics=finite-strain", f"{S}material.law={law}",
-            f"{S}material.youngs-modulus=1.0985e6", f"{S}material.poissons-ratio=0.3", "simulation.max-step-halvings=6",
-            f"{S}boundaries.loaded.value=[0, 62.5e3*t]", "%sprobes={mid: {point: [0.048, 0.052]}}" % S))
-        got = 1e3 * last(run.folder)["mid y [m]"]
-        return f"{got:.3f} mm, {100 * (got / wanted - 1):+.2f} %", abs(got / wanted - 1) <= 0.004
-    return measure
-
-
 def cook_incompressible(job):
     """nu 0.4999, mu 0.4225 MPa: against the value extrapolated from 16, 32 and 64 cells per side, one load step each."""
     values, newton = [], []
     for n in (16, 32, 64):
-        run = job.solve_run("solid_solver", "cook", (
+        run = job.alone("cook", (
             "%smesh-parameters={n: %d, shape: 0}" % (S, n), f"{S}kinematics=finite-strain",
             f"{S}material.law=nearly-incompressible-neo-hookean", f"{S}material.youngs-modulus=1.267e6",
             f"{S}material.poissons-ratio=0.4999", "simulation.max-step-halvings=0", f"{S}boundaries.loaded.value=[0, 62.5e3*t]",
@@ -130,46 +101,8 @@ def ring(job):
     """Displacement of the inner wall against 0.5 m, the incompressible closed form."""
     errors = []
     for n in (8, 16, 32):
-        run = job.solve_run("solid_solver", "rubber-ring", ("%smesh-parameters={n: %d}" % (S, n),))
+        run = job.alone("rubber-ring", ("%smesh-parameters={n: %d}" % (S, n),))
         errors.append(last(run.folder)["inner wall x [m]"] / 0.5 - 1)
     orders = [math.log2(a / b) for a, b in zip(errors, errors[1:])]
     return (", ".join(f"{100 * e:+.3f} %" for e in errors) + "; orders " + ", ".join(f"{o:.2f}" for o in orders),
             abs(errors[1]) <= 0.003 and min(orders) >= 1.8)
-
-
-def ring_recorded(test, *names):
-    def measure(job):
-        tests, _ = job.gtest("verification_solid_incompressible", f"*{test}*")
-        (result,) = tests.values()
-        return ", ".join(f"{name.replace('_', ' ')}: {result[name].strip()}" for name in names), result["passed"]
-    return measure
-
-
-BARS = [
-    Bar("E, Saint Venant-Kirchhoff, K 0.2 to 1.6, 8x8x80", "within 0.3 % of 0.06639, 0.13108, 0.24992, 0.43134", kirchhoff(8),
-        but="a mesh half as fine"),
-    Bar("E, Saint Venant-Kirchhoff, K 0.2 to 1.6, 16x16x160", "within 0.3 % of 0.06639, 0.13108, 0.24992, 0.43134", kirchhoff(16),
-        long=True),
-    Bar("E, neo-Hookean, K 10, L 10 sides, 8x8x80, one command", "within 0.3 % of 0.8233", hook(8, 10, 0.823304),
-        but="8x8x80 cells, where the other rows of case E have 16x16x160"),
-    Bar("E, neo-Hookean, K 10, L 20 sides, 4x4x80", "within 0.3 % of 0.8132", hook(4, 20, 0.813205),
-        but="4x4x80 cells, where the other rows of case E have 16x16x160"),
-    Bar("E, neo-Hookean, K 5: slopes of u and of the stress at two places of an edge, 2x2x20, 4x4x40, 8x8x80", ">= 1.7 (u), >= 0.9 (stress)", slopes,
-        but="between the meshes themselves; errors against the converged value, of which five digits are known, fall to 0.02 % on 4x4x40 and stay there"),
-    Bar("E, cells thin across: Saint Venant-Kirchhoff to K 1.6 on 2x2x80", "reported: solved", thin(2, 80)),
-    Bar("E, cells thin across: Saint Venant-Kirchhoff to K 1.6 on 4x4x160", "reported: solved", thin(4, 160)),
-    Bar("E: iterations of Newton's method in a load step, 4x4x40 and 8x8x80", "<= 10", newton_steps,
-        but="eight load steps to K 10; with four it takes 13"),
-    Bar("CSM1 of Turek and Hron, 16x280", "within 1 % of -7.187, -66.10 mm", bar(1.4e6, (-7.187, -66.10))),
-    Bar("CSM2 of Turek and Hron, 16x280", "within 1 % of -0.4690, -16.97 mm", bar(5.6e6, (-0.4690, -16.97))),
-    Bar("Cook at large strain, law (2.31), 32x32: middle of the edge", "within 0.4 % of 14.51 mm", cook("neo-hookean", 14.509)),
-    Bar("Cook at large strain, K/2 (J-1)^2, 32x32: middle of the edge", "within 0.4 % of 14.72 mm",
-        cook("nearly-incompressible-neo-hookean", 14.72)),
-    Bar("Cook at large strain, nu 0.4999, K/2 (J-1)^2, 32x32: middle of the edge", "within 0.4 % of the own extrapolated value",
-        cook_incompressible),
-    Bar("ring of Mooney-Rivlin under a pressure that follows its inner wall, 8, 16, 32 across", "16 within 0.3 %, order >= 1.8", ring),
-    Bar("the same: residuals of Newton's method", "the last squared (exponent >= 1.7)",
-        ring_recorded("a_ring_under", "newton", "newton_order")),
-    Bar("tangent of the pressure: |w.Kv - v.Kw| / |Kv| |w|, wall closed by planes of symmetry and wall with a free rim",
-        "closed: round-off; open: reported", ring_recorded("tangent_of_the_pressure", "closed", "open")),
-]

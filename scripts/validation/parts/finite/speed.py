@@ -5,22 +5,19 @@ import math
 import re
 
 import couplet
-from validation.job import Bar
 
 S = "participants.solid."
 CONVERGED = 0.43134  # u1 / L at K = 1.6, Saint Venant-Kirchhoff
 
 
-def race(across, along, times, most):
-    def measure(job):
-        found = job.beside("benchmarks/peers/race.py").bent_beam(job, across, along, 1.6, times)
-        mine, u = found.pop("ours")
-        words = [f"ours {mine:.2f} s ({100 * (u / CONVERGED - 1):+.2f} %)"]
-        words += [f"{who} {s:.2f} s ({100 * (v / CONVERGED - 1):+.2f} %): {s / mine:.1f}x" for who, (s, v) in found.items()]
-        if not found:
-            return "; ".join(words) + "; CalculiX is not installed", None if most is None else False
-        return "; ".join(words), None if most is None else min(s for s, _ in found.values()) / mine >= most
-    return measure
+def race(job, across, along, times, most):
+    found = job.beside("benchmarks/peers/race.py").bent_beam(job, across, along, 1.6, times)
+    mine, u = found.pop("ours")
+    words = [f"ours {mine:.2f} s ({100 * (u / CONVERGED - 1):+.2f} %)"]
+    words += [f"{who} {s:.2f} s ({100 * (v / CONVERGED - 1):+.2f} %): {s / mine:.1f}x" for who, (s, v) in found.items()]
+    if not found:
+        return "; ".join(words) + "; CalculiX is not installed", None if most is None else False
+    return "; ".join(words), None if most is None else min(s for s, _ in found.values()) / mine >= most
 
 
 def best(job):
@@ -63,7 +60,7 @@ def segregated(job):
         found = {}
         for name, sets in (("one", (*aitken, "simulation.time-step=1")), ("four", (*aitken, "simulation.time-step=0.25")),
                            ("newton", (f"{S}solution-method.relative-tolerance=1e-6", "simulation.time-step=1"))):
-            run = job.solve_run("solid_solver", "bent-beam", (
+            run = job.alone("bent-beam", (
                 "%smesh-parameters={n: %d, m: %d, L: 2}" % (S, n, 10 * n), f"{S}material.law=saint-venant-kirchhoff",
                 f"{S}boundaries.tip.value=[{pull!r}*t, {pull!r}*t, 0]", *sets))
             tip = couplet.read_csv(run.folder / "solid" / "probes.csv")
@@ -121,23 +118,6 @@ def study(job):
 def drawn(job):
     """configs/bent-beam/maps.py, four cells across."""
     maps = job.beside("configs/bent-beam/maps.py")
-    sections = {n: maps.Section(job.solve_run("solid_solver", "bent-beam", maps.settings(4, n)).folder, 4) for n in maps.SIDES}
+    sections = {n: maps.Section(job.alone("bent-beam", maps.settings(4, n)).folder, 4) for n in maps.SIDES}
     maps.picture(sections, job.root / "docs" / "pictures" / "bent-beam.png")
     return "; ".join(f"L {n} sides: {maps.text(section)}" for n, section in sections.items()), True
-
-
-BARS = [
-    Bar("E, Saint Venant-Kirchhoff, K 1.6 on 4x4x40: processor seconds of whole processes beside CalculiX C3D8, C3D8I", "reported",
-        race(4, 40, 3, None)),
-    Bar("the same on 8x8x80, median of three, turn by turn", ">= 10x faster", race(8, 80, 3, 10)),
-    Bar("E, K 1.6: CalculiX C3D8I and C3D20 at the same error, 0.1 %, each on its own best mesh of those tried", "no slower", best, long=True),
-    Bar("E, K 1.6: time a cell and Newton iteration, 16x16x160 over 8x8x80", "< 2 times", growth, long=True),
-    Bar("segregated updated-Lagrangian solver with Aitken (thesis 2.39-2.40), agreement on case E and speed", "agree; >= 20x faster",
-        segregated, but="2x2x20 and 4x4x40 cells against table 3.6 of [thesis] within 0.1 %; wall seconds of the solves"),
-    Bar("the linear run's verdict on geometric non-linearity against the true difference, 7 pairs", "within a factor of 1.5", pairs),
-    Bar("flap at U = 20 m/s coupled, finite strain beside linear; semi-implicit and implicit", "printed; within 1 %", flap, long=True,
-        but="to 0.4 s, before the first maximum: the linear flap, which grows longer as it turns, makes the fluid's mesh cross itself at 0.44 s, "
-            "also with the incremental mover that is taken here"),
-    Bar("accuracy against cost: case E, gradients x methods x cell kinds beside CalculiX", "a study with its picture", study),
-    Bar("maps of stretch and shear of case E, as figures 3.12, 3.13 of the thesis", "drawn", drawn, long=True),
-]

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of "one door": binary foreign data (HDF5, checkpoints, messages of external programs)."""
+"""Measures of "one door": binary foreign data (HDF5, checkpoints, messages of external programs)."""
 import json
 import os
 
-from validation.job import Bar
 from validation.parts.trust import house as trust_house
-from validation.parts.trust.runs import gtests, tests
 
 
 def cases(job, name, count):
@@ -21,14 +19,12 @@ def cases(job, name, count):
     return job.once(("fuzz-all", name, count), make)
 
 
-def fuzz(name, test, count):
-    def measure(job):
-        found, _ = cases(job, name, count)
-        one = found[test]
-        apart = f", {one['crashed_apart']} crashed in the rehearsal and were refused" if "crashed_apart" in one else ""
-        return (f"{one['tried']} tried, {one['refused']} refused{apart}, 0 crashes, slowest {one['slowest']} s, {one['megabytes']} MB",
-                not one.get("failures") and int(one["tried"]) >= count)
-    return measure
+def fuzz(job, name, test, count):
+    found, _ = cases(job, name, count)
+    one = found[test]
+    apart = f", {one['crashed_apart']} crashed in the rehearsal and were refused" if "crashed_apart" in one else ""
+    return (f"{one['tried']} tried, {one['refused']} refused{apart}, 0 crashes, slowest {one['slowest']} s, {one['megabytes']} MB",
+            not one.get("failures") and int(one["tried"]) >= count)
 
 
 def sanitized(job):
@@ -41,22 +37,3 @@ def sanitized(job):
         lines.append(f"{name}: {count} a test, code {result.returncode}, {len(found)} kinds of reports" + (f": {found[0]}" if found else ""))
         good = good and result.returncode == 0 and not found
     return "; ".join(lines), good
-
-
-BARS = [
-    Bar("2 000 crafted modes.h5 (rank, type, size, storage, links, strings, bytes): no crash, no file outside, 1 GB, 5 s", "refused or sound",
-        fuzz("fuzz_hdf5", "modes_are_refused_or_sound", 2000)),
-    Bar("2 000 crafted checkpoints whose checksums and digests fit: the same", "refused or sound",
-        fuzz("fuzz_hdf5", "checkpoints_with_digests_that_fit_are_refused_or_sound", 2000)),
-    Bar("each fault of a modes.h5 has its sentence: file, object, what was found, what was expected", "test passes",
-        gtests("fuzz_hdf5", "each_fault_has_its_sentence")),
-    Bar("the scenes of modes.h5 and checkpoints through plate_modal: --check finds them, the run refuses them", "all scenes",
-        tests("^cli_foreign_data$")),
-    Bar("5 000 byte streams of external programs: handshake, introduction, replies, places, commands: no crash, 1 GB, 5 s", "refused or sound",
-        fuzz("fuzz_messages", "are_refused_or_sound", 5000)),
-    Bar("an external program of another version, and other ways to break the protocol, in a real job: named, code 1 or 2, no process left", "all",
-        tests("^client_odd_guests_full$")),
-    Bar("no second reader of HDF5, messages or roll call (tests/architecture)", "tests pass", tests("^architecture_", 2)),
-    Bar("the same crafted files and bytes under sanitizers (preset asan)", "clean",
-        sanitized, long=True, but="what the rehearsal's forked process does is judged by its outcome, not by the sanitizers' reports"),
-]

@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of gmsh in a sandbox: crafted geometry, the process, the cache, expressions of a study."""
+"""Measures of gmsh in a sandbox: crafted geometry, the process, the cache, expressions of a study."""
 import json
 import os
-
-from validation.job import Bar
-from validation.parts.trust.runs import gtests, tests
 
 
 def crafted(job, count=500):
@@ -19,20 +16,3 @@ def crafted(job, count=500):
     good = not any(t.get("failures") for t in found) and result.returncode == 0 and int(test["tried"]) >= count
     return (f"{test['tried']} tried: {test['refused']} refused before gmsh, {test['let_through']} let through without harm, slowest "
             f"{test['slowest']} s", good and float(test["slowest"]) < 5)
-
-
-BARS = [
-    Bar("500 crafted .geo, by the allowlist alone: gmsh never starts for a refused one, nothing outside the folder of the case, 5 s each", "none fails",
-        crafted),
-    Bar("... and every payload as it is; those files do what they say once --allow-commands is given", "tests pass",
-        gtests("fuzz_geo", "every_payload", "a_trusted_case", "an_ordinary_geometry", "options_beside", "cleaned_copy")),
-    Bar("every .geo of configs/ and tests/ is let through; files outside the folder, links included, are refused by name", "tests pass",
-        gtests("unit_mesh_files", "every_geometry", "files_elsewhere", "commands_and_written", "no_comments")),
-    Bar("a solver killed while gmsh is meshing: no gmsh after 5 s, with bubblewrap, without, under mpirun; limits, home, network, disk as promised",
-        "test passes", tests("^kill_meshing$")),
-    Bar("in bubblewrap nothing but the own folder can be written to, and there is no network; its end, home and clean environment", "tests pass",
-        gtests("unit_mesh_files", "end_of_a_program", "its_folder", "with_bubblewrap", "trusted_program")),
-    Bar("a cached mesh with another digest (a number changed, a foreign mesh, none) is made anew with one line", "test passes",
-        gtests("unit_mesh", "another_digest", "truncated_cache")),
-    Bar("study's 'exact' is an expression, not Python; 'python' stays in the folder of the case", "test passes", tests("^cases_study_arithmetic$")),
-]

@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of the mutants: how many the rules give, how many survive the quick tests of their folder, and the nine that none noticed."""
+"""Measures of the mutants: how many the rules give, how many survive the quick tests of their folder, and the nine that none noticed."""
 import os
 import pathlib
 import re
-
-from validation.job import Bar
 
 MOST = 0.15
 # Of tests/mutants/mutants.py: one or more for each of the nine.
@@ -37,12 +35,3 @@ def campaign(job):
     counts = re.search(r"(\d+) of (\d+) mutants survive", last)
     met = counts is not None and int(counts[2]) >= 200 and int(counts[1]) <= MOST * int(counts[2]) and result.returncode == 0
     return last, met
-
-
-BARS = [
-    Bar("mutants: fixed ones have their place, the rules draw with the committed seed", "all; >= 200", places),
-    Bar("mutants of physics that no test noticed (nine, with variants)", "none survives", nine, long=True),
-    Bar("mutants made by rule that survive the tests registered for their folder (60 s of processor time each)",
-        "at least 200, at most 15 % survive, each with a reason in survivors.md", campaign, long=True,
-        but="seconds are of processor time, since a shared machine's clock is not reliable; the survivors did not go through the whole suite"),
-]

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of text data: the one reader of tables, what gzip may expand to, --check opens what a run opens."""
+"""Measures of text data: the one reader of tables, what gzip may expand to, --check opens what a run opens."""
 import json
 import os
 import re
 
-from validation.job import Bar
 from validation.parts.trust import house as trust_house
-from validation.parts.trust.runs import gtests, wrong
 
 RUN = "tests/cli/check_files/run.py"
 
@@ -23,16 +21,14 @@ def recorded(job, count, names):
     return found, result.returncode == 0 and not any(t.get("failures") for t in found.values())
 
 
-def fuzz(count):
+def fuzz(job, count):
     """Broken files and ways of writing numbers."""
-    def measure(job):
-        found, good = recorded(job, count, "*broken*:*every_way*")
-        broken = next(t for name, t in found.items() if name.startswith("broken"))
-        ways = next(t for name, t in found.items() if name.startswith("every_way"))
-        return (f"{broken['files']} files through 6 readers, {broken['refused']} of {broken['tried']} refused, slowest {broken['slowest']} s, "
-                f"{broken['megabytes']} MB; {ways['tried']} ways of writing numbers, {ways['refused']} refused, none misread",
-                good and int(broken["files"]) >= count and int(ways["tried"]) >= count)
-    return measure
+    found, good = recorded(job, count, "*broken*:*every_way*")
+    broken = next(t for name, t in found.items() if name.startswith("broken"))
+    ways = next(t for name, t in found.items() if name.startswith("every_way"))
+    return (f"{broken['files']} files through 6 readers, {broken['refused']} of {broken['tried']} refused, slowest {broken['slowest']} s, "
+            f"{broken['megabytes']} MB; {ways['tried']} ways of writing numbers, {ways['refused']} refused, none misread",
+            good and int(broken["files"]) >= count and int(ways["tried"]) >= count)
 
 
 def bombs(job):
@@ -52,11 +48,9 @@ def files_and_runs(job):
     return job.once("check files", make)
 
 
-def check_files(what, least):
-    def measure(job):
-        n, wrong_ones = files_and_runs(job)[what]
-        return f"{n} {what}, {wrong_ones} judged wrongly", n >= least and wrong_ones == 0
-    return measure
+def check_files(job, what, least):
+    n, wrong_ones = files_and_runs(job)[what]
+    return f"{n} {what}, {wrong_ones} judged wrongly", n >= least and wrong_ones == 0
 
 
 def sanitized(job):
@@ -74,21 +68,3 @@ def one_reader(job):
     samples = job.run(["/usr/bin/python3", job.root / "tests/architecture/test_check_sources.py"])
     return (f"{len(lines)} outside the list; the check's own samples: {samples.stdout.strip().splitlines()[-1]}",
             not lines and samples.returncode == 0 and "files: in order" in result.stdout)
-
-
-BARS = [
-    Bar("a table with decimal commas (0,0;1000,5): refused with its line and what to write", "tests pass",
-        gtests("unit_csv", "decimal_commas", "could_be_decimal_commas", "slip_is_not_taken")),
-    Bar("... by --check, in a run alone with --strict and in a coupled run, all programs ended", "all judged rightly", check_files("runs", 6)),
-    Bar("ragged rows, words, nan, inf, zero bytes, lines and files beyond the limits, pipes: file, line, what to do", "tests pass",
-        gtests("unit_csv", "one_width", "no_finite_numbers", "no_text", "no_regular_file", "limits_of_size")),
-    Bar("gzip: expansion and size bounded, cut and damaged files refused; measured data and several members pass", "tests pass",
-        gtests("unit_csv", "cut_or_damaged", "beyond_what_measured", "whatever_the_ratio", "several_members")),
-    Bar("2 000 crafted CSV through tables, grids, flows, weather, series: no crash, 5 s, 1 GB; no number misread", "none fails", fuzz(2000)),
-    Bar("gzip bombs (3 MB for 3 GB; one stream, members, cut, rubbish behind): refused in 5 s and 1 GB", "all refused", bombs),
-    Bar("--check finds every broken file of every key that names one, of every program, and of --restart", "all found", check_files("files", 200)),
-    Bar("tables of users with a mistake each have their sentence", "cases pass", wrong("table", "velocity from a file", "--check: broken", least=3)),
-    Bar("one reader: no other source opens, parts or parses text data", "none", one_reader),
-    Bar("the same files and bombs under sanitizers (preset asan)", "clean", sanitized, long=True),
-    Bar("20 000 crafted CSV", "none fails", fuzz(20000), long=True),
-]

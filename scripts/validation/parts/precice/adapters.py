@@ -10,7 +10,6 @@ import shutil
 
 import numpy as np
 
-from validation.job import Bar
 from validation.parts.precice.programs import NOTE, commit_of, coupled, folder, passes
 
 PUBLISHED = {"first": (0.198, 0.74), "second": (0.184, 2.36)}  # OpenFOAM and CalculiX: tip of the flap [m] at [s], read off the tutorial's plot to 0.002 m
@@ -104,44 +103,42 @@ def bent(job, source, rows, said):
     return f"{text}: {100 * off:.1f} % off; {len(rows)} steps, {passes(said):.2f} passes per step{commit_of(source, job)}", len(rows) == 250 and off < 0.02
 
 
-def openfoam(solid):
+def openfoam(job, solid):
     """pimpleFoam of Debian's OpenFOAM 1912 with preCICE's adapter, on our solid or on CalculiX with its adapter."""
-    def measure(job):
-        source, adapter, program = folder("COUPLET_PRECICE_TUTORIALS"), os.environ.get("COUPLET_PRECICE_OPENFOAM"), os.environ.get("COUPLET_PRECICE_CALCULIX")
-        if source is None:
-            return NOTE.format("COUPLET_PRECICE_TUTORIALS"), None
-        if not adapter or not os.access(adapter, os.R_OK):
-            return NOTE.format("COUPLET_PRECICE_OPENFOAM"), None
-        if solid == "calculix" and (not program or not os.access(program, os.X_OK)):
-            return NOTE.format("COUPLET_PRECICE_CALCULIX"), None
-        where = job.scratch / f"flap-openfoam-{solid}"
-        for part in ("fluid-openfoam", "solid-calculix"):
-            shutil.copytree(source / "perpendicular-flap" / part, where / part)
-        shutil.copy(source / "perpendicular-flap/precice-config.xml", where)
-        path = f"{pathlib.Path(adapter).resolve().parent}:{libraries(job)}"
-        job.run(["blockMesh"], cwd=where / "fluid-openfoam", check=True)
-        fluid = f"cd {where}/fluid-openfoam && LD_LIBRARY_PATH={path} exec pimpleFoam > foam.log"
-        line = ["mpirun", "--oversubscribe", *(["--allow-run-as-root"] if os.geteuid() == 0 else []), "-n", "1", job.build / "bin/coupler", where / "case.yaml"]
-        if solid == "calculix":
-            job.run([job.root / "scripts/couplet", "import", where / "precice-config.xml", "-o", where / "case.yaml", "--force"], check=True)
-            line += ["--set=simulation.end-time=2.5", ":", "-n", "1", "sh", "-c",
-                     f"cd {where}/solid-calculix && LD_LIBRARY_PATH={path} OMP_NUM_THREADS=1 exec {pathlib.Path(program).resolve()} -i flap -precice-participant Solid > ccx.log"]
-        else:
-            ours = job.root / "configs/perpendicular-flap"
-            shutil.copy(ours / "solid.geo", where)
-            (where / "case.yaml").write_text(flap_under_openfoam((ours / "case.yaml").read_text()))
-            line += [":", "-n", "1", job.build / "bin/solid_solver", where / "case.yaml"]
-        done = job.run([*line, ":", "-n", "1", "sh", "-c", fluid], cwd=where)
-        said = done.stdout + done.stderr
-        if done.returncode:
-            raise RuntimeError(said.strip().splitlines()[-1][:200])
-        if solid == "calculix":
-            return bent(job, source, motion_of(where / "solid-calculix/flap.frd", TIP), said)
-        with open(where / "out/solid/probes.csv") as table:
-            head, *rows = (line.strip().split(",") for line in table)
-        x = next(i for i, name in enumerate(head) if name.strip() == "tip x [m]")
-        return bent(job, source, [(float(row[0]), float(row[x])) for row in rows if float(row[0]) > 0], said)
-    return measure
+    source, adapter, program = folder("COUPLET_PRECICE_TUTORIALS"), os.environ.get("COUPLET_PRECICE_OPENFOAM"), os.environ.get("COUPLET_PRECICE_CALCULIX")
+    if source is None:
+        return NOTE.format("COUPLET_PRECICE_TUTORIALS"), None
+    if not adapter or not os.access(adapter, os.R_OK):
+        return NOTE.format("COUPLET_PRECICE_OPENFOAM"), None
+    if solid == "calculix" and (not program or not os.access(program, os.X_OK)):
+        return NOTE.format("COUPLET_PRECICE_CALCULIX"), None
+    where = job.scratch / f"flap-openfoam-{solid}"
+    for part in ("fluid-openfoam", "solid-calculix"):
+        shutil.copytree(source / "perpendicular-flap" / part, where / part)
+    shutil.copy(source / "perpendicular-flap/precice-config.xml", where)
+    path = f"{pathlib.Path(adapter).resolve().parent}:{libraries(job)}"
+    job.run(["blockMesh"], cwd=where / "fluid-openfoam", check=True)
+    fluid = f"cd {where}/fluid-openfoam && LD_LIBRARY_PATH={path} exec pimpleFoam > foam.log"
+    line = ["mpirun", "--oversubscribe", *(["--allow-run-as-root"] if os.geteuid() == 0 else []), "-n", "1", job.build / "bin/coupler", where / "case.yaml"]
+    if solid == "calculix":
+        job.run([job.root / "scripts/couplet", "import", where / "precice-config.xml", "-o", where / "case.yaml", "--force"], check=True)
+        line += ["--set=simulation.end-time=2.5", ":", "-n", "1", "sh", "-c",
+                 f"cd {where}/solid-calculix && LD_LIBRARY_PATH={path} OMP_NUM_THREADS=1 exec {pathlib.Path(program).resolve()} -i flap -precice-participant Solid > ccx.log"]
+    else:
+        ours = job.root / "configs/perpendicular-flap"
+        shutil.copy(ours / "solid.geo", where)
+        (where / "case.yaml").write_text(flap_under_openfoam((ours / "case.yaml").read_text()))
+        line += [":", "-n", "1", job.build / "bin/solid_solver", where / "case.yaml"]
+    done = job.run([*line, ":", "-n", "1", "sh", "-c", fluid], cwd=where)
+    said = done.stdout + done.stderr
+    if done.returncode:
+        raise RuntimeError(said.strip().splitlines()[-1][:200])
+    if solid == "calculix":
+        return bent(job, source, motion_of(where / "solid-calculix/flap.frd", TIP), said)
+    with open(where / "out/solid/probes.csv") as table:
+        head, *rows = (line.strip().split(",") for line in table)
+    x = next(i for i, name in enumerate(head) if name.strip() == "tip x [m]")
+    return bent(job, source, [(float(row[0]), float(row[x])) for row in rows if float(row[0]) > 0], said)
 
 
 def values(vtk, name):
@@ -166,17 +163,3 @@ def heat(job):
         last = max((where / f"{side.lower()}-nutils").glob(f"{side}-*.vtk"), key=lambda f: f.stat().st_mtime_ns)
         errors.append(float(np.abs(values(last, b"Temperature") - values(last, b"reference")).max()))
     return f"largest errors {errors[0]:.2e} and {errors[1]:.2e} of 2.2 to 9.2, {passes(said):.1f} passes per step (nutils 7; the tutorial's FEniCS 2019 is not in Debian, DOLFINx 0.5 is)", None
-
-
-BARS = [
-    Bar("partitioned-heat-conduction of the tutorials, nutils on both sides, unchanged: temperature at 1 s against the exact one", "reported", heat, long=True),
-    Bar("perpendicular-flap of the tutorials: CalculiX 2.20 with preCICE's adapter, unchanged, on our fluid: maxima of the tip",
-        "0.198 m at 0.74 s, 0.184 m at 2.36 s (OpenFOAM and CalculiX, plot read to 0.002 m) within 2 %", calculix, long=True,
-        but="2.5 s of the tutorial's 5; the fluid's side is our own case: its mesh, semi-implicit scheme, limit 1e-4 and mapping rbf; the sizes of the maxima are judged, not their times"),
-    Bar("perpendicular-flap of the tutorials: OpenFOAM 1912 with preCICE's adapter 1.3.1, unchanged, on our solid: maxima of the tip",
-        "0.198 m at 0.74 s, 0.184 m at 2.36 s (OpenFOAM and CalculiX, plot read to 0.002 m) within 2 %", openfoam("couplet"), long=True,
-        but="2.5 s of the tutorial's 5; the solid's side is our own case: its mesh, implicit scheme, limit 1e-4 and mapping rbf; the sizes of the maxima are judged, not their times"),
-    Bar("the same fluid on CalculiX 2.20 with its adapter, unchanged, by the tutorial's configuration: maxima of the tip",
-        "0.198 m at 0.74 s, 0.184 m at 2.36 s (OpenFOAM and CalculiX, plot read to 0.002 m) within 2 %", openfoam("calculix"), long=True,
-        but="2.5 s of the tutorial's 5; the sizes of the maxima are judged, not their times"),
-]

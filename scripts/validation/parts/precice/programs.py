@@ -11,8 +11,6 @@ import subprocess
 
 import numpy as np
 
-from validation.job import Bar
-
 PUBLISHED = 223.52, -223.00  # elastic-tube-1d with preCICE: largest and smallest pressure in the middle, 100 steps
 NOTE = "not measured: {} does not name the fetched programs"
 
@@ -60,23 +58,21 @@ def middle_pressures(output):
     return max(values), min(values)
 
 
-def tube(fluid, solid):
-    def measure(job):
-        source = folder("COUPLET_PRECICE_TUTORIALS")
-        if source is None:
-            return NOTE.format("COUPLET_PRECICE_TUTORIALS"), None
-        where = job.scratch / f"tube-{fluid}-{solid}"
-        shutil.copytree(source / "elastic-tube-1d", where)
-        for side, kind, name in (("fluid", fluid, "FluidSolver"), ("solid", solid, "SolidSolver")):
-            if kind == "cpp":
-                job.run(["g++", "-O2", "-std=c++17", *sorted((where / f"{side}-cpp/src").glob("*.cpp")), "-o", where / f"{side}-cpp/{name}", *flags(job), "-llapack"], check=True)
-        (where / f"fluid-{fluid}/output").mkdir(exist_ok=True)
-        command = lambda side, kind, name: f"cd {shlex.quote(str(where))}/{side}-{kind} && exec {f'./{name}' if kind == 'cpp' else f'/usr/bin/python3 {name}.py'} ../precice-config.xml"  # noqa: E731
-        said = coupled(job, where, where / "precice-config.xml", [command("fluid", fluid, "FluidSolver"), command("solid", solid, "SolidSolver")])
-        high, low = middle_pressures(where / f"fluid-{fluid}/output")
-        off = max(abs(high / PUBLISHED[0] - 1), abs(low / PUBLISHED[1] - 1))
-        return f"{high:.2f}, {low:.2f} ({100 * off:.2f} % off), {passes(said):.2f} passes per step{commit_of(source, job)}", off < 0.005
-    return measure
+def tube(job, fluid, solid):
+    source = folder("COUPLET_PRECICE_TUTORIALS")
+    if source is None:
+        return NOTE.format("COUPLET_PRECICE_TUTORIALS"), None
+    where = job.scratch / f"tube-{fluid}-{solid}"
+    shutil.copytree(source / "elastic-tube-1d", where)
+    for side, kind, name in (("fluid", fluid, "FluidSolver"), ("solid", solid, "SolidSolver")):
+        if kind == "cpp":
+            job.run(["g++", "-O2", "-std=c++17", *sorted((where / f"{side}-cpp/src").glob("*.cpp")), "-o", where / f"{side}-cpp/{name}", *flags(job), "-llapack"], check=True)
+    (where / f"fluid-{fluid}/output").mkdir(exist_ok=True)
+    command = lambda side, kind, name: f"cd {shlex.quote(str(where))}/{side}-{kind} && exec {f'./{name}' if kind == 'cpp' else f'/usr/bin/python3 {name}.py'} ../precice-config.xml"  # noqa: E731
+    said = coupled(job, where, where / "precice-config.xml", [command("fluid", fluid, "FluidSolver"), command("solid", solid, "SolidSolver")])
+    high, low = middle_pressures(where / f"fluid-{fluid}/output")
+    off = max(abs(high / PUBLISHED[0] - 1), abs(low / PUBLISHED[1] - 1))
+    return f"{high:.2f}, {low:.2f} ({100 * off:.2f} % off), {passes(said):.2f} passes per step{commit_of(source, job)}", off < 0.005
 
 
 def newmark_of_both(steps=400, dt=0.0025):
@@ -228,16 +224,3 @@ def configurations(job):
         else:
             wrong.append(file.parent.name)
     return f"{len(files)} read: {valid} valid cases, {refused} refused by a feature's name{'; wrong: ' + ', '.join(wrong) if wrong else ''}{commit_of(source, job)}", bool(files) and not wrong
-
-
-BARS = [
-    *(Bar(f"elastic-tube-1d of preCICE's tutorials, unchanged, fluid {fluid}, solid {solid}: p(5)", f"{PUBLISHED[0]}, {PUBLISHED[1]} within 0.5 %", tube(fluid, solid), long=True)
-      for fluid, solid in (("cpp", "cpp"), ("cpp", "python"), ("python", "cpp"), ("python", "python"))),
-    Bar("oscillator of the tutorials, unchanged, Newmark, 4 sub-steps, degree 3: errors of the masses over 1 s", "those of Newmark's scheme for both masses at once with the sub-steps, computed by itself, within 1e-7", oscillator),
-    Bar("resonant-circuit of the tutorials in Python, unchanged, degree 3, sub-steps of both: error of the current at 10 s", "at most 1e-2 of 1: ten windows, each converged to 1e-3",
-        circuit),
-    Bar("preCICE's solver dummies in C, C++, Fortran and Python, unchanged, each against the C++ one", "run to the end", dummies),
-    Bar(f"a window of {VERTICES} vertices, 3 components each way, against the client itself", "at most 1.2x, values equal bit for bit", cost),
-    Bar(f"a window of {VERTICES} vertices, both participants over sockets", "at most 2x the client by MPI, values equal bit for bit", cost_of_sockets),
-    Bar("couplet import of every precice-config.xml of the tutorials", "a valid case, or refused by the name of the feature", configurations),
-]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of --for-error: what it chooses beside ladders of runs (FILE.csv, by ladders.py) of every series and size. The study files of this
+"""Measures of --for-error: what it chooses beside ladders of runs (FILE.csv, by ladders.py) of every series and size. The study files of this
 folder give no reference, so that errors are extrapolated; they are judged afterwards by the truth named here. Costs are compared
 by those of the ladder, at the size chosen by interpolation, so that both were measured at one time."""
 import json
@@ -9,7 +9,6 @@ import sys
 
 import numpy as np
 
-from validation.job import Bar
 from validation.parts.prediction.ladders import read
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -27,7 +26,6 @@ CASES = {
     "cavity": ("u minimum", ("20%", "10%", "5%"), 0),            # an error itself
     "flap": ("tip at 0.4 s", ("5%", "2%", "1%"), ("limit", "semi-implicit")),
 }
-LONG = ("flap", "street", "cylinder", "square", "cavity")
 
 
 def ladder(name):
@@ -79,17 +77,10 @@ def judged(rows, truth, r):
     return text, 0.3 <= share <= 1.1 and price <= 1.5 and 0.7 <= time <= 1.3 and (before <= 3 or r["seconds"] <= 1)
 
 
-def predicted(name):
-    def measure(job):
-        rows = ladder(name)
-        truth, parts = truth_of(name, rows), []
-        for target in CASES[name][1]:
-            text, met = judged(rows, truth, asked(job, name, target))
-            parts.append((f"{target}: {text}" + ("" if met else " (not met)"), met))
-        return "; ".join(p for p, _ in parts), all(met for _, met in parts)
-    return measure
-
-
-BARS = [Bar(f"--for-error without a reference, {name}: {CASES[name][0]} at three targets",
-            "true error 0.3 to 1.1 of the target, at most 1.5 times the cheapest by brute force, time within 30 %, runs before it at most 3 times it where it takes over 1 s",
-            predicted(name), long=name in LONG) for name in CASES if (HERE / f"{name}.csv").exists()]
+def predicted(job, name):
+    rows = ladder(name)
+    truth, parts = truth_of(name, rows), []
+    for target in CASES[name][1]:
+        text, met = judged(rows, truth, asked(job, name, target))
+        parts.append((f"{target}: {text}" + ("" if met else " (not met)"), met))
+    return "; ".join(p for p, _ in parts), all(met for _, met in parts)

@@ -1,12 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of blocked layers that a moving mesh carries through a seat: recorded by verification_fluid_seat_layer."""
-from validation.job import Bar
+"""Measures of blocked layers that a moving mesh carries through a seat: recorded by verification_fluid_seat_layer."""
 
 PROGRAM, TEST = "verification_fluid_seat_layer", "passes_without_spikes"
 SHARES, LIDS = (100, 10, 1), (5, 3)
-CASE = ("the case is ours: two cells up and down beside the seat of an orifice, no body moves, so that nothing should change; the mesh moves at 0.6 and 0.4 of the mean velocity "
-        "under the lid, the reed of the source at about 0.14; faster meshes and thinner layers do worse: docs/theory.md")
-SOURCES = ("fluid_solver", "tests/verification/fluid")
 
 
 def worst(job, key):
@@ -40,10 +36,3 @@ def force(job):
     steps, _ = worst(job, "force_step")
     return ("changes of " + ", ".join(f"{100 * v:.1f}" for v in most) + " %, from step to step " + ", ".join(f"{100 * v:.1f}" for v in steps) +
             " % of the pressure times the seat: when a row of cells opens or closes its own pressure takes the place of that beside it, and the friction at the edge of the orifice changes cells"), steps[2] <= 0.1 * steps[1]
-
-
-LAYER = [
-    Bar("blocked layer through a seat at 1, 0.1, 0.01 of a cell per step: mass", "to 1e-12", mass, but=CASE, sources=SOURCES),
-    Bar("blocked layer through a seat at 1, 0.1, 0.01 of a cell per step: pressure", "no spikes above 5 %", pressure, but=CASE, sources=SOURCES),
-    Bar("blocked layer through a seat at 1, 0.1, 0.01 of a cell per step: force", "continuous: changes per step fall with the step", force, but=CASE, sources=SOURCES),
-]

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of mesh motion around thin bodies: the barrier to the end of the way, its neighbours refused on it, and the price of each."""
+"""Measures of mesh motion around thin bodies: the barrier to the end of the way, its neighbours refused on it, and the price of each."""
 import re
 import resource
 
 import couplet
-from validation.job import Bar
 
 LAST = "least scaled Jacobian [1]"
 HUNDRED = "reed's slice opened to 3.9 mm and closed to 1 % of it, 100 times"
@@ -86,45 +85,30 @@ def end_of(scene, rows):
     return f"{100 * rows['time [s]'][-1] / SCENES[scene][3]:.0f} %"
 
 
-def reaches(scene):
-    def measure(job):
-        rows, valid, said, *_ = run(job, scene, "barrier")
-        least = min(rows[LAST])
-        text = f"all cells valid, least scaled Jacobian {least:.4f}" if valid else f"refused at {end_of(scene, rows)} of the way ({said})"
-        beside = []
-        for method in ("laplacian", "pseudo-solid"):
-            other, came, said, *_ = run(job, scene, method)
-            beside.append(f"{method} " + ("comes through too" if came else f"refused at {end_of(scene, other)} ({said})"))
-        return f"{text}; {', '.join(beside)}", valid and least > 0
-    return measure
+def reaches(job, scene):
+    rows, valid, said, *_ = run(job, scene, "barrier")
+    least = min(rows[LAST])
+    text = f"all cells valid, least scaled Jacobian {least:.4f}" if valid else f"refused at {end_of(scene, rows)} of the way ({said})"
+    beside = []
+    for method in ("laplacian", "pseudo-solid"):
+        other, came, said, *_ = run(job, scene, method)
+        beside.append(f"{method} " + ("comes through too" if came else f"refused at {end_of(scene, other)} ({said})"))
+    return f"{text}; {', '.join(beside)}", valid and least > 0
 
 
 CAUSE = ("; two fifths of it are conjugate gradients, a third the assembly of eight simplices in three components per hexahedron, though the slice is one cell "
          "deep: factors in place of multigrid took 16 times; in two dimensions the slice meets the bar")
 
 
-def price(scene):
+def price(job, scene):
     """Over the way that the Laplacian stands, in the same steps; the least of three runs each."""
-    def measure(job):
-        rows = run(job, scene, "laplacian")[0]
-        share = round(float(rows["time [s]"][-1]) / SCENES[scene][3], 6)
-        runs = {m: [run(job, scene, m, share, i) for i in (1, 2, 3)] for m in ("laplacian", "pseudo-solid", "barrier")}
-        steps, whole = ({m: min(r[k] for r in of) for m, of in runs.items()} for k in (4, 3))
-        all_of_it = min(run(job, scene, "barrier", 1.0, i)[4] for i in (1, 2))
-        against = lambda cost, m: f"{cost[m] / cost['laplacian']:.1f}"
-        met = steps["barrier"] <= 6 * steps["laplacian"]
-        return (f"steps {against(steps, 'barrier')} times ({steps['barrier']:.3f}, {steps['laplacian']:.3f} s; pseudo-solid {against(steps, 'pseudo-solid')} times), "
-                f"whole runs {against(whole, 'barrier')} times in cpu, over the {100 * share:.0f} % of the way that the laplacian stands; barrier over the whole "
-                f"way {all_of_it:.2f} s{'' if met else CAUSE}"), met
-    return measure
-
-
-BUT = {"block": "it is closed diagonally into a corner of walls along which the mesh slides: between walls at which it is fixed no mesh can follow that way",
-       "two cylinders": "the mesh is made where they are closest, and they move by a diameter to either side"}
-
-MESH = [
-    *(Bar(scene, "all cells valid; laplacian and pseudo-solid beside it", reaches(scene), but=next((why for what, why in BUT.items() if scene.startswith(what)), ""))
-      for scene in SCENES),
-    *(Bar(f"price of the barrier, {scene}", "at most 6 times the laplacian (all that a step does: motion, geometry, guard, quality.csv)", price(scene)) for scene in SCENES
-      if scene != HUNDRED),
-]
+    rows = run(job, scene, "laplacian")[0]
+    share = round(float(rows["time [s]"][-1]) / SCENES[scene][3], 6)
+    runs = {m: [run(job, scene, m, share, i) for i in (1, 2, 3)] for m in ("laplacian", "pseudo-solid", "barrier")}
+    steps, whole = ({m: min(r[k] for r in of) for m, of in runs.items()} for k in (4, 3))
+    all_of_it = min(run(job, scene, "barrier", 1.0, i)[4] for i in (1, 2))
+    against = lambda cost, m: f"{cost[m] / cost['laplacian']:.1f}"
+    met = steps["barrier"] <= 6 * steps["laplacian"]
+    return (f"steps {against(steps, 'barrier')} times ({steps['barrier']:.3f}, {steps['laplacian']:.3f} s; pseudo-solid {against(steps, 'pseudo-solid')} times), "
+            f"whole runs {against(whole, 'barrier')} times in cpu, over the {100 * share:.0f} % of the way that the laplacian stands; barrier over the whole "
+            f"way {all_of_it:.2f} s{'' if met else CAUSE}"), met

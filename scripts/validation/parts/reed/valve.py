@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of the reed valve in three dimensions and of its slice: lift, frequency, energy, effective flow area, other structures in the reed's place."""
+"""Measures of the reed valve in three dimensions and of its slice: lift, frequency, energy, effective flow area, other structures in the reed's place."""
 import couplet
 import numpy as np
 
-from validation.job import Bar
-
 START = 0.3e-3  # lift at rest [m]
-SOURCE = "[thesis] 4.5: 3.89 mm, 56.3 Hz (incompressible, 2.2 million cells)"
 
 POINTS = ("; where the source's control points lie is unknown: its instants at a lift of 0.08 d = 2.79 mm at point 2 rule out that 3.89 mm is the tip and point 2 the centre, "
           "for the first mode lifts the tip 1.59 times as far as the centre; the cause is not known: a finer mesh lifts the reed further")
@@ -83,14 +80,3 @@ def swapped(job):
         found[name] = gap[first], gap[low], gap[second], 1 / (t[second] - t[first])
     off = max(abs(v[i] / found["plate"][i] - 1) for v in found.values() for i in range(4))
     return "; ".join(f"{name}: {v[0]:.3f}, {v[1]:.3f}, {v[2]:.3f} mm, {v[3]:.0f} Hz" for name, v in found.items()) + f" (first peak, trough, second peak): {100 * off:.1f} % apart", off <= 0.05
-
-
-HALF = "symmetric half, 6.8 k hexahedra in place of 60 to 100 k cells; the gap's cells stretch from 0.3 mm, without an auxiliary layer in the seat"
-VALVE = [
-    Bar("valve, coarse, incompressible: largest lift at point 1", f"3.89 mm within 10 %; {SOURCE}", lifts, long=True, but=HALF),
-    Bar("valve, coarse, incompressible: frequency of the first cycle", f"56.3 Hz within 10 %; {SOURCE}", frequency, long=True, but=HALF),
-    Bar("valve, coarse: energy of the reed against the work", "within 1 %", energy, long=True, but=HALF),
-    Bar("valve, coarse: effective flow area (4.35) of the whole valve", "reported", loop, long=True),
-    Bar("slice with the plate, the modes of a solid, and a solid at large strain in its place", "gap and frequency within 5 %", swapped, long=True,
-        but="the limit is ours; without contact in the solid: the reed does not reach the seat here"),
-]

@@ -6,8 +6,7 @@ import pathlib
 import statistics
 
 import couplet
-from validation.job import Bar, Job
-from validation.parts.right_by_default.scenes import LE1, LE10, LE11
+from validation.job import Job
 
 BEFORE, TURNS = "b350924", 3
 S = "participants.solid."
@@ -47,12 +46,10 @@ def to_a_percent(job, whose, case, column, right, meshes):
     return seconds(job, whose, case, (f"{S}mesh-parameters={{{found[0]}}}",)), *found
 
 
-def sooner(case, column, right, meshes):
-    def measure(job):
-        (now, mesh, error), (then, before, earlier) = (to_a_percent(job, whose, case, column, right, meshes) for whose in (job, other(job)))
-        return (f"{{{mesh}}} {100 * error:+.2f} % in {now:.2f} s, {BEFORE} {{{before}}} {100 * earlier:+.2f} % in {then:.2f} s: {now / then:.2f} times",
-                now <= 0.7 * then)
-    return measure
+def sooner(job, case, column, right, meshes):
+    (now, mesh, error), (then, before, earlier) = (to_a_percent(job, whose, case, column, right, meshes) for whose in (job, other(job)))
+    return (f"{{{mesh}}} {100 * error:+.2f} % in {now:.2f} s, {BEFORE} {{{before}}} {100 * earlier:+.2f} % in {then:.2f} s: {now / then:.2f} times",
+            now <= 0.7 * then)
 
 
 def plate(job):
@@ -72,13 +69,11 @@ def pairs(now, then, count):
     return ", ".join(f"{r:.2f}" for r in ratios) + " times", ratios[TURNS // 2] <= 1.1
 
 
-def motion(case, sets, step, count):
+def motion(job, case, sets, step, count):
     """The default of the other build was the least-squares gradient."""
-    def measure(job):
-        def of(whose):
-            return lambda steps: once(job, whose, case, (*sets, f"simulation.end-time={steps * step!r}"))[0]
-        return pairs(of(job), of(other(job)), count)
-    return measure
+    def of(whose):
+        return lambda steps: once(job, whose, case, (*sets, f"simulation.end-time={steps * step!r}"))[0]
+    return pairs(of(job), of(other(job)), count)
 
 
 def beam(n_length, n_side):
@@ -110,34 +105,18 @@ Physical Curve("root") = {4}; Physical Curve("tip") = {2}; Physical Curve("sides
 """
 
 
-def section(n, count):
+def section(job, n, count):
     """A beam of 10 n x n quadrilaterals, the same file for both builds."""
-    def measure(job):
-        folder = job.scratch / f"section-{n}"
-        folder.mkdir(exist_ok=True)
-        (folder / "section.geo").write_text(SECTION)
-        (folder / "case.yaml").write_text(PLANE % n)
+    folder = job.scratch / f"section-{n}"
+    folder.mkdir(exist_ok=True)
+    (folder / "section.geo").write_text(SECTION)
+    (folder / "case.yaml").write_text(PLANE % n)
 
-        def of(whose):
-            return lambda steps: whose.case_run(folder / "case.yaml", folder / "out", ("simulation.output.interval=0", f"simulation.end-time={0.1 * steps!r}"),
-                                                {"solid": 1}, 3600).cost.cpu
-        return pairs(of(job), of(other(job)), count)
-    return measure
+    def of(whose):
+        return lambda steps: whose.case_run(folder / "case.yaml", folder / "out", ("simulation.output.interval=0", f"simulation.end-time={0.1 * steps!r}"),
+                                            {"solid": 1}, 3600).cost.cpu
+    return pairs(of(job), of(other(job)), count)
 
 
 def rings(sizes, text):
     return [text.format(r=r, t=3 * r // 2) for r in sizes]
-
-
-BUT = "processor seconds; coarsest mesh within 1 % from which on all finer ones are, too"
-BARS = [
-    Bar(f"seconds to 1 % of LE10 beside {BEFORE}", "<= 0.7 times", sooner("le10", "D stress-yy [Pa]", LE10, rings((8, 12, 16, 24, 32, 40), "nr: {r}, nt: {t}, nz: 24")),
-        long=True, but=BUT),
-    Bar(f"seconds to 1 % of LE1 beside {BEFORE}", "<= 0.7 times", sooner("le1", "D stress-yy [Pa]", LE1, rings((16, 24, 32, 40, 48, 64), "nr: {r}, nt: {t}")), long=True, but=BUT),
-    Bar(f"seconds to 1 % of LE11 beside {BEFORE}", "<= 0.7 times", sooner("le11", "A stress-zz [Pa]", LE11, [f"refine: {n}" for n in (4, 6, 8, 10)]), long=True, but=BUT),
-    Bar(f"plate B, 32x48x24: processor seconds over those of {BEFORE}", "<= 1 times", plate, long=True),
-    *(Bar(f"step of a beam in motion, {n_length * n_side**2} hexahedra, over that of {BEFORE}", "<= 1.1 times", motion("vibrating-cantilever", beam(n_length, n_side), 0.1, count),
-          long=True, but="processor seconds of steps after the first, pairs") for n_length, n_side, count in ((80, 4, 200), (80, 8, 100), (384, 16, 10))),
-    *(Bar(f"step of a beam in motion, {10 * n * n} quadrilaterals, over that of {BEFORE}", "<= 1.1 times", section(n, count), long=True,
-          but="processor seconds of steps after the first, pairs") for n, count in ((10, 4000), (32, 200), (100, 20))),
-]

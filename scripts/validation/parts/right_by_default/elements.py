@@ -9,7 +9,6 @@ from couplet.peers import calculix
 from couplet.peers.solid import Solid
 from couplet.runs import Case
 from couplet.runs.process import launch
-from validation.job import Bar
 from validation.parts.right_by_default.scenes import probe
 
 S = "participants.solid."
@@ -135,10 +134,3 @@ def fork(job):
     mine_s, other = our_seconds(job, FORK, h)[0], calculix_seconds(written(job, FORK, k, STEP)[0])
     return (f"h {h:g} {100 * mine:.2f} % in {mine_s:.2f} s; C3D10 h {k:g} {100 * theirs:.2f} % in {other:.2f} s: {mine_s / other:.1f} times",
             mine_s <= 2 * other)
-
-
-BARS = [
-    Bar("L-bracket, tip to 0.5 %, beside CalculiX's C3D10 to 0.5 %: seconds", "<= 2 times", bracket, long=True, but="processor seconds, CalculiX on this machine, too; meshes are made before"),
-    Bar("tuning fork, 8 modes, largest error 2 %, beside CalculiX's C3D10 to 2 %: seconds", "<= 2 times", fork, long=True,
-        but="processor seconds; 2 % of C3D10 refined once, h = 1.25 mm; refined twice it does not fit into this machine's time"),
-]

@@ -5,8 +5,6 @@ import csv
 import json
 import math
 
-from validation.job import Bar
-
 NONE = ()
 SOFT = ("simulation.accept=[buckling]",)  # Cook's load is near the one that buckles the panel
 
@@ -55,7 +53,7 @@ def discretisation(folder):
 
 def look(job, case, column, mesh, keys):
     """(displacement at the probe, estimate of its error)"""
-    run = job.solve_run("solid_solver", case, (f"participants.solid.mesh-parameters={{{mesh}}}", *keys))
+    run = job.alone(case, (f"participants.solid.mesh-parameters={{{mesh}}}", *keys))
     with open(run.folder / "solid" / "probes.csv", encoding="utf-8") as file:
         rows = list(csv.reader(file))
     at = next(i for i, name in enumerate(rows[0]) if name.startswith(column))
@@ -65,7 +63,7 @@ def look(job, case, column, mesh, keys):
 def stress(job, case, mesh, keys, place):
     """(xx, yy, zz and sqrt 2 times xy, yz, xz [Pa]; estimated error over their norm)"""
     probe = f"participants.solid.probes.surface={{point: {list(place)}, fields: [stress]}}"
-    folder = job.solve_run("solid_solver", case, (f"participants.solid.mesh-parameters={{{mesh}}}", probe, *keys)).folder / "solid"
+    folder = job.alone(case, (f"participants.solid.mesh-parameters={{{mesh}}}", probe, *keys)).folder / "solid"
     with open(folder / "probes.csv", encoding="utf-8") as file:
         rows = list(csv.reader(file))
     parts = {name[len("surface stress-"):].split()[0]: float(value) for name, value in zip(rows[0], rows[-1]) if name.startswith("surface stress-")}
@@ -106,23 +104,12 @@ def ratios(job):
     return job.once("estimates beside errors", make)
 
 
-def within(factor, wanted):
-    def measure(job):
-        found = ratios(job)
-        inside = sum(1 / factor <= r <= factor for r, _ in found)
-        return f"{inside} of {len(found)}, {100 * inside / len(found):.0f} %", inside >= wanted * len(found)
-    return measure
+def within(job, factor, wanted):
+    found = ratios(job)
+    inside = sum(1 / factor <= r <= factor for r, _ in found)
+    return f"{inside} of {len(found)}, {100 * inside / len(found):.0f} %", inside >= wanted * len(found)
 
 
 def least(job):
     ratio, where = min(ratios(job))
     return f"least {ratio:.2f} ({where}), largest {max(ratios(job))[0]:.0f}", ratio >= 1 / 3
-
-
-BUT = "static studies of 14 bodies, by the displacement at a probe"
-BARS = [
-    Bar("estimated error of the displacement over the true one, within a factor of 2", "80 %", within(2, 0.8), long=True, but=BUT),
-    Bar("... none below a third", "none", least, long=True, but=BUT),
-    Bar("estimated error of the stress at a surface over the true one, within a factor of 3", "80 %", stress_within, long=True,
-        but="static studies of 14 bodies, 81 readings"),
-]

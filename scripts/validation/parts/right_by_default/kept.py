@@ -5,18 +5,9 @@ import json
 
 from couplet.runs import Case
 from validation import table
-from validation.job import Bar
-from validation.parts.measures import all_pass
 
-PEAK = 3e6  # Kirsch, at the hole across the pull [Pa]
 MAPS = ("solid-energy", "solid-stretch", "solid-nu", "solid-buckling", "large-nu", "large-swing", "large-load")
 TABLES = ("solid-linear", "solid-energy", "finite-strain")
-
-
-def kirsch(job):
-    run = job.solve_run("solid_solver", "kirsch-hole", ("participants.solid.probes.rim={point: [0, 0.5], fields: [stress]}",))
-    found = run.column("solid", "probes.csv", "rim stress-xx [Pa]")[-1]
-    return f"{found / 1e6:.3f} MPa ({100 * (found / PEAK - 1):+.2f} %)", abs(found / PEAK - 1) <= 0.01
 
 
 def maps(job):
@@ -58,19 +49,3 @@ def tables(job):
             kept += quantity in now and now[quantity].verdict.endswith(("met", "met)")) and "not met" not in now[quantity].verdict
             lost += [quantity] if quantity in now and "not met" in now[quantity].verdict else []
     return f"{kept} still met, {renamed} have gone or another name, lost: {'; '.join(lost) or 'none'}", not lost
-
-
-BUCKLING, LOADS = "verification_solid_buckling", "verification_solid_loads"
-BARS = [
-    Bar("Kirsch, shipped mesh: peak stress at the hole", "within 1 % of 3 MPa", kirsch),
-    Bar("static runs in compression: buckling factor below 3 is reported, of others not", "2 tests pass", all_pass(BUCKLING, r"BucklingFinding|BucklingEstimate", 2),
-        but="also reported above 3 where the load bends the body in that shape"),
-    Bar("free vibrations of a preloaded body", "test passes", all_pass(BUCKLING, "LoadedColumn")),
-    Bar("a motion that grows is ended when it grows, between outputs, too", "2 tests pass", all_pass("verification_solid_audit", r"Audit\.(ends_a_motion|fires_on_undamped)", 2)),
-    Bar("bearing load: cosine over half the hole, its total", "2 tests pass", all_pass(LOADS, r"of_a_pin", 2)),
-    Bar("point and remote loads: force and moment on all kinds of cells", "tests pass", all_pass(LOADS, r"a_remote_load_has|a_point_load_within|a_point_force", 18)),
-    Bar("static cases at large strain called unstable", "none of all committed", stable_cases, long=True),
-    Bar("maps of the solid on the atlas, default settings: squares more than 20 % off without a warning", "0", maps, but="as drawn on 2026-11-24 and 25, not again"),
-    Bar("bars that the solid's other tables had as met at b350924", "none lost", tables,
-        but="read from solid-linear, solid-energy and finite-strain then and now, whose rows name what each measured"),
-]

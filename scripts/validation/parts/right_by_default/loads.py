@@ -3,7 +3,6 @@
 import math
 
 import couplet
-from validation.job import Bar
 from validation.parts.right_by_default.scenes import beam_theory, probe, warnings
 
 S = "participants.solid."
@@ -22,36 +21,17 @@ def remote(point, force, moment=(0, 0, 0)):
     return "%stip={type: remote-load, point: %s, force: %s, moment: %s}" % (B, list(point), list(force), list(moment))
 
 
-def eye_resultant(*sets):
-    def measure(job):
-        r = last(job.solve_run("solid_solver", "eye-bar", sets), "reactions.csv")
-        load = math.hypot(r["load x [N]"] - PIN, r["load y [N]"] - WEIGHT, r["load z [N]"]) / PIN
-        held = math.hypot(*(r[f"clamp {a} [N]"] + r[f"load {a} [N]"] for a in "xyz")) / PIN
-        return f"load {load:.1e}, reaction {held:.1e}", load <= 1e-12 and held <= 1e-9
-    return measure
-
-
-def eye_end(job):
-    run = job.solve_run("solid_solver", "eye-bar")
-    errors = [100 * (probe(run, f"end {a} [m]") / u - 1) for a, u in EYE.items()]
-    said = warnings(run)
-    return f"{errors[0]:+.2f} %, {errors[1]:+.2f} %, {len(said)} warnings", max(map(abs, errors)) <= 1 and not said
+def eye_resultant(job, *sets):
+    r = last(job.alone("eye-bar", sets), "reactions.csv")
+    load = math.hypot(r["load x [N]"] - PIN, r["load y [N]"] - WEIGHT, r["load z [N]"]) / PIN
+    held = math.hypot(*(r[f"clamp {a} [N]"] + r[f"load {a} [N]"] for a in "xyz")) / PIN
+    return f"load {load:.1e}, reaction {held:.1e}", load <= 1e-12 and held <= 1e-9
 
 
 def eye_ranks(job):
-    one, *more = (job.solve_run("solid_solver", "eye-bar", (f"{S}solution-method.relative-tolerance=1e-12",), n) for n in (1, 2, 3))
+    one, *more = (job.alone("eye-bar", (f"{S}solution-method.relative-tolerance=1e-12",), n) for n in (1, 2, 3))
     worst = max(abs(probe(run, f"end {a} [m]") - probe(one, f"end {a} [m]")) for run in more for a in "xy") / abs(EYE["y"])
     return f"{worst:.1e}", worst <= 1e-8
-
-
-def beyond(arm):
-    """A force of 100 N at a point so far beyond the tip of a bar of 10 m."""
-    def measure(job):
-        right = beam_theory(10) + 100 * arm * 10**2 / (2 * 210e9 / 12)
-        run = job.solve_run("solid_solver", "slender-beam", (*BEAM, remote((10 + arm, 0.5, 0.5), (0, 100, 0))))
-        error = probe(run, "tip y [m]") / right - 1
-        return f"{100 * error:+.2f} %, {len(warnings(run))} warnings", abs(error) <= 0.03 and not warnings(run)
-    return measure
 
 
 def rigid_end(job):
@@ -59,41 +39,22 @@ def rigid_end(job):
     arm = 5
     right = beam_theory(10) + 100 * arm * 10**2 / (2 * 210e9 / 12)
     tip = "%stip={type: remote-load, point: [%g, 0.5, 0.5], force: [0, 100, 0], coupling: rigid}" % (B, 10 + arm)
-    run = job.solve_run("solid_solver", "slender-beam", (*BEAM, tip))
+    run = job.alone("slender-beam", (*BEAM, tip))
     r = last(run, "reactions.csv")
     error, held = probe(run, "tip y [m]") / right - 1, abs(r["root y [N]"] / 100 + 1)
     return f"{100 * error:+.2f} %, reaction {held:.1e}, {len(warnings(run))} warnings", abs(error) <= 0.03 and held <= 1e-6 and not warnings(run)
 
 
-def pure_moment(job):
-    """M L^2 / (2 E I) under a moment about z."""
-    run = job.solve_run("solid_solver", "slender-beam", (*BEAM, remote((0, 0, 0), (0, 0, 0), (0, 0, 500))))
-    error = probe(run, "tip y [m]") / (500 * 100 / (2 * 210e9 / 12)) - 1
-    return f"{100 * error:+.2f} %", abs(error) <= 0.03
-
-
 def dam(job):
     """Water against the side of an upright wall of 10 m, 3 cells of which a level of 7.3 m cuts: rho g h^2 / 2 on 1 m."""
     level, weight = 7.3, 1000 * 9.81
-    run = job.solve_run("solid_solver", "slender-beam", (
+    run = job.alone("slender-beam", (
         *BEAM, f"{B}tip={{type: free}}",
         "%ssides={type: free, parts: [{where: y < 1e-9, type: hydrostatic-pressure, density: 1000, gravity: [-9.81, 0, 0], level: %g}]}"
         % (B, level)))
     r, wanted = last(run, "reactions.csv"), weight * level**2 / 2
     error = math.hypot(r["load y [N]"] - wanted, r["load x [N]"], r["load z [N]"]) / wanted
     return f"{error:.1e}", error <= 1e-12
-
-
-def liquid_bends(job):
-    """The same as a cantilever: the tip moves by w h^4 / 30 / (E I) + w h^4 / 24 / (E I) (L - h), w = rho g, and shear w h^3 / (6 k G A)."""
-    level, weight, stiffness, shear = 7.3, 1000 * 9.81, 210e9 / 12, 210e9 / 2.6 / 1.2
-    right = weight * (level**5 / 30 + level**4 / 24 * (10 - level)) / stiffness + weight * level**3 / 6 / shear
-    run = job.solve_run("solid_solver", "slender-beam", (
-        *BEAM, f"{B}tip={{type: free}}",
-        "%ssides={type: free, parts: [{where: y < 1e-9, type: hydrostatic-pressure, density: 1000, gravity: [-9.81, 0, 0], level: %g}]}"
-        % (B, level)))
-    error = probe(run, "tip y [m]") / right - 1
-    return f"{100 * error:+.2f} %", abs(error) <= 0.03
 
 
 DECK = """*HEADING
@@ -157,19 +118,3 @@ def calculix_mesh(job):
     wanted = {"tip x [m]": 2e-5, "inside x [m]": 1e-5, "inside y [m]": -1.5e-6, "inside z [m]": -1.5e-6}
     worst = max(abs(probe(run, key) - u) for key, u in wanted.items()) / 2e-5
     return f"{worst:.1e}", worst <= 1e-9
-
-
-BARS = [
-    Bar("pin and weight on an eye bar: load and reaction", "20 kN and 200 N to 1e-12 (load) and 1e-9 (reaction)", eye_resultant()),
-    Bar("pin and weight on an eye bar, coarse prisms: load and reaction", "to 1e-12 and 1e-9",
-        eye_resultant("participants.solid.mesh-parameters={h: 0.011, layers: 1}")),
-    Bar("pin and weight on an eye bar: motion of its end", "within 1 % of CalculiX, no warning", eye_end),
-    Bar("pin and weight on an eye bar: 1, 2 and 3 ranks", "the same to 1e-8", eye_ranks),
-    Bar("remote force at the tip of a bar 10:1, tetrahedra", "within 3 % of beam theory, no warning", beyond(0)),
-    Bar("remote force 5 m beyond the tip of a bar 10:1, tetrahedra", "within 3 % of beam theory, no warning", beyond(5)),
-    Bar("remote force 5 m beyond a rigid tip of a bar 10:1, tetrahedra", "within 3 % of beam theory, reaction to 1e-6, no warning", rigid_end),
-    Bar("remote moment on a bar 10:1, tetrahedra", "within 3 % of beam theory", pure_moment),
-    Bar("liquid against a wall, its surface cutting triangles: force", "rho g h^2 / 2 to 1e-12", dam),
-    Bar("liquid against a wall: deflection of its top", "within 3 % of beam theory", liquid_bends),
-    Bar("uniform tension by a total force on a .inp of C3D8", "linear to 1e-9", calculix_mesh),
-]

@@ -4,14 +4,13 @@ gradient, which was the default of motion."""
 import csv
 import re
 
-from validation.job import Bar
 from validation.parts.right_by_default.scenes import warnings
 
 PERIOD, AMPLITUDE = 20.03, 0.09325  # of the continuum; of the p-FEM run in configs/vibrating-cantilever/reference, fitted alike
 
 
 def vibration(job):
-    run = job.solve_run("solid_solver", "vibrating-cantilever",
+    run = job.alone("vibrating-cantilever",
                         ("participants.solid.mesh-parameters={n_length: 20, n_side: 2, shape: 1}", "simulation.end-time=60"))
     got = job.beside("configs/vibrating-cantilever/vibration.py").numbers(run.folder / "solid")
     off = got["period"] / PERIOD - 1, got["amplitude"] / AMPLITUDE - 1
@@ -21,7 +20,7 @@ def vibration(job):
 
 
 def strip(job):
-    run = job.solve_run("solid_solver", "undamped-strip", ())
+    run = job.alone("undamped-strip", ())
     with open(run.folder / "solid" / "energies.csv", encoding="utf-8") as file:
         rows = [[float(v) for v in row[1:3]] for row in list(csv.reader(file))[1:]]
     first, worst = sum(rows[0]), max(abs(sum(row) / sum(rows[0]) - 1) for row in rows)
@@ -31,29 +30,17 @@ def strip(job):
 
 def seconds(job, gradient, sets, steps):
     """Processor seconds of the linear solver over so many steps."""
-    run = job.solve_run("solid_solver", "vibrating-cantilever",
+    run = job.alone("vibrating-cantilever",
                         (*sets, f"simulation.end-time={0.1 * steps}", f"participants.solid.solution-method.face-gradient={gradient}"))
     return float(re.search(r"^.*solid: linear solver\s+([\d.]+)", run.log, re.M)[1])
 
 
-def cost(sets, steps):
-    def measure(job):
-        ratios = []
-        for _ in range(3):
-            ratios.append(seconds(job, "auto", sets, steps) / seconds(job, "thesis", sets, steps))
-        return ", ".join(f"{r:.2f}" for r in sorted(ratios)) + " times", sorted(ratios)[1] <= 1.1
-    return measure
+def cost(job, sets, steps):
+    ratios = []
+    for _ in range(3):
+        ratios.append(seconds(job, "auto", sets, steps) / seconds(job, "thesis", sets, steps))
+    return ", ".join(f"{r:.2f}" for r in sorted(ratios)) + " times", sorted(ratios)[1] <= 1.1
 
 
 def sizes(n_length, n_side):
     return ("participants.solid.mesh-parameters={n_length: %d, n_side: %d}" % (n_length, n_side),)
-
-
-BARS = [
-    Bar("beam 10:1, two tetrahedra across: period and amplitude of its vibration", "within 3 %, no warning", vibration,
-        but="amplitude of the free vibration in place of the peak"),
-    Bar("undamped strip of 276 triangles, 20 000 steps: energy", "within 1e-6, no warning", strip),
-    Bar("solves of 200 steps on 1280 hexahedra, over the least-squares gradient", "<= 1.1 times", cost(sizes(80, 4), 200)),
-    Bar("... of 100 steps on 5120", "<= 1.1 times", cost(sizes(80, 8), 100), long=True),
-    Bar("... of 20 steps on 98 304", "<= 1.1 times", cost(sizes(384, 16), 20), long=True),
-]

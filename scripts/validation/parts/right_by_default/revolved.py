@@ -2,8 +2,7 @@
 """Thermal strain and plane stress at large strain beside their differential equations, a body of revolution beside its benchmark."""
 import math
 
-from validation.job import Bar
-from validation.parts.right_by_default.scenes import LE11, probe, warnings
+from validation.parts.right_by_default.scenes import probe, warnings
 
 
 def bisect(wrong, low, high):
@@ -65,27 +64,9 @@ def run_of(job, file):
     return job.once(("file", file), lambda: job.case_run(job.root / "configs" / f"{file}.yaml", job.scratch / name, (), {"solid": 1}, 600))
 
 
-def ring(case, right, within):
-    def measure(job):
-        run = run_of(job, f"rubber-ring/{case}")
-        error = probe(run, "inner wall x [m]") / right() - 1
-        said = warnings(run)
-        return f"{100 * error:+.3f} %{', ' + said[0] if said else ', no warning'}", abs(error) <= within and not said
-    return measure
-
-
-def revolved(job):
-    run = run_of(job, "le11/axisymmetric")
-    error = probe(run, "A stress-yy [Pa]") / LE11 - 1
+def ring(job, case, right, within):
+    """`right`: the function that gives it."""
+    run = run_of(job, f"rubber-ring/{case}")
+    error = probe(run, "inner wall x [m]") / globals()[right]() - 1
     said = warnings(run)
-    return f"{100 * error:+.2f} %{', ' + said[0] if said else ', no warning'}", abs(error) <= 0.01 and not said
-
-
-OWN = "the issue asks for the capability, not for a figure; the bar is our own"
-BARS = [
-    Bar("thermal strain at large strain: inner wall of a hot ring, nu 0.49999, 16 cells across", "within 0.5 %, no warning",
-        ring("hot", hot_inner_wall, 0.005), but=OWN),
-    Bar("plane stress at large strain: hole of a rubber sheet, nu 0.499, 16 cells across", "within 0.5 %, no warning",
-        ring("sheet", sheet_inner_wall, 0.005), but=OWN),
-    Bar("LE11 as a body of revolution, 16x80 quadrilaterals: axial stress at A", "within 1 %, no warning", revolved, but=OWN),
-]
+    return f"{100 * error:+.3f} %{', ' + said[0] if said else ', no warning'}", abs(error) <= within and not said

@@ -6,7 +6,6 @@ import shutil
 import couplet
 from couplet.runs.process import RunFailed
 from couplet.runs.results import Results
-from validation.job import Bar
 
 S = "participants.solid."
 HALF, NUMBER = 0.5, r"([-+.\de]+)"
@@ -39,11 +38,9 @@ def cause(said):
     return f"worst cell ({', '.join(cell.groups())}) m, {'names the fold and the cure' if FOLD in said and 'End the load here' in said else 'does not name the fold'}"
 
 
-def half(n, depth=0.0):
-    def measure(job):
-        share, said, _ = followed(job, n, depth)
-        return f"{100 * share:.1f} %; {cause(said)}", share >= HALF - 1e-9
-    return measure
+def half(job, n, depth=0.0):
+    share, said, _ = followed(job, n, depth)
+    return f"{100 * share:.1f} %; {cause(said)}", share >= HALF - 1e-9
 
 
 def force(run, share):
@@ -89,14 +86,3 @@ def beside_elements(job):
     found = job.run([python, job.root / "benchmarks/peers/dolfinx_block.py", "64"], timeout=3600).stdout
     theirs = float(re.search(rf"^64 {NUMBER}", found, re.M)[1])
     return f"{got}; dolfinx 0.5.2 {100 * theirs:.1f} %", share >= theirs and FOLD in (said or "")
-
-
-BARS = [
-    *(Bar(f"bonded block, nu 0.4999, {n} across half of it: compressed by", "50 % of its height", half(n), long=n > 16) for n in (8, 16, 32)),
-    *(Bar(f"bonded block in three dimensions, {n} across: compressed by", "50 % of its height", half(n, 0.5), long=True) for n in (6, 12)),
-    Bar("bonded block at 10 and 20 %: force of the platen on 8, 16, 32 across", "converges", reaction, long=True,
-        but="at 10 and 20 %, where all three still stand, in place of 50 %"),
-    Bar("bonded block, 64 across, beside dolfinx with quadratic displacement and linear pressure", "as far as dolfinx, then stops with its cause", beside_elements, long=True),
-    Bar("bonded block, 8 across, by arc length through its limit points", "50 % of its height", by_arc_length,
-        but="by `load-stepping: {type: arc-length}`, which is not the default: shows what lies beyond the first limit point"),
-]

@@ -1,72 +1,68 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of speed and memory: the plate beside solidDisplacementFoam and CalculiX in one run, the vibrating beam beside
+"""Measures of speed and memory: the plate beside solidDisplacementFoam and CalculiX in one run, the vibrating beam beside
 block-coupled. Whole processes, one core, started without mpirun."""
-from validation.job import Bar
 
 FINE, FINEST = (32, 48, 24), (64, 96, 48)
-OURS, CORRECTED = "newton-krylov", "newton-krylov, corrected"
+OURS = "newton-krylov"
 
 
 def race(job):
     return job.beside("benchmarks/peers/race.py")
 
 
-def cells_per_second(method, wanted):
-    def measure(job):
-        foam = race(job).foam_plate(job, FINE, times=3)
-        mine = race(job).our_plate(job, FINE, method, times=3)
-        rate = mine["cells"] / mine["seconds"]
-        if foam is None:
-            return f"{rate:.0f} cells/s; solidDisplacementFoam is not installed", False
-        ratio = foam["seconds"] / mine["seconds"]
-        return f"{ratio:.1f} times, {rate:.0f} cells/s", ratio >= wanted
-    return measure
+def cells_per_second(job, method, wanted):
+    foam = race(job).foam_plate(job, FINE, times=3)
+    mine = race(job).our_plate(job, FINE, method, times=3)
+    rate = mine["cells"] / mine["seconds"]
+    if foam is None:
+        return f"{rate:.0f} cells/s; solidDisplacementFoam is not installed", False
+    ratio = foam["seconds"] / mine["seconds"]
+    return f"{ratio:.1f} times, {rate:.0f} cells/s", ratio >= wanted
 
 
-def memory(method):
-    def measure(job):
-        r = race(job).our_plate(job, FINEST, method)
-        kb = r["memory"] / r["cells"] / 1e3
-        return f"{kb:.2f} kB", kb <= 2.0
-    return measure
+def memory(job, method):
+    r = race(job).our_plate(job, FINEST, method)
+    kb = r["memory"] / r["cells"] / 1e3
+    return f"{kb:.2f} kB", kb <= 2.0
 
 
-def growth(method, limit):
-    def measure(job):
-        small, large = (race(job).our_plate(job, n, method, times=t) for n, t in ((FINE, 3), (FINEST, 1)))
-        ratio = large["seconds"] / large["cells"] / (small["seconds"] / small["cells"])
-        return f"{ratio:.2f}, iterations {small['iterations']} and {large['iterations']}", ratio < limit
-    return measure
+def growth(job, method, limit):
+    small, large = (race(job).our_plate(job, n, method, times=t) for n, t in ((FINE, 3), (FINEST, 1)))
+    ratio = large["seconds"] / large["cells"] / (small["seconds"] / small["cells"])
+    return f"{ratio:.2f}, iterations {small['iterations']} and {large['iterations']}", ratio < limit
 
 
-def tetrahedra(method):
-    def measure(job):
-        hexahedra = race(job).our_plate(job, FINE, method, times=3)
-        tets = race(job).our_plate(job, (16, 24, 12), method, shape=2)
-        ratio = tets["seconds"] / tets["cells"] / (hexahedra["seconds"] / hexahedra["cells"])
-        return f"{ratio:.2f} times per cell ({tets['cells']} tetrahedra, {tets['iterations']} iterations)", ratio <= 3
-    return measure
+def tetrahedra(job, method):
+    hexahedra = race(job).our_plate(job, FINE, method, times=3)
+    tets = race(job).our_plate(job, (16, 24, 12), method, shape=2)
+    ratio = tets["seconds"] / tets["cells"] / (hexahedra["seconds"] / hexahedra["cells"])
+    return f"{ratio:.2f} times per cell ({tets['cells']} tetrahedra, {tets['iterations']} iterations)", ratio <= 3
 
 
-def beside(error, mesh, rivals):
-    """Time to this error beside others' times: (name, run, how many times sooner)."""
-    def measure(job):
-        mine = race(job).our_plate(job, mesh, times=3)
-        parts, met = [f"{100 * mine['error']:.2f} % in {mine['seconds']:.2f} s"], mine["error"] <= error
-        for name, run, wanted in rivals:
-            other = run(race(job), job)
-            if other is None:
-                parts.append(f"{name} is not installed")
-                met = False
-                continue
-            ratio = other["seconds"] / mine["seconds"]
-            parts.append(f"{name} {100 * other['error']:.2f} % in {other['seconds']:.2f} s: {ratio:.1f} times")
-            met = met and ratio >= wanted
-        return ", ".join(parts), met
-    return measure
+def beside(job, error, mesh, rivals):
+    """Time to this error beside others' times: (name of RIVALS, how many times sooner)."""
+    mine = race(job).our_plate(job, mesh, times=3)
+    parts, met = [f"{100 * mine['error']:.2f} % in {mine['seconds']:.2f} s"], mine["error"] <= error
+    for name, wanted in rivals:
+        other = RIVALS[name](race(job), job)
+        if other is None:
+            parts.append(f"{name} is not installed")
+            met = False
+            continue
+        ratio = other["seconds"] / mine["seconds"]
+        parts.append(f"{name} {100 * other['error']:.2f} % in {other['seconds']:.2f} s: {ratio:.1f} times")
+        met = met and ratio >= wanted
+    return ", ".join(parts), met
 
 
-def beam(job):
+RIVALS = {
+    "CalculiX C3D20 8x12x6": lambda r, job: r.calculix(job, (8, 12, 6), "C3D20", times=3),
+    "solidDisplacementFoam 16x24x12": lambda r, job: r.foam_plate(job, (16, 24, 12)),
+    "CalculiX C3D8I 32x48x24": lambda r, job: r.calculix(job, FINE, "C3D8I", "ITERATIVE CHOLESKY"),
+    "CalculiX C3D20 32x48x24": lambda r, job: r.calculix(job, FINE, "C3D20", "ITERATIVE CHOLESKY")}
+
+
+def many_steps(job):
     """10^4 steps of 0.01 s; three-point backward as in table 3.4 of the thesis."""
     mine, iterations = race(job).beam(job, "type: auto", steps=10000, times=1)
     other, others = race(job).beam(job, race(job).METHODS["C"], steps=10000, times=1)
@@ -105,30 +101,3 @@ def table_3_4(job):
                      f"(outer iterations per step {runs['S'][1]:.1f}, {runs['SA'][1]:.1f}, {runs[OURS][1]:.1f})")
         met = met and all(1 / 1.5 <= ratio[m] / w <= 1.5 for m, w in wanted.items())
     return "; ".join(parts) + ("" if met else f". {BEAM_CAUSE}"), met
-
-
-CCX_1 = ("CalculiX C3D20 8x12x6", lambda r, job: r.calculix(job, (8, 12, 6), "C3D20", times=3), 2)
-FOAM_1 = ("solidDisplacementFoam 16x24x12", lambda r, job: r.foam_plate(job, (16, 24, 12)), 5)
-CCX_03 = ("CalculiX C3D8I 32x48x24", lambda r, job: r.calculix(job, FINE, "C3D8I", "ITERATIVE CHOLESKY"), 4)
-CCX_01 = ("CalculiX C3D20 32x48x24", lambda r, job: r.calculix(job, FINE, "C3D20", "ITERATIVE CHOLESKY"), 5)
-BARS = [
-    Bar("B 32x48x24 to 1e-8, least-squares gradient: cells per second over solidDisplacementFoam's", ">= 13",
-        cells_per_second(OURS, 13)),
-    Bar("B 32x48x24 to 1e-8, corrected gradient: the same", ">= 9", cells_per_second(CORRECTED, 9)),
-    Bar("B 64x96x48: memory of the whole process per cell, least-squares gradient", "<= 2.0 kB", memory(OURS), long=True),
-    Bar("B 64x96x48: memory of the whole process per cell, corrected gradient", "<= 2.0 kB", memory(CORRECTED), long=True),
-    Bar("B: time per cell, 295 k over 37 k cells, least-squares gradient", "< 1.4", growth(OURS, 1.4), long=True),
-    Bar("B: the same, corrected gradient", "< 1.7", growth(CORRECTED, 1.7), long=True),
-    Bar("B on tetrahedra: time per cell over hexahedra's, least-squares gradient", "<= 3", tetrahedra(OURS)),
-    Bar("B on tetrahedra: the same, corrected gradient", "<= 3", tetrahedra(CORRECTED)),
-    Bar("B: 1 % error of u, beside CalculiX and solidDisplacementFoam", ">= 2 and 5 times sooner, at an error <= 1.05 %",
-        beside(0.0105, (16, 24, 12), (CCX_1, FOAM_1))),
-    Bar("B: 0.3 % error of u, beside CalculiX at 0.2 to 0.3 %", ">= 4 times sooner, at an error <= 0.35 %", beside(0.0035, FINE, (CCX_03,))),
-    Bar("B: 0.1 % error of u, beside CalculiX's quadratic elements", ">= 5 times sooner, at an error <= 0.1 %", beside(0.001, FINEST, (CCX_01,)),
-        long=True),
-    Bar("C: 10^4 steps of 0.01 s, over block-coupled with BiCGStab and ILU", ">= 8 times faster", beam, long=True),
-    Bar("table 3.1, case B, meshes 2 to 4: S/SA, SA/C, C/newton-krylov", "published 2.1 5.7; 3.8 4.3; 4.3 3.4 within a factor of 1.5 (the third ratio has none)",
-        table_3_1, long=True),
-    Bar("table 3.4, case C: seconds per step over C's", "published at 0.01 and 0.1 s: S 10, 12; SA 7.9, 5.9; within a factor of 1.5",
-        table_3_4, long=True),
-]

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of strong coupling on a flap in three dimensions: light, in a viscous fluid; with the Robin interface, too."""
+"""Measures of strong coupling on a flap in three dimensions: light, in a viscous fluid; with the Robin interface, too."""
 import numpy as np
 
 import couplet
-from validation.job import Bar
 from validation.parts.strong.tube import IQN
 
 CASE = "configs/perpendicular-flap/flap-3d.yaml"
@@ -19,13 +18,11 @@ def flap(job, rho, *more):
     return tip, np.unique(couplet.read_csv(folder / "coupler" / "residuals.csv")["step"], return_counts=True)[1]
 
 
-def rung(rho):
-    def measure(job):
-        from validation.strong_coupling import zigzag
-        tip, passes = flap(job, rho)
-        value = zigzag(tip)
-        return f"{len(tip)} steps, tip {tip[-1]:.5f} m, {passes.mean():.1f} passes, zigzag {value:.3f}", len(tip) == 20 and value < 0.15
-    return measure
+def rung(job, rho):
+    from validation.parts.strong.flap import zigzag
+    tip, passes = flap(job, rho)
+    value = zigzag(tip)
+    return f"{len(tip)} steps, tip {tip[-1]:.5f} m, {passes.mean():.1f} passes, zigzag {value:.3f}", len(tip) == 20 and value < 0.15
 
 
 def beside_implicit(job):
@@ -40,12 +37,3 @@ def robin(job):
     other, without = flap(job, 10, *IQN)
     gap = np.abs(tip - other).max() / np.abs(other).max()
     return f"{gap:.1e} apart; {passes.mean():.2f} passes per step, {without.mean():.2f} without Robin", len(tip) == 20 and gap <= 1e-3
-
-
-COARSE = "2460 cells, to 0.2 s"
-FLAP_3D = [
-    Bar("3-D flap, rho_s 10, mu 1, dt 0.01 s", "every step solved, zigzag < 0.15", rung(10), but=COARSE),
-    Bar("3-D flap, rho_s 1, mu 1, dt 0.01 s", "every step solved, zigzag < 0.15", rung(1), but=COARSE),
-    Bar("3-D flap, rho_s 10, mu 1: beside implicit", "tip within 1 % of implicit at dt 0.0025 s", beside_implicit, but=COARSE),
-    Bar("3-D flap, rho_s 10: Robin and IQN-ILS against IQN-ILS alone", "same motion to 1e-3", robin, but=COARSE),
-]

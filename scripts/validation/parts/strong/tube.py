@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of strong coupling: the Robin interface in the elastic tube, passes and cost beside the other choices."""
+"""Measures of strong coupling: the Robin interface in the elastic tube, passes and cost beside the other choices."""
 import numpy as np
 
 import couplet
-from validation.job import Bar
 
 TUBE = "configs/tube-3d/case.yaml"
 ROBIN = ("coupling.order=structure-first", "participants.fluid.boundaries.wall.impedance=structure",
@@ -30,17 +29,7 @@ def passes(job):
             f"pass takes {-factor:.2f} decades off"), bool(counts.mean() <= 4.5)
 
 
-def cheaper(than, times):
-    def measure(job):
-        (few, seconds, _), (many, other, _) = tube(job, "Robin"), tube(job, than)
-        return f"{other / seconds:.2f} times ({other:.1f} and {seconds:.1f} cpu s; {many.mean():.1f} and {few.mean():.1f} passes per step)", \
-            bool(other >= times * seconds)
-    return measure
-
-
-SHORT = "20 steps of 0.1 ms to 1e-6, whose residual is the load's with Robin; seconds with the programs' start"
-ROBIN_TUBE = [
-    Bar("3-D tube at 1e-4 s, Robin and IQN-ILS (history of 15 steps): passes per step", "<= 4.5", passes, long=True, but="20 steps"),
-    Bar("3-D tube: Robin and IQN-ILS beside implicit with Aitken", ">= 3 times cheaper", cheaper("implicit Aitken", 3), long=True, but=SHORT),
-    Bar("3-D tube: Robin and IQN-ILS beside implicit with IQN-ILS", ">= 1.5 times cheaper", cheaper("implicit IQN-ILS", 1.5), long=True, but=SHORT),
-]
+def cheaper(job, than, times):
+    (few, seconds, _), (many, other, _) = tube(job, "Robin"), tube(job, than)
+    return f"{other / seconds:.2f} times ({other:.1f} and {seconds:.1f} cpu s; {many.mean():.1f} and {few.mean():.1f} passes per step)", \
+        bool(other >= times * seconds)

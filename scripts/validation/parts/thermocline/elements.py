@@ -1,21 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of the thermocline's elements: closed forms, energy balances, Solar One, Pacheco's tank, hard cases, cost."""
+"""Measures of the thermocline's elements: closed forms, energy balances, Solar One, Pacheco's tank, hard cases, cost."""
 import re
 
-from validation.job import Bar
-from validation.parts.measures import all_pass, at_most
-
-BED, GRAINS, CONDUCTION, MECHANICS, TANK, EXPERIMENTS, SPEED = (
-    *(f"verification_thermocline_{name}" for name in
-      ("bed", "grains", "conduction", "mechanics", "tank", "solar_one")), "thermocline_speed")
-HARD = "stability_thermocline_hard_cases"
+BED, MECHANICS, EXPERIMENTS = (f"verification_thermocline_{name}" for name in ("bed", "mechanics", "solar_one"))
 
 
-def between(executable, pattern, key, low, high, text="{:.3f}"):
-    def measure(job):
-        values, passed = job.recorded(executable, pattern, key)
-        return ", ".join(text.format(v) for v in values), passed and all(low <= v <= high for v in values)
-    return measure
+def late_front(job):
+    (speed,), passed = job.recorded(BED, "late_width", "speed_ratio")
+    (width,), _ = job.recorded(BED, "late_width", "width_ratio")
+    return f"{speed:.5f}, {width:.4f}", passed and abs(speed - 1) < 1e-3 and abs(width - 1) < 0.02
 
 
 def factors(job):
@@ -45,7 +38,7 @@ def program_speed(job):
 def walls(job):
     """The first day with solid_solver's wall in the loop beside the rings': differences, and the rings' closing words."""
     def make():
-        alone, log = job.solve("thermocline", "thermocline-solar-one", ["simulation.end-time=24 h"])
+        alone, log = job.solve("thermocline-solar-one", ["simulation.end-time=24 h"])
         out = job.scratch / "solar-one-wall"
         case = job.root / "configs/thermocline-solar-one-wall/case.yaml"
         command = ["mpirun", "--oversubscribe"]
@@ -84,43 +77,3 @@ def in_parts(job):
     passed, total, _, output = job.ctest("^coupled_tank_in_parts$")
     line = re.search(r"fluid [\d.]+ K, stress.*", output)
     return line.group(0) if line else "no line", total == 1 and passed == 1 and bool(line)
-
-
-BARS = [
-    Bar("thermocline: Schumann on a fine tvd grid, largest error", "<= 0.5 %", at_most(BED, "fine_tvd_grid", "error", 0.005)),
-    Bar("thermocline: Schumann, order of tvd", "2 (1.8 to 2.6)", between(BED, r"Schumann\.tvd_is_second", "slope", 1.8, 2.6)),
-    Bar("thermocline: Ogata-Banks front, Pe 10 and 100, largest error", "<= 0.5 %", at_most(BED, "front_is_within", "error_10 error_100", 0.005)),
-    Bar("thermocline: late two-temperature front, speed and variance over theory", "1 within 0.1 %, 2 %",
-        lambda job: (lambda s, w: (f"{s[0]:.5f}, {w[0]:.4f}", abs(s[0] - 1) < 1e-3 and abs(w[0] - 1) < 0.02))(
-            job.recorded(BED, "late_width", "speed_ratio")[0], job.recorded(BED, "late_width", "width_ratio")[0])),
-    Bar("thermocline: sphere, Biot 0.1 to 100, mean temperature, of the start difference and of itself", "<= 0.5 %",
-        at_most(GRAINS, "mean_temperature", "error relative", 0.005)),
-    Bar("thermocline: slab against its series", "<= 0.5 %", at_most(CONDUCTION, "Slab.cools", "error", 0.005, "{:.5f}")),
-    Bar("thermocline: ground against erfc", "<= 0.5 %", at_most(CONDUCTION, "Ground.step", "error", 0.005, "{:.5f}")),
-    Bar("thermocline: energy balance of the bed, each step, of its capacity", "<= 1e-10",
-        at_most(HARD, "three_months", "step_upwind step_tvd", 1e-10, "{:.1e}")),
-    Bar("thermocline: energy balance of the bed over 3 months, of the heat moved", "<= 1e-6",
-        at_most(HARD, "three_months", "drift_upwind drift_tvd", 1e-6, "{:.1e}")),
-    Bar("thermocline: energy balance of the whole tank over a week, of the heat moved", "<= 1e-6",
-        at_most(TANK, "whole_tank", "imbalance", 1e-6, "{:.1e}")),
-    Bar("Solar One: mid temperature reaches the bottom at 90 kg/s", "9.0 to 9.6 h", between(EXPERIMENTS, "start_up_fill", "hours", 9.0, 9.6)),
-    Bar("Solar One: hoop stress at 3.4 m after the first discharge", "178 +- 6 MPa", between(EXPERIMENTS, "hoop_stress", "hoop_3_4", 172, 184, "{:.1f}")),
-    Bar("Solar One: passive yielding of the filler", "none", passive),
-    Bar("Solar One: rings against the coupled finite-volume wall, height-averaged", "< 7 %", coupled_wall),
-    Bar("Solar One: rings against the coupled finite-volume wall, maxima", "< 3 %", coupled_maxima),
-    Bar("Solar One: rings with their bending estimate against the coupled finite-volume wall, maxima", "< 3 %", bent_maxima),
-    Bar("thermocline: closed form of the factors of safety, A and G, base, AR1, T1", "1.56 1.18 2.24 2.30 1.04 3.45 to 1 %", factors),
-    Bar("Pacheco: front speed over theory (upwind, tvd, implicit)", "1 +- 0.02", between(EXPERIMENTS, "front_travels", "ratio", 0.98, 1.02, "{:.4f}")),
-    Bar("Pacheco: energy closure", "<= 1e-10", at_most(EXPERIMENTS, "front_travels", "closure", 1e-10, "{:.1e}")),
-    Bar("hard cases, three schemes: sharp front, reversal every step, rest, 1e-6 m grains, Biot 1e3", "bounded, conservative",
-        all_pass(HARD, "HardCase")),
-    Bar("hard cases: steps 10x the advective limit, implicit", "bounded, conservative", all_pass(HARD, "ten_times")),
-    Bar("thermocline: elements of any subset, energy balance closed", "32 subsets", all_pass(TANK, "any_subset")),
-    Bar("thermocline: ground and insulation as programs of their own, against the tank that has them", "0.2 K, 1 MPa, 1 %, amounts kept",
-        in_parts),
-    Bar("thermocline: exponent of the cost in cells, 500 to 8000 (upwind, tvd, implicit)", "<= 1.05",
-        at_most(SPEED, "linear", "exponent_upwind exponent_tvd exponent_implicit", 1.05, "{:.3f}"), long=True),
-    Bar("thermocline: bed alone, ns per cell-step (upwind, tvd, implicit)", "reported",
-        at_most(SPEED, "linear", "ns_upwind ns_tvd ns_implicit", 1e9, "{:.1f}"), long=True),
-    Bar("thermocline: Solar One, all elements, ns per cell-step and shares", "reported", program_speed),
-]

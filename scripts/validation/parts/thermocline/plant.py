@@ -1,15 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of weather, plant, reports and studies: identities, tables 5.3, 5.5 and 5.6 of the thesis beside ours, and the cost of
+"""Measures of weather, plant, reports and studies: identities, tables 5.3, 5.5 and 5.6 of the thesis beside ours, and the cost of
 the study on one and on two processors."""
 import csv
 import re
 
-from validation.job import Bar
-from validation.parts.measures import all_pass
-
 TESTS = "unit_thermocline_plant"
 CASES = {"A": ("thermocline-andasol", "table5_5.csv"), "G": ("thermocline-gemasolar", "table5_6.csv")}
-TABLE = {"A": "5.5", "G": "5.6"}
 VARIANTS = ("B", "AR1", "AR2", "CO1", "CO2", "S1", "L1", "L2", "T1")
 # Row of the published table: our name of it.
 ROWS = {"Q_SF": "Q_SF", "Q_excess/Q_SF": "Q_excess/Q_SF", "Q_C/Q_excess": "Q_C/Q_excess", "Q_D/Q_C": "Q_D/Q_C", "B_D": "B_D",
@@ -57,44 +53,36 @@ def shown(values):
     return " ".join(f"{values[v]:.4g}" if v in values else "-" for v in VARIANTS)
 
 
-def row(case, name, points=None, percent=None, by=()):
+def row(job, case, name, points=None, percent=None):
     """A row of a table: all variants within so many points or per cent; the other columns are for the reader."""
-    def measure(job):
-        wanted, ours = published(job, case)[name], study(job, case, by)[ROWS[name]]
-        tvd = study(job, case, TVD)[ROWS[name]]
+    wanted, ours = published(job, case)[name], study(job, case)[ROWS[name]]
+    tvd = study(job, case, TVD)[ROWS[name]]
 
-        def far(values):
-            gap = {v: abs(values[v] - wanted[v]) for v in VARIANTS}
-            return [v for v in VARIANTS if not (points is not None and gap[v] <= points) and not (
-                percent is not None and gap[v] <= percent / 100 * abs(wanted[v]))]
-        outside = far(ours)
-        text = f"{shown(ours)} (published {shown(wanted)}); outside: {' '.join(outside) or 'none'}; TVD: {shown(tvd)}"
-        if name not in ("Q_SF", "FoS_static", "FoS_dynamic"):
-            mean = study(job, case, MEAN_DAYS)[ROWS[name]]
-            text += f"; with the sun of monthly mean days: {shown(mean)}, outside: {' '.join(far(mean)) or 'none'}"
-        if outside and name not in ("Q_SF", "FoS_static", "FoS_dynamic"):
-            excess = study(job, case, by)["Q_excess/Q_SF"], published(job, case)["Q_excess/Q_SF"]
-            text += (f". Cause: the surrogate's days are stronger and shorter, Q_excess/Q_SF {shown(excess[0])} % for the published "
-                     f"{shown(excess[1])}")
-        return text, not outside
-
-    def wanted(root_text=""):
-        limits = [f"{points} points" if points is not None else "", f"{percent} %" if percent is not None else ""]
-        return " or ".join(x for x in limits if x)
-    return Bar(f"table {TABLE[case]} ({case}: {' '.join(VARIANTS)}), {name}", f"published row within {wanted()}", measure, long=True)
+    def far(values):
+        gap = {v: abs(values[v] - wanted[v]) for v in VARIANTS}
+        return [v for v in VARIANTS if not (points is not None and gap[v] <= points) and not (
+            percent is not None and gap[v] <= percent / 100 * abs(wanted[v]))]
+    outside = far(ours)
+    text = f"{shown(ours)} (published {shown(wanted)}); outside: {' '.join(outside) or 'none'}; TVD: {shown(tvd)}"
+    if name not in ("Q_SF", "FoS_static"):
+        mean = study(job, case, MEAN_DAYS)[ROWS[name]]
+        text += f"; with the sun of monthly mean days: {shown(mean)}, outside: {' '.join(far(mean)) or 'none'}"
+    if outside and name not in ("Q_SF", "FoS_static"):
+        excess = study(job, case)["Q_excess/Q_SF"], published(job, case)["Q_excess/Q_SF"]
+        text += (f". Cause: the surrogate's days are stronger and shorter, Q_excess/Q_SF {shown(excess[0])} % for the published "
+                 f"{shown(excess[1])}")
+    return text, not outside
 
 
-def numerical_diffusion(case):
+def numerical_diffusion(job, case):
     """How much of the thermocline's thickness and of what it costs is the first-order scheme's."""
-    def measure(job):
-        upwind, tvd, print_ = study(job, case), study(job, case, TVD), published(job, case)
-        parts = []
-        for name in ("h_th/h_bed", "eta_th", "Q_C/Q_excess", "B_D"):
-            a, b = upwind[ROWS[name]], tvd[ROWS[name]]
-            share = {v: 100 * (a[v] - b[v]) / a[v] for v in VARIANTS}
-            parts.append(f"{name} {shown(share)} %")
-        return "part of the upwind value that goes with TVD: " + "; ".join(parts), bool(print_)
-    return Bar(f"table {TABLE[case]}: numerical diffusion of the upwind scheme ({' '.join(VARIANTS)})", "reported", measure, long=True)
+    upwind, tvd, print_ = study(job, case), study(job, case, TVD), published(job, case)
+    parts = []
+    for name in ("h_th/h_bed", "eta_th", "Q_C/Q_excess", "B_D"):
+        a, b = upwind[ROWS[name]], tvd[ROWS[name]]
+        share = {v: 100 * (a[v] - b[v]) / a[v] for v in VARIANTS}
+        parts.append(f"{name} {shown(share)} %")
+    return "part of the upwind value that goes with TVD: " + "; ".join(parts), bool(print_)
 
 
 # -- identities -------------------------------------------------------------------------------------------------------
@@ -133,27 +121,3 @@ def base_speed(job):
                       f"--set=simulation.output.folder={out}"])
     total = float(re.search(r"total\s+([\d.]+)", result.stdout).group(1))
     return f"{total:.0f} s; {re.search(r'speed: (.*)', result.stdout).group(1)}", total <= 25
-
-
-BARS = [
-    Bar("solar field, 8 entries of Q_SF (tables 5.5, 5.6)", "published [MWh/day] to rounding", solar_field),
-    Bar("plant: power block heat 3158 and 1194 MWh/day; balances 5.3 to 5.6; mixing; cut-off; restart", "to rounding",
-        all_pass(TESTS, r"Plant", 12)),
-    Bar("exergy factors 0.480 and 0.540, kelvin in the logarithm", "to rounding", all_pass(TESTS, "exergy")),
-    Bar("day report: every row by hand, factors of safety with place and time, checkpoint bit for bit", "exact", all_pass(TESTS, "DayReport", 5)),
-    Bar("table 5.3: masses and capacities", "0.5 %", table_5_3),
-    Bar("weather files: gaps, columns, hours, ranges, damage, EPW codes", "each reported with file and line", all_pass(TESTS, "WeatherFile", 8)),
-    Bar("clear sky: worked example of Duffie and Beckman, day length, seasons", "830 W/m^2 within 5", all_pass(TESTS, "ClearSky", 5)),
-    *(bar for case in CASES for bar in (
-        row(case, "Q_SF", points=0.5),
-        row(case, "Q_C/Q_excess", points=6, percent=10),
-        row(case, "eta_th", points=6, percent=10),
-        row(case, "h_th/h_bed", points=6, percent=10),
-        row(case, "B_D", percent=10),
-        row(case, "t_charge", percent=10),
-        row(case, "t_discharge", percent=10),
-        row(case, "FoS_static", percent=8),
-        numerical_diffusion(case))),
-    Bar("speed: 4 months of case A at the thesis grid", "<= 25 s (asked: about 20 s)", base_speed, long=True),
-    Bar("speed: the 18-variant study on 2 processors", ">= 1.8 times that on one", scaling, long=True),
-]

@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of the house: formatting, READMEs, namespaces, presets, what the demo builds, clang-tidy, the sanitizer build."""
+"""Measures of the house: formatting, READMEs, namespaces, presets, what the demo builds, clang-tidy, the sanitizer build."""
 import collections
 import json
 import os
 import pathlib
 import re
 import shutil
-
-from validation.job import Bar
-from validation.parts.trust.runs import tests
 
 MOST_LINES = 40  # of a README
 PROGRAMS = ("coupler", "fluid_solver", "solid_solver", "mesh_mover")
@@ -151,18 +148,3 @@ def corpora(job):
             failed.append(" ".join([name, *found[:1]]))
     return (f"{len(CORPORA) - len(failed)} of {len(CORPORA)} corpora clean, {sum(CORPORA.values())} inputs" + (f": not {', '.join(failed)}" if failed else ""),
             not failed)
-
-
-BARS = [
-    Bar("house: comments and strings keep their lines, sources are formatted", "both off, test passes", formatting),
-    Bar("house: a README in each room, at most 40 lines", "all", readmes),
-    Bar("house: one namespace a folder", "none mixed", namespaces),
-    Bar("house: scripts/demo builds the programs alone", "< 60 % of all steps", demo),
-    Bar("house: a preset 'fast' to configure, build and test with", "there", presets),
-    Bar("house: clang-tidy runs (scripts/tidy)", "exit code 0", tidy, long=True),
-    Bar("tables: what only reports is not counted, what is stale is listed, other questions are marked", "tests pass",
-        tests("^cases_validation_tables", 1)),
-    Bar("docs: a case is code", "documented", documented),
-    Bar("sanitizer build: the whole quick suite", "clean", sanitized, long=True, but="timings and leaks of MPI do not count; needs " + SANITIZER),
-    Bar("sanitizer build: the corpora", "clean", corpora, long=True, but="timings and leaks of MPI do not count, the 1 000 real runs are left to the release build"),
-]

@@ -3,8 +3,6 @@
 `table()` is docs/validation/trust-items.md; a row states whether every name in it exists."""
 import re
 
-from validation.job import Bar
-
 # item: (what, how quantities of rows begin, tests by name: a test of ctest, or Suite.test of gtest)
 ITEMS = {
     1: ("a fluid alone segfaults on --restart", ("every participant alone",), ("contract_fluid", "contract_fluid_3")),
@@ -65,16 +63,12 @@ def table(bars):
     return text
 
 
-def complete(bars):
-    def measure(job):
-        registered = re.findall(r"^\s*Test\s+#\d+: (\S+)", job.run(["ctest", "--test-dir", job.build, "-N"]).stdout, re.M)
-        lost = missing(job.root, bars, registered)
-        committed = job.root / "docs/validation/trust-items.md"
-        if not committed.exists() or committed.read_text() != table(bars):
-            lost.append("docs/validation/trust-items.md is not what `scripts/validate trust --items` writes")
-        return f"{len(ITEMS)} items" + (f"; not there: {'; '.join(lost)}" if lost else ", each with a row or a test"), not lost
-    return measure
-
-
-def rows(bars):
-    return [Bar("each of the 23 items to fix has a row or a test (docs/validation/trust-items.md)", "all", complete(bars))]
+def complete(job):
+    from validation import rows
+    bars = rows.load("trust").bars
+    registered = re.findall(r"^\s*Test\s+#\d+: (\S+)", job.run(["ctest", "--test-dir", job.build, "-N"]).stdout, re.M)
+    lost = missing(job.root, bars, registered)
+    committed = job.root / "docs/validation/trust-items.md"
+    if not committed.exists() or committed.read_text() != table(bars):
+        lost.append("docs/validation/trust-items.md is not what `scripts/validate trust --items` writes")
+    return f"{len(ITEMS)} items" + (f"; not there: {'; '.join(lost)}" if lost else ", each with a row or a test"), not lost

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of the tests themselves: mutants, guards that stay silent on sound cases, and what the guards cost."""
+"""Measures of the tests themselves: mutants, guards that stay silent on sound cases, and what the guards cost."""
 import json
 import os
 import pathlib
@@ -9,8 +9,6 @@ import subprocess
 import time
 
 from couplet.runs import Case, environment
-from validation.job import Bar
-from validation.parts.trust.runs import script
 
 SECONDS = 25  # of each committed case
 # What guards say; verdicts on left-out effects are none.
@@ -156,16 +154,3 @@ def paraview(job):
     if skipped:
         raise RuntimeError(f"{skipped} of {total} were skipped: ParaView's Python (python3-paraview, COUPLET_PVPYTHON) is not there")
     return f"{passed} of {total} passed", passed == total == 2
-
-
-COUNTED = "instructions under callgrind in place of paired times"
-BARS = [
-    Bar("time limits of the suite: at least ten times what a test takes", "all quick tests", limits, but="the times of the last runs in the build at hand, or in the folder that COUPLET_QUIET_BUILD names, which should be of a quiet machine"),
-    Bar("ParaView opens what solid_solver and fluid_solver write: times, points and fields", "tests pass", paraview, long=True),
-    Bar("mutants that survived are killed", "all", script("tests/mutants/run.py", "{root}", "{bin}/.."), long=True),
-    Bar("false alarms of guards on the committed cases", "none", false_alarms, long=True,
-        but=f"the first {SECONDS} s of wall time of each case, with its own settings; the validation runs are judged by their own rows"),
-    Bar("the guards in the cheapest fluid step", "< 3 %", fluid_cost, long=True, but=COUNTED),
-    Bar("the guards in a solid step", "< 1 %", solid_cost, long=True, but=COUNTED + "; coarser meshes than the cases' own"),
-    Bar("the guards in a coupled step (flap, its second five steps with their output)", "< 1 %", coupled_cost, long=True, but=COUNTED),
-]

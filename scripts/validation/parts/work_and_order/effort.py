@@ -4,7 +4,6 @@ each solved to tolerances of its own (0c71c15f, the same cases and default setti
 import numpy as np
 
 import couplet
-from validation.job import Bar
 
 SHORT = ("simulation.output.interval=0", "simulation.checkpoint.interval=0")
 # Case, end time, probe; then of 0c71c15f: passes, linear iterations of all participants.
@@ -25,21 +24,10 @@ def run(job, name, *more):
     return int(np.sum(steps["coupling iterations"])), int(linear), couplet.read_csv(folder / "solid" / "probes.csv")[probe]
 
 
-def effort(name):
-    def measure(job):
-        passes, linear, motion = run(job, name)
-        _, _, tight = run(job, name, *TIGHT)
-        before, was = CASES[name][3:]
-        apart = float(np.abs(motion - tight).max() / np.abs(tight).max())
-        return (f"{linear} for {was}: {linear / was:.2f}; {passes} passes for {before}; motion {apart:.1e} from that of tolerances a thousand times "
-                "tighter"), bool(linear <= 0.8 * was and passes <= 1.02 * before and (name == "FSI1" or apart <= 1e-3))
-    return measure
-
-
-WANTED = "at most 0.8 of those before the coupler sent accuracies, no more passes (2 %)"
-BARS = [
-    *(Bar(f"{name} to {CASES[name][1]}, default settings: linear iterations of all participants", f"{WANTED}, motion within 1e-3 of tight tolerances'",
-          effort(name), long=name == "tube") for name in ("flap", "tube")),
-    Bar(f"FSI1 to {CASES['FSI1'][1]}, default settings: linear iterations of all participants", WANTED, effort("FSI1"), long=True,
-        but="scheme: semi-implicit, as the case was then; the motion is reported: in the first second it depends on which steps renew their friction, which a threshold decides"),
-]
+def effort(job, name):
+    passes, linear, motion = run(job, name)
+    _, _, tight = run(job, name, *TIGHT)
+    before, was = CASES[name][3:]
+    apart = float(np.abs(motion - tight).max() / np.abs(tight).max())
+    return (f"{linear} for {was}: {linear / was:.2f}; {passes} passes for {before}; motion {apart:.1e} from that of tolerances a thousand times "
+            "tighter"), bool(linear <= 0.8 * was and passes <= 1.02 * before and (name == "FSI1" or apart <= 1e-3))

@@ -9,8 +9,8 @@ import resource
 
 import couplet
 from couplet.runs.process import RunFailed
-from validation.job import Bar, Job
-from validation.strong_coupling import COARSE, FLAP
+from validation.job import Job
+from validation.parts.strong.flap import COARSE, FLAP
 
 STEPS = (0.01, 0.005, 0.0025, 0.00125)  # s
 RHO, MU = (1000, 100, 10, 1), (10, 1, 0.1, 0.01)
@@ -87,21 +87,11 @@ def estimates(job):
             f"{ratios[0]:.2f} to {ratios[-1]:.1f} times it"), good >= 0.8 * len(ratios)
 
 
-def rung(rho, mu):
-    def measure(job):
-        tips = [tip(job, rho, mu, step) for step in STEPS]
-        text = ", ".join("ended before" if t is None else f"{t:.6f}" for t in tips)
-        if None in tips:
-            return f"tip {text} m", False
-        gaps = [abs(a - b) for a, b in zip(tips, tips[1:])]
-        order = math.log2(gaps[-2] / gaps[-1]) if gaps[-1] > 0 else math.inf
-        return f"tip {text} m: order {order:.2f}, last difference {gaps[-1] / abs(tips[-1]):.1e} of the tip", order >= 1.8 or gaps[-1] <= 1e-4 * abs(tips[-1])
-    return measure
-
-
-BARS = [Bar(f"ladder of flaps, rho_s {rho}, mu {mu}: tip at 0.2 s, steps of 10, 5, 2.5, 1.25 ms", "order >= 1.8 between the finest, or 1e-4 apart",
-            rung(rho, mu), long=True) for rho in RHO for mu in MU]
-BARS.append(Bar("ladder of flaps: the run's estimate of the step's error beside the truth", "within a factor of 3 in 80 % of the runs whose error is above 1e-4", estimates,
-                long=True, but="truth: the limit of the two finest steps"))
-BARS.append(Bar("ladder of flaps: processor seconds of the runs that end, beside commit b350924", "at most 1.5 times", cost, long=True,
-                but="all rungs together; needs a build of that commit"))
+def rung(job, rho, mu):
+    tips = [tip(job, rho, mu, step) for step in STEPS]
+    text = ", ".join("ended before" if t is None else f"{t:.6f}" for t in tips)
+    if None in tips:
+        return f"tip {text} m", False
+    gaps = [abs(a - b) for a, b in zip(tips, tips[1:])]
+    order = math.log2(gaps[-2] / gaps[-1]) if gaps[-1] > 0 else math.inf
+    return f"tip {text} m: order {order:.2f}, last difference {gaps[-1] / abs(tips[-1]):.1e} of the tip", order >= 1.8 or gaps[-1] <= 1e-4 * abs(tips[-1])

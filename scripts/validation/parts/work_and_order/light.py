@@ -3,11 +3,8 @@
 import numpy as np
 
 import couplet
-from validation.job import Bar
-from validation.parts.coupler.runs import exchanged
 from validation.parts.strong.tube import IQN, TUBE
-from validation.parts.strong.tube import ROBIN as TUBE_ROBIN
-from validation.strong_coupling import COARSE, FLAP
+from validation.parts.strong.flap import COARSE, FLAP
 
 ROBIN = ("coupling.order=structure-first", "participants.fluid.boundaries.flap.impedance=structure", "participants.solid.interface={surface-density: true}")
 QUIET = ("simulation.output.interval=0", "simulation.checkpoint.interval=0")
@@ -25,17 +22,6 @@ def flap(job):
     return f"{robin.mean():.2f} with Robin, {alone.mean():.2f} by IQN-ILS alone, {len(alone)} steps", bool(robin.mean() <= alone.mean())
 
 
-def tube(tolerance, most, *more):
-    def measure(job):
-        counts = passes(job, TUBE, f"light-tube-{tolerance}-{len(more)}", "simulation.end-time=2 ms", f"coupling.convergence.relative={tolerance}", *IQN, *more)
-        return f"{counts.mean():.2f} on average, {counts.max()} at most, {len(counts)} steps", bool(counts.mean() <= most)
-    return measure
-
-
-BARS = [
-    Bar("flap, rho_s 10, mu 1, dt 0.01 s, Robin and IQN-ILS: passes per step", "at most those of IQN-ILS alone", flap, but="20 cells per side, to 0.2 s"),
-    Bar("tube, dt 1e-4 s, Robin and IQN-ILS to a relative 1e-4: passes per step", "<= 4.5", tube("1e-4", 4.5, *TUBE_ROBIN), long=True, but="20 steps"),
-    Bar("tube, dt 1e-4 s, Robin and IQN-ILS to a relative 1e-6: passes per step", "<= 5.5", tube("1e-6", 5.5, *TUBE_ROBIN), long=True, but="20 steps"),
-    Bar("tube, dt 1e-4 s, IQN-ILS alone to a relative 1e-6: passes per step", "<= 9", tube("1e-6", 9), long=True, but="20 steps"),
-    Bar("exchange of 1e5 3-vectors, Aitken, over MPI's own time for the same bytes", "at most 3 times", exchanged("aitken", lambda ms, plain: ms <= 3 * plain)),
-]
+def tube(job, tolerance, most, *more):
+    counts = passes(job, TUBE, f"light-tube-{tolerance}-{len(more)}", "simulation.end-time=2 ms", f"coupling.convergence.relative={tolerance}", *IQN, *more)
+    return f"{counts.mean():.2f} on average, {counts.max()} at most, {len(counts)} steps", bool(counts.mean() <= most)

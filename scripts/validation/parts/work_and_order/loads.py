@@ -4,7 +4,6 @@ import csv
 import math
 
 import couplet
-from validation.job import Bar
 
 AT = 1.25  # s
 SWING = ("participants.fluid.viscosity=1 Pa s", "participants.fluid.viscous=implicit",
@@ -14,7 +13,7 @@ SWING = ("participants.fluid.viscosity=1 Pa s", "participants.fluid.viscous=impl
 def force(job, step, cells):
     """x force [N] of a cylinder that moves by -(5/4 pi)(1 - cos 0.4 pi t), viscosity 1 Pa s: given at the middle of the steps."""
     def make():
-        run = job.solve_run("fluid_solver", "oscillating-cylinder",
+        run = job.alone("oscillating-cylinder",
                             (*SWING, "participants.fluid.mesh-parameters={n: %d}" % cells, f"simulation.end-time={AT + 2 * step}", f"simulation.time-step={step}"))
         with open(run.folder / "fluid" / "forces.csv", encoding="utf-8") as file:
             rows = list(csv.reader(file))
@@ -39,7 +38,7 @@ def near(job):
 def power(job):
     """Of the last step to 1.25 s: what the wall gives beside what the fluid gains and its viscosity takes, by forces.csv and energy.csv."""
     step = 0.01
-    run = job.solve_run("fluid_solver", "oscillating-cylinder", (
+    run = job.alone("oscillating-cylinder", (
         *SWING, "participants.fluid.mesh-parameters={n: 48}", f"simulation.end-time={AT}", f"simulation.time-step={step}", "participants.fluid.output.energy-budget=true"))
     forces, energy = (couplet.read_csv(run.folder / "fluid" / name) for name in ("forces.csv", "energy.csv"))
     force = sum(forces[name][-1] for name in forces if name.endswith(" x [N]"))
@@ -47,23 +46,3 @@ def power(job):
     given = -force * moved / step
     taken = (energy["kinetic energy [J]"][-1] - energy["kinetic energy [J]"][-2]) / step + energy["viscous power [W]"][-2:].mean()
     return f"wall {given:.5f} W, fluid {taken:.5f} W: {100 * (taken / given - 1):+.2f} %", abs(taken / given - 1) < 1e-10
-
-
-def drag(n, limit):
-    def measure(job):
-        folder, _ = job.solve("fluid_solver", "cylinder", ('participants.fluid.boundaries.inlet.velocity=["1.2*y*(0.41-y)/0.41^2", 0]', "simulation.end-time=8 s",
-                                                           "simulation.output.interval=8 s", f"simulation.time-step={8 / math.ceil(10 * n)}",
-                                                           "participants.fluid.mesh-parameters={n: %d}" % n))
-        error = job.beside("configs/cylinder/coefficients.py").steady(folder / "fluid", 0.2)["cd"] / 5.57953523384 - 1
-        return f"{100 * error:+.2f} %", abs(error) <= limit
-    return measure
-
-
-BARS = [
-    Bar("oscillating cylinder, viscosity 1, 48 cells around: order of the force at 0.025, 0.0125, 0.00625 s", ">= 1.9", in_time,
-        but="steps of 0.025 to 0.00625 s in place of 0.02 to 0.005 s, so that 1.25 s is the end of one in all"),
-    Bar("... at 0.01 s, beside 192 cells and 0.0025 s", "within 0.1 %", near, long=True),
-    Bar("... at 0.01 s: power that the wall gives beside what the fluid gains and its viscosity takes", "equal to rounding", power),
-    *[Bar(f"cylinder 2D-1, {n} cells on a quarter of the cylinder: drag", f"within {100 * limit:g} %", drag(n, limit))
-      for n, limit in ((8, 0.01), (12, 0.007), (16, 0.004), (24, 0.0025))],
-]

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Measures of the error budget, the predictions and the atlas. Built so far: other programs on a case by one command, pictures that can be
+read, --for-error beside ladders of runs, the budget with the model in it, a flow
+that a clock drives, the atlas."""
+import csv
+import json
+import re
+import sys
+
+FOAM = "solidDisplacementFoam"
+# What of a study is run (--only: the sizes that a busy machine allows), its quantity, and the error that each program's best run has at most.
+PEERS = {
+    "plate B": ("elliptic-plate/case.yaml", "4-corrected-1e-8,8-corrected-1e-8,12-corrected-1e-8,16-corrected-1e-8", "displacement",
+                {"CalculiX C3D8I": 0.02, "CalculiX C3D20R": 0.01, FOAM: 0.1}),
+    "LE1": ("le1/case.yaml", "*", "stress at D", {"CalculiX CPS4": 0.03, "CalculiX C3D8I": 0.01, "CalculiX CPS8R": 0.001, FOAM: 0.01}),
+    "Cook": ("cook/case.yaml", "4-*,8-*,16-*,32-*", "displacement of the corner",
+             {"CalculiX CPE4": 0.05, "CalculiX C3D8I": 0.02, "CalculiX CPE8R": 0.005, FOAM: 0.1}),
+    "cavity, Re 1000": ("cavity/study.yaml", "16-even,24-even,32-even", "u minimum", {"icoFoam": 0.3, "pimpleFoam": 0.3}),
+    "2D-1": ("cylinder/study-2d-1.yaml", "8,12,16", "cd", {"icoFoam": 0.02, "pimpleFoam": 0.02}),
+}
+
+
+def beside(job, name):
+    """One command on the case as it is; what was run before with the same programs and input is not run again."""
+    file, only, quantity, wanted = PEERS[name]
+    case = job.root / "configs" / file
+    done = job.run([job.root / "scripts/study", case, "--peers", f"--only={only}", f"--build={job.build}"], timeout=7200)
+    folder = case.parent / "out" / "study"
+    if done.returncode != 0:
+        return f"exit code {done.returncode}: {(done.stderr or done.stdout).strip()[-200:]}", False
+    with open(folder / "peers.csv", newline="") as table:
+        rows = [r for r in csv.DictReader(table) if not r["reason"]]
+    head = f"error of {quantity}" if rows and f"error of {quantity}" in rows[0] else quantity
+    parts, met = [], True
+    for program, limit in wanted.items():
+        best = min(((float(r[head]), float(r["processor [s]"])) for r in rows if re.fullmatch(rf"{re.escape(program)}(, .*)?", r["version"])), default=None)
+        parts.append(f"{program} {100 * best[0]:.2g} % in {best[1]:.2g} s" if best else f"{program}: no run" + (
+            " (not installed)" if "is not installed" in done.stdout else ""))
+        met = met and best is not None and best[0] <= limit
+    with open(folder / "runs.csv", newline="") as table:
+        ours = [(float(r[head]), float(r["processor [s]"])) for r in csv.DictReader(table) if r[head]]
+    text = (folder / "report.md").read_text()
+    section = text[text.index(f"\n## {quantity}\n"):].split("\n![", 1)[0]
+    front = [p for p in wanted if f"| {p}" in section]
+    return f"{'; '.join(parts)}; ours {100 * min(ours)[0]:.2g} % in {min(ours)[1]:.2g} s; on the front: {', '.join(front) or 'ours alone'}", met
+
+
+def checks(job, script):
+    done = job.run([sys.executable, job.root / "tests/cli/study" / script])
+    good, bad = (len(re.findall(rf"^{word} ", done.stdout, re.M)) for word in ("ok", "FAILED"))
+    left = re.findall(r"^skipped: (.*)$", done.stdout, re.M)
+    return f"{good} checks, {bad} failed" + (f"; skipped: {'; '.join(left)}" if left else ""), done.returncode == 0 and good > 0 and not left
+
+
+def scenes(job):
+    """Each with a second run that has the effect, or a closed form (tests/cli/budget)."""
+    done = job.run([sys.executable, job.root / "tests/cli/budget/run.py", job.build / "bin", job.root / "configs", "all"], 900)
+    good, bad = (re.findall(rf"^{word} +(.*?):", done.stdout, re.M) for word in ("ok", "FAILED"))
+    near = re.findall(r"^ok +.*share ([\d.e+-]+), truth ([\d.e+-]+) \(near\)", done.stdout, re.M)
+    text = f"{len(good)} of {len(good) + len(bad)} name the right one{' (not: ' + '; '.join(bad) + ')' if bad else ''}; shares and truths "
+    return text + ", ".join(f"{share} and {truth}" for share, truth in near), not bad and len(good) == 10 and len(near) >= 8
+
+
+def periodic(job):
+    done = job.run([sys.executable, job.root / "tests/cli/periodic/run.py", job.build / "bin", job.root / "configs", "4", "32", "100"], 3600)
+    found = re.findall(r"^(ok|FAILED) +(alpha \d+, \d+ periods): step ([\d.e+-]+), truth ([\d.e+-]+)", done.stdout, re.M)
+    return "; ".join(f"{name}: {step} for {truth}" for _, name, step, truth in found), len(found) == 6 and all(word == "ok" for word, *_ in found)
+
+
+def one_list(job):
+    """The list, the cards (unit test), the documents and the programs."""
+    from validation.parts.effects import prices
+    listed = prices.read(job.root)
+    low = [p for p in listed if min(*p.bytes, *p.step) < 0]
+    both = {p.effect for p in listed if p.dimension == 2} & {p.effect for p in listed if p.dimension == 3}
+    spread = sum(p.bytes[0] != p.bytes[1] or p.step[0] != p.step[1] for p in listed)
+    passed, total, *_ = job.ctest("^(unit_effects|docs_are_what_the_programs_say|cli_effects)$")
+    return (f"{len(listed)} prices, {len(both)} effects in two and three dimensions, {spread} with a spread, {len(low)} negative; "
+            f"{passed} of {total} tests that cards, programs and documents show the list pass"), not low and bool(both) and passed == total == 3
+
+
+# Study, program of keys, {quantity: truth; a number or the same by extrapolation of finer runs}.
+INTEREST = {
+    "cook": {"displacement of the corner": 0.0323007},                          # [m], quadratic elements refined to convergence
+    "le1": {"stress at D": 92.66e6, "displacement of D": -1.02207e-4},           # NAFEMS; extrapolated from nr = 32, 64, 128
+    "cantilever": {"tip": 0.10008},                                             # [m], three-dimensional finite elements
+}
+
+
+def interest(job):
+    parts, met = [], True
+    for case, truths in INTEREST.items():
+        out = job.scratch / f"quantities-{case}"
+        done = job.run([sys.executable, job.root / "scripts/study", job.root / f"configs/{case}/case.yaml", "--quantities", f"--build={job.build}", f"--out={out}"])
+        file = out / "quantities/quantities.json"
+        if done.returncode != 0 or not file.exists():
+            raise RuntimeError((done.stderr or done.stdout)[-300:])
+        for name, truth in truths.items():
+            found = json.loads(file.read_text())[name]
+            ratio = found["error"] / abs(found["value"] - truth)
+            parts.append(f"{case}, {name}: {found['error'] / abs(truth):.2%} by {found['method']}, {ratio:.2f} of the truth")
+            met = met and 1 / 3 <= ratio <= 3
+    return "; ".join(parts), met

@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Rows of tables are data: every table is read, each measure takes the arguments that its row gives, groups are written out in order, and what a row cannot mean
+is refused by its name; numbers read from a run are compared with what is right."""
+import pathlib
+import sys
+import tempfile
+import types
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "client/python")]
+from validation import rows, shapes, table  # noqa: E402
+
+for name in rows.known():
+    read = rows.load(name)
+    there = table.read(ROOT / f"docs/validation/{name}.md")
+    assert read.bars and read.sources, name
+    # A table without the rows that it had would lose what was measured.
+    assert set(there) <= {b.quantity for b in read.bars}, (name, set(there) - {b.quantity for b in read.bars})
+assert len(rows.known()) >= 24
+
+
+def loaded(text):
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "t.yaml"
+        file.write_text(text)
+        return rows.load("t", file)
+
+
+def refused(text, words):
+    try:
+        loaded(text)
+    except Exception as error:
+        assert words in str(error), error
+    else:
+        sys.exit(f"not refused: {text}")
+
+
+group = """rows:
+  first: {wanted: pass, tests: ^a$}
+  plates:
+    long: true
+    each: {n: [8, 16], "word, limit": [[hard, 1e-3], [soft, 1e-2]]}
+    rows:
+      "{word} plate, {n} cells, {other}": {wanted: "<= {limit}", at_most: [program, "{word}", key, "{limit}"]}
+"""
+bars = loaded(group).bars
+assert [b.quantity for b in bars] == ["first", *(f"{w} plate, {n} cells, {{other}}" for n in (8, 16) for w in ("hard", "soft"))], bars
+assert [b.long for b in bars] == [False, True, True, True, True] and bars[1].wanted == "<= 0.001"
+job = types.SimpleNamespace(recorded=lambda program, pattern, key: ([-0.002], True))
+assert bars[1].measure(job) == ("-2.0e-03", False) and bars[2].measure(job) == ("-2.0e-03", True)
+
+refused("rows: {a: {wanted: x, tests: ^a$, claims: b}}", "'a': one measure, but there is tests, claims")
+refused("rows: {a: {wanted: x}}", "'a': one measure, but there is none")
+refused("rows: {a: {tests: ^a$}}", "'a': nothing is wanted")
+refused("rows: {a: {wanted: x, test: ^a$}}", "0 functions 'test'")
+refused("rows: {a: {wanted: x, claims: b}}", "missing a required argument: 'names'")
+refused("rows: {a: {wanted: x, tests: ^a$}, a: {wanted: x, tests: ^b$}}", "twice: a")
+refused("rows: {g: {each: {n: [1, 2]}, rows: {a: {wanted: x, tests: ^a$}}}}", "twice: a")
+refused("rows: {a: {wanted: x, at_most: [a, b, c, 1]}}\nsource: [common]", "unknown source")
+
+
+class Run:
+    """What job.alone gives: monitors of one participant that warned once."""
+    folder, participant, log = pathlib.Path("/out"), "solid", "[solid] warning: coarse\n"
+
+    def __init__(self, asked):
+        self.asked = asked
+
+    def column(self, participant, file, name):
+        assert (participant, file) == ("solid", "probes.csv")
+        return {"tip y [m]": [0.5, -1.0, 2.02], "drag [-]": [3.0, 9.0, 4.0]}[name]
+
+
+asked = []
+job = types.SimpleNamespace(alone=lambda case, keys, timeout: asked.append((case, keys)) or Run(keys))
+given = {"case": "le1", "read": "probes.csv: tip y [m]", "of": "2*1", "within": 0.02}
+assert shapes.run(job, **given) == ("2.02 m (+1.00 %)", True)
+assert shapes.run(job, **{**given, "within": 0.005}) == ("2.02 m (+1.00 %)", False)
+assert shapes.run(job, **{**given, "within": None}) == ("2.02 m (+1.00 %)", None)  # nothing judges: reported
+assert shapes.run(job, **given, quiet=True)[1] is False  # right, but it warned
+text, met = shapes.run(job, "le1", ["probes.csv: least tip y [m]", "probes.csv: largest drag [-]"], low=(-2, 8), high=(0, 8.5), keys=[".a=1", ["b=2"]], meshes=["n: 1", "n: 2"])
+assert (text, met) == ("tip y -1, -1 m; drag 9, 9", False), (text, met)
+assert asked[-1] == ("le1", (".a=1", "b=2", ".mesh-parameters={n: 2}")), asked[-1]
+assert abs(shapes.number("-pi*2**3/4") + 6.283185307) < 1e-9 and shapes.number(None) is None
+for wrong in ("__import__('os')", "x", "len([1])"):
+    try:
+        shapes.number(wrong)
+    except ValueError:
+        continue
+    sys.exit(f"taken as a number: {wrong}")
