@@ -96,6 +96,22 @@ class Plate:
         return np.stack([f.ev(*map_back(x, y)) for f in self.stress_], axis=-1)
 
 
+def line(folder):
+    """Along x = y, where values live: from the first centres to the last."""
+    plate = Plate(folder)
+    x = np.linspace(1 / np.hypot(0.5, 1), 1 / np.hypot(1 / 3.25, 1 / 2.75), 200)
+    s, _ = map_back(x, x)
+    x = x[(s >= plate.first_centre) & (s <= 1 - plate.first_centre)]
+    return {"r [m]": x * np.sqrt(2), "uz [m]": plate.displacement(x, x)[:, 2], "von Mises [MPa]": von_mises(plate.stress(x, x)) / 1e6}
+
+
+def circle(folder):
+    """On r = 2.1 m."""
+    angle = np.linspace(0, 90, 200)
+    on = 2.1 * np.cos(np.radians(angle)), 2.1 * np.sin(np.radians(angle))
+    return {"angle [deg]": angle, "von Mises [MPa]": von_mises(Plate(folder).stress(*on)) / 1e6}
+
+
 def reference():
     return np.loadtxt(HERE / "reference/nine_points.csv", delimiter=",").T
 

@@ -89,7 +89,8 @@ WRONG = [  # when the case is checked
     (("panels", 0, "warp"), 2, "panels[0]: 'warp' belongs to a field"), (("panels", 2, "participant"), "fluid", "there is no participant 'fluid'; there are: solid"),
     (("panels", 2, "at"), "soon", "panels[2].at: 'soon' is no time"), ((*CURVE, "table"), "tip.csv", "curves[0]: expected one of monitor, table"), ((*CURVE, "y"), None, "the key 'y' is missing"),
     ((*CURVE, "style"), "wavy", "curves[0].style: 'wavy'; allowed: line, points"), ((*CURVE, "extrema"), "yes", "curves[0].extrema: expected true or false, found 'yes'"),
-    (("panels", 0, "curves", 2, "to"), None, "a function needs 'from' and 'to'"), (("quantities", "tip", "prob"), 1, "plot.quantities.tip: unknown key 'prob'")]
+    (("panels", 0, "curves", 2, "to"), None, "a function needs 'from' and 'to'"), (("quantities", "tip", "prob"), 1, "plot.quantities.tip: unknown key 'prob'"),
+    (("panels", 0, "curves", 1, "optional"), True, "'optional' belongs to a monitor"), (("panels", 0, "curves", 5), {"python": "none.py: f", "y": "a"}, "curves[5].python: 'none.py: f'")]
 LATE = [  # when it is drawn
     ((*CURVE, "y"), "1000*z", "curves[0].y: 'z'; valid are numbers"), ((*CURVE, "y"), "__import__('os')", "curves[0].y: "), ((*CURVE, "monitor"), "solid/prob.csv", "there is no "),
     ((*CURVE, "with"), {"y": "tip"}, "curves[0].with.y: "), (("panels", 1, "curves", 0, "with"), {"s": "strain"}, "there is no field 'strain'; there are: stress"), (("panels", 1, "curves", 0, "where"), "x > 9", "no row of solid's fields is left"),
@@ -140,12 +141,30 @@ with tempfile.TemporaryDirectory(prefix="a case with blanks ") as name:
     check("cells of the last output", np.allclose(last[0], [0.5, 1.5]) and np.allclose(last[1], [1, 3]), last)
     first = points_of({"fields": "solid", "at": "0 s", "with": {"s": "stress"}, "x": "x", "y": "s"}, case, out, "")[0]
     check("cells of another output", np.allclose(first[1], 0), first)
+    (folder / "made.py").write_text("def made(folder):\n    return {'x [m]': [0.0, 1.0], 'name': [2.0, len(folder.name)]}\n")
+    made = points_of({"python": "made.py: made", "with": {"n": "name"}, "y": "2*n"}, case, out, "")[0]
+    check("columns of a function beside the case", list(made[0]) == [0, 1] and list(made[1]) == [4, 10], made)
+    check("a run that need not be there", points_of({"monitor": "../other/probes.csv", "y": "a", "optional": True}, case, out, "") == [])
     check("a head that is a comment", list(columns_of(folder / "tip.csv")) == ["t [s]", "tip [mm]"])
 
     # a body is drawn with its displacement once, or as often as one asks
     series = find_series(out / "solid")
     for warp in (0, 1, 3):
         check(f"places with {warp} times the displacement", np.allclose(fields.places_of(series, 1, warp, "stress"), STILL + warp * MOVE))
+
+    # a plane inside a mesh: two layers of two cubes; the faces in it, of the cells above it, else of those below
+    from couplet.plots.draw import polygons_of
+    cubes = np.array([[x, y, z] for z in (0, 1, 2) for y in (0, 1) for x in (0, 1, 2)], float)
+    bricks = [[a, a + 1, a + 4, a + 3, a + 6, a + 7, a + 10, a + 9] for layer in (0, 6) for a in (layer, layer + 1)]
+    block = argparse.Namespace(reference=lambda: cubes, cells=bricks)
+    for plane, wanted in (("z = 1", [2, 3]), ("z = 2", [2, 3]), ("y=0", [0, 1, 2, 3]), ("x = 1", [1, 3])):
+        corners, cells, ways = polygons_of(block, cubes, plane, "")
+        area = [0.5 * abs(np.dot(c[:, 0], np.roll(c[:, 1], 1)) - np.dot(c[:, 1], np.roll(c[:, 0], 1))) for c in corners]
+        check(f"faces in {plane}", list(cells) == wanted and np.allclose(area, 1) and plane[0] not in ways, (cells, area, ways))
+    try:
+        polygons_of(block, cubes, "z = 0.5", "")
+    except Wrong as problem:
+        check("a plane through cells", "no face of a cell lies in z = 0.5" in str(problem), problem)
 
     # names of curves, with and without a unit
     from couplet.plot import curves

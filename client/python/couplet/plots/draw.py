@@ -64,15 +64,23 @@ def time_of(panel, out, where):
 
 
 def polygons_of(series, points, plane, where):
-    """(corners, cells) of two-dimensional cells, or of the outer faces in a plane such as y = 0, in its other two axes."""
+    """(corners, cells) of two-dimensional cells, or of the cells above a plane such as y = 0 that have a face in it (below it where there are none), in its
+    other two axes."""
     if is_flat(series):
         return [points[cell][:, :2] for cell in series.cells], np.arange(len(series.cells)), "xy"
     axis, _, level = plane.replace(" ", "").partition("=")
     expect(axis in ("x", "y", "z") and np.isfinite(number(level or "x")), f"{where}.plane: '{plane}'; expected such as y = 0.")
     k, still, size = "xyz".index(axis), series.reference(), np.ptp(series.reference(), axis=0).max()
-    faces = [(face, cell) for face, cell in fields.outer_faces(series) if np.abs(still[face][:, k] - float(level)).max() < 1e-6 * size]
-    expect(faces, f"{where}.plane: no outer face lies in {plane}.")
-    others = [i for i in range(3) if i != k]
+    others, sides = [i for i in range(3) if i != k], {1: [], -1: []}
+    for number_, cell in enumerate(series.cells):
+        height = still[cell][:, k] - float(level)
+        on = np.abs(height) < 1e-6 * size
+        if np.count_nonzero(on) > 2:
+            face = np.asarray(cell)[on]
+            way = still[face][:, others] - still[face][:, others].mean(axis=0)
+            sides[1 if height.mean() > 0 else -1].append((face[np.argsort(np.arctan2(way[:, 1], way[:, 0]))], number_))
+    faces = sides[1] or sides[-1]
+    expect(faces, f"{where}.plane: no face of a cell lies in {plane}.")
     return [points[face][:, others] for face, _ in faces], np.array([cell for _, cell in faces]), "xyz".replace(axis, "")
 
 
@@ -81,14 +89,17 @@ def is_flat(series):
     return points.shape[1] == 2 or np.ptp(points[:, 2]) == 0
 
 
-def draw_bodies(axes, panel, out, series, i):
-    """Outlines of the mesh that is drawn, and bodies in it."""
-    edges = np.array(series.coordinates(i))[series.edges_on_boundary()][:, :, :2]
-    axes.add_collection(LineCollection(edges, colors="black", linewidths=0.8))
+def draw_bodies(axes, panel, out, series, i, ways):
+    """Outlines of a two-dimensional mesh that is drawn, and bodies in it."""
+    ways = ["xyz".index(w) for w in ways]
+    if is_flat(series):
+        edges = np.array(series.coordinates(i))[series.edges_on_boundary()][:, :, :2]
+        axes.add_collection(LineCollection(edges, colors="black", linewidths=0.8))
     for name in panel["bodies"]:
         body = series_in(out, name)
         corners = fields.places_of(body, body.nearest(series.times[i]), panel.get("warp", 1), "")
-        axes.add_collection(PolyCollection([corners[cell][:, :2] for cell in body.cells], facecolors="tab:red", edgecolors="none"))
+        faces = [face for face, _ in fields.outer_faces(body)] if max(map(len, body.cells)) > 4 else body.cells  # of plates the surface is all there is
+        axes.add_collection(PolyCollection([corners[face][:, ways] for face in faces], facecolors="tab:red", edgecolors="none"))
 
 
 def draw_map(axes, panel, polygons, values):
@@ -113,7 +124,7 @@ def draw_field(figure, axes, panel, case, out, where):
         drawn = draw_map(axes, panel, polygons, values[cells])
         axes.set(xlabel=f"{ways[0]} [m]", ylabel=f"{ways[1]} [m]")
         if "bodies" in panel:
-            draw_bodies(axes, panel, out, series, i)
+            draw_bodies(axes, panel, out, series, i, ways)
     else:
         place = axes.get_subplotspec()
         axes.remove()

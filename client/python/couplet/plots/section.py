@@ -17,6 +17,7 @@ plot:
         - {function: "exp(-x)", from: 0, to: 5}
         - {points: [[0.7, 0.22]], style: points}
         - {levels: [0.22, 0.23], style: dotted}
+        - {python: "tip.py: motion", x: "time [s]", y: "tip [m]"}   # columns that a function of a file beside the case makes of the first participant's folder
     - field: velocity          # a map
       participant: fluid
       at: 2 s                  # or {first-maximum: "tip x [m]", monitor: solid/probes.csv}
@@ -26,7 +27,7 @@ import re
 
 from couplet.runs.case import expect
 
-SOURCES = ("monitor", "table", "fields", "function", "points", "levels")
+SOURCES = ("monitor", "table", "fields", "function", "points", "levels", "python")
 STYLES = ("line", "points", "crosses", "pluses", "squares", "dots", "dashed", "dotted")
 TEXT, NUMBER, FLAG = {"type": "string"}, {"type": "number"}, {"type": "boolean"}
 VALUE, EXPRESSION = {"type": ["number", "string"]}, {"type": ["string", "number"]}
@@ -38,10 +39,10 @@ def mapping(properties, **more):
 
 
 AXIS = mapping({"label": TEXT, "from": NUMBER, "to": NUMBER, "log": FLAG})
-CURVE = mapping({"monitor": TEXT, "table": TEXT, "fields": TEXT, "function": EXPRESSION, "levels": {"type": "array", "items": NUMBER, "minItems": 1}, "points": {"type": "array", "items": PAIR, "minItems": 1},
+CURVE = mapping({"monitor": TEXT, "table": TEXT, "fields": TEXT, "python": TEXT, "function": EXPRESSION, "levels": {"type": "array", "items": NUMBER, "minItems": 1}, "points": {"type": "array", "items": PAIR, "minItems": 1},
                  "with": {"type": "object", "additionalProperties": TEXT}, "x": EXPRESSION, "y": EXPRESSION, "where": TEXT, "each": EXPRESSION, "at": VALUE,
                  "from": NUMBER, "to": NUMBER, "label": TEXT, "style": {"enum": list(STYLES)}, "colour": TEXT, "every": {"type": "integer", "minimum": 1},
-                 "extrema": FLAG, "sorted": FLAG}, oneOf=[{"required": [s]} for s in SOURCES])
+                 "extrema": FLAG, "sorted": FLAG, "optional": FLAG}, oneOf=[{"required": [s]} for s in SOURCES])
 TOP = mapping({"first-maximum": TEXT, "monitor": TEXT}, required=["first-maximum", "monitor"])
 PANEL = mapping({"title": TEXT, "x": AXIS, "y": AXIS, "curves": {"type": "array", "items": CURVE, "minItems": 1}, "legend": {"type": ["boolean", "integer"]},
                  "field": TEXT, "participant": TEXT, "at": {"anyOf": [VALUE, TOP]}, "component": {"enum": ["x", "y", "z"]}, "warp": NUMBER, "factor": NUMBER,
@@ -120,6 +121,10 @@ def check(case):
                    f"{where}.curves[{j}].fields: there is no participant '{curve.get('fields')}'; there are: {', '.join(case.participants)}.")
             expect(sources[0] in ("function", "points", "levels") or "y" in curve, f"{where}.curves[{j}]: the key 'y' is missing: a column, or an expression.")
             seconds(curve.get("at"), f"{where}.curves[{j}].at")
+            expect("optional" not in curve or "monitor" in curve, f"{where}.curves[{j}]: 'optional' belongs to a monitor.")
+            if "python" in curve:
+                file, _, function = (part.strip() for part in curve["python"].partition(":"))
+                expect(function and (case.file.parent / file).is_file() and "/" not in file, f"{where}.curves[{j}].python: '{curve['python']}'; expected such as 'FILE.py: FUNCTION' of a file beside the case.")
             expect("function" not in curve or {"from", "to"} <= set(curve), f"{where}.curves[{j}]: a function needs 'from' and 'to'.")
     if "quantities" in section:
         from couplet.study.quantities import quantities_of

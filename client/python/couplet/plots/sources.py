@@ -10,7 +10,7 @@ from couplet.runs.folder import warn_if_older
 from couplet.runs.results import read_csv
 from couplet.series import find_series
 from couplet.study.expressions import evaluate
-from couplet.study.quantities import FUNCTIONS
+from couplet.study.quantities import FUNCTIONS, module
 
 POINTS_OF_A_FUNCTION = 200
 
@@ -95,6 +95,12 @@ def source_of(curve, case, out, where):
         return Source({"x": x}, {"x": x}, "a function")
     if "points" in curve:
         return Source({"x": np.array(curve["points"], float)[:, 0], "y": np.array(curve["points"], float)[:, 1]}, {}, "a list of points")
+    if "python" in curve:
+        file, function = (part.strip() for part in curve["python"].split(":"))
+        found = getattr(module(str(case.file.parent / file)), function, None)
+        expect(found, f"{where}.python: {file} has no function '{function}'.")
+        columns = {name: np.asarray(values, float) for name, values in found(out / next(iter(case.participants))).items()}
+        return Source(columns, {"t": next(iter(columns.values())), **{short: columns[name] for short, name in curve.get("with", {}).items()}}, curve["python"])
     kind = "monitor" if "monitor" in curve else "table"
     file = (out if kind == "monitor" else case.file.parent) / curve[kind]
     expect(file.is_file(), f"{where}.{kind}: there is no {file}." + (" Run the case first." if kind == "monitor" else ""))
@@ -110,7 +116,9 @@ def source_of(curve, case, out, where):
 
 
 def points_of(curve, case, out, where):
-    """[(x, y, value of `each` or None)]: one curve, or one for each value of `each`."""
+    """[(x, y, value of `each` or None)]: one curve, or one for each value of `each`; none of a run that is not there and need not be."""
+    if curve.get("optional") and not (out / curve["monitor"]).is_file():
+        return []
     source = source_of(curve, case, out, where)
     x = source.value(curve.get("x", next(iter(source.columns))), f"{where}.x")
 
