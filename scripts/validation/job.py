@@ -58,15 +58,38 @@ class Job:
         return subprocess.run([str(c) for c in command], capture_output=True, text=True, timeout=timeout,
                               env=self.environment, **options)
 
+    def done(self, command, timeout=1800, **options):
+        """The same; one that fails is named with its last words."""
+        result = self.run(command, timeout, **options)
+        if result.returncode != 0:
+            last = (result.stderr.strip() or result.stdout.strip())[-300:]
+            raise RuntimeError(f"{pathlib.Path(command[0]).name} ended with code {result.returncode}: {last}")
+        return result
+
     # -- test executables ---------------------------------------------------------------------------------------------
+    def test(self, name):
+        """Path of a test executable."""
+        program = next((p for p in (self.build / "tests").rglob(name) if p.is_file() and os.access(p, os.X_OK)), None)
+        if program is None:
+            raise FileNotFoundError(f"test executable {name} is not built")
+        return program
+
+    def fuzz(self, name, count, filter_="*"):
+        """{test: what a fuzz program recorded at so many inputs}, and whether all its tests passed."""
+        def make():
+            file = self.scratch / f"{name}-{count}.json"
+            result = self.run(["env", f"COUPLET_FUZZ_COUNT={count}", self.test(name), f"--gtest_filter={filter_}", f"--gtest_output=json:{file}"], 3600, cwd=self.scratch)
+            if not file.exists():
+                raise RuntimeError(f"{name} ended with code {result.returncode}: {result.stdout[-200:]}")
+            tests = {t["name"]: t for suite in json.loads(file.read_text())["testsuites"] for t in suite["testsuite"]}
+            return tests, result.returncode == 0 and not any(t.get("failures") for t in tests.values())
+        return self.once(("fuzz", name, count, filter_), make)
+
     def gtest(self, name, filter_="*", timeout=7200):
         """Runs a test executable; gives {"Suite.test": {"passed": bool, **recorded properties}} and its output."""
         def make():
-            program = next((p for p in (self.build / "tests").rglob(name) if p.is_file() and os.access(p, os.X_OK)), None)
-            if program is None:
-                raise FileNotFoundError(f"test executable {name} is not built")
             file = self.scratch / f"{name}.json"
-            result = self.run([program, f"--gtest_filter={filter_}", f"--gtest_output=json:{file}"], timeout,
+            result = self.run([self.test(name), f"--gtest_filter={filter_}", f"--gtest_output=json:{file}"], timeout,
                               cwd=self.scratch)
             tests = {}
             for suite in json.loads(file.read_text())["testsuites"]:

@@ -14,7 +14,7 @@ FLAP = "configs/perpendicular-flap/case.yaml"
 def fresh_clone(job, script, sign):
     clone = job.once("clone", lambda: job.scratch / "clone")
     if not clone.exists():
-        job.run(["git", "clone", "-q", job.root, clone]).check_returncode()
+        job.done(["git", "clone", "-q", job.root, clone])
     result = job.run([clone / "scripts" / script], timeout=7200)
     found = re.findall(sign, result.stdout)
     return f"exit code {result.returncode}; {found[-1] if found else 'nothing found of its result'}", (

@@ -199,9 +199,7 @@ def cavity_5000(job):
 
 def speed(job, n):
     """benchmarks/mover: processor time of a step of mesh motion, without set-up, over that of a step of the fluid (one pressure equation and the predictor)."""
-    result = job.run([job.root / "benchmarks/mover", "--build", job.build, "--n", n], timeout=7200)
-    if result.returncode != 0:
-        raise RuntimeError((result.stderr or result.stdout)[-300:])
+    result = job.done([job.root / "benchmarks/mover", "--build", job.build, "--n", n], timeout=7200)
     seconds = {row.split("|")[0].strip(): float(row.split("|")[1]) for row in result.stdout.splitlines()[1:] if "|" in row}
     fluid = seconds.pop("a step of the fluid")
     return (f"a step of the fluid {fluid:.3f} s; " + "; ".join(f"{k} {v / fluid:.2f} times that" for k, v in seconds.items()),
@@ -210,9 +208,7 @@ def speed(job, n):
 
 def instructions(job, n):
     """The same in instructions (callgrind), which the load of a machine does not change: the equations alone, and whole steps of the mover."""
-    result = job.run([job.root / "benchmarks/mover", "--build", job.build, "--n", n, "--instructions"], timeout=3600)
-    if result.returncode != 0:
-        raise RuntimeError((result.stderr or result.stdout)[-300:])
+    result = job.done([job.root / "benchmarks/mover", "--build", job.build, "--n", n, "--instructions"], timeout=3600)
     rows = {line.split("|")[0].strip(): [float(v) for v in line.split("|")[1:]] for line in result.stdout.splitlines()[1:] if "|" in line}
     pressure = rows.pop("a step of the fluid")[1]
     return (f"the pressure equation {pressure:.0f} million; " + "; ".join(
@@ -235,9 +231,7 @@ def off_is_nothing(job):
                    job.root / "configs/closing-gap/case.yaml"]
         for key in (f"simulation.output.folder={folder}", "simulation.end-time=0.04", "simulation.time-step=0.02", *more):
             command += ["--set", key]
-        result = job.run(command)
-        if result.returncode != 0:
-            raise RuntimeError((result.stderr or result.stdout)[-300:])
+        job.done(command)
         called[name] = set(re.findall(EFFECTS, (folder / "counts").read_text()))
     return (f"{len(called['with'])} functions of motion, gaps and samples run with them, {len(called['without'])} without",
             len(called["with"]) >= 8 and not called["without"])

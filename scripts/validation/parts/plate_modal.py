@@ -32,9 +32,7 @@ def thin_plate(job, structure):
     def make():
         out = job.scratch / f"thin-plate-{structure}"
         job.environment["COUPLET_BIN"] = str(job.build / "bin")
-        result = job.run([job.root / "configs/thin-plate/run", structure, "--set", f"simulation.output.folder={out}"], 7200)
-        if result.returncode != 0:
-            raise RuntimeError(" / ".join((result.stderr.strip() or result.stdout.strip()).splitlines()[-3:]))
+        result = job.done([job.root / "configs/thin-plate/run", structure, "--set", f"simulation.output.folder={out}"], 7200)
         return out, result.stdout
     return job.once(("thin-plate", structure), make)
 
@@ -103,9 +101,7 @@ def contact_costs_nothing(job):
         text = (job.root / "tests/cli/wrong/plate.yaml").read_text()
         (folder / "case.yaml").write_text(text if name == "with" else re.sub(r".*contact:.*\n?", "", text))
         shutil.copy(job.root / "tests/cli/wrong/square.msh", folder)
-        result = job.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=counts", job.build / "bin/plate_modal", "case.yaml"], cwd=folder)
-        if result.returncode != 0:
-            raise RuntimeError(result.stderr[-300:])
+        job.done(["valgrind", "--tool=callgrind", "--callgrind-out-file=counts", job.build / "bin/plate_modal", "case.yaml"], cwd=folder)
         called[name] = set(re.findall(r"couplet::plate::(Contact::\w+|seat_stiffness|Oscillators::solve_contact|PlateResults::write_contact)\(",
                                       (folder / "counts").read_text()))
     return f"{len(called['with'])} functions of the contact run with a seat, {len(called['without'])} without", \

@@ -17,9 +17,7 @@ def cylinder(job, case, *sets):
         folder.mkdir()
         options = [f"--set={s}" for s in (f"simulation.output.folder={folder / 'out'}", *sets)]
         job.environment["COUPLET_BIN"] = str(job.build / "bin")
-        done = job.run([job.root / CYLINDER / "run", case, *options], 3600, cwd=folder)
-        if done.returncode:
-            raise RuntimeError(f"exit code {done.returncode}: {(done.stdout + done.stderr)[-300:]}")
+        job.done([job.root / CYLINDER / "run", case, *options], 3600, cwd=folder)
         return np.loadtxt(folder / "body.csv", delimiter=",", usecols=(0, 1), unpack=True)
     return job.once(("cylinder", case, sets), make)
 
@@ -53,9 +51,7 @@ def fenicsx(job):
         command += ["-n", "1", job.build / "bin" / program, job.root / FLAP, *options, ":"]
     command += ["-n", "1", "/usr/bin/python3", job.root / "client/examples/flap_fenicsx.py", "solid"]
     job.environment["PYTHONPATH"] = os.pathsep.join([str(job.root / "client/python"), os.environ.get("PYTHONPATH", "")])
-    done = job.run(command, 3600, cwd=folder)
-    if done.returncode:
-        raise RuntimeError(f"exit code {done.returncode}: {(done.stdout + done.stderr)[-300:]}")
+    job.done(command, 3600, cwd=folder)
     theirs = np.loadtxt(folder / "solid.csv", delimiter=",")[:, 1]
     ours = tips(flap(job, "default"))
     n = min(len(theirs), len(ours))

@@ -21,9 +21,7 @@ def solid(job):
         folder = job.scratch / "small-solid"
         folder.mkdir()
         shutil.copy(job.root / "configs/cantilever/cantilever.geo", folder)
-        made = job.run(["gmsh", "-3", "-setnumber", "n_length", "40", "-setnumber", "n_side", "5", "cantilever.geo", "-o", "mesh.msh"], cwd=folder)
-        if made.returncode != 0:
-            raise RuntimeError(made.stderr[-300:])
+        job.done(["gmsh", "-3", "-setnumber", "n_length", "40", "-setnumber", "n_side", "5", "cantilever.geo", "-o", "mesh.msh"], cwd=folder)
         case = (job.root / "configs/cantilever/case.yaml").read_text().split("\n# scripts/study")[0]
         case = re.sub(r"^ *mesh-parameters:.*\n", "", case, flags=re.M).replace("cantilever.geo", "mesh.msh")
         (folder / "case.yaml").write_text(case)
@@ -56,9 +54,7 @@ def beside_empty(job):
 
 
 def heavy_libraries(job, program, folder):
-    result = job.run(["env", "LD_DEBUG=files", job.build / "bin" / program, "case.yaml"], cwd=folder)
-    if result.returncode != 0:
-        raise RuntimeError((result.stdout + result.stderr)[-300:])
+    result = job.done(["env", "LD_DEBUG=files", job.build / "bin" / program, "case.yaml"], cwd=folder)
     return sorted(set(HEAVY.findall(result.stderr)))
 
 

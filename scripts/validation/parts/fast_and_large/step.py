@@ -44,9 +44,7 @@ def instructions(job, program, what):
         folder = scene(job, what, steps)
         job.once(("meshed", what), lambda: job.run([program, "case.yaml"], cwd=folder))
         counts = folder / "counts"
-        result = job.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={counts}", program, "case.yaml"], cwd=folder)
-        if result.returncode != 0:
-            raise RuntimeError((result.stdout + result.stderr)[-300:])
+        job.done(["valgrind", "--tool=callgrind", f"--callgrind-out-file={counts}", program, "case.yaml"], cwd=folder)
         totals.append(int(re.search(r"^(?:totals|summary): (\d+)", counts.read_text(), re.M)[1]))
     return (totals[1] - totals[0]) / (n**dimension * (last - first))
 
@@ -59,9 +57,7 @@ def counted(job, what, share):
 def timed(job, program, what, steps):
     """Seconds in the steps by the run's own clock, and the mean divergence at the end [1/s]."""
     folder = scene(job, what, steps)
-    result = job.run([program, "case.yaml"], cwd=folder)
-    if result.returncode != 0:
-        raise RuntimeError((result.stdout + result.stderr)[-300:])
+    result = job.done([program, "case.yaml"], cwd=folder)
     seconds = sum(float(m) for m in re.findall(r"^(?:begin_step|solve|accept_step) +([\d.]+) ", result.stdout, re.M))
     return seconds, couplet.read_csv(folder / "out/fluid/balance.csv")["mean divergence [1/s]"][-1]
 

@@ -1,26 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures of "one door": binary foreign data (HDF5, checkpoints, messages of external programs)."""
-import json
-import os
-
 from validation.parts.trust import house as trust_house
 
 
-def cases(job, name, count):
-    """All tests of a fuzz program at `count` cases each, and whether it ended well."""
-    def make():
-        program = next(p for p in (job.build / "tests").rglob(name) if p.is_file() and os.access(p, os.X_OK))
-        file = job.scratch / f"{name}-all.json"
-        result = job.run(["env", f"COUPLET_FUZZ_COUNT={count}", program, f"--gtest_output=json:{file}"], 3600, cwd=job.scratch)
-        if not file.exists():
-            raise RuntimeError(f"{name} ended with code {result.returncode}: {result.stdout[-200:]}")
-        found = {t["name"]: t for suite in json.loads(file.read_text())["testsuites"] for t in suite["testsuite"]}
-        return found, result.returncode == 0
-    return job.once(("fuzz-all", name, count), make)
-
-
 def fuzz(job, name, test, count):
-    found, _ = cases(job, name, count)
+    found, _ = job.fuzz(name, count)
     one = found[test]
     apart = f", {one['crashed_apart']} crashed in the rehearsal and were refused" if "crashed_apart" in one else ""
     return (f"{one['tried']} tried, {one['refused']} refused{apart}, 0 crashes, slowest {one['slowest']} s, {one['megabytes']} MB",

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures of text data: the one reader of tables, what gzip may expand to, --check opens what a run opens."""
-import json
-import os
 import re
 
 from validation.parts.trust import house as trust_house
@@ -9,21 +7,9 @@ from validation.parts.trust import house as trust_house
 RUN = "tests/cli/check_files/run.py"
 
 
-def recorded(job, count, names):
-    """{test: what fuzz_tables recorded}, and whether all of them passed."""
-    program = next(p for p in (job.build / "tests").rglob("fuzz_tables") if p.is_file() and os.access(p, os.X_OK))
-    file = job.scratch / f"fuzz_tables_{count}.json"
-    result = job.run(["env", f"COUPLET_FUZZ_COUNT={count}", program, f"--gtest_filter={names}", f"--gtest_output=json:{file}"], 3600,
-                     cwd=job.scratch)
-    if not file.exists():
-        raise RuntimeError(f"fuzz_tables ended with code {result.returncode}: {result.stdout[-200:]}")
-    found = {t["name"]: t for suite in json.loads(file.read_text())["testsuites"] for t in suite["testsuite"]}
-    return found, result.returncode == 0 and not any(t.get("failures") for t in found.values())
-
-
 def fuzz(job, count):
     """Broken files and ways of writing numbers."""
-    found, good = recorded(job, count, "*broken*:*every_way*")
+    found, good = job.fuzz("fuzz_tables", count, "*broken*:*every_way*")
     broken = next(t for name, t in found.items() if name.startswith("broken"))
     ways = next(t for name, t in found.items() if name.startswith("every_way"))
     return (f"{broken['files']} files through 6 readers, {broken['refused']} of {broken['tried']} refused, slowest {broken['slowest']} s, "
@@ -32,7 +18,7 @@ def fuzz(job, count):
 
 
 def bombs(job):
-    found, good = recorded(job, 1, "*bombs*")
+    found, good = job.fuzz("fuzz_tables", 1, "*bombs*")
     test = next(iter(found.values()))
     return (f"{test['refused']} of {test['tried']} refused, slowest {test['slowest']} s, {test['megabytes']} MB",
             good and test["tried"] == test["refused"] and int(test["tried"]) >= 100)

@@ -28,10 +28,8 @@ def tables(job, case, prefixes=("", SMOOTH)):
 
     def make():
         names = ",".join(prefix + v for prefix in prefixes for v in VARIANTS)
-        result = job.run([job.root / "scripts/study", job.root / "configs" / folder / "case.yaml", f"--only={names}", f"--out={out}",
+        job.done([job.root / "scripts/study", job.root / "configs" / folder / "case.yaml", f"--only={names}", f"--out={out}",
                           f"--build={job.build}"], timeout=7200)
-        if result.returncode != 0:
-            raise RuntimeError(f"scripts/study ended with code {result.returncode}: {(result.stderr or result.stdout)[-300:]}")
         columns = read_columns(out / "table.csv")
         return {prefix: {row: {v: columns[prefix + v][ours] for v in VARIANTS} for row, ours in ROWS.items()}
                 for prefix in prefixes}
@@ -144,9 +142,7 @@ def bending_verdicts(job):
 def processor_seconds(job, command):
     import resource
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-    result = job.run(command)
-    if result.returncode != 0:
-        raise RuntimeError((result.stderr or result.stdout)[-300:])
+    result = job.done(command)
     return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before, result.stdout
 
 
@@ -169,9 +165,7 @@ def before(job):
         for command in (["git", "-C", job.root, "archive", f"--output={archive}", BEFORE], ["tar", "-xf", archive, "-C", tree],
                         ["cmake", "-G", "Ninja", "-S", tree, "-B", build, *(f"-D{k}={options[k]}" for k in keep if options.get(k))],
                         ["ninja", "-C", build, "bin/thermocline"]):
-            result = job.run(command, timeout=7200)
-            if result.returncode != 0:
-                raise RuntimeError((result.stderr or result.stdout)[-300:])
+            job.done(command, timeout=7200)
         return build / "bin/thermocline", tree / "configs/thermocline-andasol/case.yaml"
     return job.once("before", make)
 
@@ -201,8 +195,8 @@ def off_is_off(job):
     for name, sets in (("off", []), ("on", ["participants.tank.pump={}", "participants.tank.report.economics={field: 200}",
                                             "participants.tank.flow.tariff=[50]", "participants.tank.flow.load=[1]"])):
         out = job.scratch / f"bits-{name}"
-        job.run([job.build / "bin/thermocline", case, "--set=simulation.end-time=3 day", "--set=simulation.output.interval=1 day",
+        job.done([job.build / "bin/thermocline", case, "--set=simulation.end-time=3 day", "--set=simulation.output.interval=1 day",
                  "--set=participants.tank.report.run-in=1 day", f"--set=simulation.output.folder={out}",
-                 *(f"--set={s}" for s in sets)]).check_returncode()
+                 *(f"--set={s}" for s in sets)])
         outs.append((out / "tank/bed.csv").read_bytes() + (out / "tank/wall.csv").read_bytes())
     return "bed.csv and wall.csv " + ("are the same bytes" if outs[0] == outs[1] else "differ"), outs[0] == outs[1]

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures of runs, files and input: step counts, checkpoints, what is overwritten, geometry that runs commands, broken inputs,
 --check, start-up, signals."""
-import json
-import os
 import shutil
 import statistics
 import time
@@ -11,16 +9,9 @@ PROGRAMS = ("solid_solver", "fluid_solver", "mesh_mover", "thermocline", "couple
 
 
 def fuzz(job, name, count):
-    """What a fuzz test recorded, and whether it passed."""
-    def make():
-        program = next(p for p in (job.build / "tests").rglob(name) if p.is_file() and os.access(p, os.X_OK))
-        file = job.scratch / f"{name}.json"
-        result = job.run(["env", f"COUPLET_FUZZ_COUNT={count}", program, f"--gtest_output=json:{file}"], 3600, cwd=job.scratch)
-        if not file.exists():
-            raise RuntimeError(f"{name} ended with code {result.returncode}: {result.stdout[-200:]}")
-        test = json.loads(file.read_text())["testsuites"][0]["testsuite"][0]
-        return test, not test.get("failures") and result.returncode == 0
-    return job.once(("fuzz", name, count), make)
+    """What the one test of a fuzz program recorded, and whether it passed."""
+    found, passed = job.fuzz(name, count)
+    return next(iter(found.values())), passed
 
 
 def yaml(job):
