@@ -19,7 +19,8 @@ class SmallStrain final : public Equilibrium {
               const elastic::ElasticOperator& rows, const Effects& effects, const SolidParameters& parameters)
       : mesh_(mesh), kernel_(kernel), rows_(rows), effects_(effects), parameters_(parameters) {}
 
-  bool is_linear() const override { return true; }
+  EquilibriumMeans means() const override { return {true, true, true}; }
+  bool takes_pressure() const override { return false; }
   std::string name(const SolidSystem& system) const override { return system.method->name(); }
   void prepare(const SolidProblem& problem, SolidSystem& system) const override;
   void set_pressure(std::vector<double>) override {}

@@ -117,7 +117,7 @@ DiscreteStress SolidFields::discrete_stress(std::span<const double> points) cons
 }
 
 bool recovers_stress(const SolidBody& body) {
-  return body.equilibrium().is_linear() && !is_axisymmetric(body.elastic());
+  return body.equilibrium().means().recovers_stress && !is_axisymmetric(body.elastic());
 }
 
 std::vector<double> SolidFields::point_stress(std::span<const double> points,

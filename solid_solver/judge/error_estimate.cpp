@@ -166,7 +166,7 @@ void SolidErrorEstimate::see_step() {
       steps_.add(std::span(before.cell_v).first(n), std::span(now.cell_v).first(n), now.dt, before.dt,
                  norm(now.cell_u), norm);
   linear_.add({.error = left_by_solver() * step.size, .rate = step.rate, .size = step.size, .dt = step.dt});
-  if (body_.equilibrium().is_linear()) see_swing(now, step);
+  if (body_.equilibrium().means().compares_gradients) see_swing(now, step);
 }
 
 /// Half of u . K u is the strain energy, of the gradients without an energy nearly so.
@@ -184,13 +184,14 @@ coupling::ErrorParts SolidErrorEstimate::parts() const {
   coupling::ErrorParts parts;
   parts.dimension = body_.mesh().dim;
   if (stepper_.state().steps == 0) return parts;
+  const bool compares = body_.equilibrium().means().compares_gradients;
   if (body_.is_dynamic()) {
     parts.step = steps_.over_size();
     parts.linear = linear_.over_size();
   } else {
-    parts.linear = body_.equilibrium().is_linear() ? missed_work() : left_by_solver();
+    parts.linear = compares ? missed_work() : left_by_solver();
   }
-  if (!body_.equilibrium().is_linear()) {
+  if (!compares) {
     parts.mesh = finite_mesh_error();
     return parts;
   }

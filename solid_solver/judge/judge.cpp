@@ -18,7 +18,7 @@ SolidJudge::SolidJudge(const SolidBody& body, const SolidStepper& stepper, const
 
 /// Of the accepted state; a doubtful one is told once, loudly. Collective.
 void SolidJudge::look() {
-  if (!body_.equilibrium().is_linear()) return look_at_finite();
+  if (!body_.equilibrium().means().compares_gradients) return look_at_finite();
   const SolidState& state = stepper_.state();
   const std::vector<double> points = fields_.point_displacement();
   const StrainAudit strain = audit_strain(points, !body_.is_dynamic());

@@ -18,7 +18,6 @@ class LargeStrain : public Equilibrium {
   LargeStrain(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows)
       : mesh_(mesh), geometry_(rows.geometry()), rows_(rows) {}
 
-  bool is_linear() const override { return false; }
   std::string name(const SolidSystem&) const override { return name(); }
   void prepare(const SolidProblem&, SolidSystem&) const override {}
   std::vector<double> force_of_known(std::span<const double>) const override { return {}; }

@@ -64,17 +64,24 @@ struct SoftMotion {
   std::vector<double> shape{};  ///< by the rows of ElasticOperator; empty: not known
 };
 
+/// Means of judging a state, which not every equilibrium has.
+struct EquilibriumMeans {
+  bool recovers_stress = false;  ///< stress at points by patches of cells
+  bool has_products = false;     ///< those of ElasticPart are the work of a stage
+  bool compares_gradients =
+      false;  ///< two gradients of one displacement judge mesh and energy; else the energy of the law does
+};
+
 /// How a body resists, at small strain or at large, and how M m u + A(u) = b is solved for it. A state is the unknowns of
 /// ElasticOperator with its known columns. All but the first functions are collective.
 class Equilibrium {
  public:
   virtual ~Equilibrium() = default;
-  /// A(u) = K u: solutions can be added, and a shorter step meets the same equations.
-  virtual bool is_linear() const = 0;
+  virtual EquilibriumMeans means() const { return {}; }
   /// softness() and lowest_stiffness() are known.
   virtual bool has_tangent() const { return false; }
   /// Pressures stay normal to the surface that moves, so that they are a part of A: set_pressure().
-  virtual bool takes_pressure() const { return !is_linear(); }
+  virtual bool takes_pressure() const { return true; }
   /// For the log.
   virtual std::string name(const SolidSystem& system) const = 0;
 

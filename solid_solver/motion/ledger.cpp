@@ -98,7 +98,7 @@ double SolidLedger::kinetic(const SolidState& state, std::span<const double> kno
 void SolidLedger::add_work(const SolvedStage& stage) const {
   if (!body_.has_mass())
     add_face_work(stage);
-  else if (body_.equilibrium().is_linear())
+  else if (body_.equilibrium().means().has_products)
     add_symmetric_work(stage);
   else
     add_finite_work(stage);

@@ -1,26 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a body of revolution cannot have, each with the key to change.
 #include <algorithm>
-#include <array>
 
 #include "solid_solver/parameters/parameter_checks.hpp"
 
 namespace couplet::solid {
 namespace {
 
-using Type = SolidCondition::Type;
 using Method = MethodParameters;
-
-bool is_supported(const SolidCondition& c) {
-  constexpr std::array supported{
-      Type::fixed_displacement, Type::traction,     Type::pressure, Type::hydrostatic_pressure,
-      Type::symmetry,           Type::frictionless, Type::roller,   Type::free};
-  return std::ranges::find(supported, c.type) != supported.end();
-}
 
 bool has_supported_conditions(const SolidParameters& p) {
   return p.point_loads.empty() && std::ranges::all_of(p.boundaries, [](const auto& entry) {
-           return is_supported(entry.second) && std::ranges::all_of(entry.second.parts, is_supported);
+           return can_be_revolved(entry.second) && std::ranges::all_of(entry.second.parts, can_be_revolved);
          });
 }
 

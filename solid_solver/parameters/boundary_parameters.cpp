@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/parameters/boundary_parameters.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include "common/base/constants.hpp"
 #include "common/fv/expression.hpp"
+#include "solid_solver/parameters/parameter_checks.hpp"
 
 namespace couplet::solid {
 namespace {
@@ -179,6 +183,17 @@ void declare(config::Section& s, SolidBoundary& b, const int& dimension) {
       },
       "parts of the patch, such as a line of faces, with their own condition; the first one that selects a "
       "face applies");
+}
+
+bool is_pressure(const SolidCondition& condition) {
+  return condition.type == Type::pressure || condition.type == Type::hydrostatic_pressure;
+}
+
+bool can_be_revolved(const SolidCondition& condition) {
+  constexpr std::array supported{
+      Type::fixed_displacement, Type::traction,     Type::pressure, Type::hydrostatic_pressure,
+      Type::symmetry,           Type::frictionless, Type::roller,   Type::free};
+  return std::ranges::find(supported, condition.type) != supported.end();
 }
 
 }  // namespace couplet::solid

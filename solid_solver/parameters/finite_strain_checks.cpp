@@ -8,9 +8,6 @@ namespace couplet::solid {
 namespace {
 
 bool presses(const SolidParameters& p) {
-  const auto is_pressure = [](const SolidCondition& c) {
-    return c.type == SolidCondition::Type::pressure || c.type == SolidCondition::Type::hydrostatic_pressure;
-  };
   return std::ranges::any_of(p.boundaries, [&](const auto& entry) {
     return is_pressure(entry.second) || std::ranges::any_of(entry.second.parts, is_pressure);
   });

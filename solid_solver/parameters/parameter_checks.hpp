@@ -19,6 +19,10 @@ void check_buckling(config::Section& section, SolidParameters& parameters);
 void check_large_strain_estimate(config::Section& section, SolidParameters& parameters);
 /// What a body of revolution cannot have.
 void check_axisymmetric(config::Section& section, SolidParameters& parameters);
+/// Whether a condition pushes along the normal.
+bool is_pressure(const SolidCondition& condition);
+/// Whether a body of revolution can have a condition.
+bool can_be_revolved(const SolidCondition& condition);
 /// What an orthotropic material cannot have.
 void check_orthotropic(config::Section& section, SolidParameters& parameters);
 
