@@ -2,7 +2,7 @@
 """What most rows are measured by; rows.py finds these functions by their names. Each takes the job and gives (what the table shows, whether it is met).
 
 Tests: `claims` and `filtered` ask whether tests of a test executable pass, `tests` those that ctest knows, `script` whether a script ends well, `wrong` wrong
-configurations; `at_most`, `at_least`, `between`, `near`, `shown`, `told` judge what tests record: `pattern` chooses tests by name, `keys` (separated by
+configurations; `at_most`, `at_least`, `between`, `numbers`, `near`, `shown`, `told` judge what tests record: `pattern` chooses tests by name, `keys` (separated by
 spaces) the numbers; a test that did not pass is never a bar that is met.
 
 Runs: `run` reads numbers of a case of configs/ that one program runs and compares them with what is right."""
@@ -85,6 +85,16 @@ def at_least(job, program, pattern, keys, limit, also="", text="{:.2f}"):
 def between(job, program, pattern, keys, low, high, text="{:.3f}"):
     values, passed = recorded(job, program, pattern, keys)
     return listed(values, text), passed and all(low <= v <= high for v in values)
+
+
+def numbers(job, program, pattern, keys, text="{:.3g}"):
+    """Several, each with its range: {key: [least, most]}, null where there is no bound."""
+    said, met = [], True
+    for key, (low, high) in keys.items():
+        values, passed = recorded(job, program, pattern, key)
+        said.append(f"{key.replace('_', ' ')} {listed(values, text)}")
+        met = met and passed and all((low is None or v >= low) and (high is None or v <= high) for v in values)
+    return "; ".join(said), met
 
 
 def near(job, program, pattern, keys, wanted, share, text="{:.4g}"):

@@ -184,13 +184,6 @@ def test_passes(job, pattern):
     return f"{passed} of {total} tests passed{looked}", total > 0 and passed == total and "looked at" in looked
 
 
-def closing(job, kind):
-    """Constructed cases of tests/cli/errors: what dominates by the estimate at a run's end, on ranks, over a restart, off."""
-    passed, total, _, output = job.ctest(f"^cli_closing_estimate_{kind}$")
-    good = sum(line.strip().startswith("ok ") or ": ok " in line for line in output.splitlines())
-    return f"{passed} of {total} tests passed" + (f", {good} checks in them" if good else ""), total > 0 and passed == total
-
-
 @functools.cache
 def lines(root, commit):
     """Lines of the four harnesses and of the runner at a commit (the studies by axes, which are new, are not counted)."""

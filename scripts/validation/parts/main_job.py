@@ -107,12 +107,6 @@ def cantilever(job):
     return ", ".join(f"{t:.5f} m" for t in tips), test["passed"] and errors[0] > errors[1] > errors[2]
 
 
-def cavity(job):
-    u, passed = job.recorded("verification_fluid_cavity", "ghia", "largest_deviation_u")
-    v, _ = job.recorded("verification_fluid_cavity", "ghia", "largest_deviation_v")
-    return f"{max(u):.4f}, {max(v):.4f}", passed and max(u + v) <= 0.01
-
-
 # -- start, death, configuration, readers -----------------------------------------------------------------------------
 def scenarios(job, pattern, at_least, count):
     """Tests registered in ctest; `count` finds a number of scenarios in their output."""

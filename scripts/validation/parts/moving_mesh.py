@@ -176,12 +176,6 @@ def saves(job):
     return f"{shut[0]:.1f} sub-steps per step while it is shut, {shut[1]:.1f} without; {iterations[0]:.0f} iterations of the pressure, {iterations[1]:.0f} without", None
 
 
-def hard_mesh(job, test):
-    """A channel's parabola on it, with explicit and implicit viscous term: root mean square of the error over the largest velocity."""
-    errors, passed = job.recorded("stability_fluid_step_sizes", test, "error")
-    return f"error {', '.join(f'{e:.2e}' for e in errors)} of the largest velocity", passed
-
-
 def cavity_5000(job):
     """Beside its own extrapolation from 64^2, 96^2 and 128^2."""
     module = job.beside("configs/cavity/extrema.py")

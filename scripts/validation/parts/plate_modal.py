@@ -11,13 +11,6 @@ TABLE_4_1 = [30.57, 129.3, 319.7, 980.6, 1039, 1545, 2039, 2288, 2702, 3738, 382
 
 
 # -- modes ------------------------------------------------------------------------------------------------------------
-def frequencies(job, name):
-    found, passed = job.recorded("verification_plate_frequencies", f"/{name}$", "worst")
-    slope, _ = job.recorded("verification_plate_frequencies", f"/{name}$", "slope")
-    return (f"worst {100 * found[0]:.3f} %, slope {slope[0]:.2f}",
-            passed and found[0] <= 0.005 and slope[0] >= 1.8)
-
-
 def reed(job):
     out, _ = job.solve("plate-reed")
     rows = couplet.read_csv(out / "reed" / "frequencies.csv")

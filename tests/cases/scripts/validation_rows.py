@@ -53,6 +53,11 @@ assert [b.long for b in bars] == [False, True, True, True, True] and bars[1].wan
 job = types.SimpleNamespace(recorded=lambda program, pattern, key: ([-0.002], True))
 assert bars[1].measure(job) == ("-2.0e-03", False) and bars[2].measure(job) == ("-2.0e-03", True)
 
+job = types.SimpleNamespace(recorded=lambda program, pattern, key: ({"slope": [1.95, 2.0], "error": [0.3]}[key], True))
+assert shapes.numbers(job, "p", "t", {"slope": (1.9, None), "error": (None, 0.5)}) == ("slope 1.95, 2; error 0.3", True)
+assert not shapes.numbers(job, "p", "t", {"slope": (1.97, None)})[1] and not shapes.numbers(job, "p", "t", {"error": (0, 0.2)})[1]
+assert shapes.near(job, "p", "t", "error", 0.29, 0.05) == ("0.3 (+3.45 %)", True) and not shapes.near(job, "p", "t", "error", 0.29, 0.03)[1]
+
 refused("rows: {a: {wanted: x, tests: ^a$, claims: b}}", "'a': one measure, but there is tests, claims")
 refused("rows: {a: {wanted: x}}", "'a': one measure, but there is none")
 refused("rows: {a: {tests: ^a$}}", "'a': nothing is wanted")

@@ -2,13 +2,7 @@
 """Measures of the thermocline's elements: closed forms, energy balances, Solar One, Pacheco's tank, hard cases, cost."""
 import re
 
-BED, MECHANICS, EXPERIMENTS = (f"verification_thermocline_{name}" for name in ("bed", "mechanics", "solar_one"))
-
-
-def late_front(job):
-    (speed,), passed = job.recorded(BED, "late_width", "speed_ratio")
-    (width,), _ = job.recorded(BED, "late_width", "width_ratio")
-    return f"{speed:.5f}, {width:.4f}", passed and abs(speed - 1) < 1e-3 and abs(width - 1) < 0.02
+MECHANICS, EXPERIMENTS = (f"verification_thermocline_{name}" for name in ("mechanics", "solar_one"))
 
 
 def factors(job):

@@ -91,13 +91,6 @@ def solar_field(job):
     return got, len(chosen) == 8 and all(v["passed"] for v in chosen.values())
 
 
-def table_5_3(job):
-    tests, _ = job.gtest(TESTS)
-    chosen = [v for k, v in tests.items() if "Table53" in k]
-    worst = max(float(v["worst"]) for v in chosen)
-    return f"largest deviation {100 * worst:.2f} % of {len(chosen)} tanks", len(chosen) == 4 and worst <= 0.005
-
-
 # -- cost -------------------------------------------------------------------------------------------------------------
 def scaling(job):
     """The 18 variants over fewer days, one and two at a time, alternately: the better time of each."""

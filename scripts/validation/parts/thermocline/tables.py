@@ -93,11 +93,6 @@ def outlet_rule(job):
 
 
 # -- practitioners ----------------------------------------------------------------------------------------------------
-def phase_change(job):
-    get = lambda key: job.recorded("verification_thermocline_melting", "stefans_front", key)[0][0]
-    return f"{100 * get('fine'):.2f} % on 200 cells, order {get('order'):.2f}", get("fine") <= 0.01 and get("order") >= 1
-
-
 def melting_layers(job):
     """Case A with layers of capsules at both ends in place of rock and sand."""
     out = job.scratch / "melting"

@@ -145,10 +145,3 @@ def limits(job):
         if (limit := settings.get("TIMEOUT", 1500)) < 10 * cost[test["name"]]:
             short.append(f"{test['name']} {limit:.0f} s for {cost[test['name']]:.1f} s")
     return f"{seen} quick tests that were run" + (f"; too short: {'; '.join(short)}" if short else ""), seen >= 250 and not short
-
-
-def paraview(job):
-    passed, total, skipped, _ = job.ctest("^cli_output_of_")
-    if skipped:
-        raise RuntimeError(f"{skipped} of {total} were skipped: ParaView's Python (python3-paraview, COUPLET_PVPYTHON) is not there")
-    return f"{passed} of {total} passed", passed == total == 2
