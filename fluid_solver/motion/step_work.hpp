@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fluid_solver/boundary/boundary.hpp"
+#include "fluid_solver/lines/fourth_order.hpp"
 #include "fluid_solver/motion/gap_pockets.hpp"
 #include "fluid_solver/motion/gaps.hpp"
 #include "fluid_solver/motion/immersed.hpp"
@@ -54,7 +55,8 @@ struct StepWork {
   std::shared_ptr<const Placement<D>> around_gaps{};  ///< with blocked cells only
   std::shared_ptr<const Placement<D>> assembled{};    ///< placement of the pressure matrix
 
-  std::optional<RotatingFrame<D>> frame{};  ///< empty: none
+  std::optional<RotatingFrame<D>> frame{};   ///< empty: none
+  std::unique_ptr<FourthOrder<D>> fourth{};  ///< null: second order everywhere
 
   SubStep<D> step{};
   History<D> by{};                  ///< how the step sees its begin
@@ -79,6 +81,10 @@ struct StepWork {
   /// The open share of a face, and what bodies displace through the rest of it [m^3/s].
   double open_flux(Index f, double flux) const {
     return bodies->open(f) * flux + bodies->carried(f, *step.to);
+  }
+  /// Whose means at the faces are the fluxes of u. Collective.
+  const Vectors<D>& flux_velocity(const Placement<D>& at, const Vectors<D>& u) const {
+    return fourth ? fourth->flux_velocity(at, u) : u;
   }
   bool gap_closed() const { return gaps && gaps->active(); }
   /// What a value linear between the cells lacks at a face of a skewed mesh.

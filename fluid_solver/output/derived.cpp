@@ -146,6 +146,7 @@ EnergyBudget energy_budget(const Fluid<D>& fluid) {
     const int owned = (p < mesh.cells.n_owned()) + (n < mesh.cells.n_owned());  // shared by two ranks: half
     sums[1] += 0.5 * owned * mu * at.conductance[f] * (s.u[n] - s.u[p]).squaredNorm();
   }
+  if (fluid.fourth() && !s.implicit) sums[1] += fluid.fourth()->dissipation(mu, s.u);
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
     sums[1] +=
         mu * at.conductance[f] * (s.u_boundary[f - mesh.n_interior] - s.u[mesh.owner[f]]).squaredNorm();

@@ -155,6 +155,12 @@ void declare_schemes(config::Section& s, FluidParameters& p) {
           "independent of the step; incremental: driven by pressure changes only, second order in time with "
           "the lowest loss of kinetic energy, but pressure noise is not damped; non-incremental: computed "
           "anew in each step, first order in time");
+  s.choice("face-values", p.face_values,
+           {{"second-order", FaceValues::second_order}, {"fourth-order", FaceValues::fourth_order}})
+      .doc(
+          "order in space of convection, explicit friction, fluxes and pressure gradient; fourth-order: along lines of "
+          "hexahedra or quadrilaterals whose faces lie straight across, away from walls, second order elsewhere; a mesh "
+          "at rest");
   s.choice("volume-level", p.volume_level,
            {{"none", VolumeLevelBy::nobody}, {"structure", VolumeLevelBy::structure}})
       .doc(

@@ -20,6 +20,9 @@ enum class ExplicitScheme { adams_bashforth, runge_kutta };
 /// How the face fluxes follow the cells' velocities from step to step.
 enum class Projection { flux_memory, incremental, non_incremental };
 
+/// Order of the operators along lines of hexahedra and quadrilaterals.
+enum class FaceValues { automatic, second_order, fourth_order };
+
 /// Who sets the pressure level, and so holds the volume, of a fluid without an outlet.
 enum class VolumeLevelBy { nobody, structure };
 
@@ -117,6 +120,7 @@ struct FluidParameters {
   std::optional<RotationParameters> rotating_frame;  // that mesh and velocities are seen from; absent: none
   ExplicitScheme scheme = ExplicitScheme::adams_bashforth;
   Projection projection = Projection::flux_memory;
+  FaceValues face_values = FaceValues::second_order;
   VolumeLevelBy volume_level = VolumeLevelBy::nobody;
   std::optional<CompressibilityParameters> compressibility;  // absent: none, judged by the density
   std::map<std::string, ProbeParameters> probes;

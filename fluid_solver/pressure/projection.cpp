@@ -250,6 +250,7 @@ void PressureProjection<D>::set_gradient(const Placement<D>& at, PressureLevel<D
   pressure_gradient(at, level.p, level.boundary, correction, level.gradient);
   for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) level.gradient[c] /= at.volume[c];
   k_.mesh.cells.update_ghosts(flat<D>(level.gradient), D);
+  if (k_.fourth) k_.fourth->sharpen(at, level.gradient);
 }
 
 template <int D>

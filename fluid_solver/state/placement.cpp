@@ -159,6 +159,23 @@ std::shared_ptr<const Placement<D>> translated(const Placement<D>& from, const V
   return placement;
 }
 
+template <int D>
+std::shared_ptr<const Placement<D>> in_the_middle(const mesh::Mesh& mesh, const Placement<D>& from,
+                                                  std::span<const char> faces) {
+  auto placement = std::make_shared<Placement<D>>(from);
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if (!faces[f]) continue;
+    placement->weight[f] = 0.5;
+    if (placement->skewed()) placement->skew[f].setZero();
+  }
+  if (placement->skewed()) cure_gradients(mesh, *placement);
+  return placement;
+}
+
+template std::shared_ptr<const Placement<2>> in_the_middle<2>(const mesh::Mesh&, const Placement<2>&,
+                                                              std::span<const char>);
+template std::shared_ptr<const Placement<3>> in_the_middle<3>(const mesh::Mesh&, const Placement<3>&,
+                                                              std::span<const char>);
 template std::shared_ptr<const Placement<2>> translated<2>(const Placement<2>&, const Vec3&);
 template std::shared_ptr<const Placement<3>> translated<3>(const Placement<3>&, const Vec3&);
 template std::shared_ptr<const Placement<2>> make_placement<2>(const mesh::Mesh&, const mesh::Geometry&);

@@ -62,4 +62,9 @@ std::shared_ptr<const Placement<D>> make_placement(const mesh::Mesh& mesh, std::
 template <int D>
 std::shared_ptr<const Placement<D>> translated(const Placement<D>& from, const Vec3& by);
 
+/// The same with values at the marked interior faces that are means of the cells' values, wherever the face lies between them.
+template <int D>
+std::shared_ptr<const Placement<D>> in_the_middle(const mesh::Mesh& mesh, const Placement<D>& from,
+                                                  std::span<const char> faces);
+
 }  // namespace couplet::fluid

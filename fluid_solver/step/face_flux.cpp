@@ -67,7 +67,8 @@ void FaceFlux<D>::predict(const State<D>& from) {
   // Without the pressure the velocity at a wall is still that of level n: its change comes with grad p.
   if (now.skewed()) k_.boundary.close(k_.mesh, now, k_.u_p, from.w, k_.u_boundary);
   k_.gradient_of = 0;
-  mean_flux<D>(k_.mesh, now, k_.u_p, k_.u_boundary, k_.velocity_gradient, k_.phi_orthogonal);
+  mean_flux<D>(k_.mesh, now, k_.flux_velocity(now, increment_of_fourth() ? without_pressure() : k_.u_p),
+               k_.u_boundary, k_.velocity_gradient, k_.phi_orthogonal);
   for (const Index b : k_.boundary.rows().of_pressure) {
     const Index f = k_.mesh.n_interior + b;
     k_.phi_orthogonal[f] = k_.u_p[k_.mesh.owner[f]].dot(now.area[f]);
@@ -111,12 +112,13 @@ void FaceFlux<D>::add_memory(const State<D>& from) {
       memory_pass(k_.mesh, {k_.step.dt, now, before}, relaxation_.data(), from.memory.data(),
                   ratio > 0 ? from.memory_old.data() : nullptr, k_.phi_orthogonal.data(), far_.data());
   if (!k_.by.pressure[0]) return;
+  const Vectors<D>& gradient = k_.flux_velocity(*from.placement, k_.by.pressure[0]->gradient);
   for (const Index f : std::span(far_).first(n_far)) {
     const double rate = 0.5 * (relaxation_[k_.mesh.owner[f]] + relaxation_[k_.mesh.neighbour[f]]);
     const double decay = rate * k_.step.dt, share = decay / (1 + decay);
     const double mid = ratio > 0 ? now * from.memory[f] + before * from.memory_old[f] : from.memory[f];
     k_.phi_orthogonal[f] +=
-        largest_decay * mid - share * (from.memory[f] + k_.step.dt * pressure_excess(from, f));
+        largest_decay * mid - share * (from.memory[f] + k_.step.dt * pressure_excess(from, gradient, f));
   }
 }
 
@@ -133,20 +135,45 @@ void FaceFlux<D>::add_increment(const State<D>& from) {
     const double decay = rate * k_.step.dt;
     fading_[f] = from.memory[f] / (1 + decay * (1 + decay / 2));  // exp(-decay) to second order
     k_.phi_orthogonal[f] += fading_[f];
-    if (k_.by.pressure[0]) k_.phi_orthogonal[f] -= k_.step.dt * pressure_excess(from, f);
+    if (!k_.by.pressure[0]) continue;
+    k_.phi_orthogonal[f] += k_.step.dt * (k_.fourth ? pressure_flux(from, f) / k_.rho
+                                                    : -pressure_excess(from, k_.by.pressure[0]->gradient, f));
   }
 }
 
-/// e of the last step: what its pressure does to the flux and not to the mean velocity [m^3/s^2].
+/// Of the flux of fourth order the part of the old pressure that its gradient makes is in the mean velocity already.
 template <int D>
-double FaceFlux<D>::pressure_excess(const State<D>& from, Index f) const {
+bool FaceFlux<D>::increment_of_fourth() const {
+  return k_.fourth && k_.parameters.projection == Projection::incremental && k_.by.pressure[0];
+}
+
+template <int D>
+const Vectors<D>& FaceFlux<D>::without_pressure() {
+  const Vectors<D>& gradient = k_.by.pressure[0]->gradient;
+  const double factor = k_.step.dt / k_.rho;
+  without_pressure_.resize(k_.u_p.size());
+  for (std::size_t c = 0; c < k_.u_p.size(); ++c) without_pressure_[c] = k_.u_p[c] - factor * gradient[c];
+  return without_pressure_;
+}
+
+/// g (p_N - p_P) + (grad p)_f . k of the pressure of the last step [N/m].
+template <int D>
+double FaceFlux<D>::pressure_flux(const State<D>& from, Index f) const {
   const Placement<D>& at = *from.placement;
   const PressureLevel<D>& level = *k_.by.pressure[0];
   const Index p = k_.mesh.owner[f], n = k_.mesh.neighbour[f];
+  const double flux = at.conductance[f] * (level.p[n] - level.p[p]);
+  if (at.oblique.empty()) return flux;
   const double w = at.weight[f];
-  const double flux = at.conductance[f] * (level.p[n] - level.p[p]) +
-                      (w * level.gradient[p] + (1 - w) * level.gradient[n]).dot(at.oblique_of(f));
-  return (0.5 * (level.gradient[p] + level.gradient[n]).dot(at.area[f]) - flux) / k_.rho;
+  return flux + (w * level.gradient[p] + (1 - w) * level.gradient[n]).dot(at.oblique[f]);
+}
+
+/// e of the last step: what its pressure does to the flux and not to the mean velocity [m^3/s^2]. `gradient`: of that pressure, as
+/// it changes the flux velocity.
+template <int D>
+double FaceFlux<D>::pressure_excess(const State<D>& from, const Vectors<D>& gradient, Index f) const {
+  const Vec<D> mean = 0.5 * (gradient[k_.mesh.owner[f]] + gradient[k_.mesh.neighbour[f]]);
+  return (mean.dot(from.placement->area[f]) - pressure_flux(from, f)) / k_.rho;
 }
 
 template <int D>
@@ -157,7 +184,8 @@ void FaceFlux<D>::remember(State<D>& s) {
     s.memory.swap(fading_);
   } else {
     s.memory.resize(k_.mesh.n_interior);
-    subtract_mean_flux<D>(k_.mesh, *k_.step.to, s.u, s.u_boundary, k_.velocity_gradient, s.phi, s.memory);
+    subtract_mean_flux<D>(k_.mesh, *k_.step.to, k_.flux_velocity(*k_.step.to, s.u), s.u_boundary,
+                          k_.velocity_gradient, s.phi, s.memory);
     if (k_.step.to->skewed()) k_.gradient_of = s.number;
   }
   if (k_.bodies && k_.bodies->cuts()) return remember_cuts(s);

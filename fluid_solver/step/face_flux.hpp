@@ -24,13 +24,17 @@ class FaceFlux {
   void set_relaxation(const State<D>& from);
   void add_memory(const State<D>& from);
   void add_increment(const State<D>& from);
-  double pressure_excess(const State<D>& from, Index f) const;
+  bool increment_of_fourth() const;
+  const Vectors<D>& without_pressure();
+  double pressure_flux(const State<D>& from, Index f) const;
+  double pressure_excess(const State<D>& from, const Vectors<D>& gradient, Index f) const;
 
   StepWork<D>& k_;
   std::vector<double> relaxation_;  // [1/s]
   std::vector<Index> far_;          // faces whose decay is large
   std::vector<double> mean_;        // fluxes beside the surface of bodies that cut cells
-  std::vector<double> fading_;      // incremental: of the start's delta, at t^{n+1}
+  Vectors<D> without_pressure_;
+  std::vector<double> fading_;  // incremental: of the start's delta, at t^{n+1}
 };
 
 }  // namespace couplet::fluid

@@ -90,6 +90,8 @@ class Fluid {
 
   /// Null: no immersed bodies.
   const ImmersedBodies<D>* bodies() const { return step_.bodies(); }
+  /// Null: second order everywhere.
+  const FourthOrder<D>* fourth() const { return step_.fourth(); }
   /// Null: no gaps that may close.
   const Gaps<D>* gaps() const { return step_.gaps(); }
 

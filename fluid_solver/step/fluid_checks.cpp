@@ -45,6 +45,17 @@ void check_waves(const FluidParameters& parameters) {
     refuse("the stages of runge-kutta", "'scheme: runge-kutta'");
 }
 
+void check_order(const FluidParameters& parameters, bool moving) {
+  const auto refuse = [](const char* with, const char* remove) {
+    throw Error(
+        "face-values: fourth-order is not supported together with {}; remove {}, or use second-order.", with,
+        remove);
+  };
+  if (moving) refuse("a mesh that moves", "'motion' or the mesh mover");
+  if (!parameters.bodies.empty()) refuse("immersed bodies", "'bodies'");
+  if (!parameters.gaps.empty()) refuse("gaps that close", "'gaps'");
+}
+
 void check_axes(const FluidParameters& parameters, int dim) {
   if (parameters.rotating_frame) fv::check_axis(parameters.rotating_frame->axis, dim, "rotating-frame.axis");
   for (const auto& [name, b] : parameters.boundaries)
@@ -88,6 +99,7 @@ void check_together(const mesh::Mesh& mesh, const Boundary<D>& boundary, FluidPa
       throw Error("viscous: implicit is not possible with immersed bodies, which act on the explicit step.");
     parameters.viscous = ViscousTreatment::explicit_;
   }
+  if (parameters.face_values == FaceValues::fourth_order) check_order(parameters, moving);
   if (parameters.is_compressible()) check_waves(parameters);
   if (!parameters.gaps.empty() && boundary.closed() && !parameters.is_compressible())
     throw Error(

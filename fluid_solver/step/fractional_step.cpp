@@ -34,6 +34,15 @@ FractionalStep<D>::FractionalStep(const mesh::Mesh& mesh, const std::vector<Vec3
 }
 
 template <int D>
+std::shared_ptr<const Placement<D>> FractionalStep<D>::raise_order(const Placement<D>& at) {
+  Lines<D> lines(k_.mesh, at);
+  auto seen = lines.seen(k_.mesh, at);
+  k_.fourth = std::make_unique<FourthOrder<D>>(k_.mesh, std::move(lines));
+  predictor_.rate_operator().set_fourth(k_.fourth.get());
+  return seen;
+}
+
+template <int D>
 void FractionalStep<D>::predict(const State<D>& from, const History<D>& by, SubStep<D> step,
                                 const Vectors<D>& w) {
   k_.step = std::move(step);
@@ -105,7 +114,7 @@ void FractionalStep<D>::project_initial(State<D>& s) {
   k_.step = {k_.rho, s.placement, {}, s.points};  // dt/rho = 1
   mark_level(s);
   if (k_.bodies) k_.bodies->force(at, k_.step.dt, s.u);
-  mean_flux<D>(k_.mesh, at, s.u, s.u_boundary, k_.velocity_gradient, k_.phi_p);
+  mean_flux<D>(k_.mesh, at, k_.flux_velocity(at, s.u), s.u_boundary, k_.velocity_gradient, k_.phi_p);
   if (k_.bodies && k_.bodies->cuts()) k_.bodies->carry_to_open(at, s.u, k_.phi_p);
   for (std::size_t b = 0; b < s.w.size(); ++b)
     k_.phi_p[k_.mesh.n_interior + b] = s.u_boundary[b].dot(at.area[k_.mesh.n_interior + b]);

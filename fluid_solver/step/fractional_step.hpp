@@ -28,6 +28,11 @@ class FractionalStep {
   FractionalStep(const mesh::Mesh& mesh, const std::vector<Vec3>& points_at_rest, const Boundary<D>& boundary,
                  const FluidParameters& parameters, bool moving);
 
+  /// Fourth order along the lines of a mesh at rest, from now on; gives the placement to use. Collective.
+  std::shared_ptr<const Placement<D>> raise_order(const Placement<D>& at);
+  /// Null: second order everywhere.
+  const FourthOrder<D>* fourth() const { return k_.fourth.get(); }
+
   /// `by`: how the step sees the level it starts from; `w`: given velocity per boundary face at t^{n+1}, as
   /// far as it is known. Collective.
   void predict(const State<D>& from, const History<D>& by, SubStep<D> step, const Vectors<D>& w);

@@ -204,6 +204,7 @@ void RateOperator<D>::apply(const State<D>& state, bool split, bool correct_obli
   rates.rate.assign(mesh_.cells.n_local(), Vec<D>::Zero());
   rates.viscous.assign(split ? mesh_.cells.n_local() : 0, Vec<D>::Zero());
   face_loop(state, split, rates);
+  if (fourth_) fourth_->add_rates(state, split ? 0 : nu_, rates.rate);
   if (compressible_) add_dilatation(state, rates.rate);
   if (!correct_oblique && state.eddy.empty()) return;
   if (!gradient) {

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "fluid_solver/boundary/boundary.hpp"
+#include "fluid_solver/lines/fourth_order.hpp"
 #include "fluid_solver/state/state.hpp"
 
 namespace couplet::fluid {
@@ -55,6 +56,8 @@ class RateOperator {
   /// Collective.
   void add_oblique(const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& u_boundary,
                    Vectors<D>& rate);
+  /// Null: second order everywhere.
+  void set_fourth(const FourthOrder<D>* fourth) { fourth_ = fourth; }
   /// state.eddy from state.u. Collective.
   void set_eddy_viscosity(const TurbulenceParameters& model, State<D>& state);
 
@@ -67,6 +70,7 @@ class RateOperator {
   const Boundary<D>& boundary_;
   double nu_;
   bool compressible_;
+  const FourthOrder<D>* fourth_ = nullptr;
   std::vector<double> dilatation_;
   std::vector<Tensor<D>> gradient_;
 };

@@ -41,6 +41,7 @@ class StepSize {
            ExplicitScheme scheme = ExplicitScheme::adams_bashforth);
   /// Largest rate of the Coriolis force [1/s]; 0: none.
   void set_frame_rate(double rate) { frame_rate_ = rate; }
+  void set_fourth(bool fourth) { fourth_ = fourth; }
   StepLimits limits(const State<D>& state);
   /// Of limits(), for one treatment of the viscous term; one more loop over faces and cells. Collective.
   StepLimiter limiter(const State<D>& state, bool implicit);
@@ -60,6 +61,7 @@ class StepSize {
   const Boundary<D>& boundary_;
   double nu_, frame_rate_ = 0;
   ExplicitScheme scheme_;
+  bool fourth_ = false;                  // operators of fourth order
   std::vector<std::uint8_t> few_faces_;  // of each owned cell: fewer than a box has
   Vectors<2> rates_;                     // of convection and diffusion
   std::vector<double> eddy_, peclet_of_;

@@ -11,6 +11,8 @@ class SubStepSize {
  public:
   SubStepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary, const FluidParameters& parameters);
 
+  /// Whether operators are of fourth order.
+  void set_fourth(bool fourth) { size_.set_fourth(fourth); }
   /// Of a coupling step [s] that starts from `level`; `frame_rate`: see StepSize. Chooses begin.implicit, and begins the
   /// multi-step schemes anew where that changes. Collective.
   void begin_step(const State<D>& level, double time, double dt, double frame_rate, History<D>& begin);
