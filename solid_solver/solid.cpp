@@ -3,7 +3,9 @@
 
 #include <utility>
 
+#include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
+#include "common/log/log.hpp"
 #include "solid_solver/effects/effect_cards.hpp"
 #include "solid_solver/output/output.hpp"
 
@@ -27,7 +29,7 @@ Solid::~Solid() = default;
 
 void Solid::begin_step(const coupling::Step& step) {
   const SolidOutputParameters& chosen = body_.parameters().output;
-  dt_ = step.dt;
+  dt_ = step.dt, is_last_ = step.is_last;
   stepper_.begin_step(step, !interface_.takes_temperature());
   if (chosen.spectrum && body_.is_dynamic() && step.number == 0) output_->write_spectrum(step.dt);
   if (chosen.modes > 0 && body_.is_dynamic() && step.number == 0) output_->write_modes(errors_.has_value());
@@ -53,10 +55,21 @@ coupling::StepReport Solid::accept_step() {
     judge_.see_buckling();
     judge_.follow_path();
   }
+  if (is_last_) estimate_quantities();
   stepper_.release_solver();
   for (const auto& effect : body_.effects())
     if (effect->wants_stress()) effect->take_stress(fields_.cell_stress(fields_.point_displacement()));
   return {.dt = stepper_.state().dt, .iterations = stepper_.effort().iterations};
+}
+
+/// While there is what the state was solved with.
+void Solid::estimate_quantities() {
+  if (body_.parameters().quantities.empty() || !stepper_.method()) return;
+  try {
+    quantities_ = solid::estimate_quantities(body_, fields_, stepper_.state(), *stepper_.method());
+  } catch (const SolveFailure& failure) {
+    log::warn("quantities: the estimate failed: {}", failure.what());
+  }
 }
 
 void Solid::collect_errors() {
@@ -86,6 +99,8 @@ std::vector<std::string> Solid::finish() {
   if (chosen.modes > 0 && !body_.is_dynamic()) output_->write_preloaded_modes();
   std::vector<std::string> sentences = judge_.sentences();
   judge_.finish_path(sentences);
+  if (!is_last_) estimate_quantities();  // a partner's load may be the last
+  tell_quantities(body_.mesh().comm, context_, quantities_);
   for (const auto& effect : body_.effects()) effect->judge(sentences);
   return sentences;
 }

@@ -15,6 +15,7 @@
 #include "solid_solver/judge/error_estimate.hpp"
 #include "solid_solver/judge/judge.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
+#include "solid_solver/output/quantities.hpp"
 
 namespace couplet::solid {
 
@@ -38,6 +39,8 @@ class Solid final : public coupling::Participant, public coupling::EstimatesErro
   void load(io::CheckpointReader& file) override;
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
+  /// Those of the last step, after it.
+  const std::vector<QuantityEstimate>& quantities() const { return quantities_; }
   std::vector<effects::EffectVerdict> audit() const override;
   std::vector<std::string> finish() override;
   void collect_errors() override;
@@ -49,15 +52,18 @@ class Solid final : public coupling::Participant, public coupling::EstimatesErro
   const SolidJudge& judge() const { return judge_; }
 
  private:
+  void estimate_quantities();
   const SolidContext context_;
   SolidBody body_;
   const SolidInterface interface_;
-  double dt_ = 0;  // of the step that was begun
+  double dt_ = 0;         // of the step that was begun
+  bool is_last_ = false;  // likewise
   SolidStepper stepper_;
   const SolidFields fields_;
   SolidJudge judge_;
   std::optional<SolidErrorEstimate> errors_;  // none: not wanted
   std::unique_ptr<SolidOutput> output_;
+  std::vector<QuantityEstimate> quantities_;  // of the state at the end of the run
 };
 
 }  // namespace couplet::solid

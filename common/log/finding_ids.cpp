@@ -45,6 +45,7 @@ constexpr std::array ids{
     // solid_solver
     FindingId{answer, "stress-error",
               "estimated error of the stress at a probe, and of the largest equivalent stress"},
+    FindingId{answer, "quantity-error", "estimated error of a quantity of interest"},
     FindingId{answer, "strain-energy", "work and strain energy, or two face gradients, disagree"},
     FindingId{answer, "energy-growth", "the motion has more energy than was supplied"},
     FindingId{answer, "heat-swing", "the temperature oscillates from step to step"},

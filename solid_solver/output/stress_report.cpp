@@ -67,6 +67,11 @@ ReportedStress largest(const SolidBody& body, const SolidFields& fields, std::sp
 
 }  // namespace
 
+Vec3 place_of_largest_stress(const SolidBody& body, const SolidFields& fields,
+                             std::span<const double> points) {
+  return largest(body, fields, points, 0).place;
+}
+
 std::vector<ReportedStress> reported_stresses(const SolidBody& body, const SolidFields& fields,
                                               const SolidProbes& probes, double mesh) {
   if (!recovers_stress(body)) return {};

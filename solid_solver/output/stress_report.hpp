@@ -19,6 +19,10 @@ struct ReportedStress {
   double error;       ///< estimated, over it; NaN: not known
 };
 
+/// Where the equivalent stress is largest [m], on all ranks. `points`: displacement of all local points. Collective.
+Vec3 place_of_largest_stress(const SolidBody& body, const SolidFields& fields,
+                             std::span<const double> points);
+
 /// At the probes that watch a stress and, of static runs, where it is largest. The error of the tensor over its norm: the larger of
 /// what the fits of the recovery leave there (StressRecovery::left_at_points) and of what the mesh leaves in the displacement
 /// (`mesh`, a share), which strains and stresses follow. Where the largest stress grows with each refinement (a clamped or inner corner), the

@@ -21,6 +21,22 @@ std::string unknown_field(const std::vector<std::string>& chosen) {
   return chosen.empty() ? "at least one field is needed" : "";
 }
 
+std::string wrong_quantity(const SolidQuantity& q) {
+  if (q.field != "displacement" && q.field != "stress" && q.field != "equivalent-stress")
+    return fmt::format("unknown field '{}'; the fields are displacement, stress and equivalent-stress",
+                       q.field);
+  const std::vector<std::string> components =
+      q.field == "displacement" ? std::vector<std::string>{"x", "y", "z"}
+      : q.field == "stress"     ? std::vector<std::string>{"xx", "yy", "zz", "xy", "yz", "xz"}
+                                : std::vector<std::string>{""};
+  if (std::ranges::find(components, q.component) == components.end())
+    return q.field == "equivalent-stress"
+               ? "an equivalent stress has no component"
+               : fmt::format("a {} has the components {}; give one", q.field, base::join(components));
+  if (q.point.empty() && q.field != "equivalent-stress") return fmt::format("a {} needs a 'point'", q.field);
+  return q.point.size() == 1 || q.point.size() > 3 ? "'point' has one number per dimension" : "";
+}
+
 }  // namespace
 
 void declare(config::Section& s, SolidProbe& p) {
@@ -30,6 +46,16 @@ void declare(config::Section& s, SolidProbe& p) {
           "fields to record: displacement, velocity, acceleration, stress, equivalent-stress, "
           "principal-stress, strain, temperature");
   s.check([&] { return unknown_field(p.fields); }, "fields");
+}
+
+void declare(config::Section& s, SolidQuantity& q) {
+  s.value("point", q.point)
+      .unit("m")
+      .plausible(1e-9, 1e4)
+      .doc("position in the undeformed solid; of an equivalent stress none: where it is largest");
+  s.value("field", q.field).doc("displacement, stress or equivalent-stress");
+  s.value("component", q.component).doc("x, y or z of a displacement; xx, yy, zz, xy, yz or xz of a stress");
+  s.check([&] { return wrong_quantity(q); }, "field");
 }
 
 void declare(config::Section& s, SolidOutputParameters& o) {

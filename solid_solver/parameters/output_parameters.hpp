@@ -14,6 +14,13 @@ struct SolidProbe {
   std::vector<std::string> fields{"displacement"};
 };
 
+/// A number that the run is made for, and whose error it estimates at its end.
+struct SolidQuantity {
+  std::vector<double> point;  // [m]; empty: where the equivalent stress is largest
+  std::string field = "displacement";
+  std::string component;  // "x" of a displacement, "xx" of a stress; of an equivalent stress none
+};
+
 /// Fields written at the output interval, and the energies.
 struct SolidOutputParameters {
   bool deformed = true;
@@ -33,6 +40,7 @@ struct SolidOutputParameters {
 };
 
 void declare(config::Section& section, SolidProbe& probe);
+void declare(config::Section& section, SolidQuantity& quantity);
 void declare(config::Section& section, SolidOutputParameters& output);
 
 }  // namespace couplet::solid

@@ -165,6 +165,20 @@ void check_large_strain_estimate(config::Section& s, SolidParameters& p) {
       "output");
 }
 
+void check_quantities(config::Section& s, SolidParameters& p) {
+  s.check(
+      [&p]() -> std::string {
+        if (p.quantities.empty()) return "";
+        if (p.analysis != SolidParameters::Analysis::static_ || has_finite_strain(p))
+          return "the errors of 'quantities' are estimated in a linear static analysis; 'scripts/study --quantities' estimates those of "
+                 "any run, by differences of coarser ones";
+        if (is_axisymmetric(p) || has_rigid_patch(p))
+          return "'quantities' support neither a body of revolution nor a patch that moves as a rigid body";
+        return symmetric_suits(p) ? "" : "'quantities' require 'face-gradient: symmetric', the default";
+      },
+      "quantities");
+}
+
 /// What an elastic matrix cannot have, each with the key to change.
 void check_orthotropic(config::Section& s, SolidParameters& p) {
   using Method = MethodParameters;

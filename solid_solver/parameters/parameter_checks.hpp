@@ -17,6 +17,8 @@ void check_rigid_patches(config::Section& section, SolidParameters& parameters);
 void check_buckling(config::Section& section, SolidParameters& parameters);
 /// What the estimate of large strain cannot have.
 void check_large_strain_estimate(config::Section& section, SolidParameters& parameters);
+/// What quantities of interest cannot have.
+void check_quantities(config::Section& section, SolidParameters& parameters);
 /// What a body of revolution cannot have.
 void check_axisymmetric(config::Section& section, SolidParameters& parameters);
 /// Whether a condition pushes along the normal.

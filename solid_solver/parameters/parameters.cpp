@@ -101,6 +101,9 @@ void declare_output(config::Section& s, SolidParameters& p) {
   s.map<SolidProbe>(
       "probes", p.probes, [](config::Section& q, SolidProbe& v) { declare(q, v); }, "probe",
       "points whose displacement is written to probes.csv at each step");
+  s.map<SolidQuantity>(
+      "quantities", p.quantities, [](config::Section& q, SolidQuantity& v) { declare(q, v); }, "quantity",
+      "numbers whose errors a linear static run estimates at its end, each by one more solve with the same matrix");
   s.section(
       "output",
       [&](config::Section& o) {
@@ -147,6 +150,7 @@ void declare(config::Section& s, SolidParameters& p) {
   check_load_stepping(s, p);
   check_buckling(s, p);
   check_large_strain_estimate(s, p);
+  check_quantities(s, p);
 }
 
 }  // namespace couplet::solid

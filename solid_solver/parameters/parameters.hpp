@@ -51,6 +51,7 @@ struct SolidParameters {
   double stiffness_tolerance = 1e-3;  // change of elastic constants with the temperature that is let pass
   MethodParameters method;
   std::map<std::string, SolidProbe> probes;
+  std::map<std::string, SolidQuantity> quantities;
   SolidOutputParameters output;
 };
 

@@ -101,3 +101,35 @@ def interest(job):
             parts.append(f"{case}, {name}: {found['error'] / abs(truth):.2%} by {found['method']}, {ratio:.2f} of the truth")
             met = met and 1 / 3 <= ratio <= 3
     return "; ".join(parts), met
+
+
+# Case, meshes, quantities of one run with their truths (as above; Kirsch: three times the pull at the rim of the hole).
+CORNER = {"tip": ("{point: [48 mm, 60 mm], component: y}", 0.0323007)}
+PULLED = {"pull": ("{point: [0, 0.5], field: stress, component: xx}", 3e6)}
+DUAL = [
+    ("cook", [f"{{n: {n}, shape: {shape}}}" for shape in (0, 1) for n in (8, 16)], CORNER),
+    ("le1", [f"{{nr: {n}, nt: {3 * n // 2}}}" for n in (8, 16)], {"D": ("{point: [2, 0], component: x}", -1.02207e-4),
+                                                                 "pull": ("{point: [2, 0], field: stress, component: yy}", 92.66e6)}),
+    ("cantilever", [f"{{n_length: {10 * n}, n_side: {n}}}" for n in (2, 4)], {"tip": ("{point: [20, 1, 1], component: y}", 0.10008)}),
+    ("kirsch-hole", [f"{{n: {n}, nr: {4 * n // 3}, growth: 10, shape: {shape}}}" for shape in (0, 1) for n in (6, 12)], PULLED),
+]
+
+
+def dual_weighted(job):
+    parts, ratios = [], []
+    for case, meshes, quantities in DUAL:
+        for mesh in meshes:
+            out = job.scratch / f"dual-{len(ratios)}"
+            asked = ", ".join(f"{name}: {given}" for name, (given, _) in quantities.items())
+            done = job.run([job.build / "bin/solid_solver", job.root / f"configs/{case}/case.yaml", "--set", f"simulation.output.folder={out}", "--accept", "buckling",
+                            "--set", f"participants.solid.mesh-parameters={mesh}", "--set", f"participants.solid.quantities={{{asked}}}"])
+            file = out / "solid/quantities.csv"
+            if not file.exists():
+                raise RuntimeError((done.stderr or done.stdout)[-300:])
+            with open(file, newline="") as table:
+                for row in csv.DictReader(table):
+                    truth = quantities[row["quantity"]][1]
+                    ratios.append(float(row["estimated error"]) / abs(float(row["value"]) - truth))
+                    parts.append(f"{case} {mesh} {row['quantity']}: {float(row['estimated error']) / abs(truth):.2%}, {ratios[-1]:.2f} of the truth")
+    near = [sum(1 / f <= r <= f for r in ratios) for f in (2, 3)]
+    return f"{near[0]} of {len(ratios)} within a factor of 2, {near[1]} of 3: " + "; ".join(parts), near[0] == len(ratios)

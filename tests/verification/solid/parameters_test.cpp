@@ -182,6 +182,13 @@ TEST(SolidParameters, finite_strain_says_what_it_cannot_have) {
   const std::string estimate = "output: {large-strain-estimate: true}\n";
   told(large + estimate + "material: {" + body + "}\n", "requires a linear static analysis");
   told(estimate + "material: {" + body + "}\n", "requires a linear static analysis");
+  const std::string quantity = "quantities: {tip: {point: [1, 0], component: y}}\n";
+  told(large + quantity + "material: {" + body + "}\n", "estimated in a linear static analysis");
+  told(quantity + "material: {" + body + "}\n", "estimated in a linear static analysis");
+  told("quantities: {tip: {point: [1, 0]}}\nmaterial: {" + body + "}\n",
+       "a displacement has the components x, y, z; give one");
+  told("quantities: {tip: {field: stress, component: xx}}\nmaterial: {" + body + "}\n",
+       "a stress needs a 'point'");
   SolidParameters sheet, sound;
   EXPECT_THAT(
       read(

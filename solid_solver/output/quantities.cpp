@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/output/quantities.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "common/base/error.hpp"
+#include "common/io/probes/probe.hpp"
+#include "common/log/finding.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/judge/dual_problem.hpp"
+#include "solid_solver/judge/local_quadratic.hpp"
+#include "solid_solver/material/stress.hpp"
+#include "solid_solver/output/stress_report.hpp"
+
+namespace couplet::solid {
+namespace {
+
+constexpr double least_weight =
+    1e-9;  // of a point in the value at a place; below, the place lies on a side without it
+
+/// Owned cells that have the place at a corner, on a side or inside.
+std::vector<Index> cells_at(const mesh::Mesh& mesh, const io::Probe& probe) {
+  std::vector<GlobalIndex> corners;
+  for (std::size_t i = 0; i < probe.points().size(); ++i)
+    if (probe.weights()[i] > least_weight) corners.push_back(mesh.point_id[probe.points()[i]]);
+  corners = parallel::all_gather(mesh.comm, corners);
+  std::vector<Index> cells;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+    const auto has = [&](GlobalIndex id) {
+      return std::ranges::any_of(mesh.cell_points[c], [&](Index v) { return mesh.point_id[v] == id; });
+    };
+    if (std::ranges::all_of(corners, has)) cells.push_back(c);
+  }
+  return cells;
+}
+
+/// Of rank 0, which probes give their values to, on all ranks.
+double shared(MPI_Comm comm, const std::vector<double>& sampled, std::size_t i) {
+  return parallel::sum(comm, sampled.empty() ? 0 : sampled[i]);
+}
+
+class Estimates {
+ public:
+  Estimates(const SolidBody& body, const SolidFields& fields, const SolidState& state, SolutionMethod& method)
+      : body_(body),
+        mesh_(body.mesh()),
+        fields_(fields),
+        state_(state),
+        method_(method),
+        points_(fields.point_displacement()),
+        dual_(body, body.unknowns_of(state.cell_u, state.face_u), state.known) {}
+
+  QuantityEstimate of(const std::string& name, const SolidQuantity& quantity) const {
+    QuantityEstimate e{
+        .name = name, .what = quantity.field, .unit = quantity.field == "displacement" ? "m" : "Pa"};
+    if (!quantity.component.empty()) e.what += " " + quantity.component;
+    for (std::size_t a = 0; a < quantity.point.size(); ++a) e.place[Eigen::Index(a)] = quantity.point[a];
+    if (quantity.point.empty()) e.place = place_of_largest_stress(body_, fields_, points_);
+    const io::Probe probe(mesh_, body_.geometry().points, name, e.place);
+    e.place = probe.place();
+    if (quantity.field == "displacement")
+      take_displacement(probe, quantity.component[0] - 'x', e);
+    else
+      take_stress(probe, quantity.component, e);
+    return e;
+  }
+
+ private:
+  void take_displacement(const io::Probe& probe, int a, QuantityEstimate& e) const {
+    const std::size_t dim = std::size_t(mesh_.dim);
+    e.value = shared(mesh_.comm, probe.sample(points_, mesh_.dim), std::size_t(a));
+    std::vector<double> weights(points_.size(), 0);
+    for (std::size_t i = 0; i < probe.points().size(); ++i)
+      weights[std::size_t(probe.points()[i]) * dim + std::size_t(a)] = probe.weights()[i];
+    e.dual = dual_.missed(dual_.of_points(weights), method_);
+    double sum = 0, n = 0;
+    for (const Index c : cells_at(mesh_, probe)) {
+      sum += quadratic_displacement(mesh_, body_.elastic(), c, e.place, state_.cell_u, state_.face_u)[a];
+      n += 1;
+    }
+    e.local = parallel::sum(mesh_.comm, sum) / parallel::sum(mesh_.comm, n) - e.value;
+  }
+
+  void take_stress(const io::Probe& probe, const std::string& component, QuantityEstimate& e) const {
+    std::vector<double> flags(std::size_t(mesh_.points.n_local()), 0), left;
+    for (const Index v : probe.points()) flags[std::size_t(v)] = 1;
+    mesh_.points.add_to_owners(flags);
+    mesh_.points.update_ghosts(flags);
+    const std::vector<std::uint8_t> wanted(flags.begin(), flags.end());
+    const std::vector<double> stress = fields_.point_stress(points_, wanted, &left);
+    const std::vector<double> sampled = probe.sample(stress, tensor_size);
+    PackedTensor packed;
+    for (std::size_t i = 0; i < packed.size(); ++i) packed[i] = shared(mesh_.comm, sampled, i);
+    const Tensor3 tensor = unpack(packed), weights = weights_of(component, tensor);
+    e.value = component.empty() ? equivalent_stress(tensor) : contraction(weights, tensor);
+    e.local = shared(mesh_.comm, probe.sample(left, 1), 0) * tensor.norm();
+    e.dual = dual_.missed(dual_.of_stress(cells_at(mesh_, probe), weights), method_);
+  }
+
+  /// d value / d stress: of an equivalent stress 3/2 s / |value|, s the deviator.
+  static Tensor3 weights_of(const std::string& component, const Tensor3& stress) {
+    if (component.empty()) {
+      const double size = equivalent_stress(stress);
+      return size > 0 ? Tensor3(1.5 / size * (stress - stress.trace() / 3 * Tensor3::Identity()))
+                      : Tensor3(Tensor3::Zero());
+    }
+    Tensor3 weights = Tensor3::Zero();
+    const int i = component[0] - 'x', j = component[1] - 'x';
+    weights(i, j) += 0.5, weights(j, i) += 0.5;
+    return weights;
+  }
+
+  const SolidBody& body_;
+  const mesh::Mesh& mesh_;
+  const SolidFields& fields_;
+  const SolidState& state_;
+  SolutionMethod& method_;
+  const std::vector<double> points_;
+  const DualProblem dual_;
+};
+
+}  // namespace
+
+// Not a number is more than all others.
+double QuantityEstimate::error() const {
+  return std::isnan(local) || std::isnan(dual) ? std::nan("") : std::max(std::abs(local), std::abs(dual));
+}
+
+std::vector<QuantityEstimate> estimate_quantities(const SolidBody& body, const SolidFields& fields,
+                                                  const SolidState& state, SolutionMethod& method) {
+  if (!body.kernel().is_symmetric())
+    throw Error(
+        "quantities: their errors are estimated with 'solution-method: {face-gradient: symmetric}', the default; the matrix of the other "
+        "gradients is not symmetric. scripts/study --quantities estimates them by differences of runs.");
+  const Estimates estimates(body, fields, state, method);
+  std::vector<QuantityEstimate> found;
+  for (const auto& [name, quantity] : body.parameters().quantities)
+    found.push_back(estimates.of(name, quantity));
+  return found;
+}
+
+void tell_quantities(MPI_Comm comm, const SolidContext& context, const std::vector<QuantityEstimate>& found) {
+  const int rank = parallel::comm_rank(comm);
+  for (const QuantityEstimate& q : found) {
+    const double share = q.value != 0 ? q.error() / std::abs(q.value) : std::nan("");
+    const std::string relative = std::isnan(share) ? "" : fmt::format(" ({:.2g} %)", 100 * share);
+    const std::string error =
+        std::isnan(q.error()) ? "unknown" : fmt::format("{:.2g} {}{}", q.error(), q.unit, relative);
+    log::finding(rank, {.id = "quantity-error",
+                        .severity = base::Severity::note,
+                        .number = share,
+                        .sentence = fmt::format(
+                            "{}: {} at ({:g}, {:g}, {:g}) m: {:.6g} {}, estimated error {}, dual-weighted",
+                            q.name, q.what, q.place[0], q.place[1], q.place[2], q.value, q.unit, error)});
+  }
+  if (rank != 0 || context.output_folder.empty()) return;
+  std::ofstream file(context.output_folder / "quantities.csv");
+  file << "quantity,unit,value,estimated error,at the place,by the dual problem,method\n";
+  for (const QuantityEstimate& q : found)
+    file << fmt::format("\"{}\",{},{:.12g},{:.6g},{:.6g},{:.6g},dual-weighted\n", q.name, q.unit, q.value,
+                        q.error(), q.local, q.dual);
+}
+
+}  // namespace couplet::solid

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "solid_solver/body/solid_body.hpp"
+#include "solid_solver/body/solid_context.hpp"
+#include "solid_solver/body/solid_fields.hpp"
+#include "solid_solver/method/solution_method.hpp"
+
+namespace couplet::solid {
+
+/// A quantity of interest of a linear static run, and what the mesh leaves in it, by the dual problem.
+struct QuantityEstimate {
+  std::string name, what;  ///< "displacement y"
+  std::string unit;
+  Vec3 place = Vec3::Zero();  ///< undeformed [m]
+  double value = 0;           ///< as the probes have it
+  /// What the place itself adds: a displacement by the curvature that the weights of a vertex miss (quadratic_displacement()), a stress by
+  /// what its recovery leaves.
+  double local = 0;
+  double dual = 0;  ///< DualProblem::missed()
+  /// The larger one, in the unit; they have no common sign to rely on. Displacements within a factor of 3 of the truth, but for
+  /// three-dimensional bodies in bending, where it is 4 to 50 times too large (scripts/validate one-budget).
+  double error() const;
+};
+
+/// Of `quantities`, one solve with `method` for each; `unknowns` and `state`: accepted. The same on all ranks. Throws SolveFailure, and Error for
+/// a body whose operator has no energy. Collective.
+std::vector<QuantityEstimate> estimate_quantities(const SolidBody& body, const SolidFields& fields,
+                                                  const SolidState& state, SolutionMethod& method);
+
+/// Findings, and quantities.csv with all of it.
+void tell_quantities(MPI_Comm comm, const SolidContext& context, const std::vector<QuantityEstimate>& found);
+
+}  // namespace couplet::solid
