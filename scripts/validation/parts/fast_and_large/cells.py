@@ -33,7 +33,7 @@ def cavity(job):
     """The largest deviation of the three extrema by order, and the processor minutes."""
     found = {}
     for name, setting in ORDERS.items():
-        run = job.solve_run("fluid_solver", "cavity-3d", [setting], timeout=7200)
+        run = job.alone("cavity-3d", [setting], timeout=7200)
         found[name] = job.beside("configs/cavity-3d/extrema.py").errors(run.folder / "fluid"), run.cost.cpu / 60
     return found
 
@@ -45,7 +45,7 @@ def extrema_of_cavity(job):
 
 
 def peak(job, n, name, *sets):
-    folder, _ = job.solve("fluid_solver", "taylor-green-3d", [f"participants.fluid.mesh-parameters.n={n}", ORDERS[name], *sets], timeout=48 * 3600)
+    folder, _ = job.solve("taylor-green-3d", [f"participants.fluid.mesh-parameters.n={n}", ORDERS[name], *sets], timeout=48 * 3600)
     return job.beside("configs/taylor-green-3d/budget.py").budget(folder / "fluid")
 
 
