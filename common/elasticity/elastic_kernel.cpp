@@ -36,6 +36,11 @@ Vec3 ElasticKernel::add_face_forces(std::span<const double> forces, std::span<do
   return is_symmetric() ? implementation_->add_face_forces(forces, rhs) : rows_->add_forces(forces, rhs);
 }
 
+void ElasticKernel::face_means(std::span<const Index> faces, std::span<const double> unknowns,
+                               std::span<const double> known, std::span<double> means) const {
+  implementation_->face_means(faces, unknowns, known, means);
+}
+
 void ElasticKernel::add_cell_forces(std::span<const double> forces, std::span<double> rhs) const {
   if (is_symmetric()) return implementation_->add_cell_forces(forces, rhs);
   for (std::size_t i = 0; i < forces.size(); ++i) rhs[i] += forces[i];

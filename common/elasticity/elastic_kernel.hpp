@@ -79,6 +79,10 @@ class ElasticKernel {
   Vec3 add_face_forces(std::span<const double> forces, std::span<double> rhs) const;
   /// Forces [N] on owned cells, `dim` values each.
   void add_cell_forces(std::span<const double> forces, std::span<double> rhs) const;
+  /// Means of the trace on these boundary faces of owned cells, `dim` values each, in the order of `faces`: what a known force on
+  /// them does work on. Of the symmetric kernel alone, in the plane or in space. Collective.
+  void face_means(std::span<const Index> faces, std::span<const double> unknowns,
+                  std::span<const double> known, std::span<double> means) const;
   /// Of an isotropic stress - p I beside that of the displacement, p [Pa] per local face.
   void add_pressure(std::span<const double> pressure, std::span<double> rhs) const;
 

@@ -32,6 +32,8 @@ class ElasticKernel::Implementation {
   virtual Vec3 add_face_forces(std::span<const double> /*forces*/, std::span<double> /*rhs*/) {
     return Vec3::Zero();
   }
+  virtual void face_means(std::span<const Index> /*faces*/, std::span<const double> /*unknowns*/,
+                          std::span<const double> /*known*/, std::span<double> /*means*/) {}
   virtual void add_cell_forces(std::span<const double> /*forces*/, std::span<double> /*rhs*/) {}
   virtual void add_pressure(std::span<const double> /*pressure*/, std::span<double> /*rhs*/) {}
   virtual std::vector<Wrench> holding_forces(std::span<const double> /*unknowns*/,

@@ -184,7 +184,8 @@ void declare_loads(config::Section& s, Parameters& p) {
       "pressures acting on the sides, in addition to those of a fluid; a table of a file: 'table(t, "
       "\"p.csv\")'");
   s.optional_section<ContactParameters>(
-      "contact", p.contact, [](config::Section& c, ContactParameters& v) { declare(c, v); },
+      "contact", p.contact,
+      [](config::Section& c, ContactParameters& v) { declare(c, v, "the plate's normal"); },
       "a rigid seat under the structure, for dynamic analyses only");
 }
 

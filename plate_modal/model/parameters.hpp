@@ -7,11 +7,14 @@
 #include <vector>
 
 #include "common/config/section.hpp"
+#include "common/contact/contact_parameters.hpp"
 #include "common/time/time_scheme.hpp"
-#include "plate_modal/model/contact_parameters.hpp"
 #include "plate_modal/model/skin.hpp"
 
 namespace couplet::plate {
+
+using contact::ContactParameters;
+using contact::ContactRule;
 
 struct Material {
   double density = 0, youngs_modulus = 0, poissons_ratio = 0.3;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/base/error.hpp"
+#include "common/contact/impact.hpp"
 #include "common/fv/expression.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -122,19 +123,8 @@ void Contact::evaluate(std::span<const double> from, std::span<const double> q, 
   r.tangent.setZero(n, n);
   for (std::size_t f = 0; f < gap_.size(); ++f) {
     const double now = penetration(f, q);
-    double force = std::max(now, 0.), slope = now > 0 ? 1 : 0;
-    if (rule_ == ContactRule::conserving) {
-      const double before = penetration(f, from);
-      if (now > 0 && before > 0) {
-        force = 0.5 * (now + before), slope = 0.5;
-      } else if (now > 0) {  // it arrives
-        force = 0.5 * now * now / (now - before);
-        slope = 0.5 * now * (now - 2 * before) / ((now - before) * (now - before));
-      } else if (before > 0) {  // it leaves
-        force = 0.5 * before * before / (before - now);
-        slope = 0.5 * before * before / ((before - now) * (before - now));
-      }
-    }
+    const auto [force, slope] =
+        is_conserving() ? couplet::contact::push(penetration(f, from), now) : couplet::contact::push(now);
     if (force == 0) continue;
     const Eigen::Map<const Eigen::VectorXd> shape(shape_.data() + f * n, n);
     r.force += kappa_[f] * force * shape;

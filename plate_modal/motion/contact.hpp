@@ -3,10 +3,13 @@
 
 #include <Eigen/Core>
 
-#include "plate_modal/model/contact_parameters.hpp"
+#include "common/contact/contact_parameters.hpp"
 #include "plate_modal/motion/share.hpp"
 
 namespace couplet::plate {
+
+using contact::ContactParameters;
+using contact::ContactRule;
 
 /// Penalty contact of the faces that look at a rigid seat, without friction, thesis (4.32)-(4.33): a face of
 /// area S that is delta below the seat is pushed back by kappa delta, kappa = stiffness S.

@@ -3,6 +3,7 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/method/contact_newton.hpp"
 
 namespace couplet::solid {
 
@@ -18,7 +19,14 @@ std::vector<double> SmallStrain::force_of_known(std::span<const double> known) c
 
 linalg::SolveStatistics SmallStrain::find(const EquilibriumLoad& load, SolidSystem& system,
                                           std::span<double> u) {
-  return system.method->solve(load.rows, u);
+  if (!load.pressing) return system.method->solve(load.rows, u);
+  const linalg::LinearMap stiffness = [&](std::span<const double> x, std::span<double> y) {
+    if (load.mass_factor > 0) return kernel_.apply_with_mass(x, {}, load.mass_factor, true, y);
+    kernel_.apply(x, {}, y);
+  };
+  return solve_with_contact({mesh_.comm, stiffness, *system.method, *load.pressing, load.known,
+                             parameters_.method.relative_tolerance, parameters_.method.max_iterations},
+                            load.rows, u);
 }
 
 void SmallStrain::explain_failure(const SolveFailure& failure) const {

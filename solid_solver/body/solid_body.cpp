@@ -70,6 +70,7 @@ SolidBody::SolidBody(mesh::LoadedMesh body, SolidParameters parameters)
   check_supports();
   equilibrium_ = make_equilibrium(mesh_, kernel_, elastic_, effects_, parameters_);
   find_mass();
+  if (parameters_.contact) make_seat();
   if (!parameters_.body_force.empty())
     body_force_ = fv::make_expressions(parameters_.body_force, mesh_.dim, "body-force");
   effects_ = make_effects(mesh_, elastic_, parameters_);
@@ -83,6 +84,16 @@ void SolidBody::check_supports() const {
     throw Error("gravity: {} components are given, but the {}-dimensional scene needs {}.",
                 parameters_.gravity.size(), mesh_.dim, mesh_.dim);
   if (!is_dynamic()) check_supported(mesh_, elastic_);
+}
+
+void SolidBody::make_seat() {
+  if (!kernel_.is_symmetric())
+    throw Error(
+        "contact: the seat needs the symmetric face gradient, and the boundaries or the method of this solid chose another: use "
+        "'solution-method: {{face-gradient: symmetric}}'.");
+  std::vector<std::uint8_t> open;
+  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) open.push_back(elastic_.at(f).is_free());
+  seat_ = std::make_unique<Seat>(mesh_, elastic_, kernel_, *parameters_.contact, open, !is_dynamic());
 }
 
 void SolidBody::find_mass() {

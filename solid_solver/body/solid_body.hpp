@@ -11,6 +11,7 @@
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/boundary/boundaries.hpp"
 #include "solid_solver/boundary/rigid_patches.hpp"
+#include "solid_solver/contact/seat.hpp"
 #include "solid_solver/method/equilibrium.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 #include "solid_solver/thermal/effect.hpp"
@@ -44,6 +45,8 @@ class SolidBody final {
   Equilibrium& equilibrium() const { return *equilibrium_; }
   /// Patches that move as rigid bodies.
   const RigidPatches& rigid() const { return rigid_; }
+  /// What its faces may meet; null: nothing.
+  const Seat* seat() const { return seat_.get(); }
   const PrescribedDisplacement& prescribed() const { return prescribed_; }
   /// Those that the scene has.
   const std::vector<std::unique_ptr<SolidEffect>>& effects() const { return effects_; }
@@ -96,6 +99,7 @@ class SolidBody final {
  private:
   void check_supports() const;
   void find_mass();
+  void make_seat();
   void add_scaled_loads(double t, std::span<double> forces) const;
   std::vector<double> scaled(std::vector<double> values) const;
 
@@ -107,6 +111,7 @@ class SolidBody final {
   elastic::ElasticOperator elastic_;
   elastic::ElasticKernel kernel_;
   std::unique_ptr<Equilibrium> equilibrium_;
+  std::unique_ptr<Seat> seat_;
   bool has_mass_ = false;
   double load_factor_ = 1;
   PrescribedDisplacement prescribed_;

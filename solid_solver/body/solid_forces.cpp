@@ -65,6 +65,7 @@ elastic::ElasticLoads SolidFields::loads_now() const {
   loads.faces.assign(std::size_t(mesh_.boundary.n_owned()) * mesh_.dim, 0);
   body_.add_dead_loads(state_.time, loads.faces);
   for (std::size_t i = 0; i < last_.interface.size(); ++i) loads.faces[i] += last_.interface[i];
+  if (body_.seat() && !last_.contact.empty()) body_.seat()->add_to_faces(last_.contact, loads.faces);
   loads.cells = body_.body_forces(state_.time);
   for (const auto& effect : body_.effects()) {
     const std::vector<double> pressure = effect->pressure(state_.time);

@@ -63,6 +63,7 @@ struct LastSolve {
   std::vector<double> unknowns;   ///< as the operator has them
   std::vector<double> load_rows;  ///< without inertia and prescribed motion; kernels with mass
   std::vector<double> interface;  ///< forces, `dim` values a boundary face of owned cells; empty: none
+  std::vector<double> contact;    ///< forces of the seat on its faces [N]; empty: none, or nothing solved
   Vec3 body_force = Vec3::Zero(), face_force = Vec3::Zero();  ///< sums
   /// Something was solved since the start or a restart. Collective.
   bool is_known(MPI_Comm comm) const { return !parallel::any(comm, rhs.size() != unknowns.size()); }

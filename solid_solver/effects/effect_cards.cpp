@@ -178,6 +178,10 @@ const std::array cards{
               "a load per cell"},
     SolidCard{"body force", "`body-force`",
               [](const P& p) { return when(!p.body_force.empty(), "body-force"); }, "a load per cell"},
+    SolidCard{
+        "contact with a seat", "`contact`", [](const P& p) { return when(p.contact.has_value(), "contact"); },
+        "gap and stiffness of the faces towards the seat; a look at them in each solve, and while they touch "
+        "corrections, each with a linear solve; contact.csv"},
     SolidCard{"structural damping", "`damping`",
               [](const P& p) { return when(p.damping.has_value(), "damping"); }, "",
               "reported for every dynamic run without it"},

@@ -72,11 +72,12 @@ void SolidJudge::judge_energy(double strain, const char* cure) {
   const SolidState& state = stepper_.state();
   const double work = parallel::sum(mesh_.comm, state.load_work);
   energy_audit_.is_driven = work != 0;
-  energy_audit_.given = parallel::sum(mesh_.comm, state.energies.initial_kinetic) + work;
+  energy_audit_.given =
+      parallel::sum(mesh_.comm, state.energies.initial_kinetic) + work + stepper_.ledger().initial_contact();
   const double kinetic = parallel::sum(mesh_.comm, stepper_.ledger().kinetic(state));
   largest_kinetic_ = std::max(largest_kinetic_, kinetic);
   largest_strain_energy_ = std::max(largest_strain_energy_, strain);
-  energy_audit_.held = kinetic + strain;
+  energy_audit_.held = kinetic + strain + stepper_.ledger().contact(state);
   energy_audit_.scale = std::max(energy_audit_.scale, std::abs(energy_audit_.given));
   if (energy_audit_.is_hopeless())
     throw Error("t = {:g} s: energy balance: {}: spurious growth has replaced the solution; {}.", state.time,

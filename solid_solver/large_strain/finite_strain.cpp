@@ -56,6 +56,7 @@ double forcing(double ratio, double wanted) {
 FiniteStrain::FiniteStrain(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
                            const SolidParameters& parameters)
     : LargeStrain(mesh, rows),
+      meets_seat_(parameters.contact.has_value()),
       tolerance_(parameters.method.relative_tolerance),
       most_linear_(parameters.method.max_iterations) {
   const mesh::Geometry& geometry = rows.geometry();
@@ -103,18 +104,20 @@ void FiniteStrain::prepare(const SolidProblem& problem, SolidSystem& system) con
   system.node_inertia = solid::node_inertia(problem);
 }
 
-TangentSolver& FiniteStrain::solver_for(double mass_factor, std::span<const double> node_inertia) {
+TangentSolver& FiniteStrain::solver_for(double mass_factor, std::span<const double> node_inertia,
+                                        const Pressing* pressing) {
   const auto same = [&](const std::unique_ptr<TangentSolver>& s) {
     return std::abs(s->mass_factor() - mass_factor) <= 1e-10 * mass_factor;
   };
   const auto found = std::ranges::find_if(solvers_, same);
   if (found != solvers_.end()) {
     std::rotate(solvers_.begin(), found, found + 1);
-    return *solvers_.front();
+  } else {
+    if (solvers_.size() == solvers_kept) solvers_.pop_back();
+    solvers_.insert(solvers_.begin(),
+                    std::make_unique<TangentSolver>(mesh_, rows_, *kernel_, mass_factor, node_inertia, by_));
   }
-  if (solvers_.size() == solvers_kept) solvers_.pop_back();
-  solvers_.insert(solvers_.begin(),
-                  std::make_unique<TangentSolver>(mesh_, rows_, *kernel_, mass_factor, node_inertia, by_));
+  solvers_.front()->meet(pressing);
   return *solvers_.front();
 }
 
@@ -124,6 +127,7 @@ double FiniteStrain::residual(const Load& load, std::span<const double> u, doubl
   ratio = parallel::min(mesh_.comm, kernel_->worst().ratio);
   if (!(ratio > 0)) return std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < r_.size(); ++i) r_[i] = load.rows[i] - r_[i];
+  if (load.pressing) load.pressing->push_off(u, load.known, r_);
   double size = norm(mesh_.comm, r_);
   whole_ = size;
   if (is_carried_) {
@@ -173,7 +177,9 @@ void FiniteStrain::follow_known(const Load& load, TangentSolver& solver, std::sp
   }
   if (!(parallel::max(mesh_.comm, size) > 0)) return;
   double ratio = 1;
-  if (!std::isfinite(residual({load.rows, load.before, {}, load.mass_factor, false}, u, ratio))) return;
+  Load at_start = load;
+  at_start.known = load.before;
+  if (!std::isfinite(residual(at_start, u, ratio))) return;
   solver.follow(true);
   const std::vector<double> still(u.size(), 0);
   kernel_->apply_tangent(still, change, load.mass_factor, trial_);
@@ -183,14 +189,9 @@ void FiniteStrain::follow_known(const Load& load, TangentSolver& solver, std::sp
   for (std::size_t i = 0; i < u.size(); ++i) u[i] += du_[i];
 }
 
-std::string FiniteStrain::where_worst() const {
-  const elastic::FiniteKernel::Worst worst = kernel_->worst();
-  return worst_cell(mesh_, geometry_, worst.ratio, worst.face);
-}
-
 /// u + s du with the largest s of 1, 1/2, ... that leaves det F positive and the residual below `most`.
 bool FiniteStrain::search(const Load& load, std::span<double> u, NewtonIterate& now, double most) {
-  if (load.mass_factor == 0 && iterates_.size() == 1) jump_.predict(u, du_);
+  if (load.mass_factor == 0 && !load.pressing && iterates_.size() == 1) jump_.predict(u, du_);
   for (double s = 1; s >= shortest; s *= 0.5) {
     for (std::size_t i = 0; i < u.size(); ++i) trial_[i] = u[i] + s * du_[i];
     kernel_->set_pressure_fraction(is_carried_ ? s : 0);
@@ -208,6 +209,11 @@ bool FiniteStrain::search(const Load& load, std::span<double> u, NewtonIterate& 
 /// What a residual is measured by: the loads; in motion the inner forces, since b holds the inertia of the place itself,
 /// which is far larger than what accelerates the body.
 double FiniteStrain::scale_of(const Load& load, std::span<const double> u, double residual) {
+  if (load.pressing) {
+    std::vector<double> push(u.size(), 0);
+    load.pressing->seat().add_to_rows(load.pressing->forces(), push);
+    residual = std::max(residual, norm(mesh_.comm, push));
+  }
   if (load.mass_factor == 0) return std::max(norm(mesh_.comm, load.rows), residual);
   kernel_->linearise(u, load.known, 0, trial_);
   const double inner = norm(mesh_.comm, trial_);
@@ -216,7 +222,7 @@ double FiniteStrain::scale_of(const Load& load, std::span<const double> u, doubl
 }
 
 linalg::SolveStatistics FiniteStrain::iterate(const Load& load, std::span<double> u) {
-  TangentSolver& solver = solver_for(load.mass_factor, load.node_inertia);
+  TangentSolver& solver = solver_for(load.mass_factor, load.node_inertia, load.pressing);
   solver.forget_factors();
   linalg::SolveStatistics statistics;
   iterates_.clear();

@@ -37,7 +37,7 @@ class FiniteStrain final : public LargeStrain {
   FiniteStrain(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
                const SolidParameters& parameters);
 
-  bool has_tangent() const override { return true; }
+  bool has_tangent() const override { return !meets_seat_; }  // nothing but its own
   using LargeStrain::name;
   std::string name() const override;
   void prepare(const SolidProblem& problem, SolidSystem& system) const override;
@@ -68,6 +68,7 @@ class FiniteStrain final : public LargeStrain {
 
  private:
   double residual(const Load& load, std::span<const double> u, double& ratio);
+  linalg::SolveStatistics press(const Load& load, std::span<double> u);
   void start_pressures(const Load& load, std::span<const double> u);
   void predict_pressures(std::span<const double> change, std::span<const double> known_change);
   bool search(const Load& load, std::span<double> u, NewtonIterate& now, double most);
@@ -85,7 +86,8 @@ class FiniteStrain final : public LargeStrain {
   void correct(PathSearch& path, TangentSolver& solver, std::span<double> u);
   /// Over the load what rounding ended the iteration with; much of it is said once, nothing is left of no load. Collective.
   double judge_rounding(const Load& load, double scale, double left);
-  TangentSolver& solver_for(double mass_factor, std::span<const double> node_inertia);
+  TangentSolver& solver_for(double mass_factor, std::span<const double> node_inertia,
+                            const Pressing* pressing = nullptr);
   std::string where_worst() const;
   bool is_symmetric(std::span<const double> x, std::span<const double> y);
   double stiffest_over(std::span<const double> x, const linalg::LinearMap& elastic) const;
@@ -94,6 +96,7 @@ class FiniteStrain final : public LargeStrain {
   bool mixed_ = false;       // pressures of their own on the way to equilibrium
   bool is_carried_ = false;  // in the solve under way
   bool presses_ = false, is_drowned_told_ = false;
+  bool meets_seat_;
   double tolerance_, noise_, noise_of_motion_;
   double whole_ = 0;  // norm of the last residual with U'(J) in place of those pressures
   int most_linear_;

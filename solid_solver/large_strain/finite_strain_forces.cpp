@@ -14,14 +14,21 @@
 #include "solid_solver/method/solution_method.hpp"
 
 namespace couplet::solid {
+namespace {
+
+constexpr int most_multipliers = 100;
+// Change of the pressure of a rigid seat over the largest: as much is left of the penetration over that of its springs.
+constexpr double settled = 1e-9;
+
+}  // namespace
 
 linalg::SolveStatistics FiniteStrain::solve(const Load& load, std::span<double> u) {
   if (path_) return follow_path(load, u);
   if (load.is_conserving) kernel_->set_start(load.accepted, load.accepted_known);
-  const bool is_static = load.mass_factor == 0;
+  const bool is_static = load.mass_factor == 0 && !load.pressing;  // whose path has corners
   if (is_static) jump_.start(u, mesh_.dim);
   try {
-    const linalg::SolveStatistics statistics = iterate(load, u);
+    const linalg::SolveStatistics statistics = press(load, u);
     if (is_static && statistics.iterations > 0)
       jump_.end(mesh_.comm, u, mesh::extent_of(mesh_, geometry_).diagonal(),
                 [&](std::span<const double> before) { return backward_motion(load, before, u); });
@@ -38,6 +45,25 @@ linalg::SolveStatistics FiniteStrain::solve(const Load& load, std::span<double> 
         folded_support(mesh_, rows_, [this](Index node) { return kernel_->displacement(node); });
     if (fold.empty()) throw;
     throw SolveFailure("{} {}", failure.what(), fold);
+  }
+}
+
+/// With a rigid seat until a change of its multipliers leaves nothing to correct.
+linalg::SolveStatistics FiniteStrain::press(const Load& load, std::span<double> u) {
+  linalg::SolveStatistics all = iterate(load, u);
+  if (!load.pressing || !load.pressing->seat().is_rigid()) return all;
+  for (int i = 0;; ++i) {
+    const double change = load.pressing->take_multipliers(mesh_.comm);
+    if (change <= settled) return all;
+    const linalg::SolveStatistics one = iterate(load, u);
+    all.iterations += one.iterations;
+    all.inner_iterations += one.inner_iterations;
+    all.residual = one.residual;
+    if (one.iterations == 0) return all;
+    if (i == most_multipliers)
+      throw SolveFailure(
+          "The pressure of the rigid seat did not settle in {} corrections (last change {:.1e} of it).",
+          most_multipliers, change);
   }
 }
 
@@ -76,6 +102,11 @@ void FiniteStrain::visit(std::span<const double> unknowns, std::span<const doubl
   kernel_->forget_start();
   forces(unknowns, known);
   kernel_->visit(take);
+}
+
+std::string FiniteStrain::where_worst() const {
+  const elastic::FiniteKernel::Worst worst = kernel_->worst();
+  return worst_cell(mesh_, geometry_, worst.ratio, worst.face);
 }
 
 std::string FiniteStrain::text() const {

@@ -12,6 +12,7 @@
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/linalg/linear_map.hpp"
 #include "common/linalg/linear_solver.hpp"
+#include "solid_solver/contact/pressing.hpp"
 #include "solid_solver/method/solution_method.hpp"
 
 namespace couplet::io {
@@ -47,6 +48,7 @@ struct EquilibriumLoad {
   std::span<const double> inertia{};                     ///< per owned cell, m times mass; empty: static
   std::span<const double> node_inertia{};                ///< of the unknown nodes, of kernels with mass
   double dt = 0;                                         ///< of the step [s]
+  Pressing* pressing = nullptr;                          ///< of a seat; none: the body meets none
 };
 
 /// A displacement, with what can be made of it. Calls are collective.

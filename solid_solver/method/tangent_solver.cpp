@@ -69,6 +69,7 @@ TangentSolver::TangentSolver(const mesh::Mesh& mesh, const elastic::ElasticOpera
       "displacement", mesh.comm, n,
       [this](std::span<const double> x, std::span<double> y) {
         kernel_.apply_tangent(x, {}, mass_factor_, y);
+        if (pressing_) pressing_->add_stiffness(x, y);
       },
       [this](std::span<const double> r, std::span<double> z) { precondition(r, z); });
 }

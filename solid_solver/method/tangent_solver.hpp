@@ -10,6 +10,7 @@
 #include "common/elasticity/solve/elastic_preconditioner.hpp"
 #include "common/linalg/krylov.hpp"
 #include "common/linalg/linear_solver.hpp"
+#include "solid_solver/contact/pressing.hpp"
 
 namespace couplet::solid {
 
@@ -27,6 +28,8 @@ class TangentSolver {
                 double mass_factor, std::span<const double> node_inertia, By by);
 
   double mass_factor() const { return mass_factor_; }
+  /// The seat whose stiffness is a part of K(u) from here on, by reference; null: none.
+  void meet(const Pressing* pressing) { pressing_ = pressing; }
   /// A new load or step: factors of an earlier one are not used again, so that a run that continues takes the same way.
   void forget_factors() { factors_.reset(); }
   /// The preconditioner follows the body: frames, and `with_modes` also the rigid motions. At the last
@@ -54,6 +57,7 @@ class TangentSolver {
   double mass_factor_;
   std::span<const double> node_inertia_;
   By by_;
+  const Pressing* pressing_ = nullptr;
   bool is_unsymmetric_ = false;                   // a pressure follows the surface
   std::unique_ptr<linalg::SparseMatrix> matrix_;  // of factors
   std::unique_ptr<linalg::LinearSolver> factors_;

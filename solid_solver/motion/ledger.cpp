@@ -225,12 +225,27 @@ SolidEnergies SolidLedger::total(const SolidState& state, std::span<const double
   e.conserving = scheme_of(parameters_).type == time::TimeScheme::trapezoidal;
   if (kernel_.is_symmetric()) {
     e = summed(e);
+    e.contact = contact(state);
+    e.initial_contact = initial_contact();
     e.strain = body_.equilibrium().energy(body_.unknowns_of(state.cell_u, state.face_u), state.known);
     return e;
   }
   const BodyField now{state.cell_u, state.face_u, points};
   e.strain = 0.5 * stress_work(now, now, nullptr);
   return summed(e);
+}
+
+double SolidLedger::contact(const SolidState& state) const {
+  const Seat* seat = body_.seat();
+  if (!seat || seat->is_rigid()) return 0;  // a rigid seat keeps nothing
+  return seat->look(seat->penetration(body_.unknowns_of(state.cell_u, state.face_u), state.known), {}).energy;
+}
+
+double SolidLedger::initial_contact() const {
+  const Seat* seat = body_.seat();
+  if (!seat || seat->is_rigid()) return 0;
+  const std::vector<double> still(elastic_.n_unknowns(), 0);
+  return seat->look(seat->penetration(still, {}), {}).energy;
 }
 
 SolidEnergies SolidLedger::summed(SolidEnergies e) const {

@@ -26,6 +26,9 @@ class SolidLedger final {
 
   /// [J]
   double kinetic(const SolidState& state) const;
+  /// Kept in the springs of the seat, and what it kept when the body was placed; over all ranks [J]. Collective.
+  double contact(const SolidState& state) const;
+  double initial_contact() const;
   /// Of the state that a run starts from, its supports moving from then on: their rate from the first step's length. [J]
   double initial_kinetic(const SolidState& start, double dt) const;
   /// Energies over all ranks; needs output.energies. `points`: its displacement there. Collective.

@@ -70,7 +70,7 @@ class SolidStepper final {
   void subtract_prescribed(StageWork& work);
   void add_body_forces(double t, std::span<double> rhs);
   void solve_stage(const StageWork& work, bool first);
-  linalg::SolveStatistics find_equilibrium(const StageWork& work);
+  linalg::SolveStatistics find_equilibrium(const StageWork& work, const SolidState& now);
   void scale_loads(const StageWork& work, double factor);
   void add_inertia(const StageWork& work, const SolidState& now);
   void add_kernel_inertia(const StageWork& work, const SolidState& now, const time::Levels& known);

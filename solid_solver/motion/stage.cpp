@@ -10,6 +10,7 @@
 #include "solid_solver/method/newton_krylov.hpp"
 #include "solid_solver/motion/history.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
+#include "solid_solver/motion/stage_contact.hpp"
 
 namespace couplet::solid {
 namespace {
@@ -137,7 +138,7 @@ void SolidStepper::solve_stage(const StageWork& work, bool first) {
   guess(work, now);
   {
     const log::ScopedTimer timer(log::timers(), "solid: linear solver");
-    const linalg::SolveStatistics statistics = find_equilibrium(work);
+    const linalg::SolveStatistics statistics = find_equilibrium(work, now);
     effort_ = {effort_.solves + 1, effort_.iterations + statistics.iterations,
                effort_.inner_iterations + statistics.inner_iterations, statistics.residual};
   }
@@ -161,13 +162,15 @@ void SolidStepper::solve_stage(const StageWork& work, bool first) {
 }
 
 /// A static guess stands where the known displacements were; a dynamic one has gone on with its own velocity.
-linalg::SolveStatistics SolidStepper::find_equilibrium(const StageWork& work) {
+linalg::SolveStatistics SolidStepper::find_equilibrium(const StageWork& work, const SolidState& now) {
   LoadPath* path = body_.equilibrium().load_path();
   if (path) body_.set_load_factor(1);
   body_.place_pressures(work.place_time);
   body_.place_expansion(work.place_time);
   if (path) body_.set_load_factor(path->factor());
   EquilibriumLoad load{last_.rhs, work.known, {}, work.system->mass_factor, parameters_.energy_momentum};
+  std::optional<Pressing> pressing = pressing_of(body_, work, now, state_);
+  load.pressing = pressing ? &*pressing : nullptr;
   if (!body_.is_dynamic() && !work.known.empty()) load.before = state_.known;
   const std::vector<double> accepted = body_.unknowns_of(state_.cell_u, state_.face_u);
   load.accepted = accepted;
@@ -177,6 +180,10 @@ linalg::SolveStatistics SolidStepper::find_equilibrium(const StageWork& work) {
   load.dt = work.stage.dt;
   const linalg::SolveStatistics found = body_.equilibrium().find(load, *work.system, last_.unknowns);
   if (path) scale_loads(work, path->trial_factor());
+  if (pressing) {  // from here on one more load
+    last_.contact = pressing->forces();
+    body_.seat()->add_to_rows(last_.contact, last_.rhs);
+  }
   return found;
 }
 

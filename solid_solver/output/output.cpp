@@ -103,6 +103,7 @@ void SolidOutput::write_series(double time, std::span<const double> points) {
   write_effort(time);
   write_path(time);
   if (body_.parameters().output.energies) write_energies(time, points);
+  if (body_.seat()) write_contact(time);
 }
 
 void SolidOutput::write_spectrum(double dt) {
@@ -158,6 +159,24 @@ void SolidOutput::write_energies(double time, std::span<const double> points) {
         context_.restart_time);
   energy_series_->row(std::vector<double>{time, e.kinetic, e.strain, e.internal_work, e.external_work,
                                           e.damping_loss, e.lost()});
+}
+
+/// Of springs at the accepted time, of a rigid seat what the last solve found.
+void SolidOutput::write_contact(double time) {
+  const Seat& seat = *body_.seat();
+  const SolidState& state = stepper_.state();
+  const std::vector<double> still(seat.is_rigid() ? seat.size() : 0, 0);
+  const std::vector<double>& solved = stepper_.last_solve().contact;
+  const Seat::Look seen =
+      seat.look(seat.penetration(body_.unknowns_of(state.cell_u, state.face_u), state.known),
+                seat.is_rigid() && !solved.empty() ? solved : still);
+  if (parallel::comm_rank(body_.mesh().comm) != 0) return;
+  if (!contact_series_)
+    contact_series_.emplace(context_.output_folder / "contact.csv",
+                            std::vector<std::string>{"time [s]", "force [N]", "penetration [m]", "energy [J]",
+                                                     "largest pressure [Pa]", "area in contact [m^2]"},
+                            context_.restart_time);
+  contact_series_->row(std::array{time, seen.force, seen.penetration, seen.energy, seen.pressure, seen.area});
 }
 
 void SolidOutput::write_reactions(double time, std::span<const double> points) {

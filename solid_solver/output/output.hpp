@@ -51,6 +51,7 @@ class SolidOutput {
   void write_effort(double time);
   void write_path(double time);
   void write_energies(double time, std::span<const double> points);
+  void write_contact(double time);
 
   const SolidFields& derived_;
   const SolidStepper& stepper_;
@@ -61,7 +62,8 @@ class SolidOutput {
   std::optional<io::FieldWriter> fields_;
   std::optional<SolidSurfaces> surfaces_;
   // On rank 0.
-  std::optional<io::Series> probe_series_, reaction_series_, path_series_, solver_series_, energy_series_;
+  std::optional<io::Series> probe_series_, reaction_series_, path_series_, solver_series_, energy_series_,
+      contact_series_;
 };
 
 }  // namespace couplet::solid

@@ -172,11 +172,48 @@ void check_quantities(config::Section& s, SolidParameters& p) {
         if (p.analysis != SolidParameters::Analysis::static_ || has_finite_strain(p))
           return "the errors of 'quantities' are estimated in a linear static analysis; 'scripts/study --quantities' estimates those of "
                  "any run, by differences of coarser ones";
-        if (is_axisymmetric(p) || has_rigid_patch(p))
-          return "'quantities' support neither a body of revolution nor a patch that moves as a rigid body";
+        if (is_axisymmetric(p) || has_rigid_patch(p) || p.contact)
+          return "'quantities' support neither a body of revolution, nor a patch that moves as a rigid body, nor 'contact'";
         return symmetric_suits(p) ? "" : "'quantities' require 'face-gradient: symmetric', the default";
       },
       "quantities");
+}
+
+/// What a solid that meets a seat cannot have, each with the key to change.
+void check_contact(config::Section& s, SolidParameters& p) {
+  using Method = MethodParameters;
+  using Analysis = SolidParameters::Analysis;
+  const auto refuse = [&](const char* key, bool is_wrong, const char* why) {
+    s.check([&p, is_wrong, why] { return p.contact && is_wrong ? std::string(why) : std::string(); }, key);
+  };
+  if (!p.contact) return;
+  const auto& d = p.contact->direction;
+  refuse("contact", p.analysis == Analysis::thermal, "a thermal analysis moves nothing; remove it");
+  refuse("contact", p.dimension == 2 && d.size() == 3 && d[2] != 0,
+         "its 'direction' must lie in the plane of a 2-dimensional scene: [x, y, 0]");
+  refuse(
+      "contact",
+      p.analysis == Analysis::dynamic && p.contact->rule == contact::ContactRule::conserving &&
+          scheme_of(p).type != time::TimeScheme::trapezoidal,
+      "'rule: conserving' keeps the energy with 'time-scheme: {type: trapezoidal}' only (at finite strain with "
+      "'energy-momentum: true'); use that or 'rule: midpoint'");
+  refuse("plane", is_axisymmetric(p),
+         "a body of revolution cannot meet a seat; model it in 3-D, or remove 'contact'");
+  refuse("boundaries", has_rigid_patch(p),
+         "a remote-load with 'coupling: rigid' does not go with 'contact'; use 'coupling: distributing'");
+  refuse("load-stepping", p.load_stepping.type == LoadStepping::Type::arc_length,
+         "arc length does not go with 'contact', whose path has corners; use steps of the load");
+  const bool is_gradient = p.method.face_gradient == Method::FaceGradient::symmetric ||
+                           p.method.face_gradient == Method::FaceGradient::automatic;
+  const bool is_method =
+      p.method.type == Method::Type::newton_krylov || p.method.type == Method::Type::automatic;
+  refuse("solution-method",
+         !is_gradient || !is_method || p.method.preconditioner == Method::Preconditioner::mixed ||
+             !symmetric_suits(p),
+         "'contact' requires 'face-gradient: symmetric' and 'type: newton-krylov' (or 'auto') without "
+         "'preconditioner: mixed' and 'zero-normal-gradient'");
+  refuse("output", p.output.buckling > 0 || p.output.large_strain_estimate,
+         "'buckling' and 'large-strain-estimate' know nothing of a seat; remove them, or 'contact'");
 }
 
 /// What an elastic matrix cannot have, each with the key to change.

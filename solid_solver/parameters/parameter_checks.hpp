@@ -25,6 +25,8 @@ void check_axisymmetric(config::Section& section, SolidParameters& parameters);
 bool is_pressure(const SolidCondition& condition);
 /// Whether a body of revolution can have a condition.
 bool can_be_revolved(const SolidCondition& condition);
+/// What a solid that meets a seat cannot have.
+void check_contact(config::Section& section, SolidParameters& parameters);
 /// What an orthotropic material cannot have.
 void check_orthotropic(config::Section& section, SolidParameters& parameters);
 

@@ -83,6 +83,10 @@ void declare_loads(config::Section& s, SolidParameters& p) {
   s.map<PointLoad>(
       "point-loads", p.point_loads, [&p](config::Section& l, PointLoad& v) { declare(l, v, p.dimension); },
       "load", "forces and moments at points of the surface, in addition to the patch loads");
+  s.optional_section<contact::ContactParameters>(
+      "contact", p.contact,
+      [](config::Section& c, contact::ContactParameters& v) { contact::declare(c, v, "z, in 2-D y"); },
+      "a rigid seat without friction that free, loaded and interface faces may meet");
   s.value("body-force", p.body_force)
       .unit("N/m^3")
       .plausible(1e-6, 1e11)
@@ -147,6 +151,7 @@ void declare(config::Section& s, SolidParameters& p) {
   check_orthotropic(s, p);
   check_axisymmetric(s, p);
   check_rigid_patches(s, p);
+  check_contact(s, p);
   check_load_stepping(s, p);
   check_buckling(s, p);
   check_large_strain_estimate(s, p);

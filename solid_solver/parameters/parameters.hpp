@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/config/section.hpp"
+#include "common/contact/contact_parameters.hpp"
 #include "common/elasticity/elasticity.hpp"
 #include "solid_solver/parameters/boundary_parameters.hpp"
 #include "solid_solver/parameters/heat_parameters.hpp"
@@ -36,9 +37,10 @@ struct SolidParameters {
   ZoneMaterials materials;             // by zone of the mesh
   std::map<std::string, SolidBoundary> boundaries;
   std::map<std::string, PointLoad> point_loads;
-  std::vector<config::ExpressionText> body_force;                               // [N/m^3]; empty: none
-  std::vector<double> gravity;                                                  // [m/s^2]; empty: none
-  std::vector<config::ExpressionText> initial_velocity;                         // [m/s]; empty: at rest
+  std::optional<contact::ContactParameters> contact;     // none: the solid meets nothing
+  std::vector<config::ExpressionText> body_force;        // [N/m^3]; empty: none
+  std::vector<double> gravity;                           // [m/s^2]; empty: none
+  std::vector<config::ExpressionText> initial_velocity;  // [m/s]; empty: at rest
   time::TimeSchemeParameters time_scheme{.type = time::TimeScheme::automatic};  // see scheme_of()
   LoadStepping load_stepping;
   std::optional<SolidDamping> damping;

@@ -43,8 +43,9 @@ void declare(config::Section& s, TimeStepControl& c) {
 time::TimeSchemeParameters scheme_of(const SolidParameters& p) {
   time::TimeSchemeParameters scheme = p.time_scheme;
   if (scheme.type != time::TimeScheme::automatic) return scheme;
-  const bool damps =
-      has_finite_strain(p) && !is_updated_lagrangian(p) && !p.energy_momentum && is_loaded_by_partner(p);
+  const bool keeps_contact = p.contact && p.contact->rule == contact::ContactRule::conserving;
+  const bool damps = has_finite_strain(p) && !is_updated_lagrangian(p) && !p.energy_momentum &&
+                     !keeps_contact && is_loaded_by_partner(p);
   scheme.type = damps ? time::TimeScheme::generalised_alpha : time::TimeScheme::trapezoidal;
   return scheme;
 }

@@ -27,6 +27,7 @@ ALLOWED = {
     "fv": ["mesh", "linalg", "parallel", "config", "csv", "log", "base"],
     "elasticity": ["fv", "mesh", "linalg", "parallel", "config", "csv", "log", "base"],
     "time": ["config", "base"],
+    "contact": ["fv", "config", "base"],
     "effects": ["base"],
     "io": ["fv", "mesh", "linalg", "parallel", "config", "csv", "log", "base"],
     "modes": ["io", "mesh", "linalg", "parallel", "log", "base"],

@@ -6,7 +6,7 @@ folders may include stands in check_sources.py."""
 MOST_FILES = 25  # .cpp and .hpp of one folder, tests apart
 
 FLOORS = {
-    "solid_solver": ["laws", "material", "parameters", "boundary", "method", "large_strain", "effects", "thermal", "body", "motion", "stability", "judge",
+    "solid_solver": ["laws", "material", "parameters", "boundary", "contact", "method", "large_strain", "effects", "thermal", "body", "motion", "stability", "judge",
                      "output", "."],
     "fluid_solver": ["conditions", "parameters", "state", "lines", "boundary", "turbulence", "motion", "pressure", "step", "judge", "output", "."],
     "coupler": ["parameters", "exchange", "mapping", "acceleration", "judge", "output", "."],

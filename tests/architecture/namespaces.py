@@ -8,6 +8,7 @@ NAMESPACES = {
     "common/app": "couplet::app",
     "common/base": "couplet::base",
     "common/config": "couplet::config",
+    "common/contact": "couplet::contact",
     "common/coupling": "couplet::coupling",
     "common/csv": "couplet::csv",
     "common/effects": "couplet::effects",

@@ -38,6 +38,14 @@ class SpaceKernel : public ElasticKernel::Implementation {
     return true;
   }
   Vec3 add_face_forces(std::span<const double> forces, std::span<double> rhs) override;
+  void face_means(std::span<const Index> faces, std::span<const double> unknowns,
+                  std::span<const double> known, std::span<double> means) override {
+    space_.fill(unknowns, known);
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      const Vec3 mean = face_mean(space_, faces[i]);
+      std::copy_n(mean.data(), D, means.data() + i * D);
+    }
+  }
   void add_cell_forces(std::span<const double> forces, std::span<double> rhs) override;
   void add_pressure(std::span<const double> pressure, std::span<double> rhs) override;
   std::vector<Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,

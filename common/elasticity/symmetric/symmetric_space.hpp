@@ -89,8 +89,8 @@ class SymmetricSpace {
   void spread_around(Index f, const Vec3& force_on_base);
   void held_at_points(std::span<const Index> patch_of, bool moved, std::vector<Wrench>& result);
   Vec3 place_of(const double* force, bool moved) const;
-  /// Force k (u - g) of the springs on the mean of the trace of a face, in which its node has the part 1/dim
-  /// and its points the rest; back to them by the same parts: take(place of the force, value).
+  /// Force k (u - g) of the springs on the mean of the trace of a face; back to its node and points by the same parts:
+  /// take(place of the force, value).
   template <class Take>
   void visit_spring(Index f, std::span<const double> known, const Take& take);
   double* force(Index node) { return force_.data() + std::size_t(node) * stride; }
@@ -115,6 +115,22 @@ class SymmetricSpace {
 /// Sum of the pyramids of each owned cell: warped faces fill it only nearly.
 std::vector<double> pyramid_volumes(const mesh::Mesh& mesh, const mesh::Geometry& geometry);
 
+/// Mean displacement of the trace of a boundary face: its node has the part 1/dim, its points the rest.
+template <int D>
+Vec3 face_mean(const SymmetricSpace<D>& space, Index f) {
+  constexpr int stride = SymmetricSpace<D>::stride;
+  const auto shares = point_shares(space.mesh(), space.rows().geometry(), f);
+  const auto points = space.mesh().face_points[f];
+  const double* node = space.nodes() + std::size_t(space.node_of_face(f)) * stride;
+  Vec3 mean = Vec3::Zero();
+  for (int a = 0; a < D; ++a) {
+    mean[a] = node[a] / D;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      mean[a] += (1 - 1.0 / D) * shares[i] * space.points()[std::size_t(points[i]) * stride + a];
+  }
+  return mean;
+}
+
 template <int D>
 template <class Take>
 void SymmetricSpace<D>::visit_spring(Index f, std::span<const double> known, const Take& take) {
@@ -123,14 +139,10 @@ void SymmetricSpace<D>::visit_spring(Index f, std::span<const double> known, con
   const Tensor3 open = Tensor3::Identity() - s.known, spring = open * s.spring * open;
   Vec3 g = Vec3::Zero();
   if (!known.empty()) g = vector(known.data() + std::size_t(rows_.known_of_face(f)) * D);
-  const Index node = node_of_face(f);
   const auto shares = point_shares(mesh_, geometry_, f);
   const auto points = mesh_.face_points[f];
-  Vec3 mean = vector(nodes_[node]) / D;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    mean += (1 - 1.0 / D) * shares[i] * vector(points_.data() + std::size_t(points[i]) * stride);
-  const Vec3 pull = geometry_.face_area[f].norm() * (spring * (mean - g));
-  take(force(node), pull / D);
+  const Vec3 pull = geometry_.face_area[f].norm() * (spring * (face_mean(*this, f) - g));
+  take(force(node_of_face(f)), pull / D);
   for (std::size_t i = 0; i < points.size(); ++i)
     take(point_force(points[i]), (1 - 1.0 / D) * shares[i] * pull);
 }

@@ -85,6 +85,33 @@ TEST(SolidParameters, mistakes_are_reported_with_their_place) {
   EXPECT_THAT(errors, Contains(AllOf(HasSubstr("case.yaml:7:"), HasSubstr("Did you mean 'symmetry'?"))));
 }
 
+TEST(SolidParameters, a_seat_that_cannot_be_is_told_with_its_line) {
+  const auto read_with = [](const std::string& seat, const std::string& more, const std::string& first) {
+    SolidParameters p;
+    return read(
+        "mesh: a.msh\ndimension: 2\n" + first + "\n" + material +
+            "boundaries: {root: {type: fixed-displacement, value: [0, 0]}, foot: {type: free}}\ncontact: " +
+            seat + "\n" + more,
+        p);
+  };
+  const std::string good = "{height: -1 mm, direction: [0, 1, 0]}";
+  EXPECT_THAT(read_with(good, "", "analysis: dynamic"), ::testing::IsEmpty());
+  const auto told = [&](const std::string& seat, const std::string& more, const std::string& line,
+                        const std::string& wanted, const std::string& first = "analysis: dynamic") {
+    EXPECT_THAT(read_with(seat, more, first),
+                Contains(AllOf(HasSubstr("case.yaml:" + line + ":"), HasSubstr(wanted))))
+        << seat << more;
+  };
+  told("{direction: [0, 1, 1]}", "", "6", "must lie in the plane");
+  told("{direction: [0, 0, 0]}", "", "6", "contact.direction");
+  told("{height: sin(t)}", "", "6", "the seat is at rest");
+  told(good, "time-scheme: {type: bathe}\n", "6", "keeps the energy with 'time-scheme: {type: trapezoidal}' only");
+  told(good, "solution-method: {face-gradient: thesis}\n", "7", "requires 'face-gradient: symmetric'");
+  told(good, "solution-method: {type: segregated}\n", "7", "requires 'face-gradient: symmetric'");
+  told(good, "output: {buckling: 2}\n", "7", "know nothing of a seat", "analysis: static");
+  told(good, "plane: axisymmetric\n", "7", "a body of revolution cannot meet a seat");
+}
+
 TEST(SolidParameters, loads_by_their_total_are_read) {
   SolidParameters p;
   EXPECT_THAT(

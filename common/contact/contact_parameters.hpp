@@ -2,11 +2,12 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "common/config/section.hpp"
 
-namespace couplet::plate {
+namespace couplet::contact {
 
 enum class ContactRule {
   conserving,  ///< force of a step = change of the penalty's energy over that of the gap [gonzalez2000]
@@ -19,13 +20,14 @@ struct ContactParameters {
   std::string gap;                            ///< of the fluid, whose seat this is; empty: none
   double opening = 0;                         ///< of that gap [m]: what lands stays half of it above the seat
   config::ExpressionText where{.text = "1"};  ///< of x, y, z: there is a seat where it is above 0
-  std::vector<double> direction;              ///< from the seat to the structure; empty: the plate's normal
+  std::vector<double> direction;              ///< from the seat to the structure; empty: not given
   double scale = 1;                           ///< f_SI of (4.33)
   std::optional<double> stiffness;            ///< kappa per area [N/m^3]; absent: (4.33)
   bool starts_inside = false;                 ///< the structure may stand in the seat at the start
   ContactRule rule = ContactRule::conserving;
 };
 
-void declare(config::Section& section, ContactParameters& parameters);
+/// The same keys for all structures. `default_direction`: what stands for an absent `direction`.
+void declare(config::Section& section, ContactParameters& parameters, const char* default_direction);
 
-}  // namespace couplet::plate
+}  // namespace couplet::contact

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plate_modal/model/contact_parameters.hpp"
+#include "common/contact/contact_parameters.hpp"
+
+#include <fmt/format.h>
 
 #include <cmath>
 
 #include "common/fv/expression.hpp"
 
-namespace couplet::plate {
+namespace couplet::contact {
 
-void declare(config::Section& s, ContactParameters& c) {
+void declare(config::Section& s, ContactParameters& c, const char* default_direction) {
   s.value("height", c.height)
       .unit("m")
       .plausible(1e-9, 1e4)
@@ -25,7 +27,8 @@ void declare(config::Section& s, ContactParameters& c) {
   s.value("where", c.where).doc("the seat exists where this expression of x, y, z is above 0");
   s.value("direction", c.direction)
       .size(3)
-      .doc("direction from the seat to the structure, of any length; absent: the plate's normal");
+      .doc(fmt::format("direction from the seat to the structure, of any length; absent: {}",
+                       default_direction));
   s.value("scale", c.scale).positive().doc("f_SI of thesis (4.33): kappa = f_SI K S / h");
   s.value("stiffness", c.stiffness)
       .unit("N/m^3")
@@ -59,4 +62,4 @@ void declare(config::Section& s, ContactParameters& c) {
       "direction");
 }
 
-}  // namespace couplet::plate
+}  // namespace couplet::contact

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/method/contact_newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/linalg/krylov.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet::solid {
+namespace {
+
+constexpr int most_corrections = 60, most_multiplier_changes = 200, halvings = 50;
+// Of a linear solve at most.
+constexpr double loosest_solve = 1e-3;
+
+class ContactNewton {
+ public:
+  ContactNewton(const ContactProblem& problem, std::span<const double> b, std::span<double> u)
+      : p_(problem),
+        b_(b),
+        u_(u),
+        r_(u.size()),
+        du_(u.size()),
+        kdu_(u.size()),
+        krylov_(
+            "displacement", p_.comm, u.size(),
+            [this](std::span<const double> x, std::span<double> y) {
+              p_.stiffness(x, y);
+              p_.pressing.add_stiffness(x, y);
+            },
+            [this](std::span<const double> r, std::span<double> z) { p_.method.approximate_inverse(r, z); }) {
+  }
+
+  linalg::SolveStatistics run() {
+    look(p_.known);
+    if (!touches()) {
+      statistics_ = p_.method.solve(b_, u_);
+      look(p_.known);
+      if (!touches()) return statistics_;
+      statistics_.inner_iterations += statistics_.iterations;
+      statistics_.iterations = 0;
+    }
+    check_method();
+    for (int i = 0; equilibrate() > 0 && p_.pressing.seat().is_rigid(); ++i) {
+      const double change = p_.pressing.take_multipliers(p_.comm);
+      p_.pressing.look(along_);
+      if (i == most_multiplier_changes)
+        throw SolveFailure(
+            "The pressure of the rigid seat did not settle in {} corrections (last change {:.1e} of it). Give the seat a "
+            "'contact.stiffness', or a larger 'contact.scale'.",
+            most_multiplier_changes, change);
+    }
+    return statistics_;
+  }
+
+ private:
+  void look(std::span<const double> known) {
+    along_ = p_.pressing.seat().along(u_, known);
+    p_.pressing.look(along_);
+  }
+  bool touches() const {
+    return parallel::any(p_.comm, std::ranges::any_of(p_.pressing.forces(), [](double f) { return f != 0; }));
+  }
+  void check_method() {
+    if (!p_.method.approximate_inverse(u_, r_))
+      throw Error(
+          "contact: 'solution-method: {{preconditioner: mixed}}' cannot meet a seat; use 'preconditioner: multigrid' or "
+          "'factors'.");
+  }
+
+  /// r = b + C^T f - K u, and what it is measured by.
+  double residual() {
+    p_.stiffness(u_, r_);
+    for (std::size_t i = 0; i < r_.size(); ++i) r_[i] = b_[i] - r_[i];
+    std::vector<double> push(r_.size(), 0);
+    p_.pressing.seat().add_to_rows(p_.pressing.forces(), push);
+    for (std::size_t i = 0; i < r_.size(); ++i) r_[i] += push[i];
+    scale_ = std::max(norm(p_.comm, b_), norm(p_.comm, push));
+    return norm(p_.comm, r_);
+  }
+
+  /// Newton's method for the multipliers at hand; gives how many corrections it took: none is left of a rigid seat that has settled.
+  int equilibrate() {
+    double size = residual();
+    int i = 0;
+    for (; size > p_.tolerance * scale_; ++i) {
+      if (i == most_corrections)
+        throw SolveFailure(
+            "The contact did not converge in {} corrections: residual {:.1e} of the forces (tolerance {:.0e}). Try a smaller "
+            "step.",
+            most_corrections, size / scale_, p_.tolerance);
+      const double wanted = std::min(loosest_solve, 0.3 * p_.tolerance * scale_ / size);
+      std::ranges::fill(du_, 0.0);
+      const linalg::SolveStatistics one =
+          krylov_.solve(r_, du_, {std::max(wanted, 1e-14), p_.most_iterations, true});
+      statistics_.inner_iterations += one.iterations;
+      ++statistics_.iterations;
+      correct();
+      const double before = size;
+      size = residual();
+      // At rounding level Newton's method stands still.
+      if (size >= before && size <= 1e3 * p_.tolerance * scale_ && i > 3) break;
+    }
+    statistics_.residual = size;
+    return i;
+  }
+
+  /// u + s du with the s <= 1 at which du . r changes its sign: along du the energy is convex.
+  void correct() {
+    const std::vector<double> change = p_.pressing.seat().along(du_, {}), start = along_;
+    p_.stiffness(du_, kdu_);
+    double smooth[2] = {0, 0};  // du . (b - K u), du . K du
+    for (std::size_t i = 0; i < du_.size(); ++i) {
+      smooth[0] += du_[i] * r_[i];
+      smooth[1] += du_[i] * kdu_[i];
+    }
+    for (std::size_t i = 0; i < change.size(); ++i) smooth[0] -= change[i] * p_.pressing.forces()[i];
+    const auto slope = [&](double s) {
+      for (std::size_t i = 0; i < along_.size(); ++i) along_[i] = start[i] + s * change[i];
+      p_.pressing.look(along_);
+      double sum = smooth[0] - s * smooth[1];
+      for (std::size_t i = 0; i < change.size(); ++i) sum += change[i] * p_.pressing.forces()[i];
+      return parallel::sum(p_.comm, sum);
+    };
+    const double enough = 0.1 * slope(0);
+    double low = 0, high = 1, s = 1, here = slope(1);
+    for (int i = 0; i < halvings && std::abs(here) > enough && !(s == 1 && here > 0); ++i) {
+      (here < 0 ? high : low) = s;
+      s = 0.5 * (low + high);
+      here = slope(s);
+    }
+    for (std::size_t i = 0; i < u_.size(); ++i) u_[i] += s * du_[i];
+  }
+
+  const ContactProblem& p_;
+  std::span<const double> b_;
+  std::span<double> u_;
+  std::vector<double> r_, du_, kdu_, along_;
+  linalg::KrylovSolver krylov_;
+  double scale_ = 0;
+  linalg::SolveStatistics statistics_;
+};
+
+}  // namespace
+
+linalg::SolveStatistics solve_with_contact(const ContactProblem& problem, std::span<const double> b,
+                                           std::span<double> u) {
+  return ContactNewton(problem, b, u).run();
+}
+
+}  // namespace couplet::solid

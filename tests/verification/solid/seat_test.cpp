@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// A solid that meets a rigid seat without friction: statics.
+#include <gtest/gtest.h>
+
+#include "tests/verification/solid/seat.hpp"
+
+namespace couplet::testing {
+using namespace mesh;
+namespace {
+
+/// A block pressed on its seat by a known displacement of its top, free to widen.
+SolidParameters pressed_block(int dim, const std::string& down) {
+  SolidParameters p = box_parameters(dim);
+  p.boundaries["xmin"] = boundary(Type::symmetry);
+  if (dim == 3) p.boundaries["zmin"] = boundary(Type::symmetry);
+  SolidBoundary top;
+  top.type = Type::fixed_displacement;
+  top.components[1] = config::ExpressionText{down};
+  p.boundaries["ymax"] = top;
+  p.contact = seat_below("-1e-4");
+  p.method.relative_tolerance = 1e-11;
+  return p;
+}
+
+/// Largest deviation of the stress along y from `pressure`, over it, and of all other components.
+double deviation(const Solid& solid, double pressure) {
+  double worst = 0;
+  for (const Tensor3& s : solid.fields().cell_stress(solid.fields().point_displacement())) {
+    Tensor3 off = s;
+    off(1, 1) += pressure;
+    if (solid.body().mesh().dim == 2) off(2, 2) = 0;  // of plane strain
+    worst = std::max(worst, off.norm() / pressure);
+  }
+  return parallel::max(MPI_COMM_WORLD, worst);
+}
+
+class PressedBlock : public ::testing::TestWithParam<BoxCells> {};
+
+TEST_P(PressedBlock, has_uniform_stress_to_the_tolerance_on_a_rigid_seat) {
+  const int dim = dimension_of(GetParam());
+  SolidParameters p = pressed_block(dim, "-11e-4");
+  RawMesh raw = make_box(GetParam(), {4, 3, 3}, Vec3::Zero(), Vec3(2, 1, dim == 3 ? 1 : 0));
+  perturb_interior(raw, 0.2, 5);
+  const auto solid = make_solid(raw, p);
+  step(*solid, 1);
+  // 1e-3 of strain; in the plane across it too: E / (1 - nu^2).
+  const double pressure = 1e-3 * 200e9 / (dim == 2 ? 1 - 0.09 : 1);
+  const Seat::Look seen = look(*solid);
+  RecordProperty(fmt::format("stress_{}", name(GetParam())),
+                 fmt::format("{:.1e}", deviation(*solid, pressure)));
+  EXPECT_LT(deviation(*solid, pressure), 1e-7);
+  EXPECT_NEAR(seen.force / (2 * pressure), 1, 1e-8);
+  EXPECT_NEAR(seen.pressure / pressure, 1, 1e-7);
+  EXPECT_LT(seen.penetration, 1e-12);  // of a gap of 1e-4
+}
+
+TEST_P(PressedBlock, shares_its_way_with_springs_of_any_stiffness) {
+  const int dim = dimension_of(GetParam());
+  for (const double kappa : {1e8, 1e11, 1e14, 1e16}) {
+    SolidParameters p = pressed_block(dim, "-11e-4");
+    p.contact->stiffness = kappa;
+    RawMesh raw = make_box(GetParam(), {4, 3, 3}, Vec3::Zero(), Vec3(2, 1, dim == 3 ? 1 : 0));
+    const auto solid = make_solid(raw, p);
+    step(*solid, 1);
+    const double modulus = 200e9 / (dim == 2 ? 1 - 0.09 : 1);
+    const double pressure = 1e-3 / (1 / modulus + 1 / kappa);
+    EXPECT_LT(deviation(*solid, pressure), 1e-6) << kappa;
+    EXPECT_NEAR(look(*solid).penetration / (pressure / kappa), 1, 1e-5) << kappa;
+    EXPECT_LE(solid->stepper().effort().iterations, 8) << kappa;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, PressedBlock, ::testing::ValuesIn(all_cells));
+
+TEST(Seat, that_is_not_met_changes_nothing) {
+  SolidParameters p = pressed_block(2, "-0.9e-4");
+  const RawMesh raw = make_box(BoxCells::quadrilaterals, {4, 3, 1}, Vec3::Zero(), Vec3(2, 1, 0));
+  const auto clear = make_solid(raw, p);
+  p.contact.reset();
+  const auto alone = make_solid(raw, p);
+  step(*clear, 1);
+  step(*alone, 1);
+  EXPECT_EQ(clear->stepper().state().cell_u, alone->stepper().state().cell_u);
+  EXPECT_EQ(look(*clear).force, 0);
+}
+
+/// Half of a block of 8 a by 8 a that a rigid cylinder is pressed into from below; cells of a / n at the middle, wider outwards. a is the half
+/// width by Hertz for the force found.
+struct Hertz {
+  double half_width, peak, force, wanted_half_width, wanted_peak;
+  int corrections;
+};
+
+Hertz hertz(int n, std::optional<double> stiffness = {}) {
+  const double radius = 1, e = 1e9, nu = 0.3, size = 0.4, down = 1.2e-3;
+  SolidParameters p = box_parameters(2);
+  p.material = {1000, e, nu};
+  p.boundaries["xmin"] = boundary(Type::symmetry);
+  p.boundaries["ymax"] = boundary(Type::fixed_displacement, {"0", fmt::format("-{}", down)});
+  p.contact = seat_below(fmt::format("-x^2/{}", 2 * radius));
+  p.contact->stiffness = stiffness;
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {n, n, 1}, Vec3::Zero(), Vec3(1, 1, 0));
+  const auto wider = [&](double s) { return size * (0.05 * s + 0.95 * s * s * s); };
+  for (Vec3& x : raw.points) x = {wider(x[0]), wider(x[1]), 0};
+  const auto solid = make_solid(raw, p);
+  step(*solid, 1);
+  const Seat::Look seen = look(*solid);
+  const double modulus = e / (1 - nu * nu), load = 2 * seen.force;  // both halves
+  const double a = std::sqrt(4 * load * radius / (M_PI * modulus));
+  return {seen.area, seen.pressure, load, a, 2 * load / (M_PI * a), solid->stepper().effort().iterations};
+}
+
+TEST(Seat, a_rigid_cylinder_has_the_half_width_and_the_peak_of_hertz) {
+  double before = 0;
+  for (const int n : {20, 40, 80}) {
+    const Hertz h = hertz(n);
+    const double width = h.half_width / h.wanted_half_width - 1, peak = h.peak / h.wanted_peak - 1;
+    // Where the contact ends: x = size (0.05 s + 0.95 s^3).
+    double s = 0;
+    while (0.4 * (0.05 * s + 0.95 * s * s * s) < h.half_width) s += 1e-4;
+    const double face = 0.4 * (0.05 + 2.85 * s * s) / n / h.half_width;
+    fmt::print("n {}: a {:.4e} ({:+.2f} %, a face {:.1f} %), p0 {:.4e} ({:+.3f} %), {} corrections\n", n,
+               h.half_width, 100 * width, 100 * face, h.peak, 100 * peak, h.corrections);
+    RecordProperty(fmt::format("width_error_{}", n), fmt::format("{:.5f}", width));
+    RecordProperty(fmt::format("peak_error_{}", n), fmt::format("{:.5f}", peak));
+    RecordProperty(fmt::format("face_{}", n), fmt::format("{:.5f}", face));
+    before = peak;
+    if (n < 80) continue;
+    EXPECT_LT(std::abs(width), std::max(0.02, face));
+    EXPECT_LT(std::abs(peak), 0.01);
+  }
+  EXPECT_LT(std::abs(before), 0.01);
+}
+
+TEST(Seat, at_large_strain_a_block_pressed_on_it_has_the_uniform_stress_of_its_law) {
+  for (const BoxCells cells : {BoxCells::quadrilaterals, BoxCells::hexahedra, BoxCells::tetrahedra}) {
+    const int dim = dimension_of(cells);
+    SolidParameters p = pressed_block(dim, "-0.1001*t");
+    p.material.law = "saint-venant-kirchhoff";
+    p.kinematics = SolidParameters::Kinematics::finite_strain;
+    RawMesh raw = make_box(cells, {4, 3, 3}, Vec3::Zero(), Vec3(2, 1, dim == 3 ? 1 : 0));
+    perturb_interior(raw, 0.2, 5);
+    const auto solid = make_solid(raw, p);
+    for (int i = 0; i < 2; ++i) step(*solid, 0.5);
+    // Green's strain along y of a stretch of 0.9; across it none of the stress: S = E e, in the plane E / (1 - nu^2) e; P = 0.9 S.
+    const double wanted = 0.9 * 0.095 * 200e9 / (dim == 2 ? 1 - 0.09 : 1);
+    const Seat::Look seen = look(*solid);
+    RecordProperty(fmt::format("large_{}", name(cells)),
+                   fmt::format("{:.1e}", seen.force / (2 * wanted) - 1));
+    EXPECT_NEAR(seen.force / (2 * wanted), 1, 1e-8) << name(cells);
+    EXPECT_NEAR(seen.pressure / wanted, 1, 1e-6) << name(cells);
+    EXPECT_LT(seen.penetration, 1e-9) << name(cells);
+  }
+}
+
+TEST(Seat, is_found_in_few_corrections_at_any_stiffness) {
+  int most = 0;
+  for (const double stiffness : {1e9, 1e12, 1e15, 1e18}) {
+    const int taken = hertz(40, stiffness).corrections;
+    fmt::print("stiffness {:.0e}: {} corrections\n", stiffness, taken);
+    most = std::max(most, taken);
+  }
+  RecordProperty("corrections", most);
+  EXPECT_LE(most, 15);
+}
+
+std::string refusal(SolidParameters p) {
+  try {
+    make_solid(make_box(BoxCells::quadrilaterals, {4, 3, 1}, Vec3::Zero(), Vec3(2, 1, 0)), p);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Seat, without_faces_or_around_the_body_is_refused) {
+  SolidParameters p = pressed_block(2, "0");
+  p.contact->direction = {0, -1, 0};  // the top, which is held
+  EXPECT_NE(refusal(p).find("no face of the solid points towards the seat"), std::string::npos) << refusal(p);
+  p = pressed_block(2, "0");
+  p.contact->height.text = "0.01";
+  EXPECT_NE(refusal(p).find("starts 0.01 m inside the seat"), std::string::npos) << refusal(p);
+  p.contact->starts_inside = true;
+  EXPECT_EQ(refusal(p), "");
+  p = pressed_block(2, "0");
+  p.method.face_gradient = FaceGradient::thesis;
+  EXPECT_NE(refusal(p).find("symmetric"), std::string::npos) << refusal(p);
+}
+
+}  // namespace
+}  // namespace couplet::testing
