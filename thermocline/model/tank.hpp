@@ -43,7 +43,7 @@ class Tank final : public coupling::Participant, public coupling::EstimatesError
   /// Upwind advection spreads a front as a diffusion v dz / 2 does, implicit steps as v^2 dt / 2: over the way w by
   /// s^2 = dz w and v dt w, which changes the profile by s^2 / 2 of its second derivative; w is what the largest flow
   /// can have gone since time 0, at most the height. The limited scheme is taken to spread by a cell. Over the
-  /// profile's distance from its mean, sums over the height.
+  /// profile's distance from its mean, sums over the height. Of a plant at least what of the storage the spreading leaves unused.
   coupling::ErrorParts error_parts() const override;
 
   const TankModel& model() const { return accepted_; }
@@ -54,6 +54,8 @@ class Tank final : public coupling::Participant, public coupling::EstimatesError
  private:
   TankRecord record() const;
   void look_at_bending();
+  coupling::ErrorParts spread_profile() const;
+  double unused_by_spreading() const;
   coupling::Exchange given() const;
   std::vector<double> received(const coupling::Exchange& in, const char* name) const;
 

@@ -6,11 +6,11 @@ import pathlib
 import tempfile
 import time
 
-from couplet.atlas import atlas, cases, coupling, draw, fluid, large, moving, periodic, plate, solid, strong, tank, viscous
+from couplet.atlas import atlas, cases, coupling, draw, fluid, large, moving, periodic, plant, plate, soft_flap, solid, strong, tank, viscous
 from couplet.places import ROOT, build
 from couplet.runs import expect
 
-MAPS = [*solid.MAPS, *large.MAPS, *fluid.MAPS, *periodic.MAPS, *moving.MAPS, *coupling.MAPS, *viscous.MAPS, *strong.MAPS, *tank.MAPS, *plate.MAPS]
+MAPS = [*solid.MAPS, *large.MAPS, *fluid.MAPS, *periodic.MAPS, *moving.MAPS, *coupling.MAPS, *viscous.MAPS, *soft_flap.MAPS, *strong.MAPS, *tank.MAPS, *plant.MAPS, *plate.MAPS]
 # Maps with runs of earlier settings: they only hold fewer squares than the defaults do now.
 WITHOUT_HALVING = ("coupling-viscous", "strong-robin")
 HEAD = """# Where each scheme is stable

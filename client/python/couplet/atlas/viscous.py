@@ -10,7 +10,7 @@ from .strong import changed
 
 CASE = ROOT / "configs" / "perpendicular-flap"
 STEPS, VISCOSITY = 24, 1.0
-PANELS = {"explicit": "explicit", "semi-implicit": "semi-implicit", "implicit": "implicit"}
+PANELS = {"auto": "auto", "explicit": "explicit", "semi-implicit": "semi-implicit", "implicit": "implicit"}
 COARSE = "{n_side: 8, n_tip: 1, growth: 1.5, wall_growth: 1.5, wall_cells: 4}"
 
 
