@@ -2,6 +2,7 @@
 #include "fluid_solver/lines/fourth_order.hpp"
 
 #include <algorithm>
+#include <span>
 
 #include "common/base/processor_clones.hpp"
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <utility>
+
 #include "fluid_solver/lines/lines.hpp"
 #include "fluid_solver/state/state.hpp"
 
