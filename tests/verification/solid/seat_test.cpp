@@ -84,6 +84,15 @@ TEST(Seat, that_is_not_met_changes_nothing) {
   EXPECT_EQ(look(*clear).force, 0);
 }
 
+TEST(Seat, without_a_direction_lies_below) {
+  SolidParameters p = pressed_block(2, "-11e-4");
+  p.contact->direction.clear();
+  const auto solid =
+      make_solid(make_box(BoxCells::quadrilaterals, {4, 3, 1}, Vec3::Zero(), Vec3(2, 1, 0)), p);
+  step(*solid, 1);
+  EXPECT_NEAR(look(*solid).force / (2 * 1e-3 * 200e9 / 0.91), 1, 1e-8);
+}
+
 /// Half of a block of 8 a by 8 a that a rigid cylinder is pressed into from below; cells of a / n at the middle, wider outwards. a is the half
 /// width by Hertz for the force found.
 struct Hertz {
