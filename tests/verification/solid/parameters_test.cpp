@@ -105,7 +105,8 @@ TEST(SolidParameters, a_seat_that_cannot_be_is_told_with_its_line) {
   told("{direction: [0, 1, 1]}", "", "6", "must lie in the plane");
   told("{direction: [0, 0, 0]}", "", "6", "contact.direction");
   told("{height: sin(t)}", "", "6", "the seat is at rest");
-  told(good, "time-scheme: {type: bathe}\n", "6", "keeps the energy with 'time-scheme: {type: trapezoidal}' only");
+  told(good, "time-scheme: {type: bathe}\n", "6",
+       "keeps the energy with 'time-scheme: {type: trapezoidal}' only");
   told(good, "solution-method: {face-gradient: thesis}\n", "7", "requires 'face-gradient: symmetric'");
   told(good, "solution-method: {type: segregated}\n", "7", "requires 'face-gradient: symmetric'");
   told(good, "output: {buckling: 2}\n", "7", "know nothing of a seat", "analysis: static");
