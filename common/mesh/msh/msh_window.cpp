@@ -21,7 +21,8 @@ MshWindow::MshWindow(const std::filesystem::path& file) : file_(file), in_(file,
 }
 
 void MshWindow::fail() const {
-  throw Error("The mesh file '{}' does not hold what its format promises at byte {}.", file_.string(), place());
+  throw Error("The mesh file '{}' does not hold what its format promises at byte {}.", file_.string(),
+              place());
 }
 
 /// Keeps what is left; false if the file ends before so many bytes.
