@@ -120,6 +120,7 @@ std::unique_ptr<Solid> strip(BoxCells cells, int n, const std::vector<std::strin
                              const std::string& pull) {
   SolidParameters p = ply_parameters(2);
   p.plane = Plane::stress;
+  p.method.preconditioner = MethodParameters::Preconditioner::factors;
   p.material.orthotropic->first_axis = {{"cos(pi/6)"}, {"sin(pi/6)"}};
   p.boundaries["xmin"] = boundary(Type::fixed_displacement, root);
   p.boundaries["xmax"] = boundary(Type::traction, {pull, "0"});
