@@ -10,19 +10,9 @@ import numpy as np
 here = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(here.parents[1] / "client/python"))
 import couplet  # noqa: E402
+from couplet.interpolation import extremum, lagrange  # noqa: E402
 
 REFERENCE = {"u_min": -0.2803833, "v_max": 0.2466511, "v_min": -0.4350186}
-
-
-def lagrange(nodes, at):
-    return np.array([np.prod([(at - b) / (a - b) for b in nodes if b != a]) for a in nodes])
-
-
-def extremum(place, values, sign):
-    """Of the quartic through the five points about the largest sign * value."""
-    i = int(np.clip(np.argmax(sign * values), 2, len(values) - 3))
-    nodes = place[i - 2 : i + 3]
-    return sign * max(sign * float(lagrange(nodes, x) @ values[i - 2 : i + 3]) for x in np.linspace(nodes[1], nodes[3], 401))
 
 
 def extrema(folder):
