@@ -5,6 +5,7 @@
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
+#include "common/io/probes/probe.hpp"
 #include "common/log/log.hpp"
 #include "solid_solver/effects/effect_cards.hpp"
 #include "solid_solver/output/output.hpp"
@@ -23,7 +24,11 @@ Solid::Solid(mesh::LoadedMesh body, SolidParameters parameters, SolidContext con
       stepper_(body_),
       fields_(body_, stepper_.state(), stepper_.last_solve()),
       judge_(body_, stepper_, fields_),
-      output_(std::make_unique<SolidOutput>(fields_, stepper_, body_, context_)) {}
+      output_(std::make_unique<SolidOutput>(fields_, stepper_, body_, context_)) {
+  for (const auto& [name, quantity] :
+       body_.parameters().quantities)  // a place outside is an error now, not at the end
+    if (!quantity.point.empty()) io::Probe(body_.mesh(), body_.geometry().points, name, place_of(quantity));
+}
 
 Solid::~Solid() = default;
 

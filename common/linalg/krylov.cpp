@@ -22,9 +22,6 @@ namespace {
 constexpr double at_rounding = 10;
 // Iterations of BiCGStab after which the spectrum is taken to be one that it is slow on.
 constexpr int patience = 50;
-// So few iterations of conjugate gradients from a true residual leave the one that they carry along as right as a new one:
-// those by factors need one or two.
-constexpr int few = 3;
 
 }  // namespace
 
@@ -111,7 +108,8 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
       run_gmres(x, aim, options.max_iterations, statistics);
     else
       try_bicgstab(x, aim, std::min(options.max_iterations, patience), statistics);
-    const bool is_right = options.is_symmetric && is_true && statistics.iterations - earlier <= few;
+    const bool is_right =
+        options.is_symmetric && is_true && statistics.iterations - earlier <= options.carried;
     statistics.residual =
         is_right ? std::sqrt(over_ranks<1>(comm_, {dot_here(r_, r_)})[0]) : true_residual(b, x);
     is_true = true;

@@ -21,12 +21,14 @@ struct KrylovOptions {
   int max_iterations = 500;
   bool is_symmetric = false;  ///< A and the preconditioner are, and positive: conjugate gradients
   bool is_hard = false;       ///< known to be slow for BiCGStab: GMRES from the start
+  int carried =
+      0;  ///< after so many iterations of conjugate gradients at most, the residual they carry counts as true
 };
 
 /// BiCGStab [vandervorst1992] preconditioned from the right, for operators that are only applied; where it
 /// has not converged after 50 iterations, PETSc's GMRES goes on, which needs more memory and tolerates more. The
 /// residual that is judged is the true one, b - A x: the recurrence drifts away from it on long runs, so that
-/// it is computed anew when the recurrence has reached the tolerance, and the iteration begins again from
+/// it is computed anew when the recurrence has reached the tolerance (but for KrylovOptions::carried), and the iteration begins again from
 /// there if it has not. Symmetric positive pairs take preconditioned conjugate gradients [hestenes1952] in
 /// their place, under the same rules. A residual that is only what rounding leaves in A x counts as reached.
 class KrylovSolver {

@@ -33,6 +33,8 @@ constexpr GlobalIndex many_cells = 4000;
 constexpr double heavy = 0.03;
 // Residual over right-hand side that double precision still gives.
 constexpr double finest_tolerance = 1e-15;
+// Of a step of a motion by factors, which takes one or two: a product in three is saved.
+constexpr int steps_carried = 3;
 
 }  // namespace
 
@@ -93,6 +95,7 @@ NewtonKrylov::NewtonKrylov(const SolidProblem& problem, const MethodParameters& 
   if (problem.is_symmetric())
     options_.relative_tolerance =
         std::max(finest_tolerance, options_.relative_tolerance / std::max(1., heaviness(problem)));
+  if (!problem.is_static()) options_.carried = steps_carried;
   if (parameters.preconditioner == Preconditioner::factors)
     choose_factors();
   else

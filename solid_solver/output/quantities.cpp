@@ -58,8 +58,7 @@ class Estimates {
     QuantityEstimate e{
         .name = name, .what = quantity.field, .unit = quantity.field == "displacement" ? "m" : "Pa"};
     if (!quantity.component.empty()) e.what += " " + quantity.component;
-    for (std::size_t a = 0; a < quantity.point.size(); ++a) e.place[Eigen::Index(a)] = quantity.point[a];
-    if (quantity.point.empty()) e.place = place_of_largest_stress(body_, fields_, points_);
+    e.place = quantity.point.empty() ? place_of_largest_stress(body_, fields_, points_) : place_of(quantity);
     const io::Probe probe(mesh_, body_.geometry().points, name, e.place);
     e.place = probe.place();
     if (quantity.field == "displacement")
@@ -124,6 +123,12 @@ class Estimates {
 };
 
 }  // namespace
+
+Vec3 place_of(const SolidQuantity& quantity) {
+  Vec3 place = Vec3::Zero();
+  for (std::size_t a = 0; a < quantity.point.size(); ++a) place[Eigen::Index(a)] = quantity.point[a];
+  return place;
+}
 
 // Not a number is more than all others.
 double QuantityEstimate::error() const {

@@ -26,6 +26,9 @@ struct QuantityEstimate {
   double error() const;
 };
 
+/// Where the case puts it [m]; 0 without a point.
+Vec3 place_of(const SolidQuantity& quantity);
+
 /// Of `quantities`, one solve with `method` for each; `unknowns` and `state`: accepted. The same on all ranks. Throws SolveFailure, and Error for
 /// a body whose operator has no energy. Collective.
 std::vector<QuantityEstimate> estimate_quantities(const SolidBody& body, const SolidFields& fields,
