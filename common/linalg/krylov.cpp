@@ -108,10 +108,8 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
       run_gmres(x, aim, options.max_iterations, statistics);
     else
       try_bicgstab(x, aim, std::min(options.max_iterations, patience), statistics);
-    const bool is_right =
-        options.is_symmetric && is_true && statistics.iterations - earlier <= options.carried;
-    statistics.residual =
-        is_right ? std::sqrt(over_ranks<1>(comm_, {dot_here(r_, r_)})[0]) : true_residual(b, x);
+    const bool keep = options.is_symmetric && is_true && statistics.iterations - earlier <= options.carried;
+    statistics.residual = keep ? std::sqrt(over_ranks<1>(comm_, {dot_here(r_, r_)})[0]) : true_residual(b, x);
     is_true = true;
   }
   if (projection) projection->finish(r_, x);
