@@ -156,11 +156,13 @@ void declare_schemes(config::Section& s, FluidParameters& p) {
           "the lowest loss of kinetic energy, but pressure noise is not damped; non-incremental: computed "
           "anew in each step, first order in time");
   s.choice("face-values", p.face_values,
-           {{"second-order", FaceValues::second_order}, {"fourth-order", FaceValues::fourth_order}})
+           {{"second-order", FaceValues::second_order},
+            {"fourth-order", FaceValues::fourth_order},
+            {"auto", FaceValues::automatic}})
       .doc(
           "order in space of convection, explicit friction, fluxes and pressure gradient; fourth-order: along lines of "
           "hexahedra or quadrilaterals whose faces lie straight across, away from walls, second order elsewhere; a mesh "
-          "at rest");
+          "at rest; auto: fourth-order where that is possible on at least half of the mesh");
   s.choice("volume-level", p.volume_level,
            {{"none", VolumeLevelBy::nobody}, {"structure", VolumeLevelBy::structure}})
       .doc(

@@ -21,7 +21,7 @@ enum class ExplicitScheme { adams_bashforth, runge_kutta };
 enum class Projection { flux_memory, incremental, non_incremental };
 
 /// Order of the operators along lines of hexahedra and quadrilaterals.
-enum class FaceValues { second_order, fourth_order };
+enum class FaceValues { second_order, fourth_order, automatic };
 
 /// Who sets the pressure level, and so holds the volume, of a fluid without an outlet.
 enum class VolumeLevelBy { nobody, structure };

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
+#include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::fluid {
@@ -45,11 +46,15 @@ void check_waves(const FluidParameters& parameters) {
     refuse("the stages of runge-kutta", "'scheme: runge-kutta'");
 }
 
-void check_order(const FluidParameters& parameters, bool moving) {
-  const auto refuse = [](const char* with, const char* remove) {
-    throw Error(
-        "face-values: fourth-order is not supported together with {}; remove {}, or use second-order.", with,
-        remove);
+/// `auto` becomes second order where fourth is not possible.
+void check_order(FluidParameters& parameters, bool moving) {
+  const auto refuse = [&](const char* with, const char* remove) {
+    if (parameters.face_values == FaceValues::fourth_order)
+      throw Error(
+          "face-values: fourth-order is not supported together with {}; remove {}, or use second-order.",
+          with, remove);
+    log::info("Face values: second-order (auto: {})", with);
+    parameters.face_values = FaceValues::second_order;
   };
   if (moving) refuse("a mesh that moves", "'motion' or the mesh mover");
   if (!parameters.bodies.empty()) refuse("immersed bodies", "'bodies'");
@@ -99,7 +104,7 @@ void check_together(const mesh::Mesh& mesh, const Boundary<D>& boundary, FluidPa
       throw Error("viscous: implicit is not possible with immersed bodies, which act on the explicit step.");
     parameters.viscous = ViscousTreatment::explicit_;
   }
-  if (parameters.face_values == FaceValues::fourth_order) check_order(parameters, moving);
+  if (parameters.face_values != FaceValues::second_order) check_order(parameters, moving);
   if (parameters.is_compressible()) check_waves(parameters);
   if (!parameters.gaps.empty() && boundary.closed() && !parameters.is_compressible())
     throw Error(

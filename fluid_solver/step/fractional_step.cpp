@@ -4,10 +4,16 @@
 
 #include <algorithm>
 
+#include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/motion/seat_check.hpp"
 
 namespace couplet::fluid {
+namespace {
+
+constexpr double least_share = 0.5;  // of cells and directions that have lines, for which fourth order pays
+
+}  // namespace
 
 template <int D>
 FractionalStep<D>::FractionalStep(const mesh::Mesh& mesh, const std::vector<Vec3>& points_at_rest,
@@ -34,9 +40,15 @@ FractionalStep<D>::FractionalStep(const mesh::Mesh& mesh, const std::vector<Vec3
 }
 
 template <int D>
-std::shared_ptr<const Placement<D>> FractionalStep<D>::raise_order(const Placement<D>& at) {
-  Lines<D> lines(k_.mesh, at);
-  auto seen = lines.seen(k_.mesh, at);
+std::shared_ptr<const Placement<D>> FractionalStep<D>::raise_order(std::shared_ptr<const Placement<D>> at) {
+  Lines<D> lines(k_.mesh, *at);
+  if (k_.parameters.face_values == FaceValues::automatic) {
+    const bool pays = lines.share >= least_share;
+    log::info("Face values: {} (auto: fourth order is possible on {:.0f} % of the mesh)",
+              pays ? "fourth-order" : "second-order", 100 * lines.share);
+    if (!pays) return at;
+  }
+  auto seen = lines.seen(k_.mesh, *at);
   k_.fourth = std::make_unique<FourthOrder<D>>(k_.mesh, std::move(lines));
   predictor_.rate_operator().set_fourth(k_.fourth.get());
   return seen;

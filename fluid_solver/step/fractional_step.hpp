@@ -28,8 +28,8 @@ class FractionalStep {
   FractionalStep(const mesh::Mesh& mesh, const std::vector<Vec3>& points_at_rest, const Boundary<D>& boundary,
                  const FluidParameters& parameters, bool moving);
 
-  /// Fourth order along the lines of a mesh at rest, from now on; gives the placement to use. Collective.
-  std::shared_ptr<const Placement<D>> raise_order(const Placement<D>& at);
+  /// Fourth order along the lines of a mesh at rest, from now on (`auto`: if they are half of it); gives the placement to use. Collective.
+  std::shared_ptr<const Placement<D>> raise_order(std::shared_ptr<const Placement<D>> at);
   /// Null: second order everywhere.
   const FourthOrder<D>* fourth() const { return k_.fourth.get(); }
 

@@ -11,7 +11,7 @@ void Fluid<D>::start(const mesh::Geometry& geometry, double time) {
   s.time = time;
   if (path_.moves()) s.points = geometry.points;
   s.placement = path_.start(geometry);
-  if (parameters_.face_values == FaceValues::fourth_order) s.placement = step_.raise_order(*s.placement);
+  if (parameters_.face_values != FaceValues::second_order) s.placement = step_.raise_order(s.placement);
   sizes_.set_fourth(step_.fourth() != nullptr);
   const Placement<D>& at = *s.placement;
   s.u.assign(mesh_.cells.n_local(), Vec<D>::Zero());

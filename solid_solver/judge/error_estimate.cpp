@@ -17,11 +17,6 @@
 #include "solid_solver/judge/weighted_estimate.hpp"
 
 namespace couplet::solid {
-namespace {
-
-constexpr double most_bound = 0.5;
-
-}  // namespace
 
 SolidErrorEstimate::SolidErrorEstimate(const SolidBody& body, const SolidStepper& stepper,
                                        const SolidFields& fields, const SolidJudge& judge)
@@ -197,14 +192,8 @@ coupling::ErrorParts SolidErrorEstimate::parts() const {
   }
   const StrainAudit audit = judge_.compared();
   parts.mesh = std::max(audit.mismatch(), audit.missed_by_mesh(body_.mesh().dim));
-  parts.mesh = std::max(parts.mesh, audit.inner_variation);
   if (!(audit.strain_energy > 0)) parts.mesh = coupling::ErrorParts::unknown;
-  if (body_.is_dynamic()) {
-    parts.mesh += drift_.over_size(parts.mesh);
-    // Of tetrahedra a bound, up to 40 times too large: a large one says nothing.
-    if (body_.mesh().dim == 3 && audit.smooth_difference && parts.mesh > most_bound)
-      parts.mesh = coupling::ErrorParts::unknown;
-  }
+  if (body_.is_dynamic()) parts.mesh += drift_.over_size(parts.mesh);
   add_loads(parts);
   if (body_.parameters().expansion) parts.mesh = thermal_mesh_error(parts.mesh);
   return parts;

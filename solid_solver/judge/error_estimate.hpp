@@ -17,8 +17,9 @@ namespace couplet::solid {
 
 /// What a solid's run leaves in its displacement:
 ///   mesh    by how much the work of the stresses misses the strain energy, which equilibrium would make equal, or,
-///           if more, the square of the relative difference of two face gradients' strains: an energy errs by the
-///           square of what the strains err. A symmetric operator misses nothing by itself, there the latter counts.
+///           if more, what recovered strains differ from those of the faces (symmetric gradient: its work misses nothing
+///           by itself), or the square of the relative difference of two face gradients' strains: an energy errs by the
+///           square of what the strains err; see StrainAudit::missed_by_mesh().
 ///           In motion what that makes of the phase comes beside it, see PhaseDrift. A body at rest tells nothing.
 ///   step    sum of the local errors, see VelocityErrors; static: none
 ///   linear  static: the work of what equilibrium misses over that of the loads, which is the error of the compliance;

@@ -32,9 +32,7 @@ SmoothEnergy::SmoothEnergy(const mesh::Mesh& mesh, const elastic::ElasticOperato
     : mesh_(mesh), geometry_(rows.geometry()), rows_(rows), counted_(std::size_t(mesh.cells.n_owned()), 0) {}
 
 bool SmoothEnergy::is_of_use(const mesh::Mesh& mesh) {
-  const auto is_other = [](mesh::CellType t) {
-    return t != mesh::CellType::triangle && t != mesh::CellType::tetrahedron;
-  };
+  const auto is_other = [](mesh::CellType t) { return t != mesh::CellType::triangle; };
   return !parallel::any(mesh.comm, std::ranges::any_of(mesh.cell_type, is_other));
 }
 

@@ -16,15 +16,14 @@ namespace couplet::solid {
 /// differ says how wrong the operator's stiffness is for this displacement (recovered displacements: Naga and Zhang, SIAM J.
 /// Numer. Anal. 42 (2004) 1780).
 ///
-/// Beside the true error of the displacement (scripts/validate right-by-default): on triangles 0.3 to 1.0 of it on Cook's panel, a ring and
-/// an orthotropic bar, where the difference of two face gradients is 0.01 to 1.6; far above it where structured triangles are
-/// sheared and their errors cancel. On tetrahedra that bend 0.3 to 40, mostly a half to a tenth of that difference. On
-/// quadrilaterals and hexahedra it knows no more than the difference does.
+/// Beside the true error of the displacement (scripts/validate right-by-default): on triangles 0.3 to 1.2 of it on Cook's panel, a ring and
+/// an orthotropic bar, where recovered strains see 0.02 to 1.1; far above it where structured triangles are
+/// sheared and their errors cancel. On other cells it knows less than those: 0.3 to 40 on tetrahedra that bend.
 class SmoothEnergy {
  public:
   /// By reference.
   SmoothEnergy(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows);
-  /// Triangles or tetrahedra alone. Collective.
+  /// Triangles alone. Collective.
   static bool is_of_use(const mesh::Mesh& mesh);
 
   /// Displacement gradient of a flux face; those of partition faces on both ranks.

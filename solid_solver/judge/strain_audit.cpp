@@ -13,6 +13,7 @@
 #include "common/parallel/collective.hpp"
 #include "solid_solver/judge/inner_variation.hpp"
 #include "solid_solver/judge/judge.hpp"
+#include "solid_solver/judge/recovered_strain.hpp"
 #include "solid_solver/judge/smooth_energy.hpp"
 
 namespace couplet::solid {
@@ -53,20 +54,35 @@ bool is_strained(const SolidBody& body) {
 struct WithinCells {
   std::optional<InnerVariation> variation;
   std::optional<SmoothEnergy> smooth;
+  std::optional<RecoveredStrain> recovered;
   void add(Index f, const Tensor3& gradient) {
-    if (variation) variation->add(f, 0.5 * (gradient + gradient.transpose()));
+    const Tensor3 strain = 0.5 * (gradient + gradient.transpose());
+    if (variation) variation->add(f, strain);
     if (smooth) smooth->add(f, gradient);
+    if (recovered) recovered->add(f, strain);
+  }
+  /// After all faces. Collective.
+  void finish(const elastic::ElasticKernel& kernel, const elastic::ElasticField& u,
+              std::span<const double> points, StrainAudit& audit) {
+    if (variation) audit.inner_variation = variation->missed();
+    if (smooth) audit.smooth_difference = smooth->missed(points);
+    if (!recovered) return;
+    recovered->recover();
+    const auto compare = [&](Index f, const Tensor3& g) { recovered->compare(f, 0.5 * (g + g.transpose())); };
+    kernel.face_gradients(u.unknowns, u.known, compare, 0, recovered->n_faces());
+    audit.recovered_difference = recovered->missed();
   }
 };
 
 WithinCells within_cells(const mesh::Mesh& mesh, const SolidBody& body) {
   WithinCells within;
-  if (!body.kernel().is_symmetric() || is_strained(body)) return within;
+  if (!body.kernel().is_symmetric()) return within;
   const elastic::ElasticOperator& rows = body.elastic();
+  within.recovered.emplace(mesh, rows);
+  if (is_strained(body)) return within;
   if (InnerVariation::is_needed(mesh, rows)) within.variation.emplace(mesh, rows);
-  // In the plane high modes would decide.
-  if ((mesh.dim == 3 || !body.is_dynamic()) && SmoothEnergy::is_of_use(mesh))
-    within.smooth.emplace(mesh, rows);
+  // Of a motion, high modes would decide.
+  if (!body.is_dynamic() && SmoothEnergy::is_of_use(mesh)) within.smooth.emplace(mesh, rows);
   return within;
 }
 
@@ -74,8 +90,10 @@ WithinCells within_cells(const mesh::Mesh& mesh, const SolidBody& body) {
 
 double StrainAudit::missed_by_mesh(int dim) const {
   const double of_gradients = gradient_difference * gradient_difference;
-  if (!smooth_difference) return of_gradients;
-  return dim == 2 ? std::max(of_gradients, *smooth_difference) : std::min(of_gradients, *smooth_difference);
+  if (!recovered_difference) return of_gradients;
+  // A single cell across shows no slope to its neighbours: all of its bending would be missed.
+  const double missed = dim == 3 ? std::min(*recovered_difference, of_gradients) : *recovered_difference;
+  return std::max({missed, smooth_difference, inner_variation});
 }
 
 double StrainAudit::mismatch() const {
@@ -165,8 +183,7 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
   }
   audit.strain_energy = parallel::sum(mesh_.comm, energy);
   audit.stress_work = parallel::sum(mesh_.comm, work);
-  if (within.variation) audit.inner_variation = within.variation->missed();
-  if (within.smooth) audit.smooth_difference = within.smooth->missed(points);
+  within.finish(body_.kernel(), {unknowns, known}, points, audit);
   if (size > 0) audit.gradient_difference = std::sqrt(difference / size);
   return audit;
 }

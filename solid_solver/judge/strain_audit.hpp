@@ -22,11 +22,13 @@ struct StrainAudit {
   bool compares_gradients = false;
   /// InnerVariation::missed() of the symmetric gradient in the plane, else 0.
   double inner_variation = 0;
-  /// SmoothEnergy::missed() of bodies of tetrahedra, or of triangles at rest.
-  std::optional<double> smooth_difference;
+  /// SmoothEnergy::missed() of triangles at rest, else 0.
+  double smooth_difference = 0;
+  /// RecoveredStrain::missed() of the symmetric gradient.
+  std::optional<double> recovered_difference;
 
-  /// Share of the stiffness, and so of the displacement, that the mesh errs by: the square of the difference of gradients, which is too
-  /// small on triangles by up to a hundred times and too large on tetrahedra that bend; there the smooth energy bounds it.
+  /// Share of the stiffness, and so of the displacement, that the mesh errs by: the most of these; in space the square of the
+  /// difference of the gradients where that is less, and with the other gradients that alone.
   double missed_by_mesh(int dim) const;
   /// Part of the strain energy by which it misses the work; a symmetric operator has none.
   double mismatch() const;

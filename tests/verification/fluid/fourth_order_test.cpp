@@ -274,5 +274,16 @@ TEST(FourthOrder, is_refused_with_what_it_does_not_know) {
   EXPECT_THAT(with_mover, ::testing::ThrowsMessage<Error>(::testing::HasSubstr("a mesh that moves")));
 }
 
+TEST(FourthOrder, auto_takes_it_on_quadrilaterals_at_rest_and_neither_on_triangles_nor_on_moving_meshes) {
+  RawMesh raw = box<2>(8, 0);
+  const FluidParameters p = periodic<2>(raw, 1, FaceValues::automatic);
+  EXPECT_NE(FluidCase<2>(MPI_COMM_WORLD, raw, p).fluid().fourth(), nullptr);
+  const auto at_rest = [](const Vec3& x, GlobalIndex, double) { return x; };
+  EXPECT_EQ(FluidCase<2>(MPI_COMM_WORLD, raw, p, at_rest).fluid().fourth(), nullptr);
+  RawMesh triangles = make_box(BoxCells::triangles, {8, 8, 1}, Vec3::Zero(), Vec3(1, 1, 1));
+  const FluidParameters q = periodic<2>(triangles, 1, FaceValues::automatic);
+  EXPECT_EQ(FluidCase<2>(MPI_COMM_WORLD, triangles, q).fluid().fourth(), nullptr);
+}
+
 }  // namespace
 }  // namespace couplet::fluid::test
