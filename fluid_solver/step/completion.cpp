@@ -181,7 +181,7 @@ void FractionalStep<D>::check(const State<D>& from) {
   }
   MPI_Bcast(data, 4, MPI_DOUBLE, worst.rank, k_.mesh.comm);
   parallel::broadcast(k_.mesh.comm, cause, worst.rank);
-  if (k_.gap_closed())
+  if (k_.gap_closed() && k_.sound == 0)  // else what is shut off compresses
     if (const std::string shut = k_.pockets->cause(*k_.step.to); !shut.empty()) cause = shut;
   const EnergyJudgement& e = judgement_.energy;
   const std::string what =

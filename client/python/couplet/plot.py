@@ -137,6 +137,7 @@ def declare(parser):
     parser.add_argument("--mode", type=int, metavar="N", help="draws this mode of modes.h5 in FOLDER")
     parser.add_argument("--component", choices=("x", "y", "z"), help="of --field: a component in place of the magnitude")
     parser.add_argument("--warp", type=float, default=1.0, metavar="F", help="of --field: a body is drawn with its displacement times F (1)")
+    parser.add_argument("--film", action="store_true", help="of CASE.yaml: the maps of its section plot at each output, between --from and --to, as frames film/frame-*.png, and film.mp4 where ffmpeg is installed")
     parser.add_argument("--picture", type=pathlib.Path, metavar="FILE.png", help="by default FILE.png beside FILE.csv; for one file only")
 
 
@@ -157,7 +158,7 @@ def run(options):
         if code is not None:
             return code
     else:
-        expect(options.out is None, "--out: belongs to CASE.yaml; of a run give its folder alone")
+        expect(options.out is None and not options.film, "--out, --film: belong to CASE.yaml; of a run give its folder alone")
     files, folders = [], 0
     for name in options.files:
         folders += name.is_dir()

@@ -18,6 +18,12 @@ def of_case(file, options):
     """Draws it; gives the exit code, or None where there are only the monitors of its run, which options.files then names."""
     case = Case(file)
     out = options.out or output_of(case, ())
+    expect(not options.film or "plot" in case.data, f"--film: {case.file} has no section plot with a map")
+    if options.film:
+        from couplet.plots.film import film
+        folder, file = film(case, out, options.low, options.high)
+        print(f"frames: {folder}", f"film: {file}" if file else "film: none, ffmpeg is not installed", sep="\n")
+        return 0
     if "plot" in case.data:
         from couplet.plots.draw import draw
         print(f"picture: {draw(case, out, options.picture)}")

@@ -175,15 +175,23 @@ def print_quantities(section, case, out):
         print(f"{quantity.name}: {value:.5g}{' ' + quantity.given['unit'] if 'unit' in quantity.given else ''}{beside}")
 
 
-def draw(case, out, picture=None):
-    """Draws the picture of the run in the folder `out`; gives its path."""
-    section, out = check(case), pathlib.Path(out)
+def across_of(section):
+    """Panels side by side."""
+    return min(section.get("columns", min(3, len(section["panels"]))), len(section["panels"]))
+
+
+def size_of(section):
+    """Width and height of the picture [inch]."""
+    return section.get("size", (min(14, 5.5 * across_of(section)), 4.2 * -(-len(section["panels"]) // across_of(section))))
+
+
+def draw(case, out, picture=None, section=None):
+    """Draws the picture of the run in the folder `out` (of another section than that of the case: a frame of a film); gives its path."""
+    section, out = section or check(case), pathlib.Path(out)
     expect(out.is_dir(), f"{out}: there is no such folder; run the case first: couplet run {shlex.quote(str(case.file))}")
-    panels = section["panels"]
-    across = min(section.get("columns", min(3, len(panels))), len(panels))
+    panels, across = section["panels"], across_of(section)
     down = -(-len(panels) // across)
-    size = section.get("size", (min(14, 5.5 * across), 4.2 * down))
-    figure, grid = plt.subplots(down, across, figsize=size, dpi=130, squeeze=False, constrained_layout=True, sharex=section.get("share-x", False))
+    figure, grid = plt.subplots(down, across, figsize=size_of(section), dpi=130, squeeze=False, constrained_layout=True, sharex=section.get("share-x", False))
     for axes in grid.flat[len(panels):]:
         axes.axis("off")
     where = f"{case.file}: plot"

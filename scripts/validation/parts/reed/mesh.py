@@ -82,7 +82,8 @@ participants:
 
 
 def end_of(scene, rows):
-    return f"{100 * rows['time [s]'][-1] / SCENES[scene][3]:.0f} %"
+    share = 100 * rows["time [s]"][-1] / SCENES[scene][3]
+    return f"{share:.0f} %" if share >= 1 else f"{share:.1g} %"
 
 
 def reaches(job, scene):

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures of the reed valve in three dimensions and of its slice: lift, frequency, energy, effective flow area, other structures in the reed's place."""
+import re
+
 import couplet
 import numpy as np
 
@@ -80,3 +82,13 @@ def swapped(job):
         found[name] = gap[first], gap[low], gap[second], 1 / (t[second] - t[first])
     off = max(abs(v[i] / found["plate"][i] - 1) for v in found.values() for i in range(4))
     return "; ".join(f"{name}: {v[0]:.3f}, {v[1]:.3f}, {v[2]:.3f} mm, {v[3]:.0f} Hz" for name, v in found.items()) + f" (first peak, trough, second peak): {100 * off:.1f} % apart", off <= 0.05
+
+
+def landings(job):
+    """What coupling_reed_lands_* print."""
+    passed, total, _, output = job.ctest("^coupling_reed_lands_")
+    times = np.array([[1e3 * float(v) for v in found] for found in re.findall(r"touches from ([\d.e-]+) to ([\d.e-]+) s", output)])
+    deepest = [1e6 * float(v) for v in re.findall(r"springs of the seat let it +([\d.e-]+) m", output)]
+    off = max(np.ptp(times[:, i]) / times[:, i].min() for i in (0, 1))
+    return (f"{passed} of {total} tests; in the seat from {times[:, 0].min():.2f} to {times[:, 0].max():.2f} ms on, until {times[:, 1].min():.2f} to {times[:, 1].max():.2f} ms "
+            f"({100 * off:.0f} % apart), at most {max(deepest):.1f} um deep"), passed == total == 3 and off <= 0.05
