@@ -18,7 +18,7 @@ struct SolidProbe {
 struct SolidQuantity {
   std::vector<double> point;  // [m]; empty: where the equivalent stress is largest
   std::string field = "displacement";
-  std::string patch;      // of a heat flow
+  std::string patch{};    // of a heat flow
   std::string component;  // "x" of a displacement, "xx" of a stress; of an equivalent stress none
 };
 
