@@ -3,7 +3,9 @@
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
+#include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/output/heat_quantities.hpp"
 #include "solid_solver/thermal/thermal_strain.hpp"
 
 namespace couplet::solid {
@@ -16,6 +18,7 @@ ThermalSolid::ThermalSolid(mesh::LoadedMesh body, SolidParameters parameters, So
       heat_(make_heat(mesh_, geometry_, parameters_)) {
   for (const auto& [name, probe] : parameters_.probes)
     probes_.emplace_back(mesh_, geometry_.points, name, probe.point);
+  check_heat_quantities(*heat_, parameters_.quantities);
   if (!parameters_.output.surfaces.empty())
     surfaces_.emplace(mesh_, geometry_.points, parameters_.output.surfaces, "output.surfaces");
 }
@@ -112,6 +115,13 @@ void ThermalSolid::write_heat(double time) {
 std::vector<std::string> ThermalSolid::finish() {
   std::vector<std::string> sentences;
   heat_->judge(sentences);
+  if (parameters_.quantities.empty() || heat_->accepted().steps == 0) return sentences;
+  try {
+    quantities_ = estimate_heat_quantities(*heat_, parameters_.quantities);
+  } catch (const SolveFailure& failure) {
+    log::warn("quantities: the estimate failed: {}", failure.what());
+  }
+  tell_quantities(mesh_.comm, context_, quantities_);
   return sentences;
 }
 

@@ -14,6 +14,7 @@
 #include "common/io/series.hpp"
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/body/solid_context.hpp"
+#include "solid_solver/output/quantities.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 #include "solid_solver/thermal/heat.hpp"
 #include "solid_solver/thermal/heat_errors.hpp"
@@ -48,6 +49,8 @@ class ThermalSolid final : public coupling::Participant, public coupling::Estima
 
   const mesh::Mesh& mesh() const { return mesh_; }
   const Heat& heat() const { return *heat_; }
+  /// Of the last step, after finish().
+  const std::vector<QuantityEstimate>& quantities() const { return quantities_; }
 
  private:
   void write_probes(double time);
@@ -61,6 +64,7 @@ class ThermalSolid final : public coupling::Participant, public coupling::Estima
   std::unique_ptr<Heat> heat_;
   std::optional<HeatErrors> errors_;  // none: not wanted
   coupling::Step step_;
+  std::vector<QuantityEstimate> quantities_;
   std::vector<io::Probe> probes_;
   std::optional<io::FieldWriter> fields_;
   std::optional<io::SurfaceSeries> surfaces_;

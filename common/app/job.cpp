@@ -212,9 +212,13 @@ int attend(const CommandLine& command_line, const ProgramKind& kind, const CaseF
     if (!verdict.problem.empty()) {
       if (world_rank == speaker(attendants)) fmt::print(stderr, "couplet: {}\n", verdict.problem);
       all_agree_to_start(MPI_COMM_WORLD, true);
+      watch.ending();  // the launcher ends the others as soon as one has left with this code
       return exit_configuration;
     }
-    if (!all_agree_to_start(MPI_COMM_WORLD, false)) return exit_configuration;
+    if (!all_agree_to_start(MPI_COMM_WORLD, false)) {
+      watch.ending();
+      return exit_configuration;
+    }
     MPI_Comm_split(MPI_COMM_WORLD, color, world_rank, &job.comm);
     job.rank = parallel::comm_rank(job.comm);
     watch.set_rank(job.rank);

@@ -32,7 +32,8 @@ std::string row(const Item& item) {
       if (!item.words.empty()) range = fmt::format("`{}`", base::join(item.words, "`, `"));
       if (const std::string usual = usual_text(facts); !usual.empty())
         range += (range.empty() ? "" : "; ") + usual;
-      if (facts.size) type += fmt::format(" ({})", *facts.size);
+      if (facts.size && !type.starts_with("list of 2 or 3"))  // there a matter of the scene
+        type += fmt::format(" ({})", *facts.size);
       fallback = facts.required ? "**required**" : item.value.empty() ? "not set" : code(item.value);
       break;
     case Item::Kind::section:

@@ -149,8 +149,7 @@ void Reader::report_unknown_keys() {
     const auto meant = base::closest(name, free);
     if (meant) forget_missing(join_path(frame.path, *meant));
     // A key that is there already cannot be meant, but shows what could stand here.
-    report(place_of(item.first), path,
-           "unknown key. " + base::did_you_mean(name, meant ? free : frame.known, "keys"));
+    report(place_of(item.first), path, unknown_key(name, meant ? free : frame.known));
   }
   if (unknown > most)
     report(frame.place, frame.path, fmt::format("{} more unknown keys follow.", unknown - most));

@@ -19,6 +19,9 @@ void read_value(const YAML::Node& node, const Key::Facts& facts, const Slot& slo
 /// "above 0 Pa", "from 0 to 0.5", "at most 3"; empty without limits.
 std::string describe_range(const Key::Facts& facts);
 
+/// "unknown key. Did you mean ...?", or where a key stands that this program has in another way.
+std::string unknown_key(std::string_view name, const std::vector<std::string>& known);
+
 /// "number", "list of texts", "one word": what a value of this slot looks like.
 std::string describe_type(const Slot& slot);
 

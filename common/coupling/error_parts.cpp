@@ -38,15 +38,17 @@ struct Part {
   bool is(double ErrorParts::*which) const { return kind->value == which; }
 };
 
-/// The cheapest change that lowers a part, what it leaves of it (schemes are of second order), and its price.
+/// The cheapest change that lowers a part, what it leaves of it, and its price.
 std::string cure(const Part& part) {
   if (part.is(&ErrorParts::mesh)) {
     constexpr std::array cells{"4 to 8 times", "twice", "4 times", "8 times"};
-    return fmt::format("half the cell size would leave about {:.2g}, for {} the cells", part.value / 4,
+    return fmt::format("half the cell size would leave about {:.2g}, for {} the cells",
+                       part.value / std::exp2(part.of->parts.mesh_order),
                        cells.at(std::size_t(std::clamp(part.of->parts.dimension, 0, 3))));
   }
   if (part.is(&ErrorParts::step))
-    return fmt::format("half the time step would leave about {:.2g}, for twice the steps", part.value / 4);
+    return fmt::format("half the time step would leave about {:.2g}, for twice the steps",
+                       part.value / std::exp2(part.of->parts.step_order));
   if (part.is(&ErrorParts::linear))
     return fmt::format("a tenth of the solver tolerance would leave about {:.2g}, for some more iterations",
                        part.value / 10);
@@ -96,6 +98,8 @@ std::string ErrorParts::text() const {
     if (!std::isnan(this->*k.value))
       text += fmt::format("{}{} {:.6g}", text.empty() ? "" : " ", k.name, this->*k.value);
   if (!text.empty() && dimension > 0) text += fmt::format(" dimension {}", dimension);
+  if (!text.empty() && mesh_order != 2) text += fmt::format(" mesh-order {:.6g}", mesh_order);
+  if (!text.empty() && step_order != 2) text += fmt::format(" step-order {:.6g}", step_order);
   if (!model_by.empty() || !omittable.empty()) text += fmt::format(" | {} | {}", model_by, omittable);
   return text;
 }
@@ -112,13 +116,16 @@ ErrorParts ErrorParts::of(const std::string& text) {
   for (std::string name; words >> name;) {
     const auto kind = std::ranges::find_if(kinds, [&](const Kind& k) { return k.name == name; });
     double value = 0;
-    if ((kind == kinds.end() && name != "dimension") || !(words >> value))
+    const bool is_about = name == "dimension" || name == "mesh-order" || name == "step-order";
+    if ((kind == kinds.end() && !is_about) || !(words >> value))
       throw Error(
           "'{}' is not a valid list of error parts: expected names (mesh, step, linear, coupling, model), "
           "each with a number.",
           text);
-    if (kind == kinds.end())
+    if (name == "dimension")
       parts.dimension = int(std::clamp(value, 0.0, 3.0));
+    else if (is_about)
+      (name == "mesh-order" ? parts.mesh_order : parts.step_order) = value;
     else
       parts.*(kind->value) = value;
   }

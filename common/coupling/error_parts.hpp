@@ -20,9 +20,10 @@ struct ErrorParts {
   double coupling = unknown;  ///< what the iteration between participants leaves below its tolerance
   /// What neglected effects change: the sum of the verdicts on them that say so.
   double model = unknown;
-  std::string model_by{};   ///< the largest of these and its cure, in words
-  std::string omittable{};  ///< effects that do next to nothing, and what they cost, in words
-  int dimension = 0;        ///< of the mesh, 0: not known
+  std::string model_by{};                 ///< the largest of these and its cure, in words
+  std::string omittable{};                ///< effects that do next to nothing, and what they cost, in words
+  int dimension = 0;                      ///< of the mesh, 0: not known
+  double mesh_order = 2, step_order = 2;  ///< by which the parts fall with cell size and step
   bool known() const;
   /// "mesh 0.0013 step 2e-05 model 0.1 | thermal strain neglected: ... | ": the known ones, for messages; empty: none.
   std::string text() const;

@@ -191,12 +191,15 @@ void check_and_report(const Mesh& mesh, const Geometry& geometry) {
         trouble->cell_id, text(trouble->centre));
   const MeshQuality q = measure_quality(mesh, geometry);
   if (parallel::comm_rank(mesh.comm) != 0) return;
+  // Of cells at right angles round-off has no place.
+  const auto number_at = [&](double value, double least, const char* unit, const Vec3& at) {
+    return value > least ? fmt::format("{:.3g}{} at {}", value, unit, text(at)) : fmt::format("0{}", unit);
+  };
   log::info(
-      "mesh: {} cells; smallest volume {:.3g} m^3 at {}, largest angle {:.3g} degrees at {}, skewness {:.3g} "
-      "at {}, "
-      "aspect ratio {:.3g} at {}",
-      mesh.cells.n_global(), q.min_volume, text(q.volume_at), q.max_non_orthogonality, text(q.angle_at),
-      q.max_skewness, text(q.skewness_at), q.max_aspect_ratio, text(q.aspect_at));
+      "mesh: {} cells; smallest volume {:.3g} m^3 at {}, largest angle {}, skewness {}, aspect ratio {:.3g} at {}",
+      mesh.cells.n_global(), q.min_volume, text(q.volume_at),
+      number_at(q.max_non_orthogonality, 1e-3, " degrees", q.angle_at),
+      number_at(q.max_skewness, 1e-9, "", q.skewness_at), q.max_aspect_ratio, text(q.aspect_at));
 }
 
 }  // namespace couplet::mesh

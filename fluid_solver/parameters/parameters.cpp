@@ -268,12 +268,10 @@ void declare_written(config::Section& s, FluidParameters& p) {
       "output in addition to velocity, pressure, forces and balance");
   s.map<ProbeParameters>(
       "probes", p.probes,
-      [](config::Section& q, ProbeParameters& probe) {
-        q.value("point", probe.point)
-            .unit("m")
-            .plausible(1e-9, 1e4)
-            .required()
-            .doc("position in the reference configuration");
+      [&p](config::Section& q, ProbeParameters& probe) {
+        config::Key point = q.value("point", probe.point);
+        point.unit("m").plausible(1e-9, 1e4).required().doc("position in the reference configuration");
+        if (p.dimension == 3) point.size(3);
       },
       "probe", "points whose velocity and pressure are written after each step");
 }

@@ -13,6 +13,8 @@ namespace {
 
 constexpr double near_weight = 0.05;  // beside the square of the distance over the patch's reach
 constexpr double least = 1e-9;        // of a term that no sample determines, over one that they do
+constexpr double round_off =
+    1e-20;  // of the squares of a term in the samples: a direction that they do not span
 
 struct MirrorPlane {
   Vec3 normal, origin;
@@ -91,7 +93,7 @@ Vec3 quadratic_displacement(const mesh::Mesh& mesh, const elastic::ElasticOperat
     add(g.face_centre[f], elastic::vector_at(face_u, f - mesh.n_interior, dim));
   // Thin cells make terms of very different sizes.
   const Eigen::VectorXd scale =
-      of.diagonal().unaryExpr([](double v) { return v > 0 ? 1 / std::sqrt(v) : 0; });
+      of.diagonal().unaryExpr([&](double v) { return v > round_off * of(0, 0) ? 1 / std::sqrt(v) : 0; });
   of = (scale.asDiagonal() * of * scale.asDiagonal()).eval();
   of.diagonal().array() += least;
   const Eigen::MatrixXd c = scale.asDiagonal() * of.llt().solve(scale.asDiagonal() * right);

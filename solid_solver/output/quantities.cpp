@@ -8,7 +8,6 @@
 #include <fstream>
 
 #include "common/base/error.hpp"
-#include "common/io/probes/probe.hpp"
 #include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/judge/dual_problem.hpp"
@@ -21,22 +20,6 @@ namespace {
 
 constexpr double least_weight =
     1e-9;  // of a point in the value at a place; below, the place lies on a side without it
-
-/// Owned cells that have the place at a corner, on a side or inside.
-std::vector<Index> cells_at(const mesh::Mesh& mesh, const io::Probe& probe) {
-  std::vector<GlobalIndex> corners;
-  for (std::size_t i = 0; i < probe.points().size(); ++i)
-    if (probe.weights()[i] > least_weight) corners.push_back(mesh.point_id[probe.points()[i]]);
-  corners = parallel::all_gather(mesh.comm, corners);
-  std::vector<Index> cells;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
-    const auto has = [&](GlobalIndex id) {
-      return std::ranges::any_of(mesh.cell_points[c], [&](Index v) { return mesh.point_id[v] == id; });
-    };
-    if (std::ranges::all_of(corners, has)) cells.push_back(c);
-  }
-  return cells;
-}
 
 /// Of rank 0, which probes give their values to, on all ranks.
 double shared(MPI_Comm comm, const std::vector<double>& sampled, std::size_t i) {
@@ -124,6 +107,21 @@ class Estimates {
 
 }  // namespace
 
+std::vector<Index> cells_at(const mesh::Mesh& mesh, const io::Probe& probe) {
+  std::vector<GlobalIndex> corners;
+  for (std::size_t i = 0; i < probe.points().size(); ++i)
+    if (probe.weights()[i] > least_weight) corners.push_back(mesh.point_id[probe.points()[i]]);
+  corners = parallel::all_gather(mesh.comm, corners);
+  std::vector<Index> cells;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+    const auto has = [&](GlobalIndex id) {
+      return std::ranges::any_of(mesh.cell_points[c], [&](Index v) { return mesh.point_id[v] == id; });
+    };
+    if (std::ranges::all_of(corners, has)) cells.push_back(c);
+  }
+  return cells;
+}
+
 Vec3 place_of(const SolidQuantity& quantity) {
   Vec3 place = Vec3::Zero();
   for (std::size_t a = 0; a < quantity.point.size(); ++a) place[Eigen::Index(a)] = quantity.point[a];
@@ -132,7 +130,9 @@ Vec3 place_of(const SolidQuantity& quantity) {
 
 // Not a number is more than all others.
 double QuantityEstimate::error() const {
-  return std::isnan(local) || std::isnan(dual) ? std::nan("") : std::max(std::abs(local), std::abs(dual));
+  if (std::isnan(local) || std::isnan(dual)) return std::nan("");
+  const double larger = std::max(std::abs(local), std::abs(dual));
+  return is_signed ? std::max(std::abs(local + dual), larger / 2) : larger;
 }
 
 std::vector<QuantityEstimate> estimate_quantities(const SolidBody& body, const SolidFields& fields,
@@ -155,12 +155,14 @@ void tell_quantities(MPI_Comm comm, const SolidContext& context, const std::vect
     const std::string relative = std::isnan(share) ? "" : fmt::format(" ({:.2g} %)", 100 * share);
     const std::string error =
         std::isnan(q.error()) ? "unknown" : fmt::format("{:.2g} {}{}", q.error(), q.unit, relative);
+    const std::string where = q.patch.empty()
+                                  ? fmt::format("at ({:g}, {:g}, {:g}) m", q.place[0], q.place[1], q.place[2])
+                                  : q.patch;
     log::finding(rank, {.id = "quantity-error",
                         .severity = base::Severity::note,
                         .number = share,
-                        .sentence = fmt::format(
-                            "{}: {} at ({:g}, {:g}, {:g}) m: {:.6g} {}, estimated error {}, dual-weighted",
-                            q.name, q.what, q.place[0], q.place[1], q.place[2], q.value, q.unit, error)});
+                        .sentence = fmt::format("{}: {} {}: {:.6g} {}, estimated error {}, dual-weighted",
+                                                q.name, q.what, where, q.value, q.unit, error)});
   }
   if (rank != 0 || context.output_folder.empty()) return;
   std::ofstream file(context.output_folder / "quantities.csv");

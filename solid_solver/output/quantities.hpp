@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/io/probes/probe.hpp"
 #include "solid_solver/body/solid_body.hpp"
 #include "solid_solver/body/solid_context.hpp"
 #include "solid_solver/body/solid_fields.hpp"
@@ -20,11 +21,17 @@ struct QuantityEstimate {
   /// What the place itself adds: a displacement by the curvature that the weights of a vertex miss (quadratic_displacement()), a stress by
   /// what its recovery leaves.
   double local = 0;
-  double dual = 0;  ///< DualProblem::missed()
-  /// The larger one, in the unit; they have no common sign to rely on. Displacements within a factor of 3 of the truth, but for
+  double dual = 0;         ///< DualProblem::missed()
+  std::string patch{};     ///< of a heat flow, in place of `place`
+  bool is_signed = false;  ///< both parts have the sign of what is missed
+  /// In the unit: the larger part; with signs their sum, but at least half the larger, since what cancels does so to first order only.
+  /// Displacements within a factor of 3 of the truth, but for
   /// three-dimensional bodies in bending, where it is 4 to 50 times too large (scripts/validate one-budget).
   double error() const;
 };
+
+/// Owned cells that have the place at a corner, on a side or inside. Collective.
+std::vector<Index> cells_at(const mesh::Mesh& mesh, const io::Probe& probe);
 
 /// Where the case puts it [m]; 0 without a point.
 Vec3 place_of(const SolidQuantity& quantity);

@@ -21,10 +21,23 @@ std::string unknown_field(const std::vector<std::string>& chosen) {
   return chosen.empty() ? "at least one field is needed" : "";
 }
 
-std::string wrong_quantity(const SolidQuantity& q) {
-  if (q.field != "displacement" && q.field != "stress" && q.field != "equivalent-stress")
-    return fmt::format("unknown field '{}'; the fields are displacement, stress and equivalent-stress",
-                       q.field);
+const std::vector<std::string> quantity_fields{"displacement", "stress", "equivalent-stress", "temperature",
+                                               "heat"};
+
+/// Of a heat flow or a temperature.
+std::string wrong_heat(const SolidQuantity& q) {
+  if (!q.component.empty()) return fmt::format("a {} has no component", q.field);
+  if (q.field == "temperature") return q.point.empty() ? "a temperature needs a 'point'" : "";
+  return q.patch.empty() || !q.point.empty() ? "heat flows through a 'patch'; give that and no 'point'" : "";
+}
+
+std::string wrong_quantity(const SolidQuantity& q, int dimension) {
+  if (std::ranges::find(quantity_fields, q.field) == quantity_fields.end())
+    return fmt::format("unknown field '{}'; the fields are {}", q.field, base::join(quantity_fields));
+  if (!q.patch.empty() && q.field != "heat") return "only 'field: heat' has a 'patch'";
+  if (!q.point.empty() && std::ssize(q.point) != dimension)
+    return fmt::format("'point' has {} numbers, one per dimension of the scene", dimension);
+  if (q.field == "heat" || q.field == "temperature") return wrong_heat(q);
   const std::vector<std::string> components =
       q.field == "displacement" ? std::vector<std::string>{"x", "y", "z"}
       : q.field == "stress"     ? std::vector<std::string>{"xx", "yy", "zz", "xy", "yz", "xz"}
@@ -33,14 +46,13 @@ std::string wrong_quantity(const SolidQuantity& q) {
     return q.field == "equivalent-stress"
                ? "an equivalent stress has no component"
                : fmt::format("a {} has the components {}; give one", q.field, base::join(components));
-  if (q.point.empty() && q.field != "equivalent-stress") return fmt::format("a {} needs a 'point'", q.field);
-  return q.point.size() == 1 || q.point.size() > 3 ? "'point' has one number per dimension" : "";
+  return q.point.empty() && q.field != "equivalent-stress" ? fmt::format("a {} needs a 'point'", q.field)
+                                                           : "";
 }
 
 }  // namespace
 
 void declare(config::Section& s, SolidProbe& p) {
-  s.value("point", p.point).unit("m").plausible(1e-9, 1e4).required().doc("position in the undeformed solid");
   s.value("fields", p.fields)
       .doc(
           "fields to record: displacement, velocity, acceleration, stress, equivalent-stress, "
@@ -48,14 +60,16 @@ void declare(config::Section& s, SolidProbe& p) {
   s.check([&] { return unknown_field(p.fields); }, "fields");
 }
 
-void declare(config::Section& s, SolidQuantity& q) {
+void declare(config::Section& s, SolidQuantity& q, int dimension) {
   s.value("point", q.point)
       .unit("m")
       .plausible(1e-9, 1e4)
       .doc("position in the undeformed solid; of an equivalent stress none: where it is largest");
-  s.value("field", q.field).doc("displacement, stress or equivalent-stress");
+  s.value("patch", q.patch).doc("of a heat flow: the patch through which heat enters the solid");
+  s.value("field", q.field)
+      .doc("displacement, stress or equivalent-stress; of 'analysis: thermal' temperature or heat");
   s.value("component", q.component).doc("x, y or z of a displacement; xx, yy, zz, xy, yz or xz of a stress");
-  s.check([&] { return wrong_quantity(q); }, "field");
+  s.check([&q, dimension] { return wrong_quantity(q, dimension); }, "field");
 }
 
 void declare(config::Section& s, SolidOutputParameters& o) {

@@ -18,6 +18,7 @@ struct SolidProbe {
 struct SolidQuantity {
   std::vector<double> point;  // [m]; empty: where the equivalent stress is largest
   std::string field = "displacement";
+  std::string patch{};    // of a heat flow
   std::string component;  // "x" of a displacement, "xx" of a stress; of an equivalent stress none
 };
 
@@ -40,7 +41,7 @@ struct SolidOutputParameters {
 };
 
 void declare(config::Section& section, SolidProbe& probe);
-void declare(config::Section& section, SolidQuantity& quantity);
+void declare(config::Section& section, SolidQuantity& quantity, int dimension);
 void declare(config::Section& section, SolidOutputParameters& output);
 
 }  // namespace couplet::solid

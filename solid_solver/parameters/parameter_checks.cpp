@@ -169,6 +169,20 @@ void check_quantities(config::Section& s, SolidParameters& p) {
   s.check(
       [&p]() -> std::string {
         if (p.quantities.empty()) return "";
+        const auto is_of_heat = [](const auto& q) {
+          return q.second.field == "heat" || q.second.field == "temperature";
+        };
+        if (p.analysis == SolidParameters::Analysis::thermal) {
+          if (!std::ranges::all_of(p.quantities, is_of_heat))
+            return "heat conduction alone has the quantities temperature (at a 'point') and heat (through a 'patch')";
+          return p.heat && p.heat->analysis == HeatParameters::Analysis::steady
+                     ? ""
+                     : "the errors of 'quantities' are estimated with 'heat: {analysis: steady}'; 'scripts/study --quantities' estimates "
+                       "those of any run, by differences of coarser ones";
+        }
+        if (std::ranges::any_of(p.quantities, is_of_heat))
+          return "temperature and heat are quantities of 'analysis: thermal'; 'scripts/study --quantities' estimates those of any run, by "
+                 "differences of coarser ones";
         if (p.analysis != SolidParameters::Analysis::static_ || has_finite_strain(p))
           return "the errors of 'quantities' are estimated in a linear static analysis; 'scripts/study --quantities' estimates those of "
                  "any run, by differences of coarser ones";

@@ -101,13 +101,23 @@ void declare_loads(config::Section& s, SolidParameters& p) {
       .doc("initial velocity, one expression of x, y, z per component");
 }
 
+void declare_probe(config::Section& s, SolidProbe& probe, int dimension) {
+  {
+    config::Key point = s.value("point", probe.point);
+    point.unit("m").plausible(1e-9, 1e4).required().doc("position in the undeformed solid");
+    if (dimension == 3) point.size(3);
+  }
+  declare(s, probe);
+}
+
 void declare_output(config::Section& s, SolidParameters& p) {
   s.map<SolidProbe>(
-      "probes", p.probes, [](config::Section& q, SolidProbe& v) { declare(q, v); }, "probe",
-      "points whose displacement is written to probes.csv at each step");
+      "probes", p.probes, [&p](config::Section& q, SolidProbe& v) { declare_probe(q, v, p.dimension); },
+      "probe", "points whose displacement is written to probes.csv at each step");
   s.map<SolidQuantity>(
-      "quantities", p.quantities, [](config::Section& q, SolidQuantity& v) { declare(q, v); }, "quantity",
-      "numbers whose errors a linear static run estimates at its end, each by one more solve with the same matrix");
+      "quantities", p.quantities, [&p](config::Section& q, SolidQuantity& v) { declare(q, v, p.dimension); },
+      "quantity",
+      "numbers whose errors a linear static run or a steady one of heat estimates at its end, each by one more solve with the same matrix");
   s.section(
       "output",
       [&](config::Section& o) {

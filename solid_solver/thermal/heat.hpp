@@ -78,6 +78,7 @@ class Heat final {
   void judge(std::vector<std::string>& sentences) const;
 
  private:
+  friend class HeatAnswer;  // other data for the same matrix
   struct Coefficients;
   bool is_steady() const { return parameters_.analysis == HeatParameters::Analysis::steady; }
   void start();

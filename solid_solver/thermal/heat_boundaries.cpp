@@ -68,6 +68,18 @@ bool HeatBoundaries::transfer_uses_time() const {
 
 void HeatBoundaries::known(const fv::ConductionOperator& conduction, double t,
                            std::span<double> values) const {
+  each_known(conduction, values, [&](std::size_t p, const Vec3& x) { return on_patch_[p].value(x, t); });
+}
+
+void HeatBoundaries::mark_known(const fv::ConductionOperator& conduction, const std::string& patch,
+                                std::span<double> values) const {
+  each_known(conduction, values,
+             [&](std::size_t p, const Vec3&) { return mesh_->patches[p].name == patch ? 1. : 0.; });
+}
+
+template <class Value>
+void HeatBoundaries::each_known(const fv::ConductionOperator& conduction, std::span<double> values,
+                                const Value& value) const {
   const auto& points = conduction.known_points();
   // A vertex on two such patches takes the value of the first one (order of the mesh file).
   std::vector<Index> column(mesh_->points.n_local(), -1);
@@ -80,7 +92,7 @@ void HeatBoundaries::known(const fv::ConductionOperator& conduction, double t,
       for (Index f = first; f < first + count; ++f)
         for (const Index v : mesh_->face_points[f]) {
           if (column[v] < 0) continue;
-          values[column[v]] = on_patch_[p].value(geometry_->points[v], t);
+          values[column[v]] = value(p, geometry_->points[v]);
           column[v] = -1;
         }
     };
@@ -91,7 +103,7 @@ void HeatBoundaries::known(const fv::ConductionOperator& conduction, double t,
     if (conditions_[p] != fv::HeatCondition::temperature) continue;
     const mesh::Patch& patch = mesh_->patches[p];
     for (Index f = patch.first; f < patch.first + patch.count; ++f)
-      values[next++] = on_patch_[p].value(geometry_->face_centre[f], t);
+      values[next++] = value(p, geometry_->face_centre[f]);
   }
 }
 
@@ -112,6 +124,22 @@ void HeatBoundaries::fluxes(double t, std::span<double> heat, std::span<double> 
         heat[next] = area * transfer[next] * here.ambient(x, t);
       }
     }
+  }
+}
+
+// The corners of a segment or a parallelogram are three times as far from the centre's value as the mean of a quadratic.
+void HeatBoundaries::fluxes_missed(const fv::ConductionOperator& conduction, double t,
+                                   std::span<double> missed) const {
+  const std::vector<Index> patch_of = mesh_->patch_of_boundary();
+  for (std::size_t i = 0; i < missed.size(); ++i) {
+    const Index f = conduction.flux_faces()[i];
+    const OnPatch& here = on_patch_[std::size_t(patch_of[std::size_t(f - mesh_->n_interior)])];
+    missed[i] = 0;
+    if (here.type != Kind::flux) continue;
+    const auto corners = mesh_->face_points[f];
+    double mean = 0;
+    for (const Index v : corners) mean += here.value(geometry_->points[v], t) / double(corners.size());
+    missed[i] = geometry_->face_area[f].norm() * (mean - here.value(geometry_->face_centre[f], t)) / 3;
   }
 }
 

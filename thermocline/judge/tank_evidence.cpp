@@ -129,10 +129,10 @@ double deviations(double share) {
 
 /// A plant ends a charge or a discharge when the outlet differs by the cut-off: while the front's middle is still some deviations inside. That much
 /// of the bed stays unused at either end; what the scheme adds to it, the front being spread by film and grains anyway.
-double Tank::unused_by_spreading() const {
+double Tank::unused_by_spreading(double finer) const {
   const FlowParameters& flow = accepted_.setup().parameters.flow;
   if (flow.type != FlowParameters::Type::plant || !(peak_flow_ > 0)) return 0;
-  const double n = double(accepted_.bed().grid().size()), crossing = crossing_mass(accepted_);
+  const double n = finer * double(accepted_.bed().grid().size()), crossing = crossing_mass(accepted_);
   const double way =
       n * std::min(1., peak_flow_ * (step_.time + step_.dt) / crossing);  // in cells, as the variance
   double variance = 1;
@@ -148,7 +148,12 @@ double Tank::unused_by_spreading() const {
 
 coupling::ErrorParts Tank::error_parts() const {
   coupling::ErrorParts parts = spread_profile();
-  if (const double unused = unused_by_spreading(); unused > 0) parts.mesh = std::fmax(parts.mesh, unused);
+  if (const double unused = unused_by_spreading(); unused > 0 && !(parts.mesh > unused)) {
+    parts.mesh = unused;
+    parts.mesh_order = std::log2(
+        unused / unused_by_spreading(2));  // upwind: its front widens with the root of the cell size
+  }
+  parts.dimension = 1;
   return parts;
 }
 
@@ -169,6 +174,8 @@ coupling::ErrorParts Tank::spread_profile() const {
   const double crossing = crossing_mass(accepted_);
   const double way = double(n) * std::min(1., peak_flow_ * (step_.time + step_.dt) / crossing);  // in cells
   coupling::ErrorParts parts{.mesh = scheme == Advection::tvd ? one_cell : std::max(1., way) * one_cell};
+  if (scheme != Advection::tvd) parts.mesh_order = 1;
+  parts.step_order = 1;
   if (scheme == Advection::implicit) parts.step = peak_advance_ / crossing * double(n) * way * one_cell;
   return parts;
 }

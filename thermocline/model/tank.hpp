@@ -55,7 +55,7 @@ class Tank final : public coupling::Participant, public coupling::EstimatesError
   TankRecord record() const;
   void look_at_bending();
   coupling::ErrorParts spread_profile() const;
-  double unused_by_spreading() const;
+  double unused_by_spreading(double finer = 1) const;  // with so many times the cells
   coupling::Exchange given() const;
   std::vector<double> received(const coupling::Exchange& in, const char* name) const;
 

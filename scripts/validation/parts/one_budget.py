@@ -133,3 +133,39 @@ def dual_weighted(job):
                     parts.append(f"{case} {mesh} {row['quantity']}: {float(row['estimated error']) / abs(truth):.2%}, {ratios[-1]:.2f} of the truth")
     near = [sum(1 / f <= r <= f for r in ratios) for f in (2, 3)]
     return f"{near[0]} of {len(ratios)} within a factor of 2, {near[1]} of 3: " + "; ".join(parts), near[0] == len(ratios)
+
+
+def heat_weighted(job):
+    """Numbers that the test records, which has the exact values."""
+    counts = [job.recorded("verification_heat_quantities", "within_a_factor", key)[0][0] for key in ("near", "all")]
+    return "{:.0f} of {:.0f} within a factor of 2".format(*counts), counts[0] == counts[1]
+
+
+# Words of series that are not what a run does by default: symmetric gradient, solver by choice, trapezoidal rule, flux-memory, implicit coupling,
+# a tank's upwind scheme. Series of the first name of the study alone ("thesis-gradient") begin with theirs.
+OTHERS = ("thesis", "corrected", "block-coupled", "segregated", "aitken", "anderson", "newton-krylov", "bathe", "euler", "three-point", "loose-pressure",
+          "viscous-implicit", "incremental", "explicit", "semi-implicit", "tvd", "implicit-60s")
+
+
+def all_studies(job):
+    """Runs of the default schemes in the committed studies; a run whose reference is too coarse to judge it counts by the reference that it has."""
+    from couplet.runs import Case
+    from couplet.study import estimates, table
+    from couplet.study.study import Study
+    from validation.parts.accuracy_cost import STUDIES
+    judged, coarse, lines = [], [], []
+    for name, case in STUDIES.items():
+        study = Study(Case(job.root / "configs" / f"{case}.yaml", job.build), job.scratch / "estimates")
+        rows = table.read(job.root / "docs/validation/studies" / name / "runs.csv", study.axes, study.quantities)
+        # A tank's implicit scheme is not its default, a coupled case's is.
+        others = OTHERS + (("implicit",) if name in ("schumann", "thermocline-andasol") else ())
+        kept = [r for r in rows if not any(word.strip().startswith(others) for word in str(r.series).split(","))]
+        for quantity in study.quantities:
+            sure, every = (estimates.of(kept, quantity, clear) for clear in (estimates.CLEAR, 0))
+            rest = [f for f in every if f not in sure]
+            judged, coarse = judged + sure, coarse + rest
+            wrong = len(every) - estimates.inside(every)
+            lines += [f"{name} {quantity.name} {wrong} of {len(every)}"] if wrong else []
+    good, all_ = estimates.inside(judged) + estimates.inside(coarse), len(judged) + len(coarse)
+    return (f"{good} of {all_} runs ({100 * good / all_:.0f} %): {estimates.inside(judged)} of {len(judged)} with a clear reference, {estimates.inside(coarse)} of "
+            f"{len(coarse)} whose reference is too coarse; beyond: {', '.join(lines)}"), good >= 0.85 * all_

@@ -53,6 +53,11 @@ TEST(ErrorPartsTest, the_largest_part_dominates_and_what_is_a_tenth_of_it_buys_n
       "not help.");
   EXPECT_EQ(said({.mesh = 1e-3, .step = 2e-3}),
             "the step dominates: half the time step would leave about 0.0005, for twice the steps.");
+  // What halving gains is a matter of the order.
+  EXPECT_EQ(said({.mesh = 1e-2, .step = 5e-3, .dimension = 1, .mesh_order = 0.5}),
+            "the mesh dominates: half the cell size would leave about 0.0071, for twice the cells.");
+  EXPECT_EQ(said({.mesh = 1e-3, .step = 2e-3, .step_order = 1}),
+            "the step dominates: half the time step would leave about 0.001, for twice the steps.");
   EXPECT_EQ(said({.mesh = 1e-2}), "");  // one part alone says nothing of the others
   EXPECT_TRUE(error_sentences({{"solid", {}}}).empty());
 }

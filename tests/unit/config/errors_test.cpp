@@ -25,6 +25,9 @@ TEST_P(WrongKey, is_reported_with_place_and_what_was_expected) {
 const Case cases[] = {
     {"iteration: 5", "3:1: iteration: unknown key. Did you mean 'iterations'?"},
     {"Load: 5", "3:1: Load: unknown key. Did you mean 'load'?"},
+    {"quantities: {drag: {}}",
+     "3:1: quantities: unknown key. Quantities of this program (a force, a value at a probe, an extreme) belong to the section 'study: "
+     "{quantities: ...}' of the case; 'scripts/study CASE --quantities' estimates their errors by differences of coarser runs (docs/studies.md)."},
     {"density: 5",
      "3:1: density: unknown key. Valid keys: mesh, analysis, material, interval, temperature, relaxation, "
      "iterations, "

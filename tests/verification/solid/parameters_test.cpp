@@ -210,10 +210,10 @@ TEST(SolidParameters, finite_strain_says_what_it_cannot_have) {
   const std::string estimate = "output: {large-strain-estimate: true}\n";
   told(large + estimate + "material: {" + body + "}\n", "requires a linear static analysis");
   told(estimate + "material: {" + body + "}\n", "requires a linear static analysis");
-  const std::string quantity = "quantities: {tip: {point: [1, 0], component: y}}\n";
+  const std::string quantity = "quantities: {tip: {point: [1, 0, 0], component: y}}\n";
   told(large + quantity + "material: {" + body + "}\n", "estimated in a linear static analysis");
   told(quantity + "material: {" + body + "}\n", "estimated in a linear static analysis");
-  told("quantities: {tip: {point: [1, 0]}}\nmaterial: {" + body + "}\n",
+  told("quantities: {tip: {point: [1, 0, 0]}}\nmaterial: {" + body + "}\n",
        "a displacement has the components x, y, z; give one");
   told("quantities: {tip: {field: stress, component: xx}}\nmaterial: {" + body + "}\n",
        "a stress needs a 'point'");
@@ -319,6 +319,24 @@ TEST(SolidParameters, plane_stress_has_the_stiffness_of_a_thin_sheet) {
   p.plane = SolidParameters::Plane::strain;
   const elastic::LameConstants cut = lame_constants(p);
   EXPECT_NEAR(4 * cut.mu * (cut.mu + cut.lambda) / (2 * cut.mu + cut.lambda), 1 / (1 - 0.09), 1e-14);
+}
+
+// A place in space without its z is none at z = 0.
+TEST(SolidParameters, places_have_a_number_for_each_dimension) {
+  const std::string start =
+      "mesh: a.msh\nboundaries: {root: {type: fixed-displacement, value: [0, 0, 0]}}\n"
+      "material: {density: 1, youngs-modulus: 1, poissons-ratio: 0.3}\n";
+  const auto told = [&](const std::string& text, const std::string& wanted) {
+    SolidParameters p;
+    EXPECT_THAT(read(start + text, p), Contains(HasSubstr(wanted))) << text;
+  };
+  told("quantities: {tip: {point: [1, 0], component: y}}\n", "'point' has 3 numbers");
+  told("probes: {tip: {point: [1, 0]}}\n", "expected a list of 3 entries, found 2");
+  told("analysis: static\nquantities: {hot: {point: [1, 0, 0], field: temperature}}\n",
+       "quantities of 'analysis: thermal'");
+  SolidParameters space;
+  EXPECT_THAT(read(start + "analysis: static\nprobes: {tip: {point: [1, 0, 0]}}\n", space),
+              ::testing::IsEmpty());
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A map as a picture."""
+import textwrap
+
 import matplotlib
 
 matplotlib.use("Agg")
@@ -10,6 +12,8 @@ from matplotlib.patches import Patch
 from . import atlas
 
 COLOURS = {atlas.HOLDS: "#7cc67c", atlas.POOR: "#cfe8a9", atlas.WARNED: "#f6c75c", atlas.REFUSED: "#a9b8d6", atlas.RED: "#e0453a"}
+
+WIDEST_X, WIDEST_Y = 34, 26  # characters of a label's line beside a panel
 
 
 def place(values, at, log):
@@ -23,7 +27,7 @@ def place(values, at, log):
 def picture(map_, squares, file):
     xs, ys = map_.x.values, map_.y.values
     n = len(map_.panels)
-    columns = min(n, 4)
+    columns = min(n, 2 if n == 4 else 3)  # four beside each other are too small to read on a page
     lines = -(-n // columns)
     figure, axes = plt.subplots(lines, columns, squeeze=False, dpi=110, constrained_layout=True,
                                 figsize=(1.2 + columns * max(2.6, 0.62 * len(xs)), 1.2 + lines * max(2.0, 0.46 * len(ys))))
@@ -44,8 +48,8 @@ def picture(map_, squares, file):
         ax.set(xlim=(-0.5, len(xs) - 0.5), ylim=(-0.5, len(ys) - 0.5), xticks=range(len(xs)), yticks=range(len(ys)),
                xticklabels=[f"{x:g}" for x in xs], yticklabels=[f"{y:g}" for y in ys], title=panel)
         ax.tick_params(labelsize=7)
-        ax.set_xlabel(map_.x.label, fontsize=8)
-        ax.set_ylabel(map_.y.label, fontsize=8)
+        ax.set_xlabel(textwrap.fill(map_.x.label, WIDEST_X), fontsize=8)
+        ax.set_ylabel(textwrap.fill(map_.y.label, WIDEST_Y), fontsize=8)
         ax.title.set_fontsize(9)
     for ax in list(axes.flat)[n:]:
         ax.axis("off")

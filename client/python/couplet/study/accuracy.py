@@ -40,6 +40,7 @@ def draw(title, rows, quantity, clock, picture):
         for k, series in enumerate(names):
             points = [(r[clock], r[quantity], r["mesh"]) for r in rows if r["series"] == series]
             axes.loglog([p[0] for p in points], [p[1] for p in points], **styles[series], label=series)
+            axes.margins(x=0.1)  # room for the words beside the last point
             for seconds, gap, mesh in points if k == 0 else ():
                 axes.annotate(mesh, (seconds, gap), fontsize=6, color=styles[series]["color"], xytext=(4, 4), textcoords="offset points")
     finish(made, panels, picture, f"{clock_name} time of the whole process, one core [s]", quantity)

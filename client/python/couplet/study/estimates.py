@@ -64,7 +64,7 @@ def uncertainty(rows, quantity):
     return min(limits, key=lambda pair: (-pair[0], pair[1]))[1]
 
 
-def of(rows, quantity):
+def of(rows, quantity, clear=CLEAR):
     """[(estimated, true, name of the run)] of the runs that have coarser ones. A distance from an exact field is a quantity whose
     true value is 0. Where the truth is the study's own best value, of the runs that are clearly farther from it than it is
     uncertain."""
@@ -73,7 +73,7 @@ def of(rows, quantity):
     runs = table.series_of(rows)
     series = {name: ([r.point.size for r in some], [r.values[quantity.name] for r in some]) for name, some in runs.items()}
     absolute = quantity.is_error or quantity.given.get("absolute")
-    least, found = CLEAR * uncertainty(rows, quantity), []
+    least, found = clear * uncertainty(rows, quantity) if clear else 0, []
     for (name, i), guess in guesses(series, quantity.given.get("orders")).items():
         row = runs[name][i]
         true = row.errors.get(quantity.name, 0)

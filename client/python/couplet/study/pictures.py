@@ -18,6 +18,7 @@ CLOCKS = {"cpu": "processor time of the run [s]", "wall": "wall time of the run 
 MARKS = "osD^vP*Xh<>"
 
 
+WIDEST_Y = 40  # characters of a line beside the height of a panel
 MOST = 8      # series in one panel; beyond, a picture has several
 NARROW = 62   # characters of a title in the width of one panel
 
@@ -94,7 +95,7 @@ def finish(made, axes, file, xlabel="", ylabel=""):
         handles, labels = one.get_legend_handles_labels()
         if len(labels) > 1 or labels and len(axes) > 1:  # of several panels below each, where it hides nothing
             one.legend(fontsize=7, framealpha=0.7, **({"loc": "upper center", "bbox_to_anchor": (0.5, -0.08), "ncols": 1 + (max(map(len, labels)) < 36)} if len(axes) > 1 else {}))
-    made.supxlabel(xlabel, fontsize=10), made.supylabel(ylabel, fontsize=10)
+    made.supxlabel(xlabel, fontsize=10), made.supylabel(textwrap.fill(ylabel, WIDEST_Y), fontsize=10)
     made.savefig(file)
     plt.close(made)
     return file
