@@ -11,7 +11,7 @@
 #include "participant_case.hpp"
 #include "tests/support/saved_state.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::fourth_order_test {
 using namespace mesh;
 namespace {
 
@@ -275,4 +275,4 @@ TEST(FourthOrder, is_refused_with_what_it_does_not_know) {
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::fourth_order_test

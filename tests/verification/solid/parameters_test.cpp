@@ -6,7 +6,7 @@
 
 #include "common/config/load.hpp"
 
-namespace couplet {
+namespace couplet::parameters_test {
 
 using namespace solid;
 namespace {
@@ -322,4 +322,4 @@ TEST(SolidParameters, plane_stress_has_the_stiffness_of_a_thin_sheet) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::parameters_test
