@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How a bar gets its numbers: from the project's programs, test executables and scripts, never from a model beside them."""
 import dataclasses
+import functools
 import importlib.util
 import json
 import os
@@ -67,18 +68,24 @@ class Job:
         return result
 
     # -- test executables ---------------------------------------------------------------------------------------------
+    @functools.cached_property
+    def registered(self):
+        """{test of ctest: the words of its command}."""
+        return {t["name"]: t.get("command", []) for t in json.loads(self.done(["ctest", "--test-dir", self.build, "--show-only=json-v1"], 120).stdout)["tests"]}
+
     def test(self, name):
-        """Path of a test executable."""
-        program = next((p for p in (self.build / "tests").rglob(name) if p.is_file() and os.access(p, os.X_OK)), None)
-        if program is None:
-            raise FileNotFoundError(f"test executable {name} is not built")
-        return program
+        """The words that run a registered test on one rank: its executable, and whose tests of it (`--only`)."""
+        words = next((self.registered[n] for n in (name, f"{name}_2", f"{name}_3") if n in self.registered), [])
+        first = next((k for k, w in enumerate(words) if w.startswith(f"{pathlib.Path(self.build).resolve()}/tests/")), None)
+        if first is None or not os.access(words[first], os.X_OK):
+            raise FileNotFoundError(f"the executable of test {name} is not built")
+        return [w for w in words[first:] if not w.startswith("--gtest_filter")]
 
     def fuzz(self, name, count, filter_="*"):
         """{test: what a fuzz program recorded at so many inputs}, and whether all its tests passed."""
         def make():
             file = self.scratch / f"{name}-{count}.json"
-            result = self.run(["env", f"COUPLET_FUZZ_COUNT={count}", self.test(name), f"--gtest_filter={filter_}", f"--gtest_output=json:{file}"], 3600, cwd=self.scratch)
+            result = self.run(["env", f"COUPLET_FUZZ_COUNT={count}", *self.test(name), f"--gtest_filter={filter_}", f"--gtest_output=json:{file}"], 3600, cwd=self.scratch)
             if not file.exists():
                 raise RuntimeError(f"{name} ended with code {result.returncode}: {result.stdout[-200:]}")
             tests = {t["name"]: t for suite in json.loads(file.read_text())["testsuites"] for t in suite["testsuite"]}
@@ -89,7 +96,7 @@ class Job:
         """Runs a test executable; gives {"Suite.test": {"passed": bool, **recorded properties}} and its output."""
         def make():
             file = self.scratch / f"{name}.json"
-            result = self.run([self.test(name), f"--gtest_filter={filter_}", f"--gtest_output=json:{file}"], timeout,
+            result = self.run([*self.test(name), f"--gtest_filter={filter_}", f"--gtest_output=json:{file}"], timeout,
                               cwd=self.scratch)
             tests = {}
             for suite in json.loads(file.read_text())["testsuites"]:

@@ -11,7 +11,7 @@
 #include "common/io/checkpoint_set.hpp"
 #include "tests/fuzz/mutate.hpp"
 
-namespace couplet::fuzz {
+namespace couplet::fuzz::checkpoint_fuzz {
 namespace {
 
 namespace fs = std::filesystem;
@@ -182,4 +182,4 @@ TEST(Checkpoints, damaged_sets_never_continue_with_another_result) {
 }
 
 }  // namespace
-}  // namespace couplet::fuzz
+}  // namespace couplet::fuzz::checkpoint_fuzz

@@ -14,7 +14,7 @@
 #include "common/mesh/load.hpp"
 #include "tests/fuzz/crafted_geo.hpp"
 
-namespace couplet::fuzz {
+namespace couplet::fuzz::geo_fuzz {
 using namespace mesh;
 namespace {
 
@@ -199,4 +199,4 @@ TEST_F(CraftedGeo, the_cleaned_copy_is_meshed_as_the_file_itself) {
 }
 
 }  // namespace
-}  // namespace couplet::fuzz
+}  // namespace couplet::fuzz::geo_fuzz

@@ -20,7 +20,7 @@
 #include "coupler/parameters/parameters.hpp"
 #include "tests/fuzz/craft_hdf5.hpp"
 
-namespace couplet::fuzz {
+namespace couplet::fuzz::hdf5_fuzz {
 using namespace io;
 using namespace modes;
 namespace {
@@ -323,4 +323,4 @@ TEST_F(CraftedFiles, each_fault_has_its_sentence) {
 }
 
 }  // namespace
-}  // namespace couplet::fuzz
+}  // namespace couplet::fuzz::hdf5_fuzz

@@ -11,7 +11,7 @@
 #include "common/mesh/load.hpp"
 #include "tests/fuzz/mutate.hpp"
 
-namespace couplet::fuzz {
+namespace couplet::fuzz::mesh_fuzz {
 using namespace mesh;
 namespace {
 
@@ -140,4 +140,4 @@ TEST(Meshes, broken_ones_are_read_or_refused) {
 }
 
 }  // namespace
-}  // namespace couplet::fuzz
+}  // namespace couplet::fuzz::mesh_fuzz

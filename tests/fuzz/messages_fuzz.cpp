@@ -15,7 +15,7 @@
 #include "common/coupling/messages.hpp"
 #include "tests/fuzz/mutate.hpp"
 
-namespace couplet::fuzz {
+namespace couplet::fuzz::messages_fuzz {
 using namespace coupling;
 namespace {
 
@@ -216,4 +216,4 @@ TEST(GuestsBytes, another_version_names_both) {
 }
 
 }  // namespace
-}  // namespace couplet::fuzz
+}  // namespace couplet::fuzz::messages_fuzz

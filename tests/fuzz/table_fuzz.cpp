@@ -18,7 +18,7 @@
 #include "thermocline/plant/flow_file.hpp"
 #include "thermocline/weather/weather_hours.hpp"
 
-namespace couplet::fuzz {
+namespace couplet::fuzz::table_fuzz {
 using namespace fv;
 namespace {
 
@@ -149,4 +149,4 @@ TEST(Tables, gzip_bombs_end_with_a_sentence_in_time_and_memory) {
 }
 
 }  // namespace
-}  // namespace couplet::fuzz
+}  // namespace couplet::fuzz::table_fuzz

@@ -11,7 +11,7 @@
 #include "tests/fuzz/mutate.hpp"
 #include "tests/fuzz/program.hpp"
 
-namespace couplet::fuzz {
+namespace couplet::fuzz::yaml_fuzz {
 namespace {
 
 namespace fs = std::filesystem;
@@ -205,4 +205,4 @@ TEST(Yaml, broken_cases_are_refused_with_a_place_in_time_and_memory) {
 }
 
 }  // namespace
-}  // namespace couplet::fuzz
+}  // namespace couplet::fuzz::yaml_fuzz

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/linalg/petsc_environment.hpp"
+#include "tests/support/chosen_files.hpp"
 
 namespace {
 
@@ -30,6 +31,7 @@ class FailurePrinter final : public ::testing::EmptyTestEventListener {
 
 int main(int argc, char** argv) {
   ::testing::InitGoogleTest(&argc, argv);
+  if (!couplet::testing::choose_files(argc, argv)) return 2;
   MPI_Init(&argc, &argv);
   int result = 0;
   {

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-namespace couplet {
+namespace couplet::command_line_test {
 namespace {
 
 using testing::ElementsAre;
@@ -82,4 +82,4 @@ TEST(CommandLine, a_wrong_command_line_leaves_with_code_2_and_says_why) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::command_line_test

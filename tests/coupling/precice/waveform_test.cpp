@@ -8,7 +8,7 @@
 #include <cmath>
 #include <functional>
 
-namespace couplet::dropin {
+namespace couplet::dropin::waveform_test {
 namespace {
 
 std::vector<double> times(int intervals, double power) {
@@ -69,4 +69,4 @@ TEST(Waveform, degree_0_has_the_value_at_the_next_time) {
 }
 
 }  // namespace
-}  // namespace couplet::dropin
+}  // namespace couplet::dropin::waveform_test

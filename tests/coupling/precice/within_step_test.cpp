@@ -14,7 +14,7 @@
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
 
-namespace couplet {
+namespace couplet::within_step_test {
 using namespace coupling;
 using namespace coupler;
 namespace {
@@ -232,4 +232,4 @@ TEST(WithinStep, a_number_of_sub_steps_that_wavers_from_pass_to_pass_still_conve
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::within_step_test

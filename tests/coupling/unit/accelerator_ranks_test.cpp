@@ -7,7 +7,7 @@
 #include "common/parallel/collective.hpp"
 #include "coupler/acceleration/accelerator.hpp"
 
-namespace couplet {
+namespace couplet::accelerator_ranks_test {
 using namespace coupler;
 namespace {
 
@@ -61,4 +61,4 @@ TEST(Accelerators, do_not_depend_on_the_ranks) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::accelerator_ranks_test

@@ -13,7 +13,7 @@
 #include "coupler/acceleration/growing_qr.hpp"
 #include "coupler/acceleration/relaxation.hpp"
 
-namespace couplet {
+namespace couplet::accelerator_test {
 using namespace coupler;
 namespace {
 
@@ -184,4 +184,4 @@ TEST(Residual, both_criteria_are_needed_where_both_are_asked_for) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::accelerator_test

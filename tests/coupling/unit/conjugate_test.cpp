@@ -11,7 +11,7 @@
 #include "coupler/mapping/links.hpp"
 #include "tests/coupling/support/surfaces.hpp"
 
-namespace couplet {
+namespace couplet::conjugate_test {
 using namespace coupling;
 using namespace parallel;
 using namespace coupler;
@@ -342,4 +342,4 @@ TEST(ConjugateMaps, pressures_and_temperatures_go_consistently_and_heats_with_th
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::conjugate_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace couplet {
+namespace couplet::corner_weights_test {
 namespace {
 
 TEST(CornerWeights, meet_the_centre_of_a_face_that_is_no_parallelogram) {
@@ -43,4 +43,4 @@ TEST(CornerWeights, are_those_of_the_triangles_about_the_mean_of_the_corners) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::corner_weights_test

@@ -16,7 +16,7 @@
 #include "tests/coupling/toy/piston.hpp"
 #include "tests/coupling/toy/spring.hpp"
 
-namespace couplet {
+namespace couplet::coupled_toy_test {
 using namespace coupling;
 using namespace coupler;
 namespace {
@@ -442,4 +442,4 @@ TEST(CoupledToy, interrupted_run_equals_uninterrupted_run_bit_for_bit) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::coupled_toy_test

@@ -7,7 +7,7 @@
 #include "common/coupling/serve.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::described_data_test {
 using namespace coupling;
 namespace {
 
@@ -56,4 +56,4 @@ TEST(DescribedData, on_another_rank_alone_are_refused_on_all) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::described_data_test

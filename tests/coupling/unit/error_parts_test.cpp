@@ -7,7 +7,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::error_parts_test {
 using namespace coupling;
 namespace {
 
@@ -111,4 +111,4 @@ TEST(ErrorPartsTest, of_a_job_the_largest_of_each_kind_counts_and_is_named) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::error_parts_test

@@ -13,7 +13,7 @@
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
 
-namespace couplet {
+namespace couplet::exchange_test {
 using namespace coupling;
 using namespace coupler;
 namespace {
@@ -226,4 +226,4 @@ TEST(Links, what_does_not_fit_is_named) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::exchange_test

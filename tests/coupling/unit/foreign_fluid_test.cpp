@@ -2,7 +2,7 @@
 // A fluid with vertices alone and names of its own, as a program on preCICE's interface.
 #include "tests/coupling/unit/foreign.hpp"
 
-namespace couplet {
+namespace couplet::foreign_fluid_test {
 using namespace coupling;
 namespace {
 
@@ -98,4 +98,4 @@ TEST(ForeignFluid, data_that_it_does_not_announce_are_named) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::foreign_fluid_test

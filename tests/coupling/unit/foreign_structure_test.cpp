@@ -6,7 +6,7 @@
 #include "coupler/judge/balance.hpp"
 #include "tests/coupling/unit/foreign.hpp"
 
-namespace couplet {
+namespace couplet::foreign_structure_test {
 using namespace coupling;
 namespace {
 
@@ -162,4 +162,4 @@ TEST(Balancing, forces_at_vertices_have_a_sum_a_moment_and_work) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::foreign_structure_test

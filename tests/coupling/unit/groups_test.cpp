@@ -14,7 +14,7 @@
 #include "tests/coupling/support/passing.hpp"
 #include "tests/coupling/toy/spring.hpp"
 
-namespace couplet {
+namespace couplet::groups_test {
 using namespace coupling;
 using namespace coupler;
 namespace {
@@ -239,4 +239,4 @@ TEST(SubSteps, a_restart_between_coupling_steps_is_bit_for_bit) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::groups_test

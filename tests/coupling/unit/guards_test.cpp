@@ -11,7 +11,7 @@
 #include "common/base/error.hpp"
 #include "coupler/judge/places.hpp"
 
-namespace couplet {
+namespace couplet::guards_test {
 using namespace coupling;
 using namespace coupler;
 namespace {
@@ -300,4 +300,4 @@ TEST(Places, a_load_that_is_not_finite_is_named_with_its_place) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::guards_test

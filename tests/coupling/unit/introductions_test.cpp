@@ -4,7 +4,7 @@
 
 #include "tests/coupling/unit/foreign.hpp"
 
-namespace couplet {
+namespace couplet::introductions_test {
 using namespace coupling;
 using namespace coupler;
 namespace {
@@ -92,4 +92,4 @@ TEST(Introductions, a_case_by_hand_and_programs_that_say_nothing_or_something_el
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::introductions_test

@@ -14,7 +14,7 @@
 #include "tests/coupling/toy/piston.hpp"
 #include "tests/coupling/toy/spring.hpp"
 
-namespace couplet {
+namespace couplet::lag_test {
 using namespace coupling;
 namespace {
 
@@ -177,4 +177,4 @@ TEST(LagEstimate, changes_nothing_and_continues_over_a_restart_bit_for_bit) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::lag_test

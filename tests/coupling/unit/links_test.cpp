@@ -11,7 +11,7 @@
 #include "coupler/judge/mechanics.hpp"
 #include "coupler/judge/places.hpp"
 
-namespace couplet {
+namespace couplet::links_test {
 using namespace coupling;
 using namespace coupler;
 namespace {
@@ -197,4 +197,4 @@ TEST(Balance, each_side_counts_the_way_of_its_own_wall) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::links_test

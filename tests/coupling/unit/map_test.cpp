@@ -11,7 +11,7 @@
 #include "coupler/mapping/map_projection.hpp"
 #include "tests/coupling/support/surfaces.hpp"
 
-namespace couplet {
+namespace couplet::map_test {
 using namespace coupling;
 using namespace coupler;
 namespace {
@@ -273,4 +273,4 @@ TEST(Maps, are_set_up_in_n_log_n) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::map_test

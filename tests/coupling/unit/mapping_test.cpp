@@ -10,7 +10,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::mapping_test {
 using namespace coupler;
 namespace {
 
@@ -128,4 +128,4 @@ TEST(NearestMapping, shares_a_force_among_the_finer_faces_under_it_by_their_size
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::mapping_test

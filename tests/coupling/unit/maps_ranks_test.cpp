@@ -12,7 +12,7 @@
 #include "tests/coupling/support/surfaces.hpp"
 #include "tests/support/world.hpp"
 
-namespace couplet {
+namespace couplet::maps_ranks_test {
 using namespace coupling;
 using namespace parallel;
 using namespace coupler;
@@ -156,4 +156,4 @@ TEST(Transfers, entries_given_on_any_rank_add_up) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::maps_ranks_test

@@ -8,7 +8,7 @@
 #include "common/base/error.hpp"
 #include "common/coupling/wait.hpp"
 
-namespace couplet {
+namespace couplet::messages_test {
 using namespace coupling;
 namespace {
 
@@ -197,4 +197,4 @@ TEST(Blocks, a_list_cut_in_two_ways_overlaps_where_it_should) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::messages_test

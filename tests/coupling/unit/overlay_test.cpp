@@ -6,7 +6,7 @@
 
 #include <numeric>
 
-namespace couplet {
+namespace couplet::overlay_test {
 namespace {
 
 /// A face looks up; those of the other side, which look down, cover it up to x = 0.4.
@@ -50,4 +50,4 @@ TEST(Overlay, a_part_of_a_face_that_nothing_covers_goes_to_the_nearest_in_full) 
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::overlay_test

@@ -12,7 +12,7 @@
 #include "common/io/checkpoint.hpp"
 #include "coupler/acceleration/fixed_point.hpp"
 
-namespace couplet {
+namespace couplet::quasi_newton_test {
 using namespace coupler;
 namespace {
 
@@ -306,4 +306,4 @@ TEST(Accelerators, continue_from_a_checkpoint_bit_for_bit) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::quasi_newton_test

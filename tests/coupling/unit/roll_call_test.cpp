@@ -6,7 +6,7 @@
 
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::roll_call_test {
 using namespace app;
 namespace {
 
@@ -116,4 +116,4 @@ TEST(RollCall, all_processes_hear_all_answers) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::roll_call_test

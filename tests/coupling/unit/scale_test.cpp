@@ -9,7 +9,7 @@
 #include "coupler/judge/mechanics.hpp"
 #include "coupler/judge/places.hpp"
 
-namespace couplet {
+namespace couplet::scale_test {
 using namespace coupling;
 using namespace coupler;
 namespace {
@@ -66,4 +66,4 @@ TEST(Scale, set_up_of_a_large_interface_grows_with_its_size_alone) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::scale_test

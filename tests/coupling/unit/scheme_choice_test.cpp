@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace couplet::coupler {
+namespace couplet::coupler::scheme_choice_test {
 namespace {
 
 using coupling::Scheme;
@@ -80,4 +80,4 @@ TEST(SchemeChoice, continues_from_a_checkpoint_with_its_count_or_its_change) {
 }
 
 }  // namespace
-}  // namespace couplet::coupler
+}  // namespace couplet::coupler::scheme_choice_test

@@ -12,7 +12,7 @@
 #include "coupler/judge/surfaces.hpp"
 #include "tests/coupling/support/surfaces.hpp"
 
-namespace couplet {
+namespace couplet::start_checks_test {
 using namespace coupling;
 using namespace coupler;
 namespace {
@@ -189,4 +189,4 @@ TEST(StillGuard, ten_steps_of_load_without_motion_are_flagged_once) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::start_checks_test

@@ -10,7 +10,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::step_plan_test {
 using namespace coupling;
 namespace {
 
@@ -176,4 +176,4 @@ TEST(StepPlan, continues_with_another_nominal_step_that_divides_the_time) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::step_plan_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace couplet {
+namespace couplet::unknown_test {
 using namespace coupling;
 using namespace coupler;
 namespace {
@@ -118,4 +118,4 @@ TEST(Predictor, data_without_velocity_follow_the_polynomial_through_their_last_v
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::unknown_test

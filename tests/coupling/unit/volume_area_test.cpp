@@ -7,7 +7,7 @@
 
 #include "coupler/acceleration/volume_level.hpp"
 
-namespace couplet {
+namespace couplet::volume_area_test {
 using namespace coupling;
 using namespace coupler;
 namespace {
@@ -171,4 +171,4 @@ TEST(CavityWall, sweeps_the_volume_between_two_places) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::volume_area_test

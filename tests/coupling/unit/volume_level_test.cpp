@@ -13,7 +13,7 @@
 #include "coupler/coupler.hpp"
 #include "tests/coupling/toy/spring.hpp"
 
-namespace couplet {
+namespace couplet::volume_level_test {
 using namespace coupling;
 namespace {
 
@@ -294,4 +294,4 @@ TEST(VolumeLevel, arrangements_that_cannot_hold_a_volume_are_refused) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::volume_level_test

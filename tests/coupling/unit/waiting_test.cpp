@@ -6,7 +6,7 @@
 
 #include <limits>
 
-namespace couplet::coupler {
+namespace couplet::coupler::waiting_test {
 namespace {
 
 using testing::HasSubstr;
@@ -53,4 +53,4 @@ TEST(Waiting, is_silent_about_one_participant_and_short_runs) {
 }
 
 }  // namespace
-}  // namespace couplet::coupler
+}  // namespace couplet::coupler::waiting_test

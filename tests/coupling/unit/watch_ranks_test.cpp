@@ -10,7 +10,7 @@
 #include "tests/coupling/support/surfaces.hpp"
 #include "tests/support/world.hpp"
 
-namespace couplet {
+namespace couplet::watch_ranks_test {
 using namespace coupling;
 namespace {
 
@@ -142,4 +142,4 @@ TEST(WatchIntegrals, what_is_not_there_is_refused_with_what_is) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::watch_ranks_test

@@ -11,7 +11,7 @@
 #include "fluid_solver/step/fluid.hpp"
 #include "mesh_mover/laplacian.hpp"
 
-namespace couplet::fluid {
+namespace couplet::fluid::moving_cylinder_test {
 namespace {
 
 constexpr double amplitude = 0.02, frequency = 2, dt = 5e-4;  // [m], [1/s], [s]
@@ -112,4 +112,4 @@ TEST_P(MovingCylinder, keeps_its_mass_while_it_is_timed) {
 INSTANTIATE_TEST_SUITE_P(Tolerances, MovingCylinder, testing::Values(1e-6, 3e-6, 1e-5));
 
 }  // namespace
-}  // namespace couplet::fluid
+}  // namespace couplet::fluid::moving_cylinder_test

@@ -13,7 +13,7 @@
 #include "tests/coupling/support/residuals.hpp"
 #include "tests/coupling/toy/modal.hpp"
 
-namespace couplet {
+namespace couplet::added_mass_test {
 using namespace coupling;
 using namespace coupler;
 namespace {
@@ -251,4 +251,4 @@ TEST(AddedMass, map_of_mass_ratio_and_scheme) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::added_mass_test

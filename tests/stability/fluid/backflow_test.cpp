@@ -9,7 +9,7 @@
 #include "../../verification/fluid/fluid_case.hpp"
 #include "common/base/error.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::backflow_test {
 namespace {
 
 double largest_speed(bool stabilised) {
@@ -38,4 +38,4 @@ TEST(Backflow, stays_bounded_by_the_work_of_the_pressure) { EXPECT_LT(largest_sp
 TEST(Backflow, goes_beyond_it_without_the_stabilisation) { EXPECT_GT(largest_speed(false), 2 * bound); }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::backflow_test

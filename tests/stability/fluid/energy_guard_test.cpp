@@ -6,7 +6,7 @@
 #include "../../verification/fluid/fluid_case.hpp"
 #include "common/base/error.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::energy_guard_test {
 namespace {
 
 using testing::HasSubstr;
@@ -168,4 +168,4 @@ INSTANTIATE_TEST_SUITE_P(viscous, Driven,
                          });
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::energy_guard_test

@@ -9,7 +9,7 @@
 #include "common/base/error.hpp"
 #include "common/mesh/quality.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::hard_meshes_test {
 using namespace mesh;
 namespace {
 
@@ -164,4 +164,4 @@ INSTANTIATE_TEST_SUITE_P(viscous, HardMeshes,
                          });
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::hard_meshes_test

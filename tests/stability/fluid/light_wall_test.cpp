@@ -7,7 +7,7 @@
 
 #include "../../verification/fluid/fluid_case.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::light_wall_test {
 namespace {
 
 constexpr double wave = 2 * std::numbers::pi, dt = 0.01;
@@ -144,4 +144,4 @@ TEST(LightWall, shear_is_that_of_the_velocity_of_the_pass) {
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::light_wall_test

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::renewal_test {
 namespace {
 
 constexpr double load = 1;  // N, beside which what friction misses is judged
@@ -79,4 +79,4 @@ TEST(Renewal, waits_for_a_better_velocity_than_a_relaxed_pass_has) {
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::renewal_test

@@ -5,7 +5,7 @@
 #include "../../verification/fluid/fluid_case.hpp"
 #include "common/base/error.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::step_limit_test {
 using namespace mesh;
 namespace {
 
@@ -132,4 +132,4 @@ TEST(StepLimit, the_cell_that_limits_the_step_is_named_with_its_place_and_the_re
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::step_limit_test

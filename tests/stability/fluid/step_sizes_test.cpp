@@ -8,7 +8,7 @@
 #include "../../verification/fluid/fluid_case.hpp"
 #include "common/base/error.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::step_sizes_test {
 using namespace mesh;
 namespace {
 
@@ -83,4 +83,4 @@ TEST(FixedStep, beyond_the_stability_limit_is_a_failure_that_names_the_place) {
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::step_sizes_test

@@ -6,7 +6,7 @@
 #include "../../verification/fluid/fluid_case.hpp"
 #include "common/base/error.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::under_resolved_test {
 namespace {
 
 /// An eighth of the vortices of a box of 2 pi: its walls are planes of symmetry. Speed and length 1, one turnover in 1 s.
@@ -67,4 +67,4 @@ TEST(UnderResolved, vortices_with_steps_beyond_the_limit_are_refused_by_name) {
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::under_resolved_test

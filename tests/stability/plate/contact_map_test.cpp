@@ -12,7 +12,7 @@
 
 #include "tests/verification/plate/bounce.hpp"
 
-namespace couplet::plate {
+namespace couplet::plate::contact_map_test {
 namespace {
 
 /// Largest and last energy over the first, minus 1, in `bounces` bounces (or as long as they would take).
@@ -57,4 +57,4 @@ TEST(PlateContactMap, conserving_holds_over_stiffness_and_step_and_midpoint_does
 }
 
 }  // namespace
-}  // namespace couplet::plate
+}  // namespace couplet::plate::contact_map_test

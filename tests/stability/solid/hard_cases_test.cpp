@@ -8,7 +8,7 @@
 #include "common/log/finding.hpp"
 #include "swing.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::hard_cases_test {
 using namespace mesh;
 using namespace time;
 namespace {
@@ -147,4 +147,4 @@ TEST(StiffnessThatJumpsByAMillion, is_stretched_as_two_springs_in_a_row) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::hard_cases_test

@@ -9,7 +9,7 @@
 #include "common/parallel/collective.hpp"
 #include "tests/verification/solid/partner_load.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::partner_vibration_test {
 using time::TimeScheme;
 namespace {
 
@@ -46,4 +46,4 @@ TEST(PartnerVibration, stays_with_the_trapezoidal_rule) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::partner_vibration_test

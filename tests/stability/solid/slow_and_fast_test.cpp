@@ -6,7 +6,7 @@
 
 #include "swing.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::slow_and_fast_test {
 using namespace time;
 namespace {
 
@@ -58,4 +58,4 @@ TEST(FastSwings, at_a_courant_number_of_ten_grow_with_the_trapezoidal_rule_and_t
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::slow_and_fast_test

@@ -7,7 +7,7 @@
 #include "common/log/finding.hpp"
 #include "tests/verification/heat/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::thermal_shock_test {
 namespace {
 
 struct Shock {
@@ -73,4 +73,4 @@ TEST(ThermalShock, swings_by_half_and_more_with_the_trapezoidal_rule_and_that_is
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::thermal_shock_test

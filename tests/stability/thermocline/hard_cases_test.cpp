@@ -7,7 +7,7 @@
 
 #include "tests/verification/thermocline/support.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::hard_cases_test {
 namespace {
 
 /// Runs a bed and keeps its books, step by step.
@@ -213,4 +213,4 @@ TEST(Inversion, is_measured_against_the_hottest_fluid_below_however_fine_the_cel
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::hard_cases_test

@@ -9,7 +9,7 @@
 
 #include "thermocline/wall/mechanics.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::ratcheting_test {
 namespace {
 
 struct Cycles {
@@ -83,4 +83,4 @@ TEST(Ratcheting, of_small_cycles_never_reaches_the_passive_load) {
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::ratcheting_test

@@ -10,7 +10,7 @@
 #include "common/base/error.hpp"
 #include "common/config/leaves.hpp"
 
-namespace couplet {
+namespace couplet::case_keys_test {
 using namespace app;
 namespace {
 
@@ -72,4 +72,4 @@ TEST(CaseKeys, values_are_compared_as_quantities) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::case_keys_test

@@ -9,7 +9,7 @@
 
 #include "common/app/loop/step_loop.hpp"
 
-namespace couplet {
+namespace couplet::halving_causes_test {
 using namespace app;
 using namespace coupling;
 namespace {
@@ -85,4 +85,4 @@ TEST(HalvingCauses, a_run_whose_steps_never_grow_back_ends) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::halving_causes_test

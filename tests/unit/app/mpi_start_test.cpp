@@ -11,7 +11,7 @@
 
 #include <filesystem>
 
-namespace couplet {
+namespace couplet::mpi_start_test {
 namespace {
 
 /// What the variables are after prepare_mpi_start() in an environment of these and a HOME of its own; the test's own
@@ -88,4 +88,4 @@ TEST_F(MpiStart, what_the_user_has_chosen_stays) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::mpi_start_test

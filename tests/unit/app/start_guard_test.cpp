@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <optional>
 
-namespace couplet {
+namespace couplet::start_guard_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -37,4 +37,4 @@ TEST(StartGuardDeathTest, is_silent_once_disarmed_and_where_no_timeout_is_asked_
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::start_guard_test

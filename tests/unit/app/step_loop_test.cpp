@@ -15,7 +15,7 @@
 #include "common/io/checkpoint.hpp"
 #include "common/io/checkpoint_set.hpp"
 
-namespace couplet {
+namespace couplet::step_loop_test {
 using namespace app;
 using namespace io;
 namespace {
@@ -238,4 +238,4 @@ TEST(StepLoop, names_the_first_failure_of_a_step_where_the_last_one_is_another) 
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::step_loop_test

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-namespace couplet {
+namespace couplet::nearest_test {
 using namespace base;
 namespace {
 
@@ -65,4 +65,4 @@ TEST(Nearest, OfATriangleAgainstItsPlaces) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::nearest_test

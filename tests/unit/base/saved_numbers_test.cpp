@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace couplet {
+namespace couplet::saved_numbers_test {
 using namespace base;
 namespace {
 
@@ -41,4 +41,4 @@ TEST(SavedNumbers, counts_that_are_none_or_more_than_follow_are_refused) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::saved_numbers_test

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-namespace couplet {
+namespace couplet::text_test {
 using namespace base;
 namespace {
 
@@ -51,4 +51,4 @@ TEST(Text, the_hash_is_that_of_the_published_algorithm) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::text_test

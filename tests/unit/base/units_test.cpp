@@ -7,7 +7,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::units_test {
 using namespace base;
 namespace {
 
@@ -103,4 +103,4 @@ TEST(Units, a_formatted_quantity_reads_back_as_the_same_number) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::units_test

@@ -8,7 +8,7 @@
 #include "common/base/text.hpp"
 #include "tests/unit/config/fixture.hpp"
 
-namespace couplet {
+namespace couplet::errors_test {
 namespace {
 
 struct Case {
@@ -189,4 +189,4 @@ TEST(WrongDeclaration, names_that_are_not_kebab_case_are_a_bug_at_once) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::errors_test

@@ -4,7 +4,7 @@
 
 #include "tests/unit/config/fixture.hpp"
 
-namespace couplet {
+namespace couplet::generated_test {
 namespace {
 
 using testing::HasSubstr;
@@ -92,4 +92,4 @@ TEST(Schema, says_what_the_reader_says) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::generated_test

@@ -6,7 +6,7 @@
 #include "common/base/units.hpp"
 #include "common/config/load.hpp"
 
-namespace couplet {
+namespace couplet::limits_test {
 namespace {
 
 using testing::ElementsAre;
@@ -98,4 +98,4 @@ TEST(Limits, an_override_makes_the_section_that_is_not_there) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::limits_test

@@ -4,7 +4,7 @@
 #include "common/base/error.hpp"
 #include "tests/unit/config/fixture.hpp"
 
-namespace couplet {
+namespace couplet::load_test {
 namespace {
 
 using testing::ElementsAre;
@@ -130,4 +130,4 @@ TEST(Load, a_misspelt_required_key_is_one_mistake_not_two) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::load_test

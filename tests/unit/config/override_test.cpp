@@ -4,7 +4,7 @@
 #include "common/base/error.hpp"
 #include "tests/unit/config/fixture.hpp"
 
-namespace couplet {
+namespace couplet::override_test {
 namespace {
 
 config::Document document() {
@@ -115,4 +115,4 @@ TEST(Override, the_hash_covers_the_text_and_the_overrides) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::override_test

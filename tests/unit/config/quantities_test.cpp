@@ -5,7 +5,7 @@
 #include "common/config/pairs.hpp"
 #include "tests/unit/config/fixture.hpp"
 
-namespace couplet {
+namespace couplet::quantities_test {
 namespace {
 
 using testing::ElementsAre;
@@ -161,4 +161,4 @@ TEST(Quantities, values_in_force_are_written_so_that_they_can_be_read_again) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::quantities_test

@@ -11,7 +11,7 @@
 #include "common/mesh/load.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::interface_map_test {
 using namespace coupling;
 using namespace mesh;
 namespace {
@@ -170,4 +170,4 @@ TEST(InterfaceMapErrors, unknown_patch_is_named_with_those_that_exist) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::interface_map_test

@@ -10,7 +10,7 @@
 #include "common/mesh/load.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::mesh_motion_test {
 using namespace coupling;
 using namespace mesh;
 namespace {
@@ -128,4 +128,4 @@ TEST_F(TwoPrograms, meshes_with_other_places_of_the_points_are_refused_on_both_s
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::mesh_motion_test

@@ -10,7 +10,7 @@
 #include "common/base/error.hpp"
 #include "tests/support/own_folder.hpp"
 
-namespace couplet::csv {
+namespace couplet::csv::csv_reader_test {
 namespace {
 
 using testing::ElementsAre;
@@ -108,4 +108,4 @@ TEST(CsvReader, a_first_row_with_a_slip_is_not_taken_for_names) {
 }
 
 }  // namespace
-}  // namespace couplet::csv
+}  // namespace couplet::csv::csv_reader_test

@@ -12,7 +12,7 @@
 #include "tests/support/gzip.hpp"
 #include "tests/support/own_folder.hpp"
 
-namespace couplet::csv {
+namespace couplet::csv::line_reader_test {
 namespace {
 
 using support::gzip;
@@ -140,4 +140,4 @@ TEST(Gzip, the_size_of_the_text_is_limited_whatever_the_ratio) {
 }
 
 }  // namespace
-}  // namespace couplet::csv
+}  // namespace couplet::csv::line_reader_test

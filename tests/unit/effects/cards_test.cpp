@@ -11,7 +11,7 @@
 #include "solid_solver/effects/effect_cards.hpp"
 #include "thermocline/judge/effect_cards.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::cards_test {
 using namespace effects;
 using namespace coupler;
 using namespace solid;
@@ -469,4 +469,4 @@ TEST(AuditTrail, tells_bad_news_once) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::cards_test

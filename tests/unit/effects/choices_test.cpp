@@ -6,7 +6,7 @@
 #include "fluid_solver/parameters/auto_effects.hpp"
 #include "solid_solver/effects/auto_effects.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::choices_test {
 using namespace mesh;
 
 using namespace solid;
@@ -180,4 +180,4 @@ TEST(MeshFacts, are_those_of_a_box) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::choices_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace couplet::effects {
+namespace couplet::effects::position_test {
 
 TEST(Position, is_told_in_one_line_with_the_nearest_limit_and_its_map) {
   EXPECT_EQ(position_sentence({}), "");
@@ -38,4 +38,4 @@ TEST(Position, is_read_from_verdicts_whose_number_is_the_axis_of_a_map) {
   EXPECT_EQ(found[0].used(), 0.4);
 }
 
-}  // namespace couplet::effects
+}  // namespace couplet::effects::position_test

@@ -14,7 +14,7 @@
 #include "solid_solver/effects/effect_cards.hpp"
 #include "thermocline/judge/effect_cards.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::prices_test {
 using namespace effects;
 namespace {
 
@@ -99,4 +99,4 @@ TEST(PriceList, what_is_saved_is_the_least_of_the_scenes) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::prices_test

@@ -9,7 +9,7 @@
 #include "common/mesh/load.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::elastic_kernel_test {
 using namespace elastic;
 using namespace mesh;
 namespace {
@@ -274,4 +274,4 @@ TEST(ElasticKernel, corrected_gradients_are_exact_for_quadratic_fields_on_even_b
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::elastic_kernel_test

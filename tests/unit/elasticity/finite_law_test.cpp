@@ -9,7 +9,7 @@
 #include "common/elasticity/finite/finite_strain.hpp"
 #include "solid_solver/laws/laws.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::finite_law_test {
 using namespace elastic;
 namespace {
 
@@ -156,4 +156,4 @@ TEST(FiniteLaw, bulk_part_has_its_own_derivatives) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::finite_law_test

@@ -9,7 +9,7 @@
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
 #include "common/mesh/load.hpp"
 
-namespace couplet {
+namespace couplet::symmetric_diagonal_test {
 using namespace elastic;
 using namespace mesh;
 namespace {
@@ -70,4 +70,4 @@ INSTANTIATE_TEST_SUITE_P(All, Diagonal,
                                            BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed));
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::symmetric_diagonal_test

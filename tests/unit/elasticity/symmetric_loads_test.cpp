@@ -10,7 +10,7 @@
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/mesh/load.hpp"
 
-namespace couplet {
+namespace couplet::symmetric_loads_test {
 using namespace elastic;
 using namespace mesh;
 namespace {
@@ -91,4 +91,4 @@ INSTANTIATE_TEST_SUITE_P(All, SymmetricLoads,
                                            BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed));
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::symmetric_loads_test

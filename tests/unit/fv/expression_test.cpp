@@ -8,7 +8,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::expression_test {
 using namespace fv;
 namespace {
 
@@ -84,4 +84,4 @@ TEST(Expression, needs_one_component_a_dimension) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::expression_test

@@ -8,7 +8,7 @@
 #include "common/mesh/load.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::interpolation_test {
 using namespace fv;
 using namespace mesh;
 namespace {
@@ -183,4 +183,4 @@ TEST(VertexInterpolation, follows_a_moved_mesh) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::interpolation_test

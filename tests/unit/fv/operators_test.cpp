@@ -9,7 +9,7 @@
 #include "common/fv/prescribed_motion.hpp"
 #include "common/mesh/load.hpp"
 
-namespace couplet {
+namespace couplet::operators_test {
 using namespace fv;
 using namespace mesh;
 namespace {
@@ -89,4 +89,4 @@ TEST(PrescribedMotion, fades_between_its_radii) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::operators_test

@@ -5,7 +5,7 @@
 #include "common/mesh/load.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::point_gradient_test {
 using namespace mesh;
 namespace {
 
@@ -74,4 +74,4 @@ TEST_P(PointGradient, quadratic_fields_are_exact_at_the_centres) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::point_gradient_test

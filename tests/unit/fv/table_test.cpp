@@ -13,7 +13,7 @@
 #include "common/config/load.hpp"
 #include "common/fv/expression.hpp"
 
-namespace couplet {
+namespace couplet::table_test {
 using namespace fv;
 namespace {
 
@@ -219,4 +219,4 @@ TEST(Property, is_a_number_or_a_table_of_the_temperature) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::table_test

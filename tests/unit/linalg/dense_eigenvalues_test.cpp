@@ -9,7 +9,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::dense_eigenvalues_test {
 
 // A chain of n masses m between n + 1 springs k: 4 k / m sin^2(j pi / (2 n + 2)).
 TEST(DenseEigenvalues, OfAChainOfMasses) {
@@ -44,4 +44,4 @@ TEST(DenseEigenvalues, AMassThatIsNotPositiveIsRefused) {
   EXPECT_TRUE(linalg::general_eigenvalues({}, 0).empty());
 }
 
-}  // namespace couplet
+}  // namespace couplet::dense_eigenvalues_test

@@ -14,7 +14,7 @@
 #include "common/linalg/residual_projection.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::krylov_test {
 using namespace linalg;
 using namespace parallel;
 namespace {
@@ -398,4 +398,4 @@ TEST(Acceleration, anderson_solves_as_many_unknowns_as_it_remembers) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::krylov_test

@@ -9,7 +9,7 @@
 #include "common/linalg/linear_solver.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::linear_solver_test {
 using namespace linalg;
 namespace {
 
@@ -164,4 +164,4 @@ TEST(LinearSolver, a_failed_solve_says_what_and_why) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::linear_solver_test

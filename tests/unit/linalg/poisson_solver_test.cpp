@@ -9,7 +9,7 @@
 #include "common/linalg/poisson/poisson_solver.hpp"
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::poisson_solver_test {
 using namespace linalg;
 using parallel::comm_rank;
 using parallel::comm_size;
@@ -194,4 +194,4 @@ TEST(PoissonSolver, a_matrix_that_is_not_positive_is_refused) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::poisson_solver_test

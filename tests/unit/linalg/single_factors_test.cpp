@@ -7,7 +7,7 @@
 #include "common/linalg/linear_solver.hpp"
 #include "common/linalg/single_factors.hpp"
 
-namespace couplet {
+namespace couplet::single_factors_test {
 using namespace linalg;
 namespace {
 
@@ -108,4 +108,4 @@ TEST(SingleFactors, serve_a_solver_in_few_iterations_or_are_given_up_where_cells
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::single_factors_test

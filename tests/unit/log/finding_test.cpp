@@ -8,7 +8,7 @@
 
 #include "common/base/text.hpp"
 
-namespace couplet {
+namespace couplet::finding_test {
 using namespace base;
 namespace {
 
@@ -55,4 +55,4 @@ TEST(Findings, an_unknown_id_is_refused_with_the_one_meant_and_all_allowed) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::finding_test

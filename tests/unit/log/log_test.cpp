@@ -13,7 +13,7 @@
 #include "common/log/progress.hpp"
 #include "common/log/timer.hpp"
 
-namespace couplet {
+namespace couplet::log_test {
 namespace {
 
 /// What a logger set up like this writes to standard output and standard error.
@@ -100,4 +100,4 @@ TEST(Progress, durations_have_two_digits_of_use) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::log_test

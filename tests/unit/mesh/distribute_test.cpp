@@ -9,7 +9,7 @@
 #include "common/parallel/collective.hpp"
 #include "support.hpp"
 
-namespace couplet {
+namespace couplet::distribute_test {
 using namespace mesh;
 using namespace parallel;
 namespace {
@@ -152,4 +152,4 @@ TEST(DistributeTiny, mesh_of_one_cell_a_rank_is_whole) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::distribute_test

@@ -15,7 +15,7 @@
 #include "common/parallel/collective.hpp"
 #include "support.hpp"
 
-namespace couplet {
+namespace couplet::distributed_test {
 using namespace mesh;
 using namespace parallel;
 namespace {
@@ -287,4 +287,4 @@ TEST(BlocksOfWrongMeshes, with_fewer_cells_than_ranks_are_refused) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::distributed_test

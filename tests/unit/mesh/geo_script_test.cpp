@@ -12,7 +12,7 @@
 #include "common/base/error.hpp"
 #include "common/mesh/gmsh/mesh_facts.hpp"
 
-namespace couplet {
+namespace couplet::geo_script_test {
 using namespace mesh;
 namespace {
 
@@ -172,4 +172,4 @@ TEST_F(Geo, the_dimension_of_a_mesh_is_that_of_its_groups_however_they_are_writt
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::geo_script_test

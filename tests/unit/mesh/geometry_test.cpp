@@ -7,7 +7,7 @@
 #include "common/parallel/collective.hpp"
 #include "support.hpp"
 
-namespace couplet {
+namespace couplet::geometry_test {
 using namespace mesh;
 namespace {
 
@@ -116,4 +116,4 @@ TEST_P(GeometryOf, translation_sweeps_face_vector_times_distance) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::geometry_test

@@ -8,7 +8,7 @@
 #include "common/parallel/collective.hpp"
 #include "support.hpp"
 
-namespace couplet {
+namespace couplet::load_test {
 using namespace mesh;
 using namespace parallel;
 namespace {
@@ -251,4 +251,4 @@ TEST_F(LoadMesh, more_ranks_than_cells_are_refused) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::load_test

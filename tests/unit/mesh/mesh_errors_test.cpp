@@ -5,7 +5,7 @@
 #include "common/mesh/load.hpp"
 #include "support.hpp"
 
-namespace couplet {
+namespace couplet::mesh_errors_test {
 using namespace mesh;
 namespace {
 
@@ -156,4 +156,4 @@ TEST(MshErrorsBinary, truncated_file_names_byte_and_section) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::mesh_errors_test

@@ -12,7 +12,7 @@
 #include "common/mesh/gmsh/gmsh.hpp"
 #include "support.hpp"
 
-namespace couplet {
+namespace couplet::meshio_test {
 using namespace mesh;
 namespace {
 
@@ -60,4 +60,4 @@ TEST(Meshio, what_it_cannot_read_is_told_with_its_words) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::meshio_test

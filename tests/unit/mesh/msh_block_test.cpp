@@ -10,7 +10,7 @@
 #include "common/parallel/collective.hpp"
 #include "support.hpp"
 
-namespace couplet {
+namespace couplet::msh_block_test {
 using namespace mesh;
 using namespace parallel;
 namespace {
@@ -96,4 +96,4 @@ TEST_F(MshBlocks, are_left_to_the_whole_reader_where_it_alone_can_tell) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::msh_block_test

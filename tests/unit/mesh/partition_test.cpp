@@ -7,7 +7,7 @@
 #include <numeric>
 #include <random>
 
-namespace couplet {
+namespace couplet::partition_test {
 using namespace mesh;
 namespace {
 
@@ -72,4 +72,4 @@ TEST(Partition, is_the_same_in_every_call) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::partition_test

@@ -8,7 +8,7 @@
 
 #include "support.hpp"
 
-namespace couplet {
+namespace couplet::quality_test {
 using namespace mesh;
 namespace {
 
@@ -136,4 +136,4 @@ TEST(FindInverted, takes_a_volume_that_is_not_a_number_for_the_worst) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::quality_test

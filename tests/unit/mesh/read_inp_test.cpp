@@ -13,7 +13,7 @@
 #include "common/parallel/collective.hpp"
 #include "support.hpp"
 
-namespace couplet {
+namespace couplet::read_inp_test {
 using namespace mesh;
 namespace {
 
@@ -187,4 +187,4 @@ TEST_F(ReadInp, crafted_sets_cost_neither_memory_nor_time) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::read_inp_test

@@ -8,7 +8,7 @@
 #include "common/parallel/collective.hpp"
 #include "support.hpp"
 
-namespace couplet {
+namespace couplet::read_msh_test {
 using namespace mesh;
 namespace {
 
@@ -116,4 +116,4 @@ $EndElements
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::read_msh_test

@@ -8,7 +8,7 @@
 
 #include "support.hpp"
 
-namespace couplet {
+namespace couplet::sandbox_test {
 using namespace mesh;
 namespace {
 
@@ -80,4 +80,4 @@ TEST_F(Sandbox, a_trusted_program_has_the_users_rights) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::sandbox_test

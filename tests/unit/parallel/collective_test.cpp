@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace couplet {
+namespace couplet::collective_test {
 using namespace parallel;
 namespace {
 
@@ -49,4 +49,4 @@ TEST_F(Collective, broadcast_text_of_any_length) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::collective_test

@@ -5,7 +5,7 @@
 
 #include "common/parallel/collective.hpp"
 
-namespace couplet {
+namespace couplet::index_map_test {
 namespace {
 
 /// A ring: rank r owns 2 + r entries and holds as ghosts the last of the rank before, then the first of the
@@ -62,4 +62,4 @@ TEST_F(Ring, add_sums_the_ghosts_into_their_owners) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::index_map_test

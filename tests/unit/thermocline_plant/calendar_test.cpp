@@ -9,7 +9,7 @@
 #include "thermocline/plant/plant.hpp"
 #include "thermocline/weather/weather_date.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::calendar_test {
 namespace {
 
 using testing::HasSubstr;
@@ -76,4 +76,4 @@ TEST(Calendar, without_rules_the_plant_is_as_before) {
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::calendar_test

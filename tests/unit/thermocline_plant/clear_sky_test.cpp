@@ -8,7 +8,7 @@
 
 #include "thermocline/weather/weather_date.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::clear_sky_test {
 namespace {
 
 // Duffie and Beckman, Solar Engineering of Thermal Processes, example 2.8.1: Madison (43 N, 270 m), 22
@@ -66,4 +66,4 @@ TEST(ClearSky, a_year_holds_what_it_was_told) {
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::clear_sky_test

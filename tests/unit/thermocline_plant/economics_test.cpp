@@ -12,7 +12,7 @@
 #include "thermocline/plant/plant_control.hpp"
 #include "thermocline/weather/weather_parameters.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::economics_test {
 namespace {
 
 TEST(Economics, levelised_cost_is_that_by_hand) {
@@ -169,4 +169,4 @@ TEST(Economics, what_is_no_year_is_not_called_one) {
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::economics_test

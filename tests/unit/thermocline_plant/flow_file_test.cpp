@@ -13,7 +13,7 @@
 #include "tests/support/own_folder.hpp"
 #include "thermocline/base/celsius.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::flow_file_test {
 namespace {
 
 using testing::HasSubstr;
@@ -130,4 +130,4 @@ TEST(Schedule, finds_the_row_that_looking_at_all_finds) {
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::flow_file_test

@@ -8,7 +8,7 @@
 #include "tests/unit/thermocline_plant/support.hpp"
 #include "thermocline/plant/plant_control.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::plant_test {
 namespace {
 
 constexpr double zero = 273.15;  // degC in K
@@ -166,4 +166,4 @@ TEST(PlantControl, remembers_its_mode_through_a_checkpoint) {
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::plant_test

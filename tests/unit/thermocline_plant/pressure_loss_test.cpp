@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::pressure_loss_test {
 namespace {
 
 Fluid water() { return {"water", 1000, 4180, Table(0.6), Table(1e-3), 1, 1e4}; }
@@ -66,4 +66,4 @@ TEST(Ergun, fan_work_is_that_of_an_isentropic_compression) {
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::pressure_loss_test

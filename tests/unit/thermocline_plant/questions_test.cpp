@@ -8,7 +8,7 @@
 #include "common/base/error.hpp"
 #include "thermocline/model/plausible.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::questions_test {
 namespace {
 
 using testing::HasSubstr;
@@ -265,4 +265,4 @@ TEST(Questions, the_sun_on_the_cover_needs_to_know_where_it_stands) {
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::questions_test

@@ -11,7 +11,7 @@
 #include "thermocline/economics/day_report.hpp"
 #include "thermocline/weather/weather_parameters.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::report_test {
 namespace {
 
 constexpr double megawatt_hour = 3.6e9;
@@ -292,4 +292,4 @@ TEST(DayReport, a_profile_day_beyond_the_run_is_said) {
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::report_test

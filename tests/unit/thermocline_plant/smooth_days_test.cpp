@@ -11,7 +11,7 @@
 #include "thermocline/weather/clear_sky.hpp"
 #include "thermocline/weather/weather_date.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::smooth_days_test {
 namespace {
 
 constexpr double kwh = 3.6e6;  // [J]
@@ -107,4 +107,4 @@ TEST(SmoothDays, what_cannot_be_is_said) {
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::smooth_days_test

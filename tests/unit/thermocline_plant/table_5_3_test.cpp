@@ -7,7 +7,7 @@
 #include "thermocline/model/model.hpp"
 #include "thermocline/weather/weather_parameters.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::table_5_3_test {
 namespace {
 
 /// Table 5.3 of the thesis: tonnes and MWh.
@@ -62,4 +62,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::table_5_3_test

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::tridiagonal_test {
 namespace {
 
 TEST(Tridiagonal, solves_every_size_and_stiff_rows) {
@@ -37,4 +37,4 @@ TEST(Tridiagonal, solves_every_size_and_stiff_rows) {
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::tridiagonal_test

@@ -12,7 +12,7 @@
 #include "tests/unit/thermocline_plant/support.hpp"
 #include "thermocline/weather/weather_hours.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::weather_errors_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -212,4 +212,4 @@ TEST_F(WeatherFile, what_is_wrong_in_an_epw_file_is_said_with_the_line) {
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::weather_errors_test

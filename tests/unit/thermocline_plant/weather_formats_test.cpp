@@ -14,7 +14,7 @@
 #include "tests/unit/thermocline_plant/support.hpp"
 #include "thermocline/weather/weather_parameters.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::weather_formats_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -386,4 +386,4 @@ TEST_F(ForeignWeather, wrong_pvgis_files_are_said_with_their_line) {
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::weather_formats_test

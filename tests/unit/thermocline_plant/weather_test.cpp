@@ -12,7 +12,7 @@
 #include "thermocline/weather/weather_date.hpp"
 #include "thermocline/weather/weather_parameters.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::weather_test {
 namespace {
 
 /// Some days with values that differ everywhere.
@@ -185,4 +185,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::weather_test

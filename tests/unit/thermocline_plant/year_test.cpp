@@ -11,7 +11,7 @@
 #include "thermocline/economics/day_report.hpp"
 #include "thermocline/weather/weather_parameters.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::year_test {
 namespace {
 
 /// Steps of a tank at rest at 300 degC.
@@ -96,4 +96,4 @@ TEST(DayReport, a_year_of_a_month_that_goes_round_is_no_year) {
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::year_test

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace couplet {
+namespace couplet::amplification_test {
 using namespace time;
 namespace {
 
@@ -89,4 +89,4 @@ TEST(Amplification, growth_is_its_logarithm_a_second_and_that_of_the_motion_itse
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::amplification_test

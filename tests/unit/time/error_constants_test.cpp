@@ -6,7 +6,7 @@
 
 #include "common/time/time_scheme.hpp"
 
-namespace couplet {
+namespace couplet::error_constants_test {
 using namespace time;
 namespace {
 
@@ -82,4 +82,4 @@ TEST(ErrorConstants, rates_and_accelerations_are_exact_for_parabolas) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::error_constants_test

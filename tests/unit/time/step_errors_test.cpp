@@ -8,7 +8,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::step_errors_test {
 using namespace time;
 namespace {
 
@@ -108,4 +108,4 @@ TEST(StepErrorsTest, a_restart_goes_on_bit_for_bit_and_a_damaged_state_is_refuse
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::step_errors_test

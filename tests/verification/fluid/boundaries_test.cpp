@@ -8,7 +8,7 @@
 #include "common/base/error.hpp"
 #include "fluid_case.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::boundaries_test {
 using namespace mesh;
 namespace {
 
@@ -199,4 +199,4 @@ TEST(BodyForce, is_balanced_by_the_pressure_of_a_fluid_at_rest) {
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::boundaries_test

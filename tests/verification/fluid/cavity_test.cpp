@@ -9,7 +9,7 @@
 #include "common/io/probes/probe.hpp"
 #include "fluid_case.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::cavity_test {
 namespace {
 
 /// First two columns (place, value at Re = 100).
@@ -76,4 +76,4 @@ TEST(Cavity, agrees_with_ghia_at_reynolds_100_within_one_percent_of_the_lid_spee
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::cavity_test

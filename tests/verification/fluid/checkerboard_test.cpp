@@ -6,7 +6,7 @@
 #include "fluid_case.hpp"
 #include "fluid_solver/output/derived.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::checkerboard_test {
 namespace {
 
 constexpr int n = 48;
@@ -84,4 +84,4 @@ TEST(Checkerboard, stays_out_of_the_pressure_whatever_the_step_and_costs_little_
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::checkerboard_test

@@ -9,7 +9,7 @@
 #include "fluid_case.hpp"
 #include "fluid_solver/step/rates.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::energy_test {
 using namespace mesh;
 namespace {
 
@@ -282,4 +282,4 @@ TEST(TravellingVortices, are_second_order_in_time) {
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::energy_test

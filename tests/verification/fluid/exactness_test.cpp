@@ -6,7 +6,7 @@
 
 #include "fluid_case.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::exactness_test {
 using namespace mesh;
 namespace {
 
@@ -108,4 +108,4 @@ TEST(OscillatingBox, moves_its_fluid_as_one_body_2d) { check_oscillating_box<2>(
 TEST(OscillatingBox, moves_its_fluid_as_one_body_3d) { check_oscillating_box<3>(6, 60, true); }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::exactness_test

@@ -6,7 +6,7 @@
 #include "fluid_solver/step/loads.hpp"
 #include "fluid_solver/step/rates.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::face_loops_test {
 using namespace mesh;
 namespace {
 
@@ -249,4 +249,4 @@ TEST(FaceLoops, load_is_the_momentum_flux_and_follows_the_velocity_of_the_wall) 
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::face_loops_test

@@ -11,7 +11,7 @@
 #include "participant_case.hpp"
 #include "tests/support/saved_state.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::fourth_order_test {
 using namespace mesh;
 namespace {
 
@@ -286,4 +286,4 @@ TEST(FourthOrder, auto_takes_it_on_quadrilaterals_at_rest_and_neither_on_triangl
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::fourth_order_test

@@ -5,7 +5,7 @@
 #include "common/base/error.hpp"
 #include "fluid_case.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::gaps_test {
 namespace {
 
 constexpr double height = 0.5, limit = 0.02, dt = 0.04;
@@ -225,4 +225,4 @@ TEST(Gaps, wrong_ones_are_refused_by_name) {
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::gaps_test

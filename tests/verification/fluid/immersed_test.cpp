@@ -6,7 +6,7 @@
 #include "common/base/error.hpp"
 #include "fluid_case.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::immersed_test {
 using namespace mesh;
 namespace {
 
@@ -127,4 +127,4 @@ TEST(ImmersedBody, without_an_outlet_is_refused) {
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::immersed_test

@@ -6,7 +6,7 @@
 
 #include "fluid_case.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::moving_test {
 using namespace mesh;
 namespace {
 
@@ -126,4 +126,4 @@ TEST(OscillatingBody, feels_the_same_force_whether_mesh_or_frame_moves) {
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::moving_test

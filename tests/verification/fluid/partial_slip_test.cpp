@@ -5,7 +5,7 @@
 
 #include "fluid_case.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::partial_slip_test {
 namespace {
 
 constexpr double length = 0.3, lid = 2, force = 0.8;
@@ -106,4 +106,4 @@ TEST(PartialSlip, ends_at_walls_without_slip_and_at_walls_without_friction) {
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::partial_slip_test

@@ -11,7 +11,7 @@
 #include "fluid_case.hpp"
 #include "fluid_solver/participant.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::prescribed_motion_test {
 using namespace mesh;
 namespace {
 
@@ -272,4 +272,4 @@ TEST(PrescribedMotion, that_turns_cells_over_fails_in_solve) {
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::prescribed_motion_test

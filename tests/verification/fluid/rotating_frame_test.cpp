@@ -13,7 +13,7 @@
 #include "ring_mesh.hpp"
 #include "tests/support/saved_state.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::rotating_frame_test {
 using namespace mesh;
 using namespace parallel;
 namespace {
@@ -235,8 +235,8 @@ TEST(RotatingFrame, its_forces_bound_the_step) {
     goes_on();
     FAIL() << "the frame's energy was let pass";
   } catch (const SolveFailure& failure) {
-    EXPECT_THAT(failure.what(), testing::HasSubstr("omega h^2/nu = "));
-    EXPECT_THAT(failure.what(), testing::HasSubstr("A smaller step does not help"));
+    EXPECT_THAT(failure.what(), ::testing::HasSubstr("omega h^2/nu = "));
+    EXPECT_THAT(failure.what(), ::testing::HasSubstr("A smaller step does not help"));
   }
 }
 
@@ -256,23 +256,23 @@ TEST(RotatingFrame, what_does_not_go_with_it_is_refused_by_name) {
   EXPECT_EQ(refusal(good), "accepted");
   FluidParameters p = good;
   p.motion.emplace();
-  EXPECT_THAT(refusal(p), testing::HasSubstr("rotating-frame: the mesh is at rest in the frame"));
+  EXPECT_THAT(refusal(p), ::testing::HasSubstr("rotating-frame: the mesh is at rest in the frame"));
   p = good;
   p.boundaries["xmin"] = boundary(BoundaryType::interface);
-  EXPECT_THAT(refusal(p), testing::HasSubstr("boundaries of type interface"));
+  EXPECT_THAT(refusal(p), ::testing::HasSubstr("boundaries of type interface"));
   p = good;
   p.scheme = ExplicitScheme::runge_kutta;
-  EXPECT_THAT(refusal(p), testing::HasSubstr("use 'scheme: adams-bashforth'"));
+  EXPECT_THAT(refusal(p), ::testing::HasSubstr("use 'scheme: adams-bashforth'"));
   p = good;
   p.rotating_frame->speed.text = "x";
-  EXPECT_THAT(refusal(p), testing::HasSubstr("rotating-frame.speed: it may depend on t only"));
+  EXPECT_THAT(refusal(p), ::testing::HasSubstr("rotating-frame.speed: it may depend on t only"));
   p = good;
   for (const auto& [side, other] : {std::pair{"xmin", "xmax"}, {"xmax", "xmin"}}) {
     p.boundaries[side] = boundary(BoundaryType::periodic);
     p.boundaries[side].partner = other;
   }
-  EXPECT_THAT(refusal(p, periodic_patches(p)), testing::HasSubstr("not shifted along the axis"));
+  EXPECT_THAT(refusal(p, periodic_patches(p)), ::testing::HasSubstr("not shifted along the axis"));
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::rotating_frame_test

@@ -10,7 +10,7 @@
 #include "fluid_case.hpp"
 #include "fluid_solver/participant.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::samples_test {
 using namespace mesh;
 namespace {
 
@@ -101,7 +101,7 @@ std::string refusal(const fs::path& file, const std::string& text, double y = 0.
 }
 
 TEST(VelocityTable, what_is_wrong_is_said_with_file_and_place) {
-  using testing::HasSubstr;
+  using ::testing::HasSubstr;
   const fs::path file = folder_of("wrong-table") / "in.csv";
   EXPECT_EQ(refusal(file, "y,u,v\n0,0,0\n1,1,0\n"), "");
   EXPECT_THAT(refusal(file, "y,u,v\n0,0,0\n1,1,0\n", 1.5),
@@ -275,9 +275,9 @@ TEST(Samples, places_that_all_lie_outside_are_refused_and_none_are_written_unles
     run(p, "far-samples", 0, 0);
     FAIL() << "accepted";
   } catch (const Error& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr("output.samples.far: none of its points is in the mesh"));
+    EXPECT_THAT(e.what(), ::testing::HasSubstr("output.samples.far: none of its points is in the mesh"));
   }
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::samples_test

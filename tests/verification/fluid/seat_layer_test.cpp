@@ -12,7 +12,7 @@
 #include "participant_case.hpp"
 #include "tests/support/saved_state.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::seat_layer_test {
 namespace {
 
 constexpr double h = 0.05, inflow = 0.08, width = 1.2;  // cell [m], [m^2/s], of the seat [m]
@@ -246,4 +246,4 @@ TEST(OpenPart, is_exact_for_linear_levels) {
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::seat_layer_test

@@ -9,7 +9,7 @@
 #include "fluid_solver/judge/ringing.hpp"
 #include "fluid_solver/state/state_io.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::sound_test {
 using namespace mesh;
 namespace {
 
@@ -67,7 +67,7 @@ FluidParameters pulse(WaveScheme scheme) {
   return p;
 }
 
-class Pulse : public testing::TestWithParam<WaveScheme> {};
+class Pulse : public ::testing::TestWithParam<WaveScheme> {};
 
 TEST_P(Pulse, travels_at_the_speed_of_sound_and_leaves) {
   const bool three = GetParam() == WaveScheme::three_level;
@@ -201,7 +201,7 @@ TEST(Sound, modes_of_a_duct_that_is_open_at_one_end) {
   EXPECT_LT(worst, 2e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Sound, Pulse, testing::Values(WaveScheme::three_level, WaveScheme::trapezoidal),
+INSTANTIATE_TEST_SUITE_P(Sound, Pulse, ::testing::Values(WaveScheme::three_level, WaveScheme::trapezoidal),
                          [](const auto& i) {
                            return i.param == WaveScheme::three_level ? "three_level" : "trapezoidal";
                          });
@@ -361,23 +361,23 @@ TEST(Sound, what_does_not_go_with_it_is_refused) {
   EXPECT_EQ(told(p), "");
   p.boundaries["xmax"] = absorbing(boundary(BoundaryType::outlet));
   p.compressibility.reset();
-  EXPECT_THAT(told(p), testing::HasSubstr("has no pressure waves to let out"));
+  EXPECT_THAT(told(p), ::testing::HasSubstr("has no pressure waves to let out"));
   p = air();
   p.boundaries["xmax"] = boundary(BoundaryType::convective_outlet);
-  EXPECT_THAT(told(p), testing::HasSubstr("sets no pressure level"));
+  EXPECT_THAT(told(p), ::testing::HasSubstr("sets no pressure level"));
   p = air();
   p.compressibility->upstream_volume = 1;
-  EXPECT_THAT(told(p), testing::HasSubstr("no inlet that it could lie behind"));
+  EXPECT_THAT(told(p), ::testing::HasSubstr("no inlet that it could lie behind"));
   p.boundaries["xmin"] = absorbing(boundary(BoundaryType::inlet, {"1", "0"}));
-  EXPECT_THAT(told(p), testing::HasSubstr("remove one of the two"));
+  EXPECT_THAT(told(p), ::testing::HasSubstr("remove one of the two"));
   p = air();
   p.scheme = ExplicitScheme::runge_kutta;
-  EXPECT_THAT(told(p), testing::HasSubstr("runge-kutta"));
+  EXPECT_THAT(told(p), ::testing::HasSubstr("runge-kutta"));
   p = air();
   p.compressibility->speed_of_sound.reset();
   p.density = 100;
-  EXPECT_THAT(told(p), testing::HasSubstr("no known gas or liquid"));
+  EXPECT_THAT(told(p), ::testing::HasSubstr("no known gas or liquid"));
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::sound_test

@@ -6,7 +6,7 @@
 
 #include "fluid_case.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::steps_test {
 using namespace mesh;
 namespace {
 
@@ -258,4 +258,4 @@ TEST(Poiseuille, profile_and_pressure_drop_are_kept_in_a_channel) {
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::steps_test

@@ -15,7 +15,7 @@
 #include "fluid_solver/participant.hpp"
 #include "tests/support/surface_file.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::surfaces_test {
 using namespace mesh;
 namespace {
 
@@ -282,4 +282,4 @@ TEST(FluidSurfaces, of_what_is_no_patch_are_refused_by_name) {
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::surfaces_test

@@ -7,7 +7,7 @@
 
 #include "fluid_case.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::taylor_green_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -111,4 +111,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return info.param.name; });
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::taylor_green_test

@@ -10,7 +10,7 @@
 #include "fluid_solver/turbulence/statistics.hpp"
 #include "fluid_solver/turbulence/turbulence.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::turbulence_test {
 using namespace mesh;
 namespace {
 
@@ -174,4 +174,4 @@ TEST(Derived, vorticity_and_q_of_a_rotation_and_of_a_strain) {
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::turbulence_test

@@ -12,7 +12,7 @@
 #include "ring_mesh.hpp"
 #include "tests/support/saved_state.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::turning_walls_test {
 using namespace mesh;
 namespace {
 
@@ -173,4 +173,4 @@ TEST(TurningWalls, torque_between_circles) {
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::turning_walls_test

@@ -7,7 +7,7 @@
 
 #include "tests/verification/fluid/fluid_case.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::two_sided_walls_test {
 namespace {
 
 using mesh::BoxCells;
@@ -209,4 +209,4 @@ TEST(TwoSidedWalls, thick_body_has_two_sides_of_its_own) {
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::two_sided_walls_test

@@ -11,7 +11,7 @@
 #include "fluid_case.hpp"
 #include "fluid_solver/participant.hpp"
 
-namespace couplet::fluid::test {
+namespace couplet::fluid::test::wall_output_test {
 namespace {
 
 constexpr double rho = 1.3, mu = 0.02, length = 2, pressure = 0.7;
@@ -111,7 +111,7 @@ TEST(WallOutput, coefficients_are_forces_and_moments_over_dynamic_pressure_and_a
 TEST(WallOutput, shear_and_wall_units_of_a_laminar_run) {
   std::string header;
   const auto rows = rows_of(run(couette(), "walls") / "walls.csv", header);
-  EXPECT_THAT(header, testing::HasSubstr("ymin mean shear [Pa],ymin largest shear [Pa],ymin mean y+ [-]"));
+  EXPECT_THAT(header, ::testing::HasSubstr("ymin mean shear [Pa],ymin largest shear [Pa],ymin mean y+ [-]"));
   ASSERT_EQ(rows.size(), 3u);
   // du/dy = 1: tau = mu; y+ = y (tau/rho)^(1/2) / nu at the first centre, y = 0.05 m
   const double yplus = 0.05 * std::sqrt(mu / rho) / (mu / rho);
@@ -141,9 +141,9 @@ TEST(WallOutput, coefficients_of_what_is_no_wall_are_refused_by_name) {
     run(p, "refused", 0);
     FAIL() << "accepted";
   } catch (const Error& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr("output.coefficients.floor.patches: 'xmin' is not a wall"));
+    EXPECT_THAT(e.what(), ::testing::HasSubstr("output.coefficients.floor.patches: 'xmin' is not a wall"));
   }
 }
 
 }  // namespace
-}  // namespace couplet::fluid::test
+}  // namespace couplet::fluid::test::wall_output_test

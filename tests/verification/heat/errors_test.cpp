@@ -10,7 +10,7 @@
 #include "common/log/finding.hpp"
 #include "tests/verification/heat/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::errors_test {
 using namespace mesh;
 namespace {
 
@@ -120,4 +120,4 @@ TEST(HeatErrors, a_linear_field_errs_nowhere_and_one_temperature_says_nothing) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::errors_test

@@ -8,7 +8,7 @@
 #include "common/base/error.hpp"
 #include "tests/verification/heat/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::exactness_test {
 using namespace mesh;
 namespace {
 
@@ -218,4 +218,4 @@ TEST(HeatBoundaries, a_wrong_patch_name_is_reported) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::exactness_test

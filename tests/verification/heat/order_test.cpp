@@ -6,7 +6,7 @@
 
 #include "tests/verification/heat/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::order_test {
 using namespace mesh;
 namespace {
 
@@ -137,4 +137,4 @@ TEST(OrderInSpaceOfVaryingConductivity, is_two) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::order_test

@@ -6,7 +6,7 @@
 
 #include "tests/verification/heat/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::series_test {
 using namespace mesh;
 namespace {
 
@@ -135,4 +135,4 @@ TEST(Sphere, whole_octant_with_flat_cells_at_its_surface_converges_too) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::series_test

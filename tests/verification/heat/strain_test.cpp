@@ -11,7 +11,7 @@
 #include "solid_solver/thermal/thermal_strain.hpp"
 #include "tests/verification/heat/thermoelastic.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::strain_test {
 using namespace mesh;
 using namespace parallel;
 namespace {
@@ -330,4 +330,4 @@ TEST(SolvedTemperature, goes_on_bit_for_bit_after_a_restart) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::strain_test

@@ -8,7 +8,7 @@
 #include "tests/support/saved_state.hpp"
 #include "tests/verification/heat/thermoelastic.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::stress_test {
 using namespace mesh;
 namespace {
 
@@ -200,4 +200,4 @@ TEST(LinearTemperature, leaves_a_free_body_without_stress_as_cells_shrink) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::stress_test

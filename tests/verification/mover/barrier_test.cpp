@@ -15,15 +15,15 @@
 #include "plate_case.hpp"
 #include "tests/support/saved_state.hpp"
 
-namespace couplet::mesh_mover::test {
+namespace couplet::mesh_mover::test::barrier_test {
 using namespace mesh;
 namespace {
 
 using std::numbers::pi;
 
 template <class T>
-class DistortionOf : public testing::Test {};
-using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+class DistortionOf : public ::testing::Test {};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(DistortionOf, Dimensions);
 
 template <int D>
@@ -106,7 +106,7 @@ app::ParticipantContext in_test_data() {
   return c;
 }
 
-class BlockInAFrame : public testing::TestWithParam<std::pair<int, BoundaryMotion>> {};
+class BlockInAFrame : public ::testing::TestWithParam<std::pair<int, BoundaryMotion>> {};
 
 /// To 5 % of its gaps: to the wall above, or, where walls slide, into a corner.
 TEST_P(BlockInAFrame, closes_its_gaps_to_a_twentieth_where_the_laplacian_folds) {
@@ -124,16 +124,16 @@ TEST_P(BlockInAFrame, closes_its_gaps_to_a_twentieth_where_the_laplacian_folds) 
     run(laplacian, 0, 1, 20);
     FAIL() << "the Laplacian came through";
   } catch (const SolveFailure& e) {
-    EXPECT_THAT(e.what(), testing::ContainsRegex("inverts cell|intersect itself"));
+    EXPECT_THAT(e.what(), ::testing::ContainsRegex("inverts cell|intersect itself"));
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BlockInAFrame,
-                         testing::Values(std::pair{0, BoundaryMotion::fixed},
-                                         std::pair{1, BoundaryMotion::fixed},
-                                         std::pair{2, BoundaryMotion::fixed},
-                                         std::pair{0, BoundaryMotion::slip},
-                                         std::pair{1, BoundaryMotion::slip}));
+                         ::testing::Values(std::pair{0, BoundaryMotion::fixed},
+                                           std::pair{1, BoundaryMotion::fixed},
+                                           std::pair{2, BoundaryMotion::fixed},
+                                           std::pair{0, BoundaryMotion::slip},
+                                           std::pair{1, BoundaryMotion::slip}));
 
 /// The corner of the block would pass the diagonal of the fixed corner cell: no mesh has such cells.
 TEST(Barrier, refuses_what_no_mesh_can_follow) {
@@ -145,7 +145,7 @@ TEST(Barrier, refuses_what_no_mesh_can_follow) {
     run(mover, 0, 1, 20);
     FAIL() << "accepted";
   } catch (const SolveFailure& e) {
-    EXPECT_THAT(e.what(), testing::ContainsRegex("no valid mesh was found.*near \\(1.9"));
+    EXPECT_THAT(e.what(), ::testing::ContainsRegex("no valid mesh was found.*near \\(1.9"));
   }
 }
 
@@ -329,9 +329,9 @@ TEST(Barrier, periodic_patches_are_refused_by_name) {
     BarrierMotion barrier(mesh, geometry, p);
     FAIL() << "accepted";
   } catch (const Error& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr("boundaries.ymax"));
+    EXPECT_THAT(e.what(), ::testing::HasSubstr("boundaries.ymax"));
   }
 }
 
 }  // namespace
-}  // namespace couplet::mesh_mover::test
+}  // namespace couplet::mesh_mover::test::barrier_test

@@ -12,7 +12,7 @@
 #include "mesh_mover/pseudo_solid.hpp"
 #include "plate_case.hpp"
 
-namespace couplet::mesh_mover::test {
+namespace couplet::mesh_mover::test::curved_slide_test {
 using namespace mesh;
 namespace {
 
@@ -92,9 +92,9 @@ TEST(CurvedSlide, is_refused_by_the_laplacian_with_what_to_use) {
     Laplacian laplacian(mesh, geometry, sliding(mesh));
     FAIL() << "accepted";
   } catch (const Error& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr("use 'method: pseudo-solid', which slides along any surface"));
+    EXPECT_THAT(e.what(), ::testing::HasSubstr("use 'method: pseudo-solid', which slides along any surface"));
   }
 }
 
 }  // namespace
-}  // namespace couplet::mesh_mover::test
+}  // namespace couplet::mesh_mover::test::curved_slide_test

@@ -16,7 +16,7 @@
 #include "mesh_mover/pseudo_solid.hpp"
 #include "plate_case.hpp"
 
-namespace couplet::mesh_mover::test {
+namespace couplet::mesh_mover::test::motion_test {
 using namespace mesh;
 namespace {
 
@@ -186,11 +186,11 @@ TEST(Rotations, a_body_without_room_is_refused_by_name) {
     Mover mover(p, context());
     FAIL() << "accepted";
   } catch (const Error& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr("patch 'floor' extends"));
+    EXPECT_THAT(e.what(), ::testing::HasSubstr("patch 'floor' extends"));
   }
 }
 
-class EveryMethod : public testing::TestWithParam<std::pair<Method, Form>> {};
+class EveryMethod : public ::testing::TestWithParam<std::pair<Method, Form>> {};
 
 /// Half a swing and back: the total form forgets the path, the incremental one does not.
 TEST_P(EveryMethod, returns_to_the_reference_mesh_with_the_body) {
@@ -243,11 +243,11 @@ TEST_P(EveryMethod, swept_volumes_are_the_change_of_volume) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryMethod,
-                         testing::Values(std::pair{Method::laplacian, Form::total},
-                                         std::pair{Method::laplacian, Form::incremental},
-                                         std::pair{Method::pseudo_solid, Form::total},
-                                         std::pair{Method::pseudo_solid, Form::incremental},
-                                         std::pair{Method::rotations, Form::total}));
+                         ::testing::Values(std::pair{Method::laplacian, Form::total},
+                                           std::pair{Method::laplacian, Form::incremental},
+                                           std::pair{Method::pseudo_solid, Form::total},
+                                           std::pair{Method::pseudo_solid, Form::incremental},
+                                           std::pair{Method::rotations, Form::total}));
 
 TEST(Guard, measures_of_a_sheared_and_stretched_cell) {
   const auto [mesh, geometry] =
@@ -309,8 +309,8 @@ TEST(Guard, each_limit_refuses_with_its_key_and_the_cell_and_lets_a_small_motion
       mover.solve({});
       ADD_FAILURE() << key << " let it pass";
     } catch (const SolveFailure& e) {
-      EXPECT_THAT(e.what(), testing::AllOf(testing::HasSubstr(key),
-                                           testing::ContainsRegex("leaves cell [0-9]+ at \\(")));
+      EXPECT_THAT(e.what(), ::testing::AllOf(::testing::HasSubstr(key),
+                                             ::testing::ContainsRegex("leaves cell [0-9]+ at \\(")));
     }
   }
 }
@@ -322,9 +322,9 @@ TEST(MovingPatches, a_translation_that_depends_on_the_place_is_refused_by_key) {
     Mover mover(p, context());
     FAIL() << "accepted";
   } catch (const Error& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr("motion.translation: 'x*t' depends on the position"));
+    EXPECT_THAT(e.what(), ::testing::HasSubstr("motion.translation: 'x*t' depends on the position"));
   }
 }
 
 }  // namespace
-}  // namespace couplet::mesh_mover::test
+}  // namespace couplet::mesh_mover::test::motion_test

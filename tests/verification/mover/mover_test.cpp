@@ -15,7 +15,7 @@
 #include "tests/support/own_folder.hpp"
 #include "tests/support/saved_state.hpp"
 
-namespace couplet::mesh_mover {
+namespace couplet::mesh_mover::mover_test {
 using namespace coupling;
 using namespace mesh;
 namespace {
@@ -222,7 +222,7 @@ TEST(Laplacian, a_slip_patch_off_the_axes_is_refused_by_name) {
     Laplacian laplacian(mesh, geometry, p);
     FAIL() << "accepted";
   } catch (const Error& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr("'xmax'"));
+    EXPECT_THAT(e.what(), ::testing::HasSubstr("'xmax'"));
   }
 }
 
@@ -294,11 +294,11 @@ TEST(Mover, refuses_an_inverted_cell_by_name_and_place) {
     mover.solve(push_middle(interface, -0.9));
     FAIL() << "accepted";
   } catch (const SolveFailure& e) {
-    EXPECT_THAT(e.what(),
-                testing::AllOf(testing::HasSubstr("participant 'mover'"), testing::HasSubstr("t = 1.5 s"),
-                               testing::ContainsRegex("inverts cell [0-9]+ at \\(")));
+    EXPECT_THAT(e.what(), ::testing::AllOf(::testing::HasSubstr("participant 'mover'"),
+                                           ::testing::HasSubstr("t = 1.5 s"),
+                                           ::testing::ContainsRegex("inverts cell [0-9]+ at \\(")));
   }
 }
 
 }  // namespace
-}  // namespace couplet::mesh_mover
+}  // namespace couplet::mesh_mover::mover_test

@@ -17,7 +17,7 @@
 #include "plate_case.hpp"
 #include "tests/support/saved_state.hpp"
 
-namespace couplet::mesh_mover::test {
+namespace couplet::mesh_mover::test::periodic_test {
 using namespace mesh;
 using namespace parallel;
 namespace {
@@ -159,7 +159,7 @@ std::string refusal_of_ends(BoundaryMotion at_one_end) {
 TEST(Periodic, ends_that_are_not_held_alike_are_refused) {
   EXPECT_EQ(refusal_of_ends(BoundaryMotion::interface), "accepted");
   EXPECT_THAT(refusal_of_ends(BoundaryMotion::free),
-              testing::HasSubstr("are supported differently: the adjacent patches"));
+              ::testing::HasSubstr("are supported differently: the adjacent patches"));
 }
 
 TEST(Periodic, copies_of_points) {
@@ -247,12 +247,12 @@ TEST(Periodic, what_cannot_be_is_refused_by_name) {
   EXPECT_EQ(refusal(good), "accepted");
   Parameters p = good;
   p.boundaries["left"].partner = "lid";
-  EXPECT_THAT(refusal(p), testing::HasSubstr("boundaries.left: its partner 'lid' must be another patch"));
+  EXPECT_THAT(refusal(p), ::testing::HasSubstr("boundaries.left: its partner 'lid' must be another patch"));
   p = good;  // the floor's two ends are one point
   p.boundaries["floor"].motion = BoundaryMotion::moving;
   p.boundaries["floor"].prescribed.displacement = {{"0"}, {"0.01*x*t"}};
-  EXPECT_THAT(refusal(p), testing::HasSubstr("separates the two sides of periodic patches by 0.0"));
+  EXPECT_THAT(refusal(p), ::testing::HasSubstr("separates the two sides of periodic patches by 0.0"));
 }
 
 }  // namespace
-}  // namespace couplet::mesh_mover::test
+}  // namespace couplet::mesh_mover::test::periodic_test

@@ -9,12 +9,12 @@
 #include "plate_case.hpp"
 #include "tests/support/saved_state.hpp"
 
-namespace couplet::mesh_mover::test {
+namespace couplet::mesh_mover::test::ranks_test {
 namespace {
 
-class EveryMethod : public testing::TestWithParam<std::pair<Method, Form>> {};
+class EveryMethodInParallel : public ::testing::TestWithParam<std::pair<Method, Form>> {};
 
-TEST_P(EveryMethod, goes_on_from_a_checkpoint_bit_for_bit) {
+TEST_P(EveryMethodInParallel, goes_on_from_a_checkpoint_bit_for_bit) {
   const auto [method, form] = GetParam();
   Parameters p = plate_in_a_square(method, form);
   turn_by(p, "0.5*t");
@@ -33,7 +33,7 @@ TEST_P(EveryMethod, goes_on_from_a_checkpoint_bit_for_bit) {
   EXPECT_EQ(mover.displacement(), end);
 }
 
-TEST_P(EveryMethod, is_not_changed_by_checkpoints) {
+TEST_P(EveryMethodInParallel, is_not_changed_by_checkpoints) {
   const auto [method, form] = GetParam();
   Parameters p = plate_in_a_square(method, form);
   turn_by(p, "0.5*t");
@@ -49,7 +49,7 @@ TEST_P(EveryMethod, is_not_changed_by_checkpoints) {
   EXPECT_EQ(never.displacement(), always.displacement());
 }
 
-TEST_P(EveryMethod, is_the_same_on_any_number_of_ranks) {
+TEST_P(EveryMethodInParallel, is_the_same_on_any_number_of_ranks) {
   const auto [method, form] = GetParam();
   Parameters p = plate_in_a_square(method, form);
   turn_by(p, "0.4*t");
@@ -76,14 +76,14 @@ TEST_P(EveryMethod, is_the_same_on_any_number_of_ranks) {
   EXPECT_LT(parallel::max(MPI_COMM_WORLD, worst), 1e-9);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, EveryMethod,
-                         testing::Values(std::pair{Method::laplacian, Form::total},
-                                         std::pair{Method::laplacian, Form::incremental},
-                                         std::pair{Method::pseudo_solid, Form::total},
-                                         std::pair{Method::pseudo_solid, Form::incremental},
-                                         std::pair{Method::rotations, Form::total},
-                                         std::pair{Method::barrier, Form::total},
-                                         std::pair{Method::barrier, Form::incremental}));
+INSTANTIATE_TEST_SUITE_P(All, EveryMethodInParallel,
+                         ::testing::Values(std::pair{Method::laplacian, Form::total},
+                                           std::pair{Method::laplacian, Form::incremental},
+                                           std::pair{Method::pseudo_solid, Form::total},
+                                           std::pair{Method::pseudo_solid, Form::incremental},
+                                           std::pair{Method::rotations, Form::total},
+                                           std::pair{Method::barrier, Form::total},
+                                           std::pair{Method::barrier, Form::incremental}));
 
 }  // namespace
-}  // namespace couplet::mesh_mover::test
+}  // namespace couplet::mesh_mover::test::ranks_test

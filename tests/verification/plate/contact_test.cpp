@@ -7,7 +7,7 @@
 #include "tests/verification/plate/bounce.hpp"
 #include "tests/verification/plate/plates.hpp"
 
-namespace couplet::plate {
+namespace couplet::plate::contact_test {
 namespace {
 
 using namespace test;
@@ -282,4 +282,4 @@ TEST(PlateContact, a_seat_that_no_face_looks_at_is_an_error) {
 }
 
 }  // namespace
-}  // namespace couplet::plate
+}  // namespace couplet::plate::contact_test

@@ -7,7 +7,7 @@
 #include "plate_modal/structure.hpp"
 #include "tests/verification/plate/plates.hpp"
 
-namespace couplet::plate {
+namespace couplet::plate::dynamics_test {
 using namespace time;
 namespace {
 
@@ -224,4 +224,4 @@ TEST(PlateDynamics, fifteen_modes_follow_direct_integration_of_the_same_plate) {
 }
 
 }  // namespace
-}  // namespace couplet::plate
+}  // namespace couplet::plate::dynamics_test

@@ -24,7 +24,7 @@ void* operator new(std::size_t size) {
 void operator delete(void* p) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
-namespace couplet::plate {
+namespace couplet::plate::effects_test {
 namespace {
 
 using namespace test;
@@ -93,4 +93,4 @@ TEST(PlateEffects, a_seat_costs_memory_only_where_there_is_one) {
 }
 
 }  // namespace
-}  // namespace couplet::plate
+}  // namespace couplet::plate::effects_test

@@ -6,7 +6,7 @@
 #include "common/base/error.hpp"
 #include "tests/verification/plate/plates.hpp"
 
-namespace couplet::plate {
+namespace couplet::plate::frequencies_test {
 using namespace mesh;
 using namespace modes;
 namespace {
@@ -139,4 +139,4 @@ TEST(PlateModes, more_modes_than_unknowns_are_refused) {
 }
 
 }  // namespace
-}  // namespace couplet::plate
+}  // namespace couplet::plate::frequencies_test

@@ -13,7 +13,7 @@
 #include "plate_modal/structure.hpp"
 #include "tests/verification/plate/plates.hpp"
 
-namespace couplet::plate {
+namespace couplet::plate::guards_test {
 using namespace effects;
 using namespace mesh;
 namespace {
@@ -398,4 +398,4 @@ TEST(PlateGuards, a_probe_stands_on_the_surface_or_near_it) {
 }
 
 }  // namespace
-}  // namespace couplet::plate
+}  // namespace couplet::plate::guards_test

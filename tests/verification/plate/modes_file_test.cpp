@@ -16,7 +16,7 @@
 #include "tests/verification/plate/bounce.hpp"
 #include "tests/verification/plate/plates.hpp"
 
-namespace couplet::plate {
+namespace couplet::plate::modes_file_test {
 using namespace mesh;
 using namespace modes;
 using namespace parallel;
@@ -402,4 +402,4 @@ TEST_F(PlateModesFile, kept_modes_that_were_edited_are_found_again) {
 }
 
 }  // namespace
-}  // namespace couplet::plate
+}  // namespace couplet::plate::modes_file_test

@@ -5,7 +5,7 @@
 #include "common/linalg/linear_solver.hpp"
 #include "tests/verification/plate/plates.hpp"
 
-namespace couplet::plate {
+namespace couplet::plate::patch_test {
 using namespace mesh;
 namespace {
 
@@ -135,4 +135,4 @@ TEST(PlatePatch, a_support_holds_what_it_says) {
 }
 
 }  // namespace
-}  // namespace couplet::plate
+}  // namespace couplet::plate::patch_test

@@ -10,7 +10,7 @@
 #include "tests/verification/plate/bounce.hpp"
 #include "tests/verification/plate/plates.hpp"
 
-namespace couplet::plate {
+namespace couplet::plate::resolution_test {
 using namespace time;
 namespace {
 
@@ -260,4 +260,4 @@ TEST(PlateResolution, the_audit_says_so) {
 }
 
 }  // namespace
-}  // namespace couplet::plate
+}  // namespace couplet::plate::resolution_test

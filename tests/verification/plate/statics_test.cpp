@@ -11,7 +11,7 @@
 #include "plate_modal/structure.hpp"
 #include "tests/verification/plate/plates.hpp"
 
-namespace couplet::plate {
+namespace couplet::plate::statics_test {
 using namespace mesh;
 using namespace modes;
 namespace {
@@ -295,4 +295,4 @@ TEST(PlateStatics, a_plate_that_nothing_holds_is_refused) {
 }
 
 }  // namespace
-}  // namespace couplet::plate
+}  // namespace couplet::plate::statics_test

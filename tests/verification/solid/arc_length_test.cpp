@@ -15,7 +15,7 @@
 #include "tests/support/saved_state.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::arc_length_test {
 using namespace mesh;
 namespace {
 
@@ -210,4 +210,4 @@ TEST(ArcLength, continues_from_a_checkpoint_bit_for_bit_across_a_limit_point) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::arc_length_test

@@ -8,7 +8,7 @@
 #include "common/log/finding.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::audit_test {
 using namespace mesh;
 namespace {
 
@@ -200,4 +200,4 @@ TEST(Audit, is_silent_on_undamped_motion_with_the_symmetric_gradient) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::audit_test

@@ -12,7 +12,7 @@
 #include "tests/support/saved_state.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::axisymmetric_test {
 using namespace mesh;
 using namespace parallel;
 namespace {
@@ -335,4 +335,4 @@ TEST(Axisymmetric, a_mesh_behind_the_axis_or_an_open_axis_is_refused) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::axisymmetric_test

@@ -11,7 +11,7 @@
 #include "common/parallel/collective.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::beams_test {
 using namespace mesh;
 namespace {
 
@@ -208,4 +208,4 @@ TEST(Beams, of_stretched_cells_in_every_cut) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::beams_test

@@ -5,7 +5,7 @@
 #include "tests/support/saved_state.hpp"
 #include "tests/verification/solid/seat.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::bounce_test {
 using namespace mesh;
 namespace {
 
@@ -169,4 +169,4 @@ TEST(Bounce, goes_on_bit_for_bit_after_a_restart_in_contact) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::bounce_test

@@ -11,7 +11,7 @@
 #include "solid_solver/stability/buckling_estimate.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::buckling_test {
 using namespace mesh;
 namespace {
 
@@ -244,4 +244,4 @@ TEST(Equilibrium, of_a_slender_column_is_told_apart_within_a_ten_thousandth_of_i
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::buckling_test

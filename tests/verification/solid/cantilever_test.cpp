@@ -12,7 +12,7 @@
 #include "common/parallel/collective.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::cantilever_test {
 namespace {
 
 struct Tip {
@@ -57,4 +57,4 @@ TEST(Cantilever, tip_deflection_converges_to_the_clamped_continuum) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::cantilever_test

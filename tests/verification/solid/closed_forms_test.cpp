@@ -8,7 +8,7 @@
 #include "common/base/error.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::closed_forms_test {
 using namespace mesh;
 namespace {
 
@@ -228,4 +228,4 @@ TEST_P(SolidClosedForms, kirsch_hole_under_analytic_tractions_converges) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::closed_forms_test

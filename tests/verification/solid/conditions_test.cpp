@@ -10,7 +10,7 @@
 #include "common/base/error.hpp"
 #include "tests/verification/solid/linear_field.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::conditions_test {
 using namespace mesh;
 namespace {
 
@@ -493,4 +493,4 @@ TEST_F(FreeMotions, of_bodies_that_do_not_hang_together_are_told_apart) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::conditions_test

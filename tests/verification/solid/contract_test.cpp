@@ -12,7 +12,7 @@
 #include "tests/support/saved_state.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::contract_test {
 using namespace coupling;
 using namespace mesh;
 namespace {
@@ -244,4 +244,4 @@ TEST(SolidInterface, data_it_does_not_know_are_refused_by_name) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::contract_test

@@ -7,7 +7,7 @@
 #include "common/parallel/collective.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::dynamics_test {
 using namespace mesh;
 namespace {
 
@@ -273,4 +273,4 @@ TEST(SolidDynamics, surface_follows_its_cells_smoothly_after_a_sudden_load) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::dynamics_test

@@ -6,7 +6,7 @@
 #include "common/parallel/collective.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::energy_test {
 using namespace mesh;
 using namespace time;
 namespace {
@@ -198,4 +198,4 @@ TEST(SolidEnergy, of_a_falling_body_is_all_kinetic) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::energy_test

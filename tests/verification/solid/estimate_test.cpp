@@ -7,7 +7,7 @@
 
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::estimate_test {
 using namespace mesh;
 namespace {
 
@@ -196,4 +196,4 @@ TEST(MeshEstimate, of_tetrahedra_that_bend_is_no_third_of_the_solution) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::estimate_test

@@ -9,7 +9,7 @@
 #include "common/parallel/collective.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::finite_motion_test {
 using namespace mesh;
 namespace {
 
@@ -158,4 +158,4 @@ TEST(FiniteStrain, conserving_stress_keeps_energy_and_momenta) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::finite_motion_test

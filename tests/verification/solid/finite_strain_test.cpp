@@ -15,7 +15,7 @@
 #include "tests/support/saved_state.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::finite_strain_test {
 using namespace mesh;
 using namespace parallel;
 namespace {
@@ -315,4 +315,4 @@ TEST(FiniteStrain, a_step_that_fails_tells_of_a_surface_folded_onto_its_support)
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::finite_strain_test

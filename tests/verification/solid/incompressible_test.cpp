@@ -13,7 +13,7 @@
 #include "solid_solver/laws/laws.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::incompressible_test {
 using namespace mesh;
 namespace {
 
@@ -185,4 +185,4 @@ TEST(Incompressible, a_swinging_column_keeps_its_energy) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::incompressible_test

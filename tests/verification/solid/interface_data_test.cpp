@@ -11,7 +11,7 @@
 #include "solid_solver/thermal/thermal_strain.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet {
+namespace couplet::interface_data_test {
 using namespace coupling;
 
 using namespace solid;
@@ -221,4 +221,4 @@ TEST(InterfaceData, the_solid_has_the_given_temperature_along_the_interface) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::interface_data_test

@@ -13,7 +13,7 @@
 #include "tests/support/saved_state.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::large_sheet_test {
 using namespace mesh;
 using namespace parallel;
 namespace {
@@ -293,4 +293,4 @@ TEST(LargeSheet, a_law_without_a_stretch_across_fails_the_step) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::large_sheet_test

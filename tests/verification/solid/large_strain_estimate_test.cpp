@@ -9,7 +9,7 @@
 #include "common/parallel/collective.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::large_strain_estimate_test {
 using namespace mesh;
 namespace {
 
@@ -181,4 +181,4 @@ TEST(LargeStrainEstimate, is_not_made_unless_asked_for) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::large_strain_estimate_test

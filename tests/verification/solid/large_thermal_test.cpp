@@ -15,7 +15,7 @@
 #include "tests/support/saved_state.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::large_thermal_test {
 using namespace mesh;
 using namespace parallel;
 namespace {
@@ -291,4 +291,4 @@ TEST(LargeThermalStrain, restart_goes_on_bit_for_bit_with_conduction) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::large_thermal_test

@@ -14,7 +14,7 @@
 #include "common/parallel/collective.hpp"
 #include "tests/verification/solid/loads_support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::loads_test {
 using namespace mesh;
 namespace {
 
@@ -302,4 +302,4 @@ TEST(SolidLoads, that_cannot_be_are_refused) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::loads_test

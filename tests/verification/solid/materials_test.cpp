@@ -10,7 +10,7 @@
 #include "common/parallel/collective.hpp"
 #include "tests/verification/solid/linear_field.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::materials_test {
 using namespace elastic;
 using namespace mesh;
 namespace {
@@ -309,4 +309,4 @@ TEST(SolidMaterials, each_zone_needs_one_material) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::materials_test

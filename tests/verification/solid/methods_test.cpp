@@ -10,7 +10,7 @@
 #include "solid_solver/method/solution_method.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::methods_test {
 using namespace elastic;
 using namespace mesh;
 namespace {
@@ -360,4 +360,4 @@ TEST(SolidMethods, a_solve_that_does_not_converge_names_method_iterations_residu
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::methods_test

@@ -10,7 +10,7 @@
 #include "tests/support/saved_state.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::mixed_form_test {
 using namespace mesh;
 namespace {
 
@@ -154,4 +154,4 @@ TEST(MixedForm, is_refused_without_mean_stresses_of_cells) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::mixed_form_test

@@ -13,7 +13,7 @@
 #include "solid_solver/output/spectrum.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::modes_test {
 using namespace mesh;
 using namespace modes;
 namespace {
@@ -125,4 +125,4 @@ TEST(SolidModesOfABeam, are_refused_without_a_mass_of_the_kernel) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::modes_test

@@ -10,7 +10,7 @@
 #include "common/parallel/collective.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::moved_end_test {
 using namespace mesh;
 namespace {
 
@@ -84,4 +84,4 @@ INSTANTIATE_TEST_SUITE_P(Solid, MovedEnd, ::testing::ValuesIn(ways),
                          [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::moved_end_test

@@ -8,7 +8,7 @@
 #include "common/parallel/collective.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::order_test {
 using namespace mesh;
 namespace {
 
@@ -222,4 +222,4 @@ TEST_P(SolidOrder, displacement_and_stress_converge) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::order_test

@@ -12,7 +12,7 @@
 #include "common/parallel/collective.hpp"
 #include "tests/verification/solid/linear_field.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::orthotropic_test {
 using namespace mesh;
 namespace {
 
@@ -277,4 +277,4 @@ TEST(Orthotropic, a_symmetry_plane_oblique_to_the_fibres_is_refused) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::orthotropic_test

@@ -12,7 +12,7 @@
 #include "tests/support/shared_folder.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::output_test {
 using namespace mesh;
 namespace {
 
@@ -201,4 +201,4 @@ TEST(SolidOutput, left_out_effects_are_judged_by_numbers) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::output_test

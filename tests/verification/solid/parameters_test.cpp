@@ -6,7 +6,7 @@
 
 #include "common/config/load.hpp"
 
-namespace couplet {
+namespace couplet::parameters_test {
 
 using namespace solid;
 namespace {
@@ -340,4 +340,4 @@ TEST(SolidParameters, places_have_a_number_for_each_dimension) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::parameters_test

@@ -9,7 +9,7 @@
 #include "tests/support/saved_state.hpp"
 #include "tests/verification/solid/partner_load.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::partner_load_test {
 using namespace coupling;
 using time::TimeScheme;
 namespace {
@@ -82,4 +82,4 @@ TEST(PartnerLoad, goes_on_bit_for_bit_from_a_checkpoint) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::partner_load_test

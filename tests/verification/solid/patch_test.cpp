@@ -10,7 +10,7 @@
 #include "common/parallel/collective.hpp"
 #include "tests/verification/solid/linear_field.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::patch_test {
 namespace {
 
 class Patch : public ::testing::TestWithParam<CellsAndGradient> {
@@ -123,4 +123,4 @@ TEST(SolidBoundaries, wrong_patch_names_are_reported_with_those_that_exist) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::patch_test

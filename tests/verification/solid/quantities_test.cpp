@@ -8,7 +8,7 @@
 #include "solid_solver/material/stress.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::quantities_test {
 using namespace mesh;
 namespace {
 
@@ -116,4 +116,4 @@ TEST(Quantities, that_nobody_asks_for_are_not_computed) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::quantities_test

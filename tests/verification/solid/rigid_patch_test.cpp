@@ -12,7 +12,7 @@
 #include "tests/support/saved_state.hpp"
 #include "tests/verification/solid/loads_support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::rigid_patch_test {
 using namespace mesh;
 namespace {
 
@@ -201,4 +201,4 @@ TEST(RigidPatches, say_what_they_cannot_have) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::rigid_patch_test

@@ -4,7 +4,7 @@
 
 #include "tests/verification/solid/seat.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::seat_test {
 using namespace mesh;
 namespace {
 
@@ -197,4 +197,4 @@ TEST(Seat, without_faces_or_around_the_body_is_refused) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::seat_test

@@ -7,7 +7,7 @@
 
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::slender_test {
 namespace {
 
 /// 1 m long, two quadrilaterals across, E = 1 GPa, nu = 0.
@@ -85,4 +85,4 @@ TEST(Slender, factors_in_space_are_for_few_cells) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::slender_test

@@ -15,7 +15,7 @@
 #include "solid_solver/output/spectrum.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::spectrum_test {
 using namespace mesh;
 using namespace time;
 namespace {
@@ -275,4 +275,4 @@ TEST_P(Growth, is_removed_by_dissipative_schemes_and_by_a_little_damping) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::spectrum_test

@@ -11,7 +11,7 @@
 #include "common/parallel/collective.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::step_control_test {
 using namespace time;
 namespace {
 
@@ -121,4 +121,4 @@ TEST(StepControl, keeps_the_error_below_the_tolerance_with_fewer_steps) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::step_control_test

@@ -18,7 +18,7 @@
 #include "tests/verification/solid/loads_support.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::surfaces_test {
 using namespace mesh;
 namespace {
 
@@ -228,4 +228,4 @@ TEST(SolidSurfaces, are_not_written_unless_asked_for_and_only_of_patches) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::surfaces_test

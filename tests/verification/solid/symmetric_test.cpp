@@ -12,7 +12,7 @@
 #include "solid_solver/output/spectrum.hpp"
 #include "tests/verification/solid/linear_field.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::symmetric_test {
 using namespace elastic;
 using namespace mesh;
 namespace {
@@ -266,4 +266,4 @@ TEST(Symmetric, the_recovered_stress_is_that_of_one_rank) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::symmetric_test

@@ -11,7 +11,7 @@
 #include "solid_solver/output/spectrum.hpp"
 #include "tests/verification/solid/linear_field.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::tied_test {
 using namespace elastic;
 using namespace mesh;
 using namespace parallel;
@@ -199,4 +199,4 @@ TEST_P(Tied, has_the_stress_stiffness_of_the_faces_loops) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::tied_test

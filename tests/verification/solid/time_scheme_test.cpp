@@ -8,7 +8,7 @@
 #include "tests/support/saved_state.hpp"
 #include "tests/verification/solid/semi_discrete.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::time_scheme_test {
 using namespace time;
 namespace {
 
@@ -231,4 +231,4 @@ TEST(TimeSchemes, have_their_order_for_first_derivatives) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::time_scheme_test

@@ -7,7 +7,7 @@
 #include "common/parallel/collective.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::undamped_test {
 using namespace mesh;
 namespace {
 
@@ -59,4 +59,4 @@ TEST(UndampedNeighbour, of_the_corrected_gradient_grows) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::undamped_test

@@ -10,7 +10,7 @@
 #include "tests/support/saved_state.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::updated_lagrangian_test {
 using namespace mesh;
 using namespace parallel;
 namespace {
@@ -203,4 +203,4 @@ TEST(UpdatedLagrangian, says_what_it_cannot) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::updated_lagrangian_test

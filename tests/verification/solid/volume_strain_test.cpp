@@ -9,7 +9,7 @@
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
 #include "tests/verification/solid/linear_field.hpp"
 
-namespace couplet::testing {
+namespace couplet::testing::volume_strain_test {
 using namespace mesh;
 namespace {
 
@@ -161,4 +161,4 @@ TEST(VolumeStrain, heat_strains_at_the_start_by_the_constants_of_tables) {
 }
 
 }  // namespace
-}  // namespace couplet::testing
+}  // namespace couplet::testing::volume_strain_test

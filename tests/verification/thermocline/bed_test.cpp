@@ -9,7 +9,7 @@
 
 #include "tests/verification/thermocline/support.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::bed_test {
 namespace {
 
 /// The bed of the Schumann problem: xi = 20 at its top for a mass flux of 1 kg/(m^2 s).
@@ -318,4 +318,4 @@ TEST(Front, numerical_diffusion_of_upwind_is_that_of_theory) {
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::bed_test

@@ -10,7 +10,7 @@
 #include "thermocline/wall/insulation.hpp"
 #include "thermocline/wall/ullage.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::conduction_test {
 namespace {
 
 const double none = 0, given = std::numeric_limits<double>::infinity();
@@ -203,4 +203,4 @@ TEST(Environment, correlations_have_the_values_of_their_formulae) {
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::conduction_test

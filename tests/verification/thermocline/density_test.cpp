@@ -8,7 +8,7 @@
 #include "tests/verification/thermocline/support.hpp"
 #include "tests/verification/thermocline/tank_case.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::density_test {
 namespace {
 
 const double c0 = zero_celsius;
@@ -101,4 +101,4 @@ TEST(RealDensity, changes_the_stress_and_only_if_asked) {
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::density_test

@@ -6,7 +6,7 @@
 
 #include "tests/verification/thermocline/support.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::grains_test {
 namespace {
 
 struct Sphere {
@@ -141,4 +141,4 @@ TEST(Properties, solar_salt_has_the_values_of_its_source) {
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::grains_test

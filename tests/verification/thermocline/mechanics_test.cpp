@@ -9,7 +9,7 @@
 #include "thermocline/wall/mechanics.hpp"
 #include "thermocline/wall/wall_bending.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::mechanics_test {
 namespace {
 
 /// A tank of one of the thesis's two plants: bed of the layers of 5.4, six rings of equal height (AR1: the
@@ -241,4 +241,4 @@ TEST(Bending, leaves_what_changes_slowly) {
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::mechanics_test

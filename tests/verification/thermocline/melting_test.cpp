@@ -7,7 +7,7 @@
 
 #include "tests/verification/thermocline/support.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::melting_test {
 namespace {
 
 /// A resting bed whose tiny capsules follow the fluid: one medium with conductivity k, heated from below.
@@ -134,4 +134,4 @@ TEST(Melting, heat_and_temperature_are_inverse) {
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::melting_test

@@ -8,7 +8,7 @@
 #include "tests/verification/thermocline/support.hpp"
 #include "tests/verification/thermocline/tank_case.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::solar_one_test {
 namespace {
 
 const double c0 = zero_celsius;
@@ -116,4 +116,4 @@ INSTANTIATE_TEST_SUITE_P(Scheme, Pacheco,
                          ::testing::Values(Advection::upwind, Advection::tvd, Advection::implicit));
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::solar_one_test

@@ -7,7 +7,7 @@
 
 #include "tests/verification/thermocline/support.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::speed_test {
 namespace {
 
 /// Best of many short runs: what other processes take is left out [s per cell and step].
@@ -44,4 +44,4 @@ TEST(Speed, cost_is_linear_in_the_number_of_cells) {
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::speed_test

@@ -15,7 +15,7 @@
 #include "tests/verification/thermocline/tank_case.hpp"
 #include "thermocline/model/output.hpp"
 
-namespace couplet::thermocline {
+namespace couplet::thermocline::tank_test {
 using namespace coupling;
 namespace {
 
@@ -434,4 +434,4 @@ TEST_F(Participation, an_external_wall_needs_somebody_who_computes_it) {
 }
 
 }  // namespace
-}  // namespace couplet::thermocline
+}  // namespace couplet::thermocline::tank_test

@@ -15,8 +15,8 @@ def sanitized(job):
     """The same programs of the sanitizers' build, at full count."""
     lines, good = [], True
     for name, count in (("fuzz_hdf5", 2000), ("fuzz_messages", 5000)):
-        program, folder = trust_house.sanitizer_test(job, name), job.scratch / f"asan-{name}"
-        result = trust_house.watched(job, folder, [f"COUPLET_FUZZ_COUNT={count}", program], 3 * 3600, cwd=job.scratch)
+        words, folder = trust_house.sanitizer_test(job, name), job.scratch / f"asan-{name}"
+        result = trust_house.watched(job, folder, [f"COUPLET_FUZZ_COUNT={count}", *words], 3 * 3600, cwd=job.scratch)
         found = trust_house.reports(folder)
         lines.append(f"{name}: {count} a test, code {result.returncode}, {len(found)} kinds of reports" + (f": {found[0]}" if found else ""))
         good = good and result.returncode == 0 and not found

@@ -41,8 +41,8 @@ def check_files(job, what, least):
 
 def sanitized(job):
     """The same program of the sanitizers' build."""
-    program, folder = trust_house.sanitizer_test(job, "fuzz_tables"), job.scratch / "asan-fuzz_tables"
-    result = trust_house.watched(job, folder, ["COUPLET_FUZZ_COUNT=2000", program], 3 * 3600, cwd=job.scratch)
+    words, folder = trust_house.sanitizer_test(job, "fuzz_tables"), job.scratch / "asan-fuzz_tables"
+    result = trust_house.watched(job, folder, ["COUPLET_FUZZ_COUNT=2000", *words], 3 * 3600, cwd=job.scratch)
     found = trust_house.reports(folder)
     return (f"2000 files a test, code {result.returncode}, {len(found)} kinds of reports" + (f": {found[0]}" if found else ""),
             result.returncode == 0 and not found)

@@ -85,11 +85,11 @@ def sanitizer_build(job):
 
 
 def sanitizer_test(job, name):
-    """A test program of the sanitizers' build, of which no more than that needs to be built."""
-    program = next((p for p in (sanitizer_folder(job) / "tests").rglob(name) if p.is_file() and os.access(p, os.X_OK)), None)
-    if program is None:
-        raise FileNotFoundError(f"there is no {name} in {SANITIZER}")
-    return program
+    """The words that run a test of the sanitizers' build, of which no more than that needs to be built."""
+    build = sanitizer_folder(job)
+    if not build.exists():
+        raise FileNotFoundError(f"there is no {SANITIZER}")
+    return type(job)(job.root, build, job.quick).test(name)
 
 
 def reports(folder):
@@ -139,10 +139,9 @@ CORPORA = {"fuzz_meshes": 10000, "fuzz_checkpoints": 2000,
 
 def corpora(job):
     """Whole fuzzers with the sanitizers on."""
-    build, failed = sanitizer_build(job), []
+    failed = []
     for name, count in CORPORA.items():
-        program = next(p for p in (build / "tests").rglob(name) if p.is_file() and os.access(p, os.X_OK))
-        result = watched(job, job.scratch / name, [f"COUPLET_FUZZ_COUNT={count}", program], 3 * 3600, cwd=job.scratch)
+        result = watched(job, job.scratch / name, [f"COUPLET_FUZZ_COUNT={count}", *sanitizer_test(job, name)], 3 * 3600, cwd=job.scratch)
         found = reports(job.scratch / name)
         if result.returncode != 0 or found:
             failed.append(" ".join([name, *found[:1]]))

@@ -17,7 +17,7 @@
 #include "tests/support/world.hpp"
 #include "tests/unit/io/scratch.hpp"
 
-namespace couplet {
+namespace couplet::checkpoint_test {
 using namespace io;
 namespace {
 
@@ -194,4 +194,4 @@ TEST(Checkpoint, a_folder_that_cannot_be_made_is_named) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::checkpoint_test

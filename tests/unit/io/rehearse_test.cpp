@@ -11,7 +11,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet {
+namespace couplet::rehearse_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -73,4 +73,4 @@ TEST(Rehearse, nothing_is_written) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::rehearse_test

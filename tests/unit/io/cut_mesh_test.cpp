@@ -12,7 +12,7 @@
 #include "common/parallel/collective.hpp"
 #include "scratch.hpp"
 
-namespace couplet {
+namespace couplet::cut_mesh_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -99,4 +99,4 @@ TEST_F(CutMesh, with_one_coordinate_changed_is_refused) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::cut_mesh_test

@@ -10,7 +10,7 @@
 #include "tests/support/world.hpp"
 #include "tests/unit/io/scratch.hpp"
 
-namespace couplet {
+namespace couplet::field_choice_test {
 using namespace io;
 using namespace mesh;
 namespace {
@@ -122,4 +122,4 @@ TEST(FieldChoice, fields_are_due_at_each_nth_output_or_never) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::field_choice_test

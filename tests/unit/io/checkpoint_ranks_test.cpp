@@ -12,7 +12,7 @@
 #include "tests/support/world.hpp"
 #include "tests/unit/io/scratch.hpp"
 
-namespace couplet {
+namespace couplet::checkpoint_ranks_test {
 using namespace io;
 namespace {
 
@@ -136,4 +136,4 @@ TEST(CheckpointRanks, numbers_that_are_not_unique_make_no_order) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::checkpoint_ranks_test

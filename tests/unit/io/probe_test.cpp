@@ -8,7 +8,7 @@
 #include "tests/support/world.hpp"
 #include "tests/unit/io/scratch.hpp"
 
-namespace couplet {
+namespace couplet::probe_test {
 using namespace io;
 using namespace mesh;
 namespace {
@@ -114,4 +114,4 @@ TEST(Probe, lives_on_exactly_one_rank) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::probe_test

@@ -8,7 +8,7 @@
 #include "common/io/series.hpp"
 #include "tests/unit/io/scratch.hpp"
 
-namespace couplet {
+namespace couplet::series_test {
 using namespace io;
 namespace {
 
@@ -87,4 +87,4 @@ TEST(Series, a_row_of_another_length_is_refused) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::series_test

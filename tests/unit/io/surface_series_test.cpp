@@ -13,7 +13,7 @@
 #include "tests/support/world.hpp"
 #include "tests/unit/io/scratch.hpp"
 
-namespace couplet {
+namespace couplet::surface_series_test {
 using namespace io;
 using namespace mesh;
 namespace {
@@ -156,4 +156,4 @@ TEST(SurfaceSeries, a_file_of_another_kind_is_not_continued) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::surface_series_test

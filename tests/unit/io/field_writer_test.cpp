@@ -11,7 +11,7 @@
 #include "tests/support/world.hpp"
 #include "tests/unit/io/scratch.hpp"
 
-namespace couplet {
+namespace couplet::field_writer_test {
 using namespace io;
 using namespace mesh;
 namespace {
@@ -184,4 +184,4 @@ TEST(FieldWriter, a_field_of_the_wrong_size_is_refused) {
 }
 
 }  // namespace
-}  // namespace couplet
+}  // namespace couplet::field_writer_test
