@@ -37,6 +37,7 @@ class Surroundings {
   bool has_corners() const { return has_corners_; }  ///< on all ranks; false where there are no faces
   PointSet vertices() const;                         ///< this rank's
   PointSet faces() const;
+  double widest() const;  ///< the largest reach of a face on any rank [m]
   /// These faces (positions, ascending) with the vertices that they need.
   SurfacePart with(const std::vector<GlobalIndex>& faces) const;
   /// The faces of which one of these vertices (positions, ascending) is a corner: positions, ascending.
