@@ -33,20 +33,21 @@ double bound_by_boxes(const std::vector<Count>& all, const Vec3& p, std::size_t 
   return infinite;
 }
 
-/// For each centre a distance within which there are k points: from the rank whose box is nearest, or, where it
-/// has fewer, from the boxes.
+/// For each centre a distance within which there are k points: the least of the ranks whose boxes are nearest, or, where these
+/// have fewer, from the boxes.
 std::vector<double> bounds(MPI_Comm comm, const std::vector<Vec3>& centres, std::size_t k,
                            const std::vector<Count>& all, const PointSet& among,
                            const base::PointTree* tree) {
   std::vector<std::vector<Vec3>> ask(all.size());
   std::vector<std::vector<std::size_t>> asked(all.size());
   for (std::size_t i = 0; i < centres.size(); ++i) {
-    std::size_t home = 0;
     double least = infinite;
+    for (const Count& c : all)
+      if (c.points > 0) least = std::min(least, c.box.nearest(centres[i]));
+    // Boxes of stretches of a list overlap: the first that holds a centre may have no point near it.
     for (std::size_t r = 0; r < all.size(); ++r)
-      if (all[r].points > 0 && all[r].box.nearest(centres[i]) < least)
-        least = all[r].box.nearest(centres[i]), home = r;
-    ask[home].push_back(centres[i]), asked[home].push_back(i);
+      if (all[r].points > 0 && all[r].box.nearest(centres[i]) <= least)
+        ask[r].push_back(centres[i]), asked[r].push_back(i);
   }
   std::vector<std::vector<double>> answers;
   for (const auto& questions : parallel::all_to_all(comm, ask)) {
@@ -60,7 +61,8 @@ std::vector<double> bounds(MPI_Comm comm, const std::vector<Vec3>& centres, std:
   const auto replies = parallel::all_to_all(comm, answers);
   std::vector<double> bound(centres.size(), infinite);
   for (std::size_t r = 0; r < replies.size(); ++r)
-    for (std::size_t q = 0; q < replies[r].size(); ++q) bound[asked[r][q]] = replies[r][q];
+    for (std::size_t q = 0; q < replies[r].size(); ++q)
+      bound[asked[r][q]] = std::min(bound[asked[r][q]], replies[r][q]);
   for (std::size_t i = 0; i < centres.size(); ++i)
     if (bound[i] == infinite) bound[i] = bound_by_boxes(all, centres[i], k);
   return bound;
