@@ -39,7 +39,7 @@ def coupled(job, ranks):
 
 
 def maps(job):
-    """Time from the start of the job to the first step, as the slower side sees it: surfaces told, maps made, places judged. Processor time is that of the
+    """Time from the start of the job to the first step, as the slower side sees it: surfaces sent, maps made, places judged. Processor time is that of the
     coupler until its end, which hangs less on what else the machine does."""
     text, run = coupled(job, RANKS)
     seconds = max(map(float, re.findall(r"first step after ([\d.]+)", text)))
