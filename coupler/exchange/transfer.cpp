@@ -4,9 +4,14 @@
 #include <algorithm>
 
 #include "common/parallel/collective.hpp"
+#include "coupler/exchange/owners.hpp"
 
 namespace couplet::coupler {
 namespace {
+
+bool in_order(const Transfer::Entry& a, const Transfer::Entry& b) {
+  return a.target != b.target ? a.target < b.target : a.source < b.source;
+}
 
 /// Of entries sorted by target and source, equal ones added up.
 void add_up(std::vector<Transfer::Entry>& entries) {
@@ -19,24 +24,34 @@ void add_up(std::vector<Transfer::Entry>& entries) {
   entries.resize(kept);
 }
 
-/// Every entry on the rank that has its target, by target and source, each pair once.
-std::vector<Transfer::Entry> by_owner(MPI_Comm comm, const coupling::Starts& targets,
-                                      std::vector<Transfer::Entry> entries) {
-  if (parallel::comm_size(comm) > 1) {
-    std::vector<std::vector<Transfer::Entry>> to(std::size_t(parallel::comm_size(comm)));
-    for (const auto& e : entries) to[std::size_t(coupling::owner_of(targets, e.target))].push_back(e);
-    entries.clear();
-    for (const auto& part : parallel::all_to_all(comm, to))
-      entries.insert(entries.end(), part.begin(), part.end());
+/// Entries of targets from `first` on, by target and source: by counting, since the targets of a rank are a stretch.
+void sort_rows(GlobalIndex first, GlobalIndex end, std::vector<Transfer::Entry>& entries) {
+  if (std::ranges::is_sorted(entries, in_order)) return;
+  std::vector<std::size_t> at(std::size_t(end - first) + 1, 0);
+  for (const auto& e : entries) ++at[std::size_t(e.target - first) + 1];
+  for (std::size_t t = 1; t < at.size(); ++t) at[t] += at[t - 1];
+  std::vector<Transfer::Entry> sorted(entries.size());
+  for (const auto& e : entries) sorted[at[std::size_t(e.target - first)]++] = e;
+  entries = std::move(sorted);
+  // Now at[t] is where row t ends.
+  for (std::size_t t = 0, begin = 0; t + 1 < at.size(); begin = at[t++]) {
+    const auto row = std::ranges::subrange(entries.begin() + std::ptrdiff_t(begin),
+                                           entries.begin() + std::ptrdiff_t(at[t]));
+    if (!std::ranges::is_sorted(row, in_order)) std::ranges::stable_sort(row, in_order);
   }
-  std::ranges::stable_sort(entries, [](const auto& a, const auto& b) {
-    return a.target != b.target ? a.target < b.target : a.source < b.source;
-  });
-  add_up(entries);
-  return entries;
 }
 
 }  // namespace
+
+std::vector<Transfer::Entry> by_owner(MPI_Comm comm, const coupling::Starts& targets,
+                                      std::vector<Transfer::Entry> entries) {
+  entries = to_owners(comm, std::move(entries),
+                      [&](const Transfer::Entry& e) { return coupling::owner_of(targets, e.target); });
+  const auto rank = std::size_t(parallel::comm_rank(comm));
+  sort_rows(targets[rank], targets[rank + 1], entries);
+  add_up(entries);
+  return entries;
+}
 
 Transfer::Transfer(MPI_Comm comm, const coupling::Starts& targets, const coupling::Starts& sources,
                    std::vector<Entry> entries)
@@ -51,18 +66,19 @@ Transfer::Transfer(MPI_Comm comm, const coupling::Starts& targets, const couplin
   foreign.erase(std::unique(foreign.begin(), foreign.end()), foreign.end());
   const std::size_t n_targets = std::size_t(targets[rank + 1] - targets[rank]);
   first_.assign(n_targets + 1, 0);
+  column_.reserve(entries.size()), weight_.reserve(entries.size());
   for (const Entry& e : entries) {
     ++first_[std::size_t(e.target - targets[rank]) + 1];
     const bool mine = e.source >= sources[rank] && e.source < sources[rank + 1];
-    column_.push_back(mine ? std::size_t(e.source - sources[rank])
-                           : n_sources_ +
-                                 std::size_t(std::ranges::lower_bound(foreign, e.source) - foreign.begin()));
+    column_.push_back(mine ? Index(e.source - sources[rank])
+                           : Index(n_sources_ + std::size_t(std::ranges::lower_bound(foreign, e.source) -
+                                                            foreign.begin())));
     weight_.push_back(e.weight);
   }
   for (std::size_t t = 0; t < n_targets; ++t) first_[t + 1] += first_[t];
   same_ = alone_ && n_sources_ == n_targets && column_.size() == n_targets;
   for (std::size_t t = 0; same_ && t < n_targets; ++t)
-    same_ = first_[t + 1] == t + 1 && column_[t] == t && weight_[t] == 1;
+    same_ = first_[t + 1] == t + 1 && std::size_t(column_[t]) == t && weight_[t] == 1;
   if (alone_) return;
   // Foreign positions are ascending, so they come rank by rank.
   std::vector<std::vector<GlobalIndex>> wanted(std::size_t(parallel::comm_size(comm)));
@@ -101,12 +117,12 @@ namespace {
 
 /// The product for N components, known when this is compiled or (0) not.
 template <std::size_t N>
-void multiply(const std::vector<std::size_t>& first, const std::vector<std::size_t>& column,
+void multiply(const std::vector<std::size_t>& first, const std::vector<Index>& column,
               const std::vector<double>& weight, const double* from, std::size_t components, double* to) {
   const std::size_t n = N > 0 ? N : components;
   for (std::size_t t = 0; t + 1 < first.size(); ++t)
     for (std::size_t e = first[t]; e < first[t + 1]; ++e)
-      for (std::size_t c = 0; c < n; ++c) to[t * n + c] += weight[e] * from[column[e] * n + c];
+      for (std::size_t c = 0; c < n; ++c) to[t * n + c] += weight[e] * from[std::size_t(column[e]) * n + c];
 }
 
 }  // namespace
@@ -125,22 +141,6 @@ std::vector<double> Transfer::apply(std::span<const double> values, int componen
 std::vector<Transfer::Entry> transposed(std::vector<Transfer::Entry> entries) {
   for (auto& e : entries) std::swap(e.target, e.source);
   return entries;
-}
-
-std::vector<Transfer::Entry> product(MPI_Comm comm, const coupling::Starts& between,
-                                     std::vector<Transfer::Entry> second,
-                                     std::vector<Transfer::Entry> first) {
-  // On the rank that has the place between, both by that place.
-  const auto after = by_owner(comm, between, transposed(std::move(second))),
-             before = by_owner(comm, between, std::move(first));
-  std::vector<Transfer::Entry> result;
-  auto from = before.begin();
-  for (const auto& e : after) {
-    while (from != before.end() && from->target < e.target) ++from;
-    for (auto b = from; b != before.end() && b->target == e.target; ++b)
-      result.push_back({e.source, b->source, e.weight * b->weight});
-  }
-  return result;
 }
 
 }  // namespace couplet::coupler

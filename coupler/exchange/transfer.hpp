@@ -32,17 +32,16 @@ class Transfer {
   MPI_Comm comm_ = MPI_COMM_SELF;
   std::size_t n_sources_ = 0;
   std::vector<std::size_t> first_{0};  // of each target's entries
-  std::vector<std::size_t> column_;    // this rank's sources, then those that are fetched
+  std::vector<Index> column_;          // this rank's sources, then those that are fetched
   std::vector<double> weight_;
   std::vector<std::vector<std::size_t>> give_;  // by rank: which of my sources it needs
   std::vector<int> take_;                       // by rank: how many I get from it
   bool alone_ = true, same_ = false;            // same: each target is the source at its place, on one rank
 };
 
-/// Entries of the map that does `first` and then `second`, where the targets of the one are the sources of the
-/// other, cut over the ranks as `between` says. Entries may be on any rank. Collective.
-std::vector<Transfer::Entry> product(MPI_Comm comm, const coupling::Starts& between,
-                                     std::vector<Transfer::Entry> second, std::vector<Transfer::Entry> first);
+/// Every entry on the rank that has its target, by target and source, each pair once. Collective.
+std::vector<Transfer::Entry> by_owner(MPI_Comm comm, const coupling::Starts& targets,
+                                      std::vector<Transfer::Entry> entries);
 /// The same weights from targets to sources.
 std::vector<Transfer::Entry> transposed(std::vector<Transfer::Entry> entries);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/mapping/conjugate_map.hpp"
 
+#include "coupler/exchange/product.hpp"
 #include "coupler/mapping/corner_weights.hpp"
 #include "coupler/mapping/map_projection.hpp"
 #include "coupler/mapping/surface_rows.hpp"
@@ -37,10 +38,10 @@ ConjugateMap::ConjugateMap(MPI_Comm comm, const Side& structure, const Side& sur
 }
 
 ConjugateMap::Entries ConjugateMap::between(Place structure, Place surface) const {
-  Entries map = across_;
-  if (surface == Place::faces) map = product(comm_, surface_->vertices, to_surface_faces_, std::move(map));
-  if (structure == Place::vertices) map = product(comm_, structure_->faces, std::move(map), to_faces_);
-  return map;
+  Entries before;
+  if (surface == Place::faces) before = product(comm_, surface_->vertices, to_surface_faces_, across_);
+  const Entries& map = surface == Place::faces ? before : across_;
+  return structure == Place::vertices ? product(comm_, structure_->faces, map, to_faces_) : map;
 }
 
 ConjugateMap::Entries ConjugateMap::motion(Place from, Place to) const { return between(from, to); }

@@ -29,23 +29,24 @@ std::vector<double> fan_weights(const std::vector<Vec3>& at) {
   return weights;
 }
 
-/// The least change of the weights that brings the mean of the corners to `centre`, as far as these span it.
+/// The least change of the weights that brings the mean of the corners to `centre`, as far as these span it; Most: of corners, known
+/// when this is compiled, so that nothing is allocated, or Eigen::Dynamic.
+template <int Most>
 void meet(const Vec3& centre, const std::vector<Vec3>& at, std::vector<double>& weights) {
   const auto n = Eigen::Index(at.size());
   Vec3 off = centre, mean = Vec3::Zero();
   double size = 0;
   for (std::size_t i = 0; i < at.size(); ++i) off -= weights[i] * at[i], mean += at[i] / double(n);
-  Eigen::Matrix3Xd spread(3, n);
+  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, Most> spread(3, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     spread.col(i) = at[std::size_t(i)] - mean;
     size = std::max(size, spread.col(i).norm());
   }
   if (!(off.norm() > 1e-14 * size)) return;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(spread, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  Eigen::VectorXd change = Eigen::VectorXd::Zero(n);
-  for (Eigen::Index d = 0; d < svd.singularValues().size(); ++d)
-    if (svd.singularValues()[d] > 1e-9 * size)
-      change += svd.matrixV().col(d) * (svd.matrixU().col(d).dot(off) / svd.singularValues()[d]);
+  Eigen::CompleteOrthogonalDecomposition<decltype(spread)> factors;
+  factors.setThreshold(1e-9);
+  factors.compute(spread);
+  const Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, Most, 1> change = factors.solve(off);
   if (change.cwiseAbs().maxCoeff() > 1) return;  // no centre of this face
   for (Eigen::Index i = 0; i < n; ++i) weights[std::size_t(i)] += change[i];
 }
@@ -69,7 +70,10 @@ std::vector<double> corner_weights(const coupling::Interface& surface, Index fac
   for (const Index v : corners(surface, face)) at.push_back(surface.vertices[v]);
   std::vector<double> weights =
       at.size() > 3 ? fan_weights(at) : std::vector<double>(at.size(), 1 / double(at.size()));
-  meet(surface.face_centres[face], at, weights);
+  if (at.size() <= 8)
+    meet<8>(surface.face_centres[face], at, weights);
+  else
+    meet<Eigen::Dynamic>(surface.face_centres[face], at, weights);
   return weights;
 }
 

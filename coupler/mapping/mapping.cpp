@@ -7,6 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
+#include "coupler/exchange/product.hpp"
 #include "coupler/mapping/map_projection.hpp"
 #include "coupler/mapping/surface_rows.hpp"
 #include "coupler/mapping/surroundings.hpp"
@@ -162,9 +163,8 @@ std::vector<Transfer::Entry> between(MPI_Comm comm, const PointSet& from, const 
     for (const GlobalIndex p : set.positions) same.push_back({p, p, 1});
     return same;
   };
-  if (count(comm, to) < to.starts.back()) entries = product(comm, to.starts, kept(to), std::move(entries));
-  if (count(comm, from) < from.starts.back())
-    entries = product(comm, from.starts, std::move(entries), kept(from));
+  if (count(comm, to) < to.starts.back()) entries = product(comm, to.starts, kept(to), entries);
+  if (count(comm, from) < from.starts.back()) entries = product(comm, from.starts, entries, kept(from));
   return entries;
 }
 

@@ -6,24 +6,15 @@
 #include <cmath>
 #include <utility>
 
-#include "common/base/point_tree.hpp"
 #include "common/parallel/collective.hpp"
+#include "coupler/exchange/owners.hpp"
 #include "coupler/mapping/corner_weights.hpp"
+#include "coupler/mapping/face_integrals.hpp"
 #include "coupler/mapping/map_projection.hpp"
-#include "coupler/mapping/overlay.hpp"
-#include "coupler/mapping/slopes.hpp"
 #include "coupler/mapping/surroundings.hpp"
 
 namespace couplet::coupler {
 namespace {
-
-using Eigen::MatrixXd;
-
-/// Weights of one source in a row, as the dual functions give them and what they have more than the corner functions
-/// themselves: that part sums to nothing over the corners of each face.
-struct Weights {
-  double dual, more;
-};
 
 /// A part of a row: so much of the value at a face of the structure, whose mean is taken about `place`.
 struct Share {
@@ -55,76 +46,6 @@ SurfacePart around(MPI_Comm comm, const Surroundings& structure, const coupling:
   faces.insert(faces.end(), touching.begin(), touching.end());
   return structure.with(sorted(faces));
 }
-
-/// Integrals over one face of `surface` of its corner functions and their duals times the structure's field.
-class FaceIntegrals {
- public:
-  FaceIntegrals(const coupling::Interface& structure, MappingParameters::Type type)
-      : structure_(structure), tree_(structure.face_centres), slopes_(structure, type) {
-    for (Index s = 0; s < Index(structure.face_centres.size()); ++s) {
-      widest_ = std::max(widest_, reach(structure, s));
-      Vec3 mean = Vec3::Zero();
-      const std::vector<double> weights = corner_weights(structure, s);
-      const auto vertex = corners(structure, s);
-      for (std::size_t i = 0; i < weights.size(); ++i) mean += weights[i] * structure.vertices[vertex[i]];
-      means_.push_back(mean);
-    }
-  }
-  /// Where the mean over a face of the structure is the value of a linear field.
-  const Vec3& mean(Index s) const { return means_[std::size_t(s)]; }
-
-  /// Calls add(corner, face of the structure, weights); without `dual` the corner functions themselves.
-  template <class Add>
-  void operator()(const coupling::Interface& surface, Index face, bool dual, const Add& add) {
-    const Vec3& centre = surface.face_centres[face];
-    std::vector<Index> candidates = tree_.within(centre, reach(surface, face) + widest_);
-    if (candidates.size() < nearest_faces) {
-      const std::vector<Index> near = tree_.nearest(centre, nearest_faces);
-      candidates.insert(candidates.end(), near.begin(), near.end());
-    }
-    std::ranges::sort(candidates);
-    candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
-    const std::vector<Cover> parts = covers(surface, face, structure_, candidates);
-    const auto vertex = corners(surface, face);
-    const auto n = Eigen::Index(vertex.size());
-    // Without weight at first: what a curved surface needs beside the dual functions is spread over more faces.
-    if (surface.dim == 3 && dual)
-      for (const Index s : tree_.within(centre, 2 * reach(surface, face)))
-        if (surface.face_areas[face].dot(structure_.face_areas[s]) < 0)
-          for (Eigen::Index i = 0; i < n; ++i) add(i, s, {0, 0});
-    Eigen::Matrix3Xd at(3, n);
-    for (Eigen::Index i = 0; i < n; ++i) at.col(i) = surface.vertices[vertex[std::size_t(i)]];
-    MatrixXd test = MatrixXd::Identity(n, n);
-    if (dual) {
-      MatrixXd all = MatrixXd::Zero(n, n);
-      for (const Cover& part : parts) all += part.products;
-      const Eigen::VectorXd sizes = all.rowwise().sum();
-      test = sizes.asDiagonal() * all.inverse();
-    }
-    for (const Cover& part : parts) {
-      const MatrixXd tested = test * part.products, more = tested - part.products;
-      const Slope& slope = slopes_.at(part.other);
-      const auto way = [&](const MatrixXd& m, Eigen::Index i) {
-        return Vec3(at * m.row(i).transpose() - m.row(i).sum() * mean(part.other));
-      };
-      for (Eigen::Index i = 0; i < n; ++i) {
-        add(i, part.other, {tested.row(i).sum(), more.row(i).sum()});
-        const Vec3 way_dual = way(tested, i), way_more = way(more, i);
-        for (std::size_t k = 0; k < slope.around.size(); ++k) {
-          const auto along = slope.weights.col(Eigen::Index(k));
-          add(i, slope.around[k], {way_dual.dot(along), way_more.dot(along)});
-        }
-      }
-    }
-  }
-
- private:
-  const coupling::Interface& structure_;
-  base::PointTree tree_;
-  Slopes slopes_;
-  std::vector<Vec3> means_;
-  double widest_ = 0;
-};
 
 /// Brings a row (weights at places, their sum 1) to carry linear fields to x: the least change of the weights, in
 /// the directions in which the places spread far enough for it.
@@ -168,63 +89,147 @@ void finish_row(int dim, const Vec3& x, const std::vector<Vec3>& places, std::ve
   for (int pass = 0; pass < 2; ++pass) make_linear(x, places, weights);
 }
 
+/// One row at a time, its arrays kept for the next.
+class RowBuffers {
+ public:
+  void clear() { sources_.clear(), places_.clear(), row_.clear(); }
+  /// Equal sources follow each other.
+  void add(GlobalIndex source, const Vec3& place, const Weights& weight) {
+    if (sources_.empty() || source != sources_.back())
+      sources_.push_back(source), places_.push_back(place), row_.push_back({0, 0});
+    row_.back().dual += weight.dual, row_.back().more += weight.more;
+  }
+  void finish(int dim, GlobalIndex row, const Vec3& x, std::vector<Transfer::Entry>& entries) {
+    finish_row(dim, x, places_, row_, weights_);
+    for (std::size_t i = 0; i < sources_.size(); ++i)
+      if (std::abs(weights_[i]) > 1e-15) entries.push_back({row, sources_[i], weights_[i]});
+  }
+
+ private:
+  std::vector<GlobalIndex> sources_;
+  std::vector<Vec3> places_;
+  std::vector<Weights> row_;
+  std::vector<double> weights_;
+};
+
 /// Rows from shares sorted by row; `first`: position of the first.
 void finish(int dim, const std::vector<Share>& shares, GlobalIndex first, const std::vector<Vec3>& points,
             std::vector<Transfer::Entry>& entries) {
-  std::vector<GlobalIndex> sources;
-  std::vector<Vec3> places;
-  std::vector<Weights> row;
-  std::vector<double> weights;
+  RowBuffers buffers;
   for (std::size_t begin = 0, end = 0; begin < shares.size(); begin = end) {
-    sources.clear(), places.clear(), row.clear();
-    for (; end < shares.size() && shares[end].row == shares[begin].row; ++end) {
-      const Share& s = shares[end];
-      if (sources.empty() || s.source != sources.back())
-        sources.push_back(s.source), places.push_back(s.place), row.push_back({0, 0});
-      row.back().dual += s.weight.dual, row.back().more += s.weight.more;
-    }
-    finish_row(dim, points[std::size_t(shares[begin].row - first)], places, row, weights);
-    for (std::size_t i = 0; i < sources.size(); ++i)
-      if (std::abs(weights[i]) > 1e-15) entries.push_back({shares[begin].row, sources[i], weights[i]});
+    buffers.clear();
+    for (; end < shares.size() && shares[end].row == shares[begin].row; ++end)
+      buffers.add(shares[end].source, shares[end].place, shares[end].weight);
+    const GlobalIndex row = shares[begin].row;
+    buffers.finish(dim, row, points[std::size_t(row - first)], entries);
   }
 }
 
 /// Each share on the rank that has its row.
-std::vector<Share> by_owner(MPI_Comm comm, const coupling::Starts& rows, std::vector<Share> shares) {
-  if (parallel::comm_size(comm) == 1) return shares;
-  std::vector<std::vector<Share>> send(std::size_t(parallel::comm_size(comm)));
-  for (const Share& s : shares) send[std::size_t(coupling::owner_of(rows, s.row))].push_back(s);
-  std::vector<Share> mine;
-  for (const auto& part : parallel::all_to_all(comm, send)) mine.insert(mine.end(), part.begin(), part.end());
+std::vector<Share> shares_by_owner(MPI_Comm comm, const coupling::Starts& rows, std::vector<Share> shares) {
+  std::vector<Share> mine =
+      to_owners(comm, std::move(shares), [&](const Share& s) { return coupling::owner_of(rows, s.row); });
   std::ranges::stable_sort(mine, [](const Share& a, const Share& b) {
     return a.row != b.row ? a.row < b.row : a.source < b.source;
   });
   return mine;
 }
 
-/// What the faces of `mine` add to rows of their corners or of their own; each pair once.
-std::vector<Share> shares_of(const SurfacePart& structure, const SurfacePart& mine,
-                             MappingParameters::Type type, bool at_vertices) {
+/// Rows of a map while the faces are gone through one after the other: a row is finished with the last face that gives to it,
+/// so that few are open at a time where neighbours follow each other. Rows that faces of other ranks give to, too, are left
+/// as shares.
+class OpenRows {
+ public:
+  /// `faces_of`: how many faces give to each row; `whole`: whether these are all; `place`: of the row, by number in `rows`.
+  OpenRows(std::vector<Index> faces_of, std::vector<char> whole, const std::vector<GlobalIndex>& rows)
+      : left_(std::move(faces_of)), whole_(std::move(whole)), rows_(rows), open_(left_.size()) {}
+
+  void add(std::size_t row, Index source, const Weights& weight) {
+    auto& list = open_[row];
+    auto known = std::ranges::find(list, source, &Part::first);
+    if (known == list.end()) known = list.insert(list.end(), {source, {0, 0}});
+    known->second.dual += weight.dual, known->second.more += weight.more;
+  }
+  /// One of its faces is done. Calls finished(row, parts by source) for a whole one that was the last of.
+  template <class Finished>
+  void done(std::size_t row, const SurfacePart& structure, const FaceIntegrals& integrals,
+            const Finished& finished) {
+    if (--left_[row] > 0) return;
+    std::vector<Part> list = std::exchange(open_[row], {});
+    std::ranges::sort(list, {}, &Part::first);
+    if (whole_[row])
+      finished(row, list);
+    else
+      for (const auto& [s, weight] : list)
+        shares.push_back({rows_[row], structure.faces[std::size_t(s)], weight, integrals.mean(s)});
+  }
+  using Part = std::pair<Index, Weights>;
+  std::vector<Share> shares;
+
+ private:
+  std::vector<Index> left_;
+  std::vector<char> whole_;
+  const std::vector<GlobalIndex>& rows_;
+  std::vector<std::vector<Part>> open_;
+};
+
+/// Of the vertices of `part` whether they are this rank's and no corner of another rank's face. Collective.
+std::vector<char> alone_at(MPI_Comm comm, const std::vector<GlobalIndex>& vertices, const PointSet& own) {
+  const auto rank = std::size_t(parallel::comm_rank(comm));
+  const GlobalIndex first = own.starts[rank], end = own.starts[rank + 1];
+  std::vector<char> touched(own.points.size(), 0), alone;
+  std::vector<GlobalIndex> others;
+  for (const GlobalIndex v : vertices)
+    if (v < first || v >= end) others.push_back(v);
+  for (const GlobalIndex v :
+       to_owners(comm, std::move(others), [&](GlobalIndex v) { return coupling::owner_of(own.starts, v); }))
+    touched[std::size_t(v - first)] = 1;
+  for (const GlobalIndex v : vertices)
+    alone.push_back(v >= first && v < end && !touched[std::size_t(v - first)]);
+  return alone;
+}
+
+/// Rows that the faces of `mine` give to: at their corners or of their own.
+struct Targets {
+  const PointSet& points;  ///< of this rank
+  bool at_vertices;
+  GlobalIndex first;
+};
+
+/// Finished rows go to `entries`, the rest is returned.
+std::vector<Share> shares_of(MPI_Comm comm, const SurfacePart& structure, const SurfacePart& mine,
+                             MappingParameters::Type type, const Targets& targets,
+                             std::vector<Transfer::Entry>& entries) {
+  const std::vector<GlobalIndex>& list = targets.at_vertices ? mine.vertices : mine.faces;
+  std::vector<char> whole =
+      targets.at_vertices ? alone_at(comm, list, targets.points) : std::vector<char>(list.size(), 1);
+  if (mine.faces.empty()) return {};
   FaceIntegrals integrals(structure.surface, type);
-  std::vector<std::vector<std::pair<Index, Weights>>> rows(at_vertices ? mine.vertices.size()
-                                                                       : mine.faces.size());
+  std::vector<Index> faces_of(list.size(), targets.at_vertices ? 0 : 1);
+  if (targets.at_vertices)
+    for (const Index v : mine.surface.face_vertices) ++faces_of[v];
+  OpenRows rows(std::move(faces_of), std::move(whole), list);
+  RowBuffers buffers;
+  const auto finished = [&](std::size_t row, const std::vector<OpenRows::Part>& parts) {
+    buffers.clear();
+    for (const auto& [s, weight] : parts)
+      buffers.add(structure.faces[std::size_t(s)], integrals.mean(s), weight);
+    buffers.finish(structure.surface.dim, list[row],
+                   targets.points.points[std::size_t(list[row] - targets.first)], entries);
+  };
+  entries.reserve(20 *
+                  targets.points.points.size());  // as of a surface beside one with faces of the same size
+  std::vector<FaceIntegrals::Part> parts;
   for (Index f = 0; f < Index(mine.faces.size()); ++f) {
     const auto vertex = corners(mine.surface, f);
-    integrals(mine.surface, f, at_vertices, [&](Eigen::Index corner, Index s, const Weights& weight) {
-      auto& row = rows[std::size_t(at_vertices ? vertex[std::size_t(corner)] : f)];
-      auto known = std::ranges::find(row, s, &std::pair<Index, Weights>::first);
-      if (known == row.end()) known = row.insert(row.end(), {s, {0, 0}});
-      known->second.dual += weight.dual, known->second.more += weight.more;
-    });
+    const auto row = [&](Index corner) { return std::size_t(targets.at_vertices ? vertex[corner] : f); };
+    integrals.find(mine.surface, f, targets.at_vertices, parts);
+    for (const auto& part : parts) rows.add(row(part.corner), part.source, part.weights);
+    if (!targets.at_vertices) rows.done(f, structure, integrals, finished);
+    for (Index i = 0; targets.at_vertices && i < Index(vertex.size()); ++i)
+      rows.done(row(i), structure, integrals, finished);
   }
-  std::vector<Share> shares;
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    std::ranges::sort(rows[r], {}, &std::pair<Index, Weights>::first);
-    for (const auto& [s, weight] : rows[r])
-      shares.push_back({at_vertices ? mine.vertices[r] : mine.faces[r], structure.faces[std::size_t(s)],
-                        weight, integrals.mean(s)});
-  }
-  return shares;
+  return std::move(rows.shares);
 }
 
 std::vector<Transfer::Entry> rows(MPI_Comm comm, const coupling::Interface& structure,
@@ -233,24 +238,21 @@ std::vector<Transfer::Entry> rows(MPI_Comm comm, const coupling::Interface& stru
   const Surroundings theirs(comm, structure), ours(comm, surface);
   const PointSet vertices = ours.vertices(), faces = ours.faces();
   const SurfacePart mine = ours.with(faces.positions);
-  const SurfacePart own = theirs.with(theirs.faces().positions);
-  double widest = 0;
-  for (Index s = 0; s < Index(own.faces.size()); ++s) widest = std::max(widest, reach(own.surface, s));
-  const SurfacePart near = around(comm, theirs, mine.surface, parallel::max(comm, widest), type);
-  std::vector<Share> shares =
-      mine.faces.empty() ? std::vector<Share>{} : shares_of(near, mine, type, at_vertices);
+  const SurfacePart near = around(comm, theirs, mine.surface, theirs.widest(), type);
+  const PointSet& points = at_vertices ? vertices : faces;
+  const Targets targets{points, at_vertices, points.starts[std::size_t(parallel::comm_rank(comm))]};
   std::vector<Transfer::Entry> entries;
-  const PointSet& targets = at_vertices ? vertices : faces;
-  const GlobalIndex first = targets.starts[std::size_t(parallel::comm_rank(comm))];
-  const std::vector<Share> known = by_owner(comm, targets.starts, std::move(shares));
-  finish(structure.dim, known, first, targets.points, entries);
+  std::vector<Share> shares = shares_of(comm, near, mine, type, targets, entries);
+  std::vector<char> has(points.points.size(), 0);
+  for (const auto& e : entries) has[std::size_t(e.target - targets.first)] = 1;
+  const std::vector<Share> known = shares_by_owner(comm, points.starts, std::move(shares));
+  finish(structure.dim, known, targets.first, points.points, entries);
+  for (const Share& s : known) has[std::size_t(s.row - targets.first)] = 1;
   // A vertex of no face.
-  std::vector<char> has(targets.points.size(), 0);
-  for (const Share& s : known) has[std::size_t(s.row - first)] = 1;
   std::vector<Vec3> lone;
   std::vector<GlobalIndex> positions;
   for (std::size_t i = 0; i < has.size(); ++i)
-    if (!has[i]) lone.push_back(targets.points[i]), positions.push_back(targets.positions[i]);
+    if (!has[i]) lone.push_back(points.points[i]), positions.push_back(points.positions[i]);
   const std::size_t k = structure.dim == 2 ? 3 : 5;
   const Nearby next = nearby(comm, lone, {}, k, theirs.faces());
   if (!lone.empty())

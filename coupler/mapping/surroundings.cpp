@@ -8,6 +8,7 @@
 
 #include "common/base/point_tree.hpp"
 #include "common/parallel/collective.hpp"
+#include "coupler/mapping/corner_weights.hpp"
 
 namespace couplet::coupler {
 namespace {
@@ -32,20 +33,21 @@ double bound_by_boxes(const std::vector<Count>& all, const Vec3& p, std::size_t 
   return infinite;
 }
 
-/// For each centre a distance within which there are k points: from the rank whose box is nearest, or, where it
-/// has fewer, from the boxes.
+/// For each centre a distance within which there are k points: the least of the ranks whose boxes are nearest, or, where these
+/// have fewer, from the boxes.
 std::vector<double> bounds(MPI_Comm comm, const std::vector<Vec3>& centres, std::size_t k,
                            const std::vector<Count>& all, const PointSet& among,
                            const base::PointTree* tree) {
   std::vector<std::vector<Vec3>> ask(all.size());
   std::vector<std::vector<std::size_t>> asked(all.size());
   for (std::size_t i = 0; i < centres.size(); ++i) {
-    std::size_t home = 0;
     double least = infinite;
+    for (const Count& c : all)
+      if (c.points > 0) least = std::min(least, c.box.nearest(centres[i]));
+    // Boxes of stretches of a list overlap: the first that holds a centre may have no point near it.
     for (std::size_t r = 0; r < all.size(); ++r)
-      if (all[r].points > 0 && all[r].box.nearest(centres[i]) < least)
-        least = all[r].box.nearest(centres[i]), home = r;
-    ask[home].push_back(centres[i]), asked[home].push_back(i);
+      if (all[r].points > 0 && all[r].box.nearest(centres[i]) <= least)
+        ask[r].push_back(centres[i]), asked[r].push_back(i);
   }
   std::vector<std::vector<double>> answers;
   for (const auto& questions : parallel::all_to_all(comm, ask)) {
@@ -59,29 +61,77 @@ std::vector<double> bounds(MPI_Comm comm, const std::vector<Vec3>& centres, std:
   const auto replies = parallel::all_to_all(comm, answers);
   std::vector<double> bound(centres.size(), infinite);
   for (std::size_t r = 0; r < replies.size(); ++r)
-    for (std::size_t q = 0; q < replies[r].size(); ++q) bound[asked[r][q]] = replies[r][q];
+    for (std::size_t q = 0; q < replies[r].size(); ++q)
+      bound[asked[r][q]] = std::min(bound[asked[r][q]], replies[r][q]);
   for (std::size_t i = 0; i < centres.size(); ++i)
     if (bound[i] == infinite) bound[i] = bound_by_boxes(all, centres[i], k);
   return bound;
 }
 
-/// Values at these positions (ascending) from the ranks that have them.
+/// Values at these positions (ascending) from the ranks that have them; this rank's own without a message.
 template <class Value, class Get>
 std::vector<Value> fetch(MPI_Comm comm, const coupling::Starts& starts,
                          const std::vector<GlobalIndex>& positions, Get get) {
+  const auto rank = std::size_t(parallel::comm_rank(comm));
+  const GlobalIndex first = starts[rank];
+  const auto own = std::ranges::lower_bound(positions, first),
+             above = std::ranges::lower_bound(positions, starts[rank + 1]);
+  std::vector<Value> all;
+  const auto add_own = [&] {
+    all.reserve(all.size() + std::size_t(above - own));
+    for (auto p = own; p != above; ++p) get(std::size_t(*p - first), all);
+  };
+  if (parallel::comm_size(comm) == 1) return add_own(), all;
   std::vector<std::vector<GlobalIndex>> wanted(std::size_t(parallel::comm_size(comm)));
-  for (const GlobalIndex p : positions) wanted[std::size_t(coupling::owner_of(starts, p))].push_back(p);
-  const GlobalIndex first = starts[std::size_t(parallel::comm_rank(comm))];
+  const auto want = [&](auto begin, auto end) {
+    for (auto p = begin; p != end; ++p) wanted[std::size_t(coupling::owner_of(starts, *p))].push_back(*p);
+  };
+  want(positions.begin(), own), want(above, positions.end());
   std::vector<std::vector<Value>> answers;
   for (const auto& list : parallel::all_to_all(comm, wanted)) {
     auto& values = answers.emplace_back();
     for (const GlobalIndex p : list) get(std::size_t(p - first), values);
   }
-  std::vector<Value> all;
-  for (const auto& part : parallel::all_to_all(comm, answers))
-    all.insert(all.end(), part.begin(), part.end());
+  const auto parts = parallel::all_to_all(comm, answers);
+  for (std::size_t r = 0; r < parts.size(); ++r)
+    if (r == rank)
+      add_own();
+    else
+      all.insert(all.end(), parts[r].begin(), parts[r].end());
   return all;
 }
+
+/// Numbers within an ascending list of positions that holds a stretch of this rank's and some others.
+class Numbering {
+ public:
+  /// Of all that occur in `positions`; this rank's stretch begins at `first`.
+  Numbering(GlobalIndex first, std::size_t own, const std::vector<GlobalIndex>& positions)
+      : first_(first), number_(own, -1) {
+    std::vector<GlobalIndex> others;
+    for (const GlobalIndex p : positions)
+      if (is_own(p))
+        number_[std::size_t(p - first_)] = 0;
+      else
+        others.push_back(p);
+    std::ranges::sort(others);
+    others.erase(std::unique(others.begin(), others.end()), others.end());
+    const auto above = std::ranges::lower_bound(others, first_);
+    list.assign(others.begin(), above);
+    for (std::size_t i = 0; i < own; ++i)
+      if (number_[i] == 0) number_[i] = Index(list.size()), list.push_back(first_ + GlobalIndex(i));
+    list.insert(list.end(), above, others.end());
+  }
+  Index operator()(GlobalIndex p) const {
+    return is_own(p) ? number_[std::size_t(p - first_)]
+                     : Index(std::ranges::lower_bound(list, p) - list.begin());
+  }
+  std::vector<GlobalIndex> list;  ///< ascending
+
+ private:
+  bool is_own(GlobalIndex p) const { return p >= first_ && p < first_ + GlobalIndex(number_.size()); }
+  GlobalIndex first_;
+  std::vector<Index> number_;
+};
 
 void sort_and_keep_one_each(std::vector<GlobalIndex>& list) {
   std::ranges::sort(list);
@@ -156,6 +206,13 @@ PointSet owned(MPI_Comm comm, const std::vector<Vec3>& points, const coupling::S
 PointSet Surroundings::vertices() const { return owned(comm_, part_.vertices, vertex_starts_); }
 PointSet Surroundings::faces() const { return owned(comm_, part_.face_centres, face_starts_); }
 
+double Surroundings::widest() const {
+  const SurfacePart own = with(faces().positions);
+  double most = 0;
+  for (Index f = 0; f < Index(own.faces.size()); ++f) most = std::max(most, reach(own.surface, f));
+  return parallel::max(comm_, most);
+}
+
 SurfacePart Surroundings::with(const std::vector<GlobalIndex>& faces) const {
   SurfacePart result;
   coupling::Interface& s = result.surface;
@@ -175,12 +232,12 @@ SurfacePart Surroundings::with(const std::vector<GlobalIndex>& faces) const {
   });
   s.face_offset.push_back(0);
   for (const Index n : counts) s.face_offset.push_back(s.face_offset.back() + n);
-  result.vertices = corners;
-  sort_and_keep_one_each(result.vertices);
+  Numbering number(vertex_starts_[std::size_t(parallel::comm_rank(comm_))], part_.vertices.size(), corners);
+  s.face_vertices.reserve(corners.size());
+  for (const GlobalIndex c : corners) s.face_vertices.push_back(number(c));
+  result.vertices = std::move(number.list);
   s.vertices = fetch<Vec3>(comm_, vertex_starts_, result.vertices,
                            [&](std::size_t v, auto& to) { to.push_back(part_.vertices[v]); });
-  for (const GlobalIndex c : corners)
-    s.face_vertices.push_back(Index(std::ranges::lower_bound(result.vertices, c) - result.vertices.begin()));
   return result;
 }
 

@@ -17,8 +17,8 @@ struct Nearby {
 
 /// The points of `among` (any rank's) that are one of the `k` nearest of a centre on this rank, those that are
 /// equally far (to rounding) as its k-th, and with `reach` [m] all that are nearer than the k-th and twice this
-/// centre's reach: then the k nearest of every place within the reach are there. Each centre asks the rank whose
-/// box is nearest for a bound, then those ranks whose boxes lie within it. Collective.
+/// centre's reach: then the k nearest of every place within the reach are there. Each centre asks the ranks whose
+/// boxes are nearest for a bound, then those ranks whose boxes lie within it. Collective.
 Nearby nearby(MPI_Comm comm, const std::vector<Vec3>& centres, const std::vector<double>& reach,
               std::size_t k, const PointSet& among);
 
@@ -37,6 +37,7 @@ class Surroundings {
   bool has_corners() const { return has_corners_; }  ///< on all ranks; false where there are no faces
   PointSet vertices() const;                         ///< this rank's
   PointSet faces() const;
+  double widest() const;  ///< the largest reach of a face on any rank [m]
   /// These faces (positions, ascending) with the vertices that they need.
   SurfacePart with(const std::vector<GlobalIndex>& faces) const;
   /// The faces of which one of these vertices (positions, ascending) is a corner: positions, ascending.

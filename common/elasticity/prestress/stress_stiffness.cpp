@@ -27,13 +27,17 @@ class StressStiffnessOf final : public StressStiffness {
                         of.stress[std::size_t(f)].template topLeftCorner<D, D>()});
     }
     make_edges(rows, of.stress);
+    for (const Face& face : faces_) between_.push_back(between(face));
   }
 
   void apply(std::span<const double> x, std::span<double> y) override {
     space_.fill(x, {});
     space_.clear_forces();
     if (edges_) find_means();
-    for (const Face& face : faces_) push(face);
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      push(faces_[f], between_[f]);
+      if (faces_[f].shared >= 0) push_edges(faces_[f]);
+    }
     for (const PlaceBlock& b : pressure_) {
       const double* from = at(b.j, space_.nodes(), space_.points());
       double* to = const_cast<double*>(at(b.i, space_.forces(), space_.point_forces()));
@@ -68,6 +72,19 @@ class StressStiffnessOf final : public StressStiffness {
     std::size_t next = 0;
     for (Face& face : faces_)
       if (next < shared.n_mine && shared.faces[next] == face.face) face.shared = Index(next++);
+  }
+
+  /// S = V B sigma B^T / g^2: the rows of B are the areas along and across a face, by which its differences of u become a gradient
+  /// (theory, 5i). All components of u meet the same one, so a face needs D^2 numbers in place of its geometry and stress.
+  Matrix between(const Face& face) const {
+    const SymmetricFace<D>& g = face.geometry;
+    Matrix b;
+    for (int j = 0; j < D; ++j) {
+      b(0, j) = g.area[j];
+      for (int i = 0; i < D - 1; ++i) b(1 + i, j) = g.across[i][j];
+    }
+    const double share = face.shared < 0 ? 1 : 1 - SharedEdges::share;
+    return share * g.volume * g.inverse * g.inverse * (b * face.stress * b.transpose());
   }
 
   /// Entry (k, j) = d u_k / d x_j.
@@ -106,16 +123,39 @@ class StressStiffnessOf final : public StressStiffness {
     }
   }
 
-  void push(const Face& face) {
+  void push(const Face& face, const Matrix& s) {
     const SymmetricFace<D>& g = face.geometry;
-    Matrix p = (face.shared < 0 ? 1 : 1 - SharedEdges::share) * g.volume * (gradient(face) * face.stress);
-    if (face.shared >= 0)
-      for (const Index e : edges_->edges_of(std::size_t(face.shared)))
-        p += SharedEdges::share * g.volume / 3 *
-             Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(edge_value_.data() +
-                                                                            std::size_t(e) * edge_stride)
-                 .template topLeftCorner<D, D>();
-    p *= g.inverse;
+    const double *from = space_.nodes() + std::size_t(mesh_.owner[face.face]) * stride,
+                 *to = space_.nodes() + std::size_t(face.across) * stride;
+    double *here = space_.forces() + std::size_t(mesh_.owner[face.face]) * stride,
+           *there = space_.forces() + std::size_t(face.across) * stride;
+    for (int k = 0; k < D; ++k) {
+      double difference[D];
+      difference[0] = to[k] - from[k];
+      for (int i = 0; i < D - 1; ++i)
+        difference[1 + i] = space_.points()[std::size_t(g.plus[i]) * stride + k] -
+                            space_.points()[std::size_t(g.minus[i]) * stride + k];
+      double force[D] = {};
+      for (int i = 0; i < D; ++i)
+        for (int j = 0; j < D; ++j) force[i] += s(i, j) * difference[j];
+      here[k] -= force[0];
+      there[k] += force[0];
+      for (int i = 0; i < D - 1; ++i) {
+        space_.point_forces()[std::size_t(g.plus[i]) * stride + k] += force[1 + i];
+        space_.point_forces()[std::size_t(g.minus[i]) * stride + k] -= force[1 + i];
+      }
+    }
+  }
+
+  /// What the stress of its edges adds, from their mean gradients.
+  void push_edges(const Face& face) {
+    const SymmetricFace<D>& g = face.geometry;
+    Matrix p = Matrix::Zero();
+    for (const Index e : edges_->edges_of(std::size_t(face.shared)))
+      p += SharedEdges::share * g.volume * g.inverse / 3 *
+           Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(edge_value_.data() +
+                                                                          std::size_t(e) * edge_stride)
+               .template topLeftCorner<D, D>();
     double *here = space_.forces() + std::size_t(mesh_.owner[face.face]) * stride,
            *there = space_.forces() + std::size_t(face.across) * stride;
     for (int k = 0; k < D; ++k) {
@@ -135,6 +175,7 @@ class StressStiffnessOf final : public StressStiffness {
   const mesh::Mesh& mesh_;
   SymmetricSpace<D> space_;
   std::vector<Face> faces_;
+  std::vector<Matrix> between_;
   std::unique_ptr<SharedEdges> edges_;
   std::vector<Matrix> edge_stress_;
   std::vector<double> edge_value_;
