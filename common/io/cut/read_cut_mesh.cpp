@@ -11,8 +11,8 @@
 namespace couplet::io {
 namespace {
 
-constexpr const char* what = "cut mesh";
-constexpr const char* advice = "Write it again with 'couplet mesh cut'.";
+constexpr const char* cut_mesh = "cut mesh";
+constexpr const char* advice_on_cut = "Write it again with 'couplet mesh cut'.";
 
 /// A whole number of an attribute, at most `most`.
 std::uint64_t whole_number(const hdf5::Reader& in, const char* name, double most) {
@@ -25,7 +25,7 @@ std::uint64_t whole_number(const hdf5::Reader& in, const char* name, double most
 
 /// Refuses what is no cut mesh of this version.
 hdf5::Reader open_cut_mesh(const std::filesystem::path& file) {
-  hdf5::Reader in(file, what, advice);
+  hdf5::Reader in(file, cut_mesh, advice_on_cut);
   if (!in.has_attribute("/", cut::version_name))
     in.refuse("it is an HDF5 file, but no cut mesh (it has no 'cut-mesh-version')");
   const double version = in.number("/", cut::version_name);
@@ -157,7 +157,7 @@ CutMeshFacts facts_in(const std::filesystem::path& file) {
 
 /// What HDF5 does with the file, tried elsewhere: the first and last of very many blocks.
 void rehearse_cut_mesh(const std::filesystem::path& file) {
-  rehearse(file, what, [&] {
+  rehearse(file, cut_mesh, [&] {
     const GlobalIndex cells = std::max<GlobalIndex>(1, facts_in(file).cells);
     const int blocks = static_cast<int>(std::min<GlobalIndex>(cells, 1000000));
     for (const int block : {0, blocks - 1}) CutMeshBlock(file, block, blocks).read();
@@ -181,7 +181,7 @@ mesh::MeshBlock read_cut_mesh(MPI_Comm comm, const std::filesystem::path& file) 
     std::uint64_t all = digest.here;
     MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_UINT64_T, MPI_SUM, comm);
     if (fmt::format("{:016x}", all) != digest.wanted)
-      hdf5::Reader(file, what, advice)
+      hdf5::Reader(file, cut_mesh, advice_on_cut)
           .refuse(fmt::format("the table '{}' is damaged: its digest differs", digest.table));
   }
   return block;
@@ -189,7 +189,7 @@ mesh::MeshBlock read_cut_mesh(MPI_Comm comm, const std::filesystem::path& file) 
 
 CutMeshFacts read_cut_mesh_facts(const std::filesystem::path& file) {
   CutMeshFacts facts;
-  rehearse(file, what, [&] { facts_in(file); });
+  rehearse(file, cut_mesh, [&] { facts_in(file); });
   return facts_in(file);
 }
 

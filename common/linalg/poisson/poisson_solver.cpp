@@ -21,10 +21,10 @@ namespace {
 
 constexpr int most_iterations = 500;
 // As LinearSolver: fresh factors cost about as much as this many iterations save over a few dozen solves.
-constexpr int most_with_old_factors = 8;
+constexpr int most_with_kept_factors = 8;
 // Fresh factors in double precision need one iteration, two at very tight tolerances: more than this many with factors in single
 // precision mean that cells are too thin for them.
-constexpr int most_with_fresh_single_factors = 6;
+constexpr int most_with_new_single_factors = 6;
 
 }  // namespace
 
@@ -178,8 +178,8 @@ SolveStatistics PoissonSolver::solve(std::span<const double> b, std::span<double
     memory_.is_due = false;
     ++built_;
     memory_.most_iterations =
-        kind_ == Preconditioner::factors ? most_with_old_factors : 2 * statistics.iterations + 2;
-    if (memory_.is_single && statistics.iterations > most_with_fresh_single_factors) {
+        kind_ == Preconditioner::factors ? most_with_kept_factors : 2 * statistics.iterations + 2;
+    if (memory_.is_single && statistics.iterations > most_with_new_single_factors) {
       memory_.is_single = false;
       memory_.is_due = true;
     }
