@@ -93,6 +93,6 @@ MUTANTS = [
     Mutant("the moments of a load are kept by nine tenths", "coupler/mapping/map_local.cpp",
            "b.tail(at.cols()) = at.row(n).transpose();", "b.tail(at.cols()) = 0.9 * at.row(n).transpose();", "unit_maps", "Maps.keep_*"),
     Mutant("the moments of a load are not met at centres of faces", "coupler/mapping/corner_weights.cpp",
-           "  meet(surface.face_centres[face], at, weights);", "  if (at.empty()) meet(surface.face_centres[face], at, weights);", "unit_maps",
+           "    meet<8>(surface.face_centres[face], at, weights);", "    if (at.empty()) meet<8>(surface.face_centres[face], at, weights);", "unit_maps",
            "CornerWeights.*"),
 ]
