@@ -13,10 +13,6 @@ namespace {
 using Entry = Transfer::Entry;
 using Entries = std::vector<Entry>;
 
-bool by_row(const Entry& a, const Entry& b) {
-  return a.target != b.target ? a.target < b.target : a.source < b.source;
-}
-
 /// Sums by source of one row of the product: an open table of places and values.
 class RowSums {
  public:

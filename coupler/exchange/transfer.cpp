@@ -9,10 +9,6 @@
 namespace couplet::coupler {
 namespace {
 
-bool in_order(const Transfer::Entry& a, const Transfer::Entry& b) {
-  return a.target != b.target ? a.target < b.target : a.source < b.source;
-}
-
 /// Of entries sorted by target and source, equal ones added up.
 void add_up(std::vector<Transfer::Entry>& entries) {
   std::size_t kept = 0;
@@ -26,7 +22,7 @@ void add_up(std::vector<Transfer::Entry>& entries) {
 
 /// Entries of targets from `first` on, by target and source: by counting, since the targets of a rank are a stretch.
 void sort_rows(GlobalIndex first, GlobalIndex end, std::vector<Transfer::Entry>& entries) {
-  if (std::ranges::is_sorted(entries, in_order)) return;
+  if (std::ranges::is_sorted(entries, by_row)) return;
   std::vector<std::size_t> at(std::size_t(end - first) + 1, 0);
   for (const auto& e : entries) ++at[std::size_t(e.target - first) + 1];
   for (std::size_t t = 1; t < at.size(); ++t) at[t] += at[t - 1];
@@ -37,7 +33,7 @@ void sort_rows(GlobalIndex first, GlobalIndex end, std::vector<Transfer::Entry>&
   for (std::size_t t = 0, begin = 0; t + 1 < at.size(); begin = at[t++]) {
     const auto row = std::ranges::subrange(entries.begin() + std::ptrdiff_t(begin),
                                            entries.begin() + std::ptrdiff_t(at[t]));
-    if (!std::ranges::is_sorted(row, in_order)) std::ranges::stable_sort(row, in_order);
+    if (!std::ranges::is_sorted(row, by_row)) std::ranges::stable_sort(row, by_row);
   }
 }
 

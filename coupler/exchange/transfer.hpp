@@ -39,6 +39,11 @@ class Transfer {
   bool alone_ = true, same_ = false;            // same: each target is the source at its place, on one rank
 };
 
+/// Ascending by target, then by source.
+inline bool by_row(const Transfer::Entry& a, const Transfer::Entry& b) {
+  return a.target != b.target ? a.target < b.target : a.source < b.source;
+}
+
 /// Every entry on the rank that has its target, by target and source, each pair once. Collective.
 std::vector<Transfer::Entry> by_owner(MPI_Comm comm, const coupling::Starts& targets,
                                       std::vector<Transfer::Entry> entries);

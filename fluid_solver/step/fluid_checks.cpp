@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <utility>
 
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
@@ -48,17 +49,17 @@ void check_waves(const FluidParameters& parameters) {
 
 /// `auto` becomes second order where fourth is not possible.
 void check_order(FluidParameters& parameters, bool moving) {
-  const auto refuse = [&](const char* with, const char* remove) {
-    if (parameters.face_values == FaceValues::fourth_order)
-      throw Error(
-          "face-values: fourth-order is not supported together with {}; remove {}, or use second-order.",
-          with, remove);
-    log::info("Face values: second-order (auto: {})", with);
-    parameters.face_values = FaceValues::second_order;
-  };
-  if (moving) refuse("a mesh that moves", "'motion' or the mesh mover");
-  if (!parameters.bodies.empty()) refuse("immersed bodies", "'bodies'");
-  if (!parameters.gaps.empty()) refuse("gaps that close", "'gaps'");
+  const auto [with, remove] = moving ? std::pair("a mesh that moves", "'motion' or the mesh mover")
+                              : !parameters.bodies.empty() ? std::pair("immersed bodies", "'bodies'")
+                              : !parameters.gaps.empty()   ? std::pair("gaps that close", "'gaps'")
+                                                           : std::pair("", "");
+  if (!*with) return;
+  if (parameters.face_values == FaceValues::fourth_order)
+    throw Error(
+        "face-values: fourth-order is not supported together with {}; remove {}, or use second-order.", with,
+        remove);
+  log::info("Face values: second-order (auto: {})", with);
+  parameters.face_values = FaceValues::second_order;
 }
 
 void check_axes(const FluidParameters& parameters, int dim) {

@@ -32,6 +32,16 @@ Tensor3 cell_moment(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Inde
   return moment * (share_of_vertices(mesh.cell_type[cell]) / double(mesh.cell_points[cell].size()));
 }
 
+void gather_cells(const mesh::Mesh& mesh, const mesh::Csr& cells_of_point, Index cell,
+                  std::vector<Index>& mark, std::vector<Index>& cells) {
+  for (const Index v : mesh.cell_points[cell])
+    for (const Index c : cells_of_point[v]) {
+      if (mark[std::size_t(c)] == cell || mesh.material_of(c) != mesh.material_of(cell)) continue;
+      mark[std::size_t(c)] = cell;
+      cells.push_back(c);
+    }
+}
+
 mesh::Csr boundary_faces_of_cells(const mesh::Mesh& mesh) {
   mesh::Csr owners;
   for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f) owners.push_row({&mesh.owner[f], 1});

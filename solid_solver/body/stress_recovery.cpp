@@ -99,14 +99,11 @@ void StressRecovery::gather(Index cell, const Local& local, Patch& patch) const 
   patch.mark.resize(std::size_t(mesh_.cells.n_local()), -1);
   patch.simplices = true, patch.at_surface = false;
   patch.reach = 0;
-  for (const Index v : mesh_.cell_points[cell])
-    for (const Index c : cells_of_point_[v]) {
-      if (patch.mark[std::size_t(c)] == cell || mesh_.material_of(c) != mesh_.material_of(cell)) continue;
-      patch.mark[std::size_t(c)] = cell;
-      patch.cells.push_back(c);
-      patch.simplices = patch.simplices && is_simplex(mesh_.cell_type[c]);
-      patch.reach = std::max(patch.reach, (g.cell_centre[c] - g.cell_centre[cell]).norm());
-    }
+  gather_cells(mesh_, cells_of_point_, cell, patch.mark, patch.cells);
+  for (const Index c : patch.cells) {
+    patch.simplices = patch.simplices && is_simplex(mesh_.cell_type[c]);
+    patch.reach = std::max(patch.reach, (g.cell_centre[c] - g.cell_centre[cell]).norm());
+  }
   for (const Index c : patch.cells)
     for (const Index f : faces_of_cell_[c]) {
       const SurfaceTraction& known = local.surface[std::size_t(f - mesh_.n_interior)];

@@ -7,6 +7,7 @@
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/mesh/transpose.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/body/cell_moment.hpp"
 #include "solid_solver/material/stress.hpp"
 
 namespace couplet::solid {
@@ -21,7 +22,6 @@ RecoveredStrain::RecoveredStrain(const mesh::Mesh& mesh, const elastic::ElasticO
     : mesh_(mesh),
       geometry_(rows.geometry()),
       rows_(rows),
-      stride_(1 + mesh.cells.n_global() / patches_looked_at),
       mean_(std::size_t(mesh.cells.n_local()) * tensor_size, 0.0),
       volume_(std::size_t(mesh.cells.n_local()), 0.0) {}
 
@@ -44,24 +44,23 @@ void RecoveredStrain::add(Index face, const Tensor3& strain) {
 }
 
 void RecoveredStrain::recover() {
+  const GlobalIndex stride = 1 + mesh_.cells.n_global() / patches_looked_at;
   for (std::size_t c = 0; c < std::size_t(mesh_.cells.n_owned()); ++c)
     for (std::size_t i = 0; i < std::size_t(tensor_size); ++i)
       if (volume_[c] > 0) mean_[c * tensor_size + i] /= volume_[c];
   mesh_.cells.update_ghosts(mean_, tensor_size);
   const mesh::Csr cells_of_point = mesh::transpose(mesh_.cell_points, 0, mesh_.points.n_local());
-  linear_.resize(std::size_t(mesh_.cells.n_owned()));
   std::vector<Index> mark(std::size_t(mesh_.cells.n_local()), -1), patch;
+  slot_.assign(std::size_t(mesh_.cells.n_owned()), -1);
   for (Index cell = 0; cell < mesh_.cells.n_owned(); ++cell) {
-    if (!is_looked_at(cell)) continue;
+    if (mesh_.cell_id[cell] % stride != 0) continue;  // the same ones on any number of ranks
     patch.clear();
-    for (const Index v : mesh_.cell_points[cell])
-      for (const Index c : cells_of_point[v]) {
-        if (mark[std::size_t(c)] == cell || mesh_.material_of(c) != mesh_.material_of(cell)) continue;
-        mark[std::size_t(c)] = cell;
-        patch.push_back(c);
-      }
-    linear_[std::size_t(cell)] = fit(cell, patch);
+    gather_cells(mesh_, cells_of_point, cell, mark, patch);
+    slot_[std::size_t(cell)] = Index(linear_.size());
+    linear_.push_back(fit(cell, patch));
   }
+  // The run holds most memory here.
+  std::vector<double>().swap(mean_), std::vector<double>().swap(volume_);
 }
 
 RecoveredStrain::Linear RecoveredStrain::fit(Index cell, const std::vector<Index>& patch) const {
@@ -92,8 +91,9 @@ RecoveredStrain::Linear RecoveredStrain::fit(Index cell, const std::vector<Index
 void RecoveredStrain::compare(Index face, const Tensor3& strain) {
   const PackedTensor packed = pack(strain);
   visit_pyramids(face, [&](Index cell, const Vec3& place, double volume) {
-    if (!is_looked_at(cell)) return;
-    const Linear& linear = linear_[std::size_t(cell)];
+    const Index slot = slot_[std::size_t(cell)];
+    if (slot < 0) return;
+    const Linear& linear = linear_[std::size_t(slot)];
     const Vec3 x = place - geometry_.cell_centre[cell];
     PackedTensor gap = packed;
     for (std::size_t k = 0; k < gap.size(); ++k)

@@ -34,7 +34,6 @@ class RecoveredStrain {
  private:
   /// At the cell's centre and per metre along the axes; packed as the symmetric tensor's six components.
   using Linear = std::array<std::array<float, 6>, 4>;
-  bool is_looked_at(Index cell) const { return mesh_.cell_id[cell] % stride_ == 0; }
   template <class Visit>
   void visit_pyramids(Index face, const Visit& visit) const;
   Linear fit(Index cell, const std::vector<Index>& patch) const;
@@ -42,10 +41,10 @@ class RecoveredStrain {
   const mesh::Mesh& mesh_;
   const mesh::Geometry& geometry_;
   const elastic::ElasticOperator& rows_;
-  GlobalIndex stride_;
   std::vector<double> mean_;    // of local cells, six each
   std::vector<double> volume_;  // of their pyramids [m^3]
-  std::vector<Linear> linear_;  // of owned cells
+  std::vector<Index> slot_;     // per owned cell its place in linear_; -1: not looked at
+  std::vector<Linear> linear_;
   double difference_ = 0, whole_ = 0;
 };
 

@@ -51,13 +51,9 @@ void SmoothEnergy::gather(Index cell, Patch& patch) const {
   const Vec3 centre = g.cell_centre[cell];
   patch.cells.clear(), patch.points.clear(), patch.mirrors.clear();
   patch.reach = 0;
-  for (const Index v : mesh_.cell_points[cell])
-    for (const Index c : patch.cells_of_point[v]) {
-      if (patch.mark[std::size_t(c)] == cell || mesh_.material_of(c) != mesh_.material_of(cell)) continue;
-      patch.mark[std::size_t(c)] = cell;
-      patch.cells.push_back(c);
-      patch.points.insert(patch.points.end(), mesh_.cell_points[c].begin(), mesh_.cell_points[c].end());
-    }
+  gather_cells(mesh_, patch.cells_of_point, cell, patch.mark, patch.cells);
+  for (const Index c : patch.cells)
+    patch.points.insert(patch.points.end(), mesh_.cell_points[c].begin(), mesh_.cell_points[c].end());
   std::ranges::sort(patch.points);
   patch.points.erase(std::unique(patch.points.begin(), patch.points.end()), patch.points.end());
   for (const Index v : patch.points)

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/thermal/heat_defects.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "common/fv/near_quadratic.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/material/stress.hpp"
 #include "solid_solver/thermal/heat_answer.hpp"
@@ -14,10 +14,6 @@ namespace {
 
 using Conduction = fv::ConductionOperator;
 
-constexpr double weight_of_near = 0.05;  // beside the square of the distance over the patch's reach
-constexpr double least_pivot = 1e-9;     // of a term that no sample determines, over one that they do
-constexpr double not_spanned =
-    1e-20;  // of the squares of a term in the samples: a direction that they do not span
 constexpr double not_skew = 1e-12;  // of the skewness squared
 
 /// Cells around each local point; of each local cell its boundary faces that have a value, and those that mirror.
@@ -46,52 +42,17 @@ struct CellsAround {
   }
 };
 
-/// 1, x, y, (z), then half squares and products.
-Eigen::VectorXd quadratic_terms(const Vec3& d, int dim) {
-  Eigen::VectorXd phi(1 + dim + dim * (dim + 1) / 2);
-  int i = 0;
-  phi[i++] = 1;
-  for (int a = 0; a < dim; ++a) phi[i++] = d[a];
+/// Of its terms x_a x_b of places over the reach.
+LocalHeat local_of(const Eigen::VectorXd& c, int dim, double reach) {
+  LocalHeat result;
+  Eigen::Index i = 0;
+  result.value = c[i++];
+  for (int a = 0; a < dim; ++a) result.slope[a] = c[i++] / reach;
   for (int a = 0; a < dim; ++a)
-    for (int b = a; b < dim; ++b) phi[i++] = (a == b ? 0.5 : 1) * d[a] * d[b];
-  return phi;
+    for (int b = a; b < dim; ++b, ++i)
+      result.second(a, b) = result.second(b, a) = (a == b ? 2 : 1) * c[i] / (reach * reach);
+  return result;
 }
-
-/// Least squares of a quadratic around `centre`.
-struct HeatFit {
-  int dim;
-  Vec3 centre;
-  double reach;
-  Eigen::MatrixXd of;
-  Eigen::VectorXd right;
-  HeatFit(int dim_, const Vec3& centre_, double reach_) : dim(dim_), centre(centre_), reach(reach_) {
-    const Eigen::Index n = 1 + dim + dim * (dim + 1) / 2;
-    of = Eigen::MatrixXd::Zero(n, n), right = Eigen::VectorXd::Zero(n);
-  }
-  void add(const Vec3& x, double value) {
-    const Vec3 d = (x - centre) / reach;
-    const Eigen::VectorXd phi = quadratic_terms(d, dim);
-    const double weight = 1 / (weight_of_near + d.squaredNorm());
-    of += weight * phi * phi.transpose();
-    right += weight * value * phi;
-  }
-  LocalHeat solve() const {
-    // Thin cells make terms of very different sizes.
-    const double unit = of(0, 0);
-    const Eigen::VectorXd scale =
-        of.diagonal().unaryExpr([&](double v) { return v > not_spanned * unit ? 1 / std::sqrt(v) : 0; });
-    Eigen::MatrixXd scaled = scale.asDiagonal() * of * scale.asDiagonal();
-    scaled.diagonal().array() += least_pivot;
-    const Eigen::VectorXd c = scale.asDiagonal() * scaled.llt().solve(scale.asDiagonal() * right);
-    LocalHeat result;
-    Eigen::Index i = 0;
-    result.value = c[i++];
-    for (int a = 0; a < dim; ++a) result.slope[a] = c[i++] / reach;
-    for (int a = 0; a < dim; ++a)
-      for (int b = a; b < dim; ++b, ++i) result.second(a, b) = result.second(b, a) = c[i] / (reach * reach);
-    return result;
-  }
-};
 
 /// Faces of planes of symmetry beside these cells, one for each plane.
 std::vector<Index> planes_beside(const mesh::Geometry& g, const CellsAround& around,
@@ -114,13 +75,14 @@ LocalHeat fitted_heat(const Conduction& conduction, const CellsAround& around, I
   const Vec3 centre = g.cell_centre[cell];
   double reach = std::pow(g.volume[cell], 1. / mesh.dim);
   for (const Index c : cells) reach = std::max(reach, (g.cell_centre[c] - centre).norm());
-  HeatFit fit(mesh.dim, centre, reach);
+  fv::NearQuadratic fit(mesh.dim, centre, reach, 1);
   const double own = field.cells[std::size_t(cell)];  // differences keep the digits
   const auto sample = [&](const Vec3& x, double value) {
-    fit.add(x, value - own);
+    const double above = value - own;
+    fit.add(x, {&above, 1});
     for (const Index p : planes) {
       const Vec3 normal = g.face_area[p].normalized();
-      fit.add(x - 2 * normal.dot(x - g.face_centre[p]) * normal, value - own);
+      fit.add(x - 2 * normal.dot(x - g.face_centre[p]) * normal, {&above, 1});
     }
   };
   for (const Index c : cells) {
@@ -128,7 +90,7 @@ LocalHeat fitted_heat(const Conduction& conduction, const CellsAround& around, I
     for (const Index f : around.faces[std::size_t(c)])
       sample(g.face_centre[f], field.boundary[std::size_t(f - mesh.n_interior)]);
   }
-  LocalHeat result = fit.solve();
+  LocalHeat result = local_of(fit.solve(), mesh.dim, reach);
   result.value += own;
   return result;
 }

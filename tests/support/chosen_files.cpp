@@ -50,8 +50,8 @@ std::string filter_for(std::set<std::string>& files, const std::string& given) {
       const std::string path = test.file(), file = path.substr(path.rfind('/') + 1);
       const std::string name = std::string(suite.name()) + "." + test.name();
       files.erase(file);
-      const auto [twin, first] = of_named.emplace(name, named.count(file) > 0);
-      if (!first && twin->second != (named.count(file) > 0)) strangers += " " + name;
+      const auto [other, first] = of_named.emplace(name, named.count(file) > 0);
+      if (!first && other->second != (named.count(file) > 0)) strangers += " " + name;
       if (!named.count(file) || !passes(name, given)) continue;
       chosen += ":" + name;
       ++count;

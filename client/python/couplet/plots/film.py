@@ -24,8 +24,11 @@ def frame_of(section, case, out):
             panel.pop("label", None)
         if "range" not in panel:
             series = series_in(out, panel["participant"])
-            values = [panel.get("factor", 1) * fields.values_of(series, i, panel["field"], panel.get("component")) for i in range(len(series.times))]
-            panel["range"] = [float(min(v.min() for v in values)), float(max(v.max() for v in values))]
+            ends = []  # of one output after the other, of which a run may have more than fit into memory
+            for i in range(len(series.times)):
+                values = panel.get("factor", 1) * fields.values_of(series, i, panel["field"], panel.get("component"))
+                ends += [float(values.min()), float(values.max())]
+            panel["range"] = [min(ends), max(ends)]
     beside = min(across, len(maps))
     width, height = size_of(section)
     size = (width / across * beside, height / -(-len(panels) // across) * -(-len(maps) // beside))
