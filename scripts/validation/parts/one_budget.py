@@ -67,6 +67,13 @@ def periodic(job):
     return "; ".join(f"{name}: {step} for {truth}" for _, name, step, truth in found), len(found) == 6 and all(word == "ok" for word, *_ in found)
 
 
+def street(job):
+    done = job.run([sys.executable, job.root / "tests/cli/periodic/street.py", job.build / "bin", job.root / "configs", "4", "30", "100"], 3600)
+    found = re.findall(r"^(ok|FAILED) +2D-2, (\d+ periods): step ([\d.e+-]+), truth ([\d.e+-]+) \(of it without the phase ([\d.e+-]+)", done.stdout, re.M)
+    return ("; ".join(f"{name}: {step} for {truth} ({shape} without the phase)" for _, name, step, truth, shape in found),
+            len(found) == 3 and all(word == "ok" for word, *_ in found))
+
+
 def one_list(job):
     """The list, the cards (unit test), the documents and the programs."""
     from validation.parts.effects import prices
