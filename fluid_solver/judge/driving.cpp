@@ -18,6 +18,12 @@ Driving::Driving(const FluidParameters& parameters) {
   const auto add = [this](const config::ExpressionText& text) {
     if (fv::Expression found(text); found.uses_time()) timed_.push_back(std::move(found));
   };
+  moves_ = parameters.motion || !parameters.gaps.empty();
+  for (const auto& [name, body] : parameters.bodies) moves_ = moves_ || !body.velocity.empty();
+  for (const auto& [patch, b] : parameters.boundaries) {
+    const GivenBy by = condition_of(b).velocity;
+    moves_ = moves_ || by == GivenBy::structure || by == GivenBy::motion;
+  }
   for (const auto& [patch, b] : parameters.boundaries)
     if (condition_of(b).velocity == GivenBy::structure) return;
   for (const auto& text : parameters.body_force) add(text);

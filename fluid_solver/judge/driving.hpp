@@ -19,12 +19,15 @@ class Driving {
   explicit Driving(const FluidParameters& parameters);
   /// Some expression uses the time at all.
   bool is_possible() const { return !timed_.empty(); }
+  /// Walls, bodies or the mesh move: what drives the flow is not known from these expressions alone.
+  bool moves() const { return moves_; }
   /// Some of them still change over the last steps of `dt` before `time` [s] at one of the `places` [m], those of this
   /// rank. Collective over `comm`.
   bool acts(MPI_Comm comm, std::span<const Vec3> places, double time, double dt) const;
 
  private:
   std::vector<fv::Expression> timed_;
+  bool moves_ = false;
 };
 
 }  // namespace couplet::fluid

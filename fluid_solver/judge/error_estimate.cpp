@@ -137,6 +137,8 @@ void FluidErrorEstimate<D>::accepted(double dt) {
     const auto mean = [&](int k) { return squares[4] > 0 ? std::sqrt(squares[k] / squares[4]) : 0; };
     const double highest = mean(3) / apart;
     see_energy(dt);
+    const double sub_step = dt / std::max(1, fluid_.statistics().sub_steps);
+    drift_.add(dt, held_, mean(1), mean(2), adams_bashforth_error * sub_step * sub_step);
     // Errors leave the flow with the outflow of all its volume, and by friction.
     const double forgotten = friction() + (squares[4] > 0 ? squares[6] / squares[4] : 0);
     for (Vec<D>& v : left_) v *= std::exp(-forgotten * dt);
@@ -217,11 +219,13 @@ double FluidErrorEstimate<D>::net_outflow() const {
 template <int D>
 double FluidErrorEstimate<D>::step_part() const {
   const double sum = steps_.over_size();
-  if (!driving_.is_possible() || !(steps_.size() > 0) || !(carried_ <= hardly * changed_)) return sum;
+  if (!(steps_.size() > 0)) return sum;
   std::vector<Vec3> places;
   for (const Vec3& x : fluid_.state().placement->boundary_centre) places.push_back(x);
-  const bool acts = driving_.acts(fluid_.mesh().comm, places, fluid_.state().time, dt_old_);
-  return acts ? std::min(sum, left_of_late_ / steps_.size()) : sum;
+  const bool acts =
+      driving_.is_possible() && driving_.acts(fluid_.mesh().comm, places, fluid_.state().time, dt_old_);
+  if (acts) return carried_ <= hardly * changed_ ? std::min(sum, left_of_late_ / steps_.size()) : sum;
+  return driving_.moves() ? sum : std::max(sum, drift_.error() / steps_.size());
 }
 
 template <int D>
@@ -249,11 +253,12 @@ void FluidErrorEstimate<D>::save(io::CheckpointWriter& file) const {
   file.write(mesh::Entries::owned_cells, "error-rate", flat<D>(rate_));
   file.write(mesh::Entries::owned_cells, "error-rate-change", flat<D>(rate_change_));
   file.write_common("error-steps", steps_.state());
+  file.write_common("error-drift", drift_.state());
 }
 
 template <int D>
 void FluidErrorEstimate<D>::load(io::CheckpointReader& file, bool is_there) {
-  seen_ = 0, judged_ = false, steps_ = {};
+  seen_ = 0, judged_ = false, steps_ = {}, drift_ = {};
   time_ = power_ = gain_ = energy_ = work_ = held_ = left_of_late_ = carried_ = changed_ = 0;
   u_.clear(), rate_.clear(), rate_change_.clear(), left_.clear();
   if (!is_there) return;
@@ -272,6 +277,7 @@ void FluidErrorEstimate<D>::load(io::CheckpointReader& file, bool is_there) {
   read("error-rate", rate_);
   read("error-rate-change", rate_change_);
   steps_.restore(file.read_common("error-steps"));
+  drift_.restore(file.read_common("error-drift"));
   const Vectors<D>& u = fluid_.state().u;
   u_.assign(u.begin(), u.begin() + fluid_.mesh().cells.n_owned());
 }

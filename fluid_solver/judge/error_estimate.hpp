@@ -9,6 +9,7 @@
 #include "common/io/checkpoint.hpp"
 #include "common/time/step_errors.hpp"
 #include "fluid_solver/judge/driving.hpp"
+#include "fluid_solver/judge/phase_drift.hpp"
 #include "fluid_solver/step/fluid.hpp"
 
 namespace couplet::fluid {
@@ -21,7 +22,8 @@ namespace couplet::fluid {
 ///           friction takes what work has brought in, (W' - E')/(2 E). Where a clock drives it
 ///           (Driving) and it answers linearly (convection is a small share of its rate of change) no error drifts: the sum
 ///           of the local errors as vectors, which turn back with each half period, counts if it is less; friction that holds the
-///           flow to its forces, r dt above 1, makes the force's time its own: (w dt)^2/8 of an oscillation
+///           flow to its forces, r dt above 1, makes the force's time its own: (w dt)^2/8 of an oscillation. One that nothing
+///           drives and that repeats itself drifts in phase, see PhaseDrift: of this and the sum the larger one counts
 ///   linear  what the pressure's solver leaves of the cells' net outflow against what passes through them, times the
 ///           square root of the number of cells across: an outflow that alternates moves its neighbours alone, one
 ///           that does not the whole field; this is the mean of the two in logarithms
@@ -61,6 +63,7 @@ class FluidErrorEstimate {
   bool judged_ = false;                // a step has been judged
   double dt_old_ = 0;
   time::StepErrors steps_;
+  PhaseDrift drift_;
   double time_ = 0;                           // judged so far [s]
   double power_ = 0, gain_ = 0, energy_ = 0;  // means of late: work and gain of energy [W], energy [J]
   double work_ = 0, held_ = 0;                // what the ledger had: work and energy [J]

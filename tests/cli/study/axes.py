@@ -170,10 +170,12 @@ def estimated():
     from couplet.study.estimates import guesses, uncertainty
     found = guesses({"tvd": ([10, 20, 40], [1.04, 1.01, 1.0025]), "implicit": ([10, 20, 40], [1.17, 1.13, 1.115])})
     failed = check("what a series cannot see another one shows", 0.1 < found["implicit", 2] < 0.12 and found["tvd", 2] < 0.005, str(found))
+    chance = guesses({"hexahedra": ([2, 4, 8], [0.0996, 0.09998, 0.10006]), "tetrahedra": ([2, 4], [0.10064, 0.10063])})
+    failed += check("a run with one coarser beside it accuses none with two", chance["hexahedra", 2] < 1e-4, str(chance))
     first, second = (guesses({"upwind": ([10, 20], [1.4, 1.2])}, orders)["upwind", 1] for orders in ({"upwind": 1}, None))
     left = [uncertainty([], S(is_error=False, reference=1.0, given=given)) for given in ({"good-to": 1e-3}, {})]
     failed += check("a reference may be good to so much only", left == [1e-3, 0], str(left))
-    return failed + check("a series may be of another order", abs(first - 0.2) < 1e-12 and second < 0.07, f"{first} {second}")
+    return failed + check("a series may be of another order", abs(first - 0.2) < 1e-12 and second < 0.12, f"{first} {second}")
 
 
 def main(build):

@@ -5,13 +5,16 @@ The first guess is that of the change from the next coarser run of its series, o
 the order of the schemes (2, or by `orders` of the quantity for a series with a word in its name). Where two coarser runs
 are known, the guess with the order they show is made, too (from 1/2 to 3), and the geometric mean of both counts: a
 fixed order underestimates on meshes that are too coarse for it, an observed one too much where changes happen to be alike.
+Where only one is known nothing shows an order, and coarse meshes fall short of it: the mean is that with one order less.
 What a series cannot see of itself (a time step that stays) other series show: an error is not less than the distance to a run no
-finer that guesses less of itself, less what that run guesses (triangle inequality)."""
+finer that guesses less of itself, less what that run guesses (triangle inequality). That run must have as many coarser ones
+beside it as the one it accuses, or three: a change between two runs is small by chance."""
 import math
 
 from couplet.study import convergence, table
 
 ORDER = 2
+ENOUGH = 3  # coarser runs beside one whose guess is as good as any
 LOWEST, HIGHEST = 0.5, 3  # observed orders that are believed: even cells may do better than their schemes. Chosen on the committed studies:
 # with a highest of 2 they have 191 of 240 runs within a factor of 2, with 3 or 4 195; with a lowest of 1 the same
 CLEAR = 4  # times its own uncertainty a true error must be where the truth is the study's own best value
@@ -27,7 +30,7 @@ def of_series(sizes, values, i, order):
     ratio, change = sizes[i] / sizes[i - 1], abs(values[i] - values[i - 1])
     plain = change / (ratio**order - 1)
     if i < 2:
-        return plain
+        return math.sqrt(plain * change / (ratio**max(order - 1, min(order, 1)) - 1))
     before = values[i - 1] - values[i - 2]
     if (values[i] - values[i - 1]) * before <= 0:  # it swings: the larger swing
         return max(plain, abs(before) / (ratio**order - 1))
@@ -42,7 +45,7 @@ def guesses(series, orders=None):
     found = {}
     for (name, i), guess in own.items():
         size, value = series[name][0][i], series[name][1][i]
-        others = [(g, series[n][1][j]) for (n, j), g in own.items() if n != name and series[n][0][j] <= size]
+        others = [(g, series[n][1][j]) for (n, j), g in own.items() if n != name and series[n][0][j] <= size and j >= min(ENOUGH, i)]
         best = min(others, default=None)
         found[name, i] = max(guess, abs(value - best[1]) - best[0]) if best and best[0] < guess else guess
     return found

@@ -22,7 +22,7 @@ CASES = {
     "le11": ("stress at A", ("8%", "4%", "2%"), -105.67e6),      # [Pa], NAFEMS LE11 with converged p-FEM
     "square": ("drag", ("4%", "3%", "2%"), ("limit", "default")),
     "cylinder": ("drag", ("1.5%", "0.8%", "0.5%"), 5.57953523384),  # Schaefer and Turek, 2D-1
-    "street": ("largest drag", ("5%", "2%", "1%"), 3.2275),      # Schaefer and Turek, 2D-2; its ladder is the committed study's
+    "street": ("largest drag", ("5%", "2%", "1%"), 3.2275),      # Schaefer and Turek, 2D-2
     "cavity": ("u minimum", ("20%", "10%", "5%"), 0),            # an error itself
     "flap": ("tip at 0.4 s", ("5%", "2%", "1%"), ("limit", "semi-implicit")),
 }
