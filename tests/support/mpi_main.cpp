@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/linalg/petsc_environment.hpp"
+#include "common/parallel/mpi_start.hpp"
 #include "tests/support/chosen_files.hpp"
 
 namespace {
@@ -32,6 +33,8 @@ class FailurePrinter final : public ::testing::EmptyTestEventListener {
 int main(int argc, char** argv) {
   ::testing::InitGoogleTest(&argc, argv);
   if (!couplet::testing::choose_files(argc, argv)) return 2;
+  // As the programs start: Open MPI's own way to start a process alone waits 0.4 s for a daemon.
+  couplet::parallel::prepare_mpi_start();
   MPI_Init(&argc, &argv);
   int result = 0;
   {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""On a small porous body every solution method converges and gives the same force on 1, 2 and 3 ranks.
+"""On a small porous body every solution method converges and gives the same force on 1 and 3 ranks.
 Usage: porous_body_methods.py BUILD"""
 import pathlib
 import sys
@@ -14,7 +14,7 @@ MOST = {"newton-krylov": 150, "newton-krylov, corrected": 200, "segregated": 250
 with Job(ROOT, pathlib.Path(sys.argv[1]).resolve(), quick=True) as job:
     study = job.beside("configs/porous-body/study.py")
     for method, most in MOST.items():
-        runs = [study.run(job, CELLS, ranks, method) for ranks in ((1, 2, 3) if "newton" in method else (1,))]
+        runs = [study.run(job, CELLS, ranks, method) for ranks in ((1, 3) if "newton" in method else (1,))]
         forces = [r["force"] for r in runs]
         print(method, forces, [r["iterations"] for r in runs])
         if max(forces) / min(forces) - 1 > 1e-5:

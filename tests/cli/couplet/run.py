@@ -11,7 +11,7 @@ import time
 
 import h5py
 
-from scene import ROOT, call, case_in, environment, start
+from scene import ROOT, call, call_here, case_in, environment, start
 from checks import check, end  # noqa: E402  (scene knows where it is)
 
 bin_, what = pathlib.Path(sys.argv[1]), sys.argv[2]
@@ -28,6 +28,11 @@ def left_behind(folder):
         if str(folder) in words and (words.startswith("mpirun") or words.startswith(str(bin_))):
             found.append(words.replace("\0", " ")[:80])
     return found
+
+
+def ask(bin_, command, *words):
+    """A command whose answer counts; a run in a process of its own."""
+    return (call if command == "run" else call_here)(bin_, command, *words)
 
 
 def until(condition, seconds=60):
@@ -146,7 +151,7 @@ def wrong(folder):
     case = case_in(folder / "a", bin_)
     for change, said in (("participants.solid.material.density=heavy", "'heavy' is not a number"), ("participants.fluid.densty=1", "densty")):
         for command in ("run", "check"):
-            result = call(bin_, command, case, "--set", change)
+            result = ask(bin_, command, case, "--set", change)
             check(f"{command}: {change}", result.returncode == 2 and said in result.stderr and "Traceback" not in result.stderr, result.stderr)
             if command == "run":
                 check("  says what to do, without the launcher's pages", f"couplet check {case} --set {change}" in result.stderr and "mpirun detected" not in result.stderr, result.stderr)
@@ -160,23 +165,23 @@ def wrong(folder):
     for words, said in ((("run", folder / "none.yaml"), "does not exist"), (("run", case, "-n", "fluid=0"), "whole numbers"), (("run", case, "-n", "air=1"), "there is no participant 'air'"),
                         (("run", case, "-n", "3"), "at least 4 ranks"), (("run", case, "--set", "a"), "a.b=value"), (("rnu", case), "did you mean 'run'"), (("run", case, "--fast"), "--fast"),
                         (("new", folder / "a"), "is there already"), (("new", folder / "b", "--from", "perpendicular-flop"), "near: perpendicular-flap")):
-        result = call(bin_, *words)
+        result = ask(bin_, *words)
         check(" ".join(map(str, words[2:] or words)), result.returncode == 2 and said in result.stderr and "Traceback" not in result.stderr, result.stderr)
     for name, content, said in (("binary", b"\x85\xff" * 99, "is not a text file"), ("three", b"{simulation: 3, participants: {a: {program: fluid_solver}}}", "simulation"), ("nobody", b"{participants: {a: }}", "participants.a: expected a mapping")):
         (folder / f"{name}.yaml").write_bytes(content)
         for command in ("run", "check", *(("explain",) if name != "three" else ())):
-            result = call(bin_, command, folder / f"{name}.yaml")
+            result = ask(bin_, command, folder / f"{name}.yaml")
             check(f"{command} {name}.yaml", result.returncode == 2 and said in result.stderr and "Traceback" not in result.stderr, result.stderr)
     result = call(bin_, "run", case, "--restart", folder / "none")
     check("what no check of the case finds", result.returncode == 2 and "no complete checkpoint" in result.stderr and "couplet check" not in result.stderr, result.stderr)
     picture = folder / "no folder/x.png"  # written nowhere: by who may not write there, too
     (folder / "m.csv").write_text("time [s],a\n0,1\n1,2\n")
-    result = call(bin_, "plot", folder / "m.csv", "--picture", picture)
+    result = ask(bin_, "plot", folder / "m.csv", "--picture", picture)
     check("a picture that cannot be written", result.returncode == 1 and f"{picture}: No such file" in result.stderr and "Traceback" not in result.stderr, result.stderr)
-    result = call(bin_, "new", folder / "m.csv/mine")
+    result = ask(bin_, "new", folder / "m.csv/mine")
     check("a folder that cannot be made", result.returncode in (1, 2) and "m.csv" in result.stderr and "Traceback" not in result.stderr, result.stderr)
     (folder / "h.csv").write_bytes(b"\x89HDF\xff")
-    result = call(bin_, "plot", folder / "h.csv")
+    result = ask(bin_, "plot", folder / "h.csv")
     check("a file that is no text", result.returncode == 1 and "is not a text file" in result.stderr and "Traceback" not in result.stderr, result.stderr)
     failing = call(bin_, "run", case, "--strict=effects", "--set", "simulation.time-step=0.03", "--set", "coupling.convergence.max-iterations=1")
     check("a run that fails passes its exit code on", failing.returncode == 1 and "failed after" in failing.stderr, f"{failing.returncode} {failing.stderr}")
@@ -209,15 +214,15 @@ def tell(folder):
     told = call(bin_)
     check("couplet lists its commands", told.returncode == 0 and all(f"  {word} " in told.stdout for word in ("run", "resume", "watch", "doctor")), told.stdout)
     for word in re.findall(r"^  (\w+) ", told.stdout, flags=re.M):
-        told = call(bin_, word, "--help")
+        told = call_here(bin_, word, "--help")
         check(f"{word} --help", told.returncode == 0 and "usage: couplet " + word in told.stdout, told.stderr)
     case = case_in(folder / "a", bin_)
     valid = call(bin_, "check", case)
     check("check", valid.returncode == 0 and valid.stdout.strip().endswith("valid"), valid.stdout + valid.stderr)
-    explained = call(bin_, "explain", case)
+    explained = call_here(bin_, "explain", case)
     check("explain", explained.returncode == 0 and explained.stdout.count(" as '") == 4 and "launch line:     mpirun" in explained.stdout and "  off" not in explained.stdout, explained.stdout)
-    check("explain --all", "  off" in call(bin_, "explain", case, "--all").stdout)
-    gallery = call(bin_, "gallery", "tank")
+    check("explain --all", "  off" in call_here(bin_, "explain", case, "--all").stdout)
+    gallery = call_here(bin_, "gallery", "tank")
     check("gallery", gallery.returncode == 0 and "thermocline-andasol" in gallery.stdout and "perpendicular-flap" not in gallery.stdout, gallery.stdout)
     doctor = call(bin_, "doctor")
     check("doctor", doctor.returncode == 0 and "ok  self-test" in doctor.stdout and "Open MPI" in doctor.stdout, doctor.stdout + doctor.stderr)
@@ -233,12 +238,12 @@ def tell(folder):
     drawn = call(bin_, "plot", folder / "a/out/fluid/forces.csv")
     for name, field, more in (("fluid", "velocity", ("--component", "x")),):
         picture = folder / f"{field}.png"
-        told = call(bin_, "plot", folder / "a/out" / name, "--field", field, "--picture", picture, *more)
+        told = call_here(bin_, "plot", folder / "a/out" / name, "--field", field, "--picture", picture, *more)
         check(f"plot --field {field}", told.returncode == 0 and picture.stat().st_size > 5000, told.stderr)
     plate = call(bin_, "run", ROOT / "configs/free-plate", "-q", "--set", f"simulation.output.folder={folder / 'plate'}")
-    mode = call(bin_, "plot", folder / "plate", "--mode", "7", "--picture", folder / "mode.png")
+    mode = call_here(bin_, "plot", folder / "plate", "--mode", "7", "--picture", folder / "mode.png")
     check("plot --mode", plate.returncode == 0 and mode.returncode == 0 and (folder / "mode.png").stat().st_size > 5000, plate.stderr + mode.stderr)
-    wrong_field = call(bin_, "plot", folder / "a/out/fluid", "--field", "speed")
+    wrong_field = call_here(bin_, "plot", folder / "a/out/fluid", "--field", "speed")
     check("a field that is not there", wrong_field.returncode == 2 and "fields: pressure, velocity" in wrong_field.stderr, wrong_field.stderr)
     check("plot", drawn.returncode == 0 and (folder / "a/out/fluid/forces.png").exists(), drawn.stderr)
 
@@ -248,8 +253,8 @@ def gallery(folder):
     names = [line.split()[0] for line in call(bin_, "gallery").stdout.splitlines()]
     check("all cases of configs/ are listed", sorted(names) == sorted(f.parent.name for f in ROOT.glob("configs/*/case.yaml")), names)
     for name in names:
-        made = call(bin_, "new", folder / name, "--from", name)
-        valid = call(bin_, "check", folder / name)
+        made = call_here(bin_, "new", folder / name, "--from", name)
+        valid = call_here(bin_, "check", folder / name)
         check(name, made.returncode == 0 and valid.returncode == 0 and valid.stdout.endswith("valid\n"), made.stderr + valid.stderr)
 
 

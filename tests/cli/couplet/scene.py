@@ -4,6 +4,8 @@ import os
 import pathlib
 import subprocess
 import sys
+import tempfile
+import traceback
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT / "client/python"), str(ROOT / "tests/support")]
@@ -11,7 +13,8 @@ COUPLET = ROOT / "scripts/couplet"
 
 
 def environment(bin_):
-    return {**os.environ, "COUPLET_BIN": str(bin_)}
+    """Without the binding of the tests' own environment: couplet sets it."""
+    return {**{name: value for name, value in os.environ.items() if name != "OMPI_MCA_hwloc_base_binding_policy"}, "COUPLET_BIN": str(bin_)}
 
 
 def case_in(folder, bin_, end_time=0.03, step=0.01, checkpoints=0.01):
@@ -29,6 +32,35 @@ def case_in(folder, bin_, end_time=0.03, step=0.01, checkpoints=0.01):
 
 def call(bin_, *words, **more):
     return subprocess.run([str(COUPLET), *map(str, words)], capture_output=True, text=True, env=environment(bin_), **more)
+
+
+def call_here(bin_, *words):
+    """As call(), in this process: to start Python takes longer than most commands. Not for runs, which handle signals."""
+    from couplet.command import main
+    os.environ["COUPLET_BIN"] = str(bin_)
+    with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as complaints:
+        said = []
+        sys.stdout.flush()
+        before = [os.dup(number) for number in (1, 2)]
+        os.dup2(out.fileno(), 1)
+        os.dup2(complaints.fileno(), 2)
+        try:
+            code = main(["couplet", *map(str, words)])
+        except SystemExit as leave:
+            code = leave.code or 0
+        except Exception:  # as the interpreter does
+            traceback.print_exc()
+            code = 1
+        finally:
+            sys.stdout.flush()
+            sys.stderr.flush()
+            for number, file in zip((1, 2), before):
+                os.dup2(file, number)
+                os.close(file)
+        for file in (out, complaints):
+            file.seek(0)
+            said.append(file.read())
+    return subprocess.CompletedProcess(words, code, *said)
 
 
 def start(bin_, *words, **more):

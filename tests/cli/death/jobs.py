@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs small MPMD jobs of the coupler and the two toy participants, and checks how they end."""
+import concurrent.futures
 import os
 import subprocess
 import sys
@@ -31,16 +32,26 @@ def case_text(end="1 s", fluid="", solid=""):
 
 
 class Suite:
-    """Scenarios that report themselves; each runs in an empty folder."""
+    """Scenarios that report themselves; each runs in an empty folder. `at_once`: so many at a time; a job that fails mostly waits, as
+    mpirun gives its processes a second to end."""
 
-    def __init__(self):
+    def __init__(self, at_once=1):
+        self.pool = concurrent.futures.ThreadPoolExecutor(at_once) if at_once > 1 else None
+        self.begun = []
         programs = [os.path.abspath(p) for p in sys.argv[1:3]]
         for name in ("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"):
             os.environ.setdefault(name, "1")
         os.environ["PATH"] = os.pathsep.join(programs + [os.environ["PATH"]])
         self.failed = []
 
-    def scenario(self, name, command, cases, code, lines, fault=None, within=5.0, not_lines=(), once=None, prepare=None):
+    def scenario(self, *words, **more):
+        """As run(), at once or when its turn has come."""
+        if self.pool:
+            self.begun.append(self.pool.submit(self.run, *words, **more))
+        else:
+            self.run(*words, **more)
+
+    def run(self, name, command, cases, code, lines, fault=None, within=5.0, not_lines=(), once=None, prepare=None):
         """`lines`: each must be part of a line of the output, `once` of exactly one; `code`: None is any but 0. `within`: so
         many seconds after the first program of the job is gone (not after the start) all of it is. `prepare`: called with
         the folder."""
@@ -91,13 +102,15 @@ class Suite:
             for line in not_lines:
                 if line in output:
                     problems.append(f"a line holds: {line}")
-        print(f"{'not ok' if problems else 'ok'}  {name}  ({seconds:.1f} s)", flush=True)
+        said = f"{'not ok' if problems else 'ok'}  {name}  ({seconds:.1f} s)"
         if problems:
             self.failed.append(name)
-            print("  " + "\n  ".join(problems))
-            print("  output:\n    " + "\n    ".join(output.splitlines()[-40:]), flush=True)
+            said += "\n  " + "\n  ".join(problems) + "\n  output:\n    " + "\n    ".join(output.splitlines()[-40:])
+        print(said + "\n", end="", flush=True)
 
     def finish(self):
+        for scenario in self.begun:
+            scenario.result()
         print(f"{len(self.failed)} scenarios failed" if self.failed else "all scenarios passed")
         sys.exit(1 if self.failed else 0)
 

@@ -5,7 +5,7 @@ import sys
 from jobs import Suite, case_text, mpmd
 
 phases = sys.argv[3].split(",")
-suite = Suite()
+suite = Suite(at_once=2)
 case = {"case.yaml": case_text()}
 command = mpmd("1 coupler case.yaml", "2 toy_piston case.yaml", "1 toy_spring case.yaml")
 

@@ -2,7 +2,7 @@
 """Wrong launches and uncaught errors: one clear message, all processes end, the exit code tells."""
 from jobs import Suite, case_text, mpmd
 
-suite = Suite()
+suite = Suite(at_once=2)
 text = case_text()
 case = {"case.yaml": text}
 right = "Start it with: mpirun -n 1 coupler case.yaml : -n 1 toy_piston case.yaml : -n 1 toy_spring case.yaml"
