@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "common/fv/expression.hpp"
+#include "fluid_solver/momentum/rates.hpp"
+#include "fluid_solver/momentum/viscous_solver.hpp"
 #include "fluid_solver/motion/step_work.hpp"
-#include "fluid_solver/pressure/viscous_solver.hpp"
-#include "fluid_solver/step/rates.hpp"
 
 namespace couplet::fluid {
 

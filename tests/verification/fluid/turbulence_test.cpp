@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "fluid_case.hpp"
+#include "fluid_solver/momentum/rates.hpp"
 #include "fluid_solver/output/derived.hpp"
-#include "fluid_solver/step/rates.hpp"
 #include "fluid_solver/turbulence/statistics.hpp"
 #include "fluid_solver/turbulence/turbulence.hpp"
 

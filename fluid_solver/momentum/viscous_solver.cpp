@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/pressure/viscous_solver.hpp"
+#include "fluid_solver/momentum/viscous_solver.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "fluid_solver/boundary/boundary.hpp"
-#include "fluid_solver/pressure/viscous_rows.hpp"
+#include "fluid_solver/momentum/viscous_rows.hpp"
 #include "fluid_solver/state/placement.hpp"
 
 namespace couplet::fluid {
