@@ -17,11 +17,6 @@ namespace {
 // Absolute goal of the pressure equation relative to the size of the fluxes: below it there is only
 // round-off, on which a relative tolerance would spin (uniform flow, fluid at rest).
 constexpr double flux_floor = 3e-15;
-constexpr int oblique_passes = 2, most_oblique_passes = 200;
-constexpr double standing = 1e-3;  // change of the pressure gradient in a pass
-// The first pass only gives the second one the gradient of its non-orthogonal part: what that share of the
-// operator leaves of a looser tolerance.
-constexpr double first_pass_tolerance = 10, loosest_tolerance = 0.5;
 // Up to here two passes of the pressure equation hold after an implicit predictor (measured: 40 hold, 50
 // grow).
 constexpr double largest_degrees = 40;
@@ -99,68 +94,6 @@ void PressureProjection<D>::set_boundary_flux(const Vectors<D>& w) {
     if (k_.bodies && k_.bodies->open(f) < 1) k_.phi_p[f] = k_.open_flux(f, k_.phi_p[f]);
   }
   if (k_.boundary.closed() && !k_.step.yields && !stores()) balance_closed_domain();
-}
-
-/// phi^p without and with -(dt/rho) grad p~ . k.
-template <int D>
-void PressureProjection<D>::add_oblique_pressure() {
-  const Placement<D>& now = *k_.step.to;
-  const double factor = k_.step.dt / k_.rho;
-  const Placement<D>& around = k_.pressure_placement();
-  k_.phi_p = k_.phi_orthogonal;
-  for (Index f = 0; f < k_.mesh.n_interior; ++f) {
-    const double w = now.weight[f];
-    k_.phi_p[f] -=
-        factor * (w * k_.gradient_guess[k_.mesh.owner[f]] + (1 - w) * k_.gradient_guess[k_.mesh.neighbour[f]])
-                     .dot(around.oblique_of(f));
-  }
-  for (const Index b : k_.boundary.rows().of_pressure) {
-    const Index f = k_.mesh.n_interior + b;
-    k_.phi_p[f] -= factor * k_.gradient_guess[k_.mesh.owner[f]].dot(around.oblique_of(f));
-  }
-}
-
-/// On an oblique mesh in passes: the gradient in the non-orthogonal part is that of the steps before in the
-/// first, then that of the pass before. Two are enough where no old pressure is in the predictor (|z| = q,
-/// see extrapolate_pressure()) or q is small; an implicit predictor gives the old one back unsmoothed, and
-/// what two passes leave of it grows from about 45 degrees on: there the passes go on until the gradient
-/// stands.
-template <int D>
-void PressureProjection<D>::project(const State<D>& from, const Vectors<D>& w, double answer) {
-  k_.gradient_guess = k_.gradient_start;
-  const bool to_the_end = k_.oblique && k_.by.implicit && k_.very_oblique;
-  const int passes = to_the_end ? most_oblique_passes : k_.oblique ? oblique_passes : 1;
-  for (int pass = 1; pass <= passes; ++pass) {
-    if (k_.gradient_guess.empty())
-      k_.phi_p = k_.phi_orthogonal;
-    else
-      add_oblique_pressure();
-    const double tolerance = (pass < passes ? first_pass_tolerance : 1) * k_.parameters.pressure_tolerance;
-    solve_pressure(from, w, std::min(tolerance, loosest_tolerance), answer);
-    if (pass == passes && to_the_end)
-      throw SolveFailure(
-          "The non-orthogonal correction of the pressure equation did not converge in {} passes at t = "
-          "{:.6g} s: the mesh is too skewed, {:.0f} degrees between a face normal and the line of its cell "
-          "centres.",
-          passes, k_.by.time + k_.step.dt, k_.degrees);
-    if (pass == passes) break;
-    if (to_the_end) gradient_before_ = k_.gradient_guess;
-    pressure_gradient(*k_.step.to, k_.p, k_.p_boundary, nullptr, k_.gradient_guess);
-    for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) k_.gradient_guess[c] /= k_.step.to->volume[c];
-    k_.mesh.cells.update_ghosts(flat<D>(k_.gradient_guess), D);
-    if (to_the_end && pass >= oblique_passes && gradient_stands()) break;
-  }
-}
-
-template <int D>
-bool PressureProjection<D>::gradient_stands() const {
-  double sums[2] = {0, 0};
-  for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) {
-    if (!gradient_before_.empty()) sums[0] += (k_.gradient_guess[c] - gradient_before_[c]).squaredNorm();
-    sums[1] += k_.gradient_guess[c].squaredNorm();
-  }
-  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, k_.mesh.comm);
-  return !gradient_before_.empty() && sums[0] <= standing * standing * sums[1];
 }
 
 template <int D>

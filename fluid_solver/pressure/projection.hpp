@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "common/linalg/acceleration.hpp"
 #include "fluid_solver/motion/step_work.hpp"
 #include "fluid_solver/pressure/absorbing.hpp"
 #include "fluid_solver/pressure/compression.hpp"
@@ -75,7 +76,7 @@ class PressureProjection {
   double add_waves();
   std::vector<double> admittance() const;
   void add_oblique_pressure();
-  bool gradient_stands() const;
+  bool mix_gradients(int pass);
   void solve_pressure(const State<D>& from, const Vectors<D>& w, double tolerance, double answer);
   void set_boundary_pressure(const State<D>& from);
   void pressure_gradient(const Placement<D>& at, const std::vector<double>& p,
@@ -96,7 +97,9 @@ class PressureProjection {
   std::unique_ptr<AbsorbingBoundaries<D>> absorbing_;  // null: none
   std::unique_ptr<UpstreamVolume<D>> upstream_;        // null: none
   std::array<double, 3> assembled_rule_{};             // matrix_rule()
-  Vectors<D> gradient_before_;                         // very oblique meshes only
+  // Very oblique meshes only.
+  Vectors<D> gradient_before_;
+  std::unique_ptr<linalg::Accelerator> accelerator_;
 };
 
 }  // namespace couplet::fluid

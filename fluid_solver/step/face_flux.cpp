@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "common/base/processor_clones.hpp"
-#include "fluid_solver/step/rates.hpp"
+#include "fluid_solver/momentum/rates.hpp"
 
 namespace couplet::fluid {
 namespace {

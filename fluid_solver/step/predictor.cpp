@@ -14,7 +14,6 @@ namespace {
 // Modified Crank-Nicolson a L u^{n+1} + b L u^n + c L u^{n-1}: second order for any step ratio, and it damps
 // stiff modes.
 constexpr double c_modified = 1.0 / 16;
-constexpr int most_passes = 60;
 
 /// u + (a R + b R_old)/V, what an explicit step on a mesh at rest without forces comes to; R_old null: without.
 template <int D>
@@ -46,7 +45,7 @@ template <int D>
 Predictor<D>::Predictor(StepWork<D>& work)
     : k_(work),
       rate_operator_(work.mesh, work.boundary, work.nu, work.sound > 0),
-      viscous_solver_(work.mesh, work.boundary) {
+      friction_(work, rate_operator_) {
   if (!work.parameters.body_force.empty())
     body_force_ = fv::make_expressions(work.parameters.body_force, D, "body-force");
 }
@@ -211,71 +210,12 @@ void Predictor<D>::part_from_gaps(const State<D>& from, bool implicit) {
   }
 }
 
-/// What is left of the residual adds up over the steps: much tighter than the change of u in one of them.
-template <int D>
-double Predictor<D>::viscous_tolerance() const {
-  return std::min(1e-7, 0.1 * k_.parameters.pressure_tolerance);
-}
-
-/// u^n + r (u^n - u^{n-1}), then one sweep of Jacobi's method, which costs no face loop: its viscous rate is
-/// that of the levels, extrapolated in the same way.
-template <int D>
-void Predictor<D>::guess_velocity(const State<D>& from, double a) {
-  if (k_.by.dt_old == 0) {
-    k_.u_p = from.u;
-    return;
-  }
-  const double ratio = k_.step.dt / k_.by.dt_old;
-  const std::vector<double>& inverse = viscous_solver_.inverse_diagonal();
-  for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) {
-    const Vec<D> ahead = from.u[c] + ratio * (from.u[c] - from.u_old[c]);
-    const Vec<D> rate = rates_.viscous[c] + ratio * (rates_.viscous[c] - from.rates_old.viscous[c]);
-    k_.u_p[c] =
-        ahead + inverse[c] * (k_.right_side[c] + k_.step.dt * a * rate - k_.step.to->volume[c] * ahead);
-  }
-  k_.mesh.cells.update_ghosts(flat<D>(k_.u_p), D);
-}
-
 template <int D>
 void Predictor<D>::solve_viscous(const State<D>& from, const Vectors<D>& w, double a) {
-  viscous_solver_.prepare(k_.step.to, a * k_.nu * k_.step.dt);
-  guess_velocity(from, a);
-  if (k_.oblique)
-    solve_oblique_viscous(w, a);
-  else
-    k_.statistics.viscous_iterations += viscous_solver_.solve(w, viscous_tolerance(), k_.right_side, k_.u_p);
+  friction_.solve(from, rates_, w, a);
   k_.boundary.close(k_.mesh, *k_.step.to, k_.u_p, w, k_.u_boundary);
   wall_flux<D>(k_.mesh, *k_.step.to, k_.parameters.viscosity, k_.u_p, k_.u_boundary, k_.viscous_flux);
   add_back_old_pressure();
-}
-
-/// The non-orthogonal part is implicit too, by passes of deferred correction: left explicit beside an
-/// implicit orthogonal part it grows as soon as its share of the operator exceeds 1/8 (AB2 against 9/16, 3/8,
-/// 1/16), which a mesh sheared by 14 degrees reaches. The passes contract by that share.
-template <int D>
-void Predictor<D>::solve_oblique_viscous(const Vectors<D>& w, double a) {
-  const double enough = std::clamp(10 * k_.parameters.pressure_tolerance, 1e-11, 1e-4);
-  for (int pass = 1;; ++pass) {
-    k_.boundary.close(k_.mesh, *k_.step.to, k_.u_p, w, k_.u_boundary);
-    oblique_rate_.assign(k_.u_p.size(), Vec<D>::Zero());
-    rate_operator_.add_oblique(*k_.step.to, k_.u_p, k_.u_boundary, oblique_rate_);
-    viscous_side_ = k_.right_side;
-    for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) viscous_side_[c] += k_.step.dt * a * oblique_rate_[c];
-    u_before_ = k_.u_p;
-    k_.statistics.viscous_iterations += viscous_solver_.solve(w, viscous_tolerance(), viscous_side_, k_.u_p);
-    double sums[2] = {0, 0};
-    for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) {
-      sums[0] += (k_.u_p[c] - u_before_[c]).squaredNorm();
-      sums[1] += k_.u_p[c].squaredNorm();
-    }
-    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, k_.mesh.comm);
-    if (sums[0] <= enough * enough * sums[1]) return;
-    if (pass == most_passes)
-      throw SolveFailure(
-          "The non-orthogonal correction of the viscous term did not converge in {} passes (change {:.2e}). "
-          "The mesh is too skewed for an implicit viscous term: use 'viscous: explicit'.",
-          most_passes, std::sqrt(sums[0] / sums[1]));
-  }
 }
 
 template <int D>

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "common/fv/expression.hpp"
+#include "fluid_solver/momentum/implicit_friction.hpp"
+#include "fluid_solver/momentum/rates.hpp"
 #include "fluid_solver/motion/step_work.hpp"
-#include "fluid_solver/pressure/viscous_solver.hpp"
-#include "fluid_solver/step/rates.hpp"
 
 namespace couplet::fluid {
 
@@ -35,21 +35,17 @@ class Predictor {
   void add_swept(const State<D>& from, double e0, double e1);
   void part_from_gaps(const State<D>& from, bool implicit);
   void add_old_pressure(const State<D>& from, bool implicit);
-  double viscous_tolerance() const;
-  void guess_velocity(const State<D>& from, double a);
   void solve_viscous(const State<D>& from, const Vectors<D>& w, double a);
-  void solve_oblique_viscous(const Vectors<D>& w, double a);
   void add_back_old_pressure();
 
   StepWork<D>& k_;
   RateOperator<D> rate_operator_;
-  ViscousSolver<D> viscous_solver_;
+  ImplicitFriction<D> friction_;
   std::vector<fv::Expression> body_force_;
   Rates<D> rates_;
   Vectors<D> shear_;  // viscous flux through the boundary, of level n
   double weight_ = 0;
   Vectors<D> old_pressure_;  // dt/rho sum p^{n-1/2} S^{n+1}, of an implicit predictor on a moving mesh
-  Vectors<D> oblique_rate_, viscous_side_, u_before_;
 };
 
 }  // namespace couplet::fluid

@@ -231,9 +231,6 @@ StepLimits StepSize<D>::limits(const State<D>& s) {
       least[1] = std::min(least[1], friction_limit(c, std::atan2(convection, diffusion), size));
     if (lowest_implicit < least[1] * convection)
       least[1] = std::min(least[1], implicit_convective_limit(4 / peclet_of_[c]) / convection);
-    if (eddy > 0)  // the eddy part stays explicit
-      least[1] =
-          std::min(least[1], explicit_limit(std::atan2(convection, eddy)) / std::hypot(convection, eddy));
   }
   MPI_Allreduce(MPI_IN_PLACE, least, 3, MPI_DOUBLE, MPI_MIN, mesh_.comm);
   peclet_ = -least[2];
@@ -258,9 +255,7 @@ StepLimiter StepSize<D>::limiter(const State<D>& s, bool implicit) {
     bool friction = diffusion > convection;
     if (implicit) {
       limit = convection > 0 ? implicit_convective_limit(4 / peclet_of_[c]) / convection : base::infinity;
-      if (eddy > 0)
-        limit = std::min(limit, explicit_limit(std::atan2(convection, eddy)) / std::hypot(convection, eddy));
-      friction = eddy > convection;
+      friction = false;
       if (const double own = friction_limit(c, angle, size); own < limit) limit = own, friction = true;
     }
     if (limit >= found.limit) continue;

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "fluid_case.hpp"
-#include "fluid_solver/step/rates.hpp"
+#include "fluid_solver/momentum/rates.hpp"
 
 namespace couplet::fluid::test::energy_test {
 using namespace mesh;

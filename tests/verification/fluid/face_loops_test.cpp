@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "fluid_case.hpp"
+#include "fluid_solver/momentum/rates.hpp"
 #include "fluid_solver/step/loads.hpp"
-#include "fluid_solver/step/rates.hpp"
 
 namespace couplet::fluid::test::face_loops_test {
 using namespace mesh;

@@ -7,7 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "fluid_case.hpp"
-#include "fluid_solver/step/rates.hpp"
+#include "fluid_solver/momentum/rates.hpp"
 #include "participant_case.hpp"
 #include "tests/support/saved_state.hpp"
 

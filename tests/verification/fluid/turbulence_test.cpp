@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "fluid_case.hpp"
+#include "fluid_solver/momentum/rates.hpp"
 #include "fluid_solver/output/derived.hpp"
-#include "fluid_solver/step/rates.hpp"
 #include "fluid_solver/turbulence/statistics.hpp"
 #include "fluid_solver/turbulence/turbulence.hpp"
 
@@ -131,6 +131,73 @@ TEST(Smagorinsky, takes_the_energy_that_the_budget_names) {
   printf("energy lost %.4f: eddies %.4f pressure %.4f\n", lost, eddies, pressure);
   EXPECT_NEAR(lost, named, 0.02 * named);
   EXPECT_GT(lost, 0.01 * before.kinetic);
+}
+
+/// Beside a wall a thin cell borders a thick one. What moves in the thin one alone is slowed down by the stress; with the mean of the
+/// cells' gradients in grad u^T at the face, the failing neighbour, it is driven.
+TEST(EddyStress, takes_energy_where_a_thin_cell_borders_a_thick_one) {
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {3, 2, 1}, Vec3::Zero(), Vec3(3, 2, 1));
+  for (Vec3& x : raw.points) x.y() = x.y() < 0.5 ? 0 : x.y() < 1.5 ? 0.02 : 1;
+  const auto [mesh, geometry] = distribute(MPI_COMM_SELF, raw);
+  State<2> s;
+  s.placement = make_placement<2>(mesh, geometry);
+  const Placement<2>& at = *s.placement;
+  s.eddy.assign(at.volume.size(), 1.0);
+  for (const Vec<2>& x : at.centre) s.u.push_back(x.y() < 0.02 ? Vec<2>(0, 1) : Vec<2>(0, 0));
+  s.u_boundary.assign(at.boundary_centre.size(), Vec<2>::Zero());
+  std::vector<Tensor<2>> gradient;
+  velocity_gradient<2>(mesh, at, s.u, s.u_boundary, gradient);
+  double taken = 0, of_means = 0;
+  for (Index f = 0; f < mesh.n_interior; ++f) {
+    const Index p = mesh.owner[f], n = mesh.neighbour[f];
+    const Vec<2> change = s.u[n] - s.u[p];
+    const Tensor<2> mean = at.weight[f] * gradient[p] + (1 - at.weight[f]) * gradient[n];
+    taken += eddy_stress<2>(at, s, gradient, f, p, n).dot(change);
+    of_means += (at.conductance[f] * change + mean.transpose() * at.area[f]).dot(change);
+  }
+  printf("taken %.2f, with the mean of the gradients %.2f\n", taken, of_means);
+  EXPECT_NEAR(taken, 3 * 2 / 0.5, 0.2);  // three faces of 1 m, 2 nu_t du/dy, 0.5 m between the centres
+  EXPECT_LT(of_means, -10);
+}
+
+/// A strong eddy viscosity beside an implicit viscous term: steps of a hundred times its explicit limit, second order in time.
+TEST(Smagorinsky, does_not_limit_an_implicit_step) {
+  FluidParameters p;
+  p.density = 1;
+  p.viscosity = 1e-3;
+  p.viscous = ViscousTreatment::implicit;
+  p.pressure_tolerance = 1e-10;
+  p.turbulence = TurbulenceParameters{TurbulenceModel::smagorinsky, 3.0};
+  p.time_step = 1;
+  all_sides(p, 2, boundary(BoundaryType::periodic));
+  p.initial_velocity = {{"sin(x)*cos(y) + 0.1*sin(2*y)"}, {"-cos(x)*sin(y)"}};
+  const double length = 2 * std::numbers::pi;
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {32, 32, 1}, Vec3::Zero(), Vec3(length, length, 1));
+  raw.periodic = {{"xmin", "xmax"}, {"ymin", "ymax"}};
+  const auto velocity = [&](int steps) {
+    FluidCase<2> c(MPI_COMM_WORLD, raw, p);
+    c.run(0.4, steps);
+    return c.state().u;
+  };
+  FluidParameters own = p;
+  own.time_step.reset();
+  own.viscous = ViscousTreatment::explicit_;
+  FluidCase<2> neighbour(MPI_COMM_WORLD, raw, own);
+  neighbour.run(0.4, 1);
+  const int sub_steps = neighbour.fluid().statistics().sub_steps;
+  const Vectors<2> exact = velocity(128);
+  const auto error = [&](int steps) {
+    const Vectors<2> u = velocity(steps);
+    double sum = 0;
+    for (std::size_t c = 0; c < u.size(); ++c) sum += (u[c] - exact[c]).squaredNorm();
+    return std::sqrt(parallel::sum(MPI_COMM_WORLD, sum));
+  };
+  const double coarse = error(8), fine = error(16), order = std::log2(coarse / fine);
+  printf("explicit: %d sub-steps; implicit: errors %.2e, %.2e of 8 and 16 steps, order %.2f\n", sub_steps,
+         coarse, fine, order);
+  EXPECT_GT(sub_steps, 80);
+  EXPECT_GT(order, 1.8);
+  EXPECT_LT(order, 2.6);
 }
 
 // Before they begin there are none: 0 would be a velocity.

@@ -47,7 +47,7 @@ EFFECTS = [
         ("fluid_solver/motion/immersed.cpp", "fluid_solver/pressure/projection_bodies.cpp")),
     Own("fluid_solver", "gaps that close", ("gaps={slot: {between: [bottom, top], opening: 1 mm}}",),
         ("fluid_solver/motion/gaps.cpp", "fluid_solver/pressure/projection_gaps.cpp")),
-    Own("fluid_solver", "implicit viscous term", ("viscous=implicit",), ("fluid_solver/pressure/viscous_solver.cpp",), ("viscous=explicit",)),
+    Own("fluid_solver", "implicit viscous term", ("viscous=implicit",), ("fluid_solver/momentum/viscous_solver.cpp",), ("viscous=explicit",)),
     Own("fluid_solver", "running statistics", ("statistics={start: 0}",), ("fluid_solver/turbulence/statistics.cpp",)),
     Own("fluid_solver", "lines and planes", ("output={samples: {middle: {type: line, from: [0.1, 0.5], to: [0.9, 0.5]}}}",),
         ("fluid_solver/output/samples.cpp",)),

@@ -4,19 +4,27 @@
 #include <memory>
 
 #include "fluid_solver/boundary/boundary.hpp"
-#include "fluid_solver/pressure/viscous_rows.hpp"
+#include "fluid_solver/momentum/viscous_rows.hpp"
 #include "fluid_solver/state/placement.hpp"
 
 namespace couplet::fluid {
 
+/// Of an eddy viscosity in the matrix: theta dt nu_t at interior faces, nu_t the mean of two cells.
+struct EddyShare {
+  const std::vector<double>* eddy = nullptr;  ///< nu_t per local cell [m^2/s]; null: none
+  double factor = 0;                          ///< theta dt [s]
+  double at(Index p, Index n) const { return eddy ? 0.5 * factor * ((*eddy)[p] + (*eddy)[n]) : 0; }
+};
+
 /// Solves  A u = V u + beta sum_f g (u_P - u_f) = b  for all components at once, by CG on D^(-1/2) A D^(-1/2), which is CG with
-/// Jacobi's preconditioner [hestenes1952]. beta = a nu dt [m^2]. The system is well conditioned wherever convection limits the step.
+/// Jacobi's preconditioner [hestenes1952]. beta = a nu dt [m^2]; at interior faces with the share of an eddy viscosity added.
+/// The system is well conditioned wherever convection limits the step.
 template <int D>
 class ViscousSolver {
  public:
   ViscousSolver(const mesh::Mesh& mesh, const Boundary<D>& boundary) : mesh_(mesh), boundary_(boundary) {}
   /// The system of the solves that follow. Collective.
-  void prepare(std::shared_ptr<const Placement<D>> at, double beta);
+  void prepare(std::shared_ptr<const Placement<D>> at, double beta, const EddyShare& eddies = {});
   /// Of its diagonal D, per owned cell.
   const std::vector<double>& inverse_diagonal() const { return inverse_diagonal_; }
   /// `b`: per local cell (owned ones count) without boundary parts; `w`: given velocity per boundary face;
@@ -32,13 +40,14 @@ class ViscousSolver {
     Vec<D> n;
     Vec<D> times(const Vec<D>& x) const { return both * x + normal * x.dot(n) * n; }
   };
-  void set_diagonal();
-  void set_entries();
+  void set_diagonal(const EddyShare& eddies);
+  void set_entries(const EddyShare& eddies);
   double apply(Vectors<D>& x, Vectors<D>& y) const;
   const mesh::Mesh& mesh_;
   const Boundary<D>& boundary_;
   std::shared_ptr<const Placement<D>> at_;
   double beta_ = 0;
+  bool with_eddies_ = false;
   std::unique_ptr<ViscousRows> a_;  // D^(-1/2) A D^(-1/2), but for boundary_rows_
   std::vector<BoundaryRow> boundary_rows_;
   std::vector<double> inverse_diagonal_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/pressure/viscous_solver.hpp"
+#include "fluid_solver/momentum/viscous_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,12 +18,15 @@ constexpr int most_iterations = 2000;
 
 /// Without the boundary in a_->diagonal, with it in inverse_diagonal_.
 template <int D>
-void ViscousSolver<D>::set_diagonal() {
+void ViscousSolver<D>::set_diagonal(const EddyShare& eddies) {
   const Placement<D>& at = *at_;
   std::copy_n(at.volume.begin(), a_->size(), a_->diagonal.begin());
-  for (Index f = 0; f < mesh_.n_interior; ++f)
-    for (const Index c : {mesh_.owner[f], mesh_.neighbour[f]})
-      if (c < a_->size()) a_->diagonal[c] += beta_ * at.conductance[f];
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+    const double entry = (beta_ + eddies.at(p, n)) * at.conductance[f];
+    for (const Index c : {p, n})
+      if (c < a_->size()) a_->diagonal[c] += entry;
+  }
   inverse_diagonal_ = a_->diagonal;
   boundary_rows_.clear();
   const FaceRows& given = boundary_.rows();
@@ -38,7 +41,7 @@ void ViscousSolver<D>::set_diagonal() {
 }
 
 template <int D>
-void ViscousSolver<D>::set_entries() {
+void ViscousSolver<D>::set_entries(const EddyShare& eddies) {
   scale_.resize(mesh_.cells.n_local());
   for (Index c = 0; c < a_->size(); ++c) {
     scale_[c] = std::sqrt(inverse_diagonal_[c]);
@@ -49,17 +52,20 @@ void ViscousSolver<D>::set_entries() {
   for (Index c = 0; c < a_->size(); ++c)
     for (const std::size_t end = e + a_->width; e < end; ++e)
       if (const Index f = a_->face[e]; f >= 0)
-        a_->value[e] = -beta_ * at_->conductance[f] * scale_[c] * scale_[a_->column[e]];
+        a_->value[e] =
+            -(beta_ + eddies.at(c, a_->column[e])) * at_->conductance[f] * scale_[c] * scale_[a_->column[e]];
 }
 
 template <int D>
-void ViscousSolver<D>::prepare(std::shared_ptr<const Placement<D>> at, double beta) {
-  if (at == at_ && beta == beta_) return;  // on all ranks alike: each step of a mesh that moves has its own
+void ViscousSolver<D>::prepare(std::shared_ptr<const Placement<D>> at, double beta, const EddyShare& eddies) {
+  // On all ranks alike: each step of a mesh that moves has its own placement.
+  if (at == at_ && beta == beta_ && !eddies.eddy && !with_eddies_) return;
   at_ = std::move(at);
   beta_ = beta;
+  with_eddies_ = eddies.eddy;
   if (!a_) a_ = std::make_unique<ViscousRows>(mesh_);
-  set_diagonal();
-  set_entries();
+  set_diagonal(eddies);
+  set_entries(eddies);
 }
 
 /// Returns x.y of this rank.

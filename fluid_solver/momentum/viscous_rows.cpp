@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/pressure/viscous_rows.hpp"
+#include "fluid_solver/momentum/viscous_rows.hpp"
 
 #include <algorithm>
 #include <array>

@@ -27,14 +27,19 @@ void subtract_mean_flux(const mesh::Mesh& mesh, const Placement<D>& at, const Ve
                         const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient,
                         std::span<const double> flux, std::span<double> rest);
 
-/// nu_t (grad u + grad u^T).S at an interior face between p and n [m^4/s^2], force per density.
+/// nu_t (grad u + grad u^T).S at an interior face between p and n [m^4/s^2], force per density. The normal derivative at the face is
+/// the difference of its two cells, in grad u^T too: the mean of their gradients may have the other sign, as beside a wall where
+/// a thin cell borders a thick one, and the stress would drive the velocity.
 template <int D>
 Vec<D> eddy_stress(const Placement<D>& at, const State<D>& s, const std::vector<Tensor<D>>& gradient, Index f,
                    Index p, Index n) {
   const double w = at.weight[f];
   const Tensor<D> mean = w * gradient[p] + (1 - w) * gradient[n];
+  const Vec<D>& area = at.area[f];
+  const Vec<D> straight = area - at.oblique_of(f), change = s.u[n] - s.u[p];  // g d, u_N - u_P
+  const double normal = (at.conductance[f] * change - mean * straight).dot(area) / area.squaredNorm();
   return 0.5 * (s.eddy[p] + s.eddy[n]) *
-         (at.conductance[f] * (s.u[n] - s.u[p]) + mean * at.oblique_of(f) + mean.transpose() * at.area[f]);
+         (at.conductance[f] * change + mean * at.oblique_of(f) + mean.transpose() * area + normal * area);
 }
 
 /// R = -sum phi u_f + nu sum [g du + (grad u)_f . k], see reference [trias2014] for the skew-symmetric

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/momentum/implicit_friction.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+constexpr int most_passes = 60, passes_alone = 4;
+constexpr linalg::Acceleration pass_acceleration{linalg::Acceleration::Type::anderson, 1, 6};
+// nu_t (grad u + grad u^T) has at most twice the rate of nu_t grad u.
+constexpr double stress_of_eddies = 2;
+
+}  // namespace
+
+/// What is left of the residual adds up over the steps: much tighter than the change of u in one of them.
+template <int D>
+double ImplicitFriction<D>::tolerance() const {
+  return std::min(1e-7, 0.1 * k_.parameters.pressure_tolerance);
+}
+
+/// u^n + r (u^n - u^{n-1}), then one sweep of Jacobi's method, which costs no face loop: its viscous rate is
+/// that of the levels, extrapolated in the same way.
+template <int D>
+void ImplicitFriction<D>::guess(const State<D>& from, const Rates<D>& rates, double a) {
+  if (k_.by.dt_old == 0) {
+    k_.u_p = from.u;
+    return;
+  }
+  const double ratio = k_.step.dt / k_.by.dt_old;
+  const std::vector<double>& inverse = solver_.inverse_diagonal();
+  for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) {
+    const Vec<D> ahead = from.u[c] + ratio * (from.u[c] - from.u_old[c]);
+    const Vec<D> rate = rates.viscous[c] + ratio * (rates.viscous[c] - from.rates_old.viscous[c]);
+    k_.u_p[c] =
+        ahead + inverse[c] * (k_.right_side[c] + k_.step.dt * a * rate - k_.step.to->volume[c] * ahead);
+  }
+  k_.mesh.cells.update_ghosts(flat<D>(k_.u_p), D);
+}
+
+template <int D>
+void ImplicitFriction<D>::solve(const State<D>& from, const Rates<D>& rates, const Vectors<D>& w, double a) {
+  const EddyShare eddies =
+      from.eddy.empty() ? EddyShare{} : EddyShare{&from.eddy, stress_of_eddies * a * k_.step.dt};
+  solver_.prepare(k_.step.to, a * k_.nu * k_.step.dt, eddies);
+  guess(from, rates, a);
+  if (eddies.eddy) damp_eddies(from, eddies);
+  if (k_.oblique)
+    solve_in_passes(w, a);
+  else
+    k_.statistics.viscous_iterations += solver_.solve(w, tolerance(), k_.right_side, k_.u_p);
+}
+
+/// The explicit stress of the eddies, of second order in time, plus theta dt nu_t g times the second difference of u in time,
+/// whose part at n+1 is in the matrix: with the a of modified Crank-Nicolson, Adams-Bashforth so becomes that scheme, and no nu_t
+/// limits the step. Thin cells need it, where a few times the molecular viscosity asks for a thousandth of the convective step.
+template <int D>
+void ImplicitFriction<D>::damp_eddies(const State<D>& from, const EddyShare& eddies) {
+  const double ratio = k_.by.dt_old > 0 ? k_.step.dt / k_.by.dt_old : 0;
+  const auto ahead = [&](Index c) {
+    return ratio > 0 ? Vec<D>((1 + ratio) * from.u[c] - ratio * from.u_old[c]) : from.u[c];
+  };
+  for (Index f = 0; f < k_.mesh.n_interior; ++f) {
+    const Index p = k_.mesh.owner[f], n = k_.mesh.neighbour[f];
+    const Vec<D> part = eddies.at(p, n) * k_.step.to->conductance[f] * (ahead(n) - ahead(p));
+    k_.right_side[p] -= part;
+    k_.right_side[n] += part;
+  }
+}
+
+/// The non-orthogonal part is implicit too, by passes of deferred correction: left explicit beside an
+/// implicit orthogonal part it grows as soon as its share of the operator exceeds 1/8 (AB2 against 9/16, 3/8,
+/// 1/16), which a mesh sheared by 14 degrees reaches. The passes contract by that share.
+template <int D>
+void ImplicitFriction<D>::solve_in_passes(const Vectors<D>& w, double a) {
+  const double enough = std::clamp(10 * k_.parameters.pressure_tolerance, 1e-11, 1e-4);
+  for (int pass = 1;; ++pass) {
+    k_.boundary.close(k_.mesh, *k_.step.to, k_.u_p, w, k_.u_boundary);
+    oblique_rate_.assign(k_.u_p.size(), Vec<D>::Zero());
+    rate_operator_.add_oblique(*k_.step.to, k_.u_p, k_.u_boundary, oblique_rate_);
+    right_side_ = k_.right_side;
+    for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) right_side_[c] += k_.step.dt * a * oblique_rate_[c];
+    before_ = k_.u_p;
+    k_.statistics.viscous_iterations += solver_.solve(w, tolerance(), right_side_, k_.u_p);
+    double sums[2] = {0, 0};
+    for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) {
+      sums[0] += (k_.u_p[c] - before_[c]).squaredNorm();
+      sums[1] += k_.u_p[c].squaredNorm();
+    }
+    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, k_.mesh.comm);
+    if (sums[0] <= enough * enough * sums[1]) return;
+    if (pass == most_passes)
+      throw SolveFailure(
+          "The non-orthogonal correction of the viscous term did not converge in {} passes (change {:.2e}). "
+          "The mesh is too skewed for an implicit viscous term: use 'viscous: explicit'.",
+          most_passes, std::sqrt(sums[0] / sums[1]));
+    if (pass >= passes_alone) accelerate(pass == passes_alone);
+  }
+}
+
+/// Of slow passes: u_p, found from before_, becomes the guess of the next by Anderson's acceleration. Collective.
+template <int D>
+void ImplicitFriction<D>::accelerate(bool start) {
+  const std::size_t owned = static_cast<std::size_t>(k_.mesh.cells.n_owned()) * D;
+  if (!accelerator_)
+    accelerator_ = std::make_unique<linalg::Accelerator>(k_.mesh.comm, owned, pass_acceleration);
+  if (start) accelerator_->restart();
+  for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) k_.u_p[c] -= before_[c];
+  accelerator_->advance(flat<D>(before_).first(owned), flat<D>(k_.u_p).first(owned));
+  k_.u_p.swap(before_);
+  k_.mesh.cells.update_ghosts(flat<D>(k_.u_p), D);
+}
+
+template class ImplicitFriction<2>;
+template class ImplicitFriction<3>;
+
+}  // namespace couplet::fluid
