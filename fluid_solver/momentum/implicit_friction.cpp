@@ -44,7 +44,8 @@ void ImplicitFriction<D>::guess(const State<D>& from, const Rates<D>& rates, dou
 template <int D>
 void ImplicitFriction<D>::solve(const State<D>& from, const Rates<D>& rates, const Vectors<D>& w, double a) {
   const EddyShare eddies =
-      from.eddy.empty() ? EddyShare{} : EddyShare{&from.eddy, stress_of_eddies * a * k_.step.dt};
+      from.eddy.empty() ? EddyShare{} : EddyShare{&eddy_, stress_of_eddies * a * k_.step.dt};
+  if (eddies.eddy) add_eddies(from);
   solver_.prepare(k_.step.to, a * k_.nu * k_.step.dt, eddies);
   guess(from, rates, a);
   if (eddies.eddy) damp_eddies(from, eddies);
@@ -54,9 +55,31 @@ void ImplicitFriction<D>::solve(const State<D>& from, const Rates<D>& rates, con
     k_.statistics.viscous_iterations += solver_.solve(w, tolerance(), k_.right_side, k_.u_p);
 }
 
-/// The explicit stress of the eddies, of second order in time, plus theta dt nu_t g times the second difference of u in time,
-/// whose part at n+1 is in the matrix: with the a of modified Crank-Nicolson, Adams-Bashforth so becomes that scheme, and no nu_t
-/// limits the step. Thin cells need it, where a few times the molecular viscosity asks for a thousandth of the convective step.
+/// The stress of u~ = (1 + r/2) u^n - r/2 u^{n-1}, with its own nu_t: what multiplies the velocities of all three levels, here and in
+/// damp_eddies(), must be the same. By Adams-Bashforth a nu_t that falls by a factor of ten from step to step, as in a gap that
+/// opens, leaves an old rate that nothing damps. On the mesh of level n.
+template <int D>
+void ImplicitFriction<D>::add_eddies(const State<D>& from) {
+  const double ratio = k_.by.dt_old > 0 ? k_.step.dt / k_.by.dt_old : 0, e0 = 1 + ratio / 2, e1 = -ratio / 2;
+  between_ = from.u;
+  between_boundary_ = from.u_boundary;
+  if (ratio > 0) {
+    for (std::size_t c = 0; c < between_.size(); ++c) between_[c] = e0 * from.u[c] + e1 * from.u_old[c];
+    for (std::size_t b = 0; b < between_boundary_.size(); ++b)
+      between_boundary_[b] = e0 * from.u_boundary[b] + e1 * from.u_boundary_old[b];
+  }
+  eddy_rate_.assign(between_.size(), Vec<D>::Zero());
+  rate_operator_.add_eddies(*k_.parameters.turbulence, *from.placement, between_, between_boundary_, eddy_,
+                            eddy_rate_);
+  for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) {
+    if ((k_.bodies && k_.bodies->is_closed(c)) || (k_.gap_closed() && k_.gaps->is_blocked(c))) continue;
+    k_.right_side[c] += k_.step.dt * eddy_rate_[c];
+  }
+}
+
+/// Theta dt nu_t g times the second difference of u in time, whose part at n+1 is in the matrix: with the a of modified
+/// Crank-Nicolson, an extrapolated rate so becomes that scheme, and no nu_t limits the step. Thin cells need it, where a few times
+/// the molecular viscosity asks for a thousandth of the convective step.
 template <int D>
 void ImplicitFriction<D>::damp_eddies(const State<D>& from, const EddyShare& eddies) {
   const double ratio = k_.by.dt_old > 0 ? k_.step.dt / k_.by.dt_old : 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "common/linalg/acceleration.hpp"
 #include "fluid_solver/momentum/rates.hpp"
@@ -10,8 +11,8 @@
 
 namespace couplet::fluid {
 
-/// The implicit part of modified Crank-Nicolson, V' u^p - a dt nu L' u^p = right side of the work; on oblique meshes in passes. The
-/// stress of an eddy viscosity is in the explicit part of the right side and is damped here.
+/// The implicit part of modified Crank-Nicolson, V' u^p - a dt nu L' u^p = right side of the work; on oblique meshes in passes. With
+/// the stress of an eddy viscosity, explicit and damped.
 template <int D>
 class ImplicitFriction {
  public:
@@ -24,6 +25,7 @@ class ImplicitFriction {
  private:
   double tolerance() const;
   void guess(const State<D>& from, const Rates<D>& rates, double a);
+  void add_eddies(const State<D>& from);
   void damp_eddies(const State<D>& from, const EddyShare& eddies);
   void solve_in_passes(const Vectors<D>& w, double a);
   void accelerate(bool start);
@@ -32,6 +34,8 @@ class ImplicitFriction {
   RateOperator<D>& rate_operator_;
   ViscousSolver<D> solver_;
   Vectors<D> oblique_rate_, right_side_, before_;
+  std::vector<double> eddy_;  // of the velocity between the levels, as the next
+  Vectors<D> between_, between_boundary_, eddy_rate_;
   std::unique_ptr<linalg::Accelerator> accelerator_;  // of meshes that need many passes
 };
 

@@ -177,15 +177,23 @@ void RateOperator<D>::set_eddy_viscosity(const TurbulenceParameters& model, Stat
 }
 
 template <int D>
-void RateOperator<D>::add_eddies(const State<D>& s, const std::vector<Tensor<D>>& gradient,
-                                 Vectors<D>& rate) const {
-  const Placement<D>& at = *s.placement;
+void RateOperator<D>::add_stress(const Placement<D>& at, const std::vector<double>& eddy, const Vectors<D>& u,
+                                 const std::vector<Tensor<D>>& gradient, Vectors<D>& rate) const {
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
-    const Vec<D> part = eddy_stress<D>(at, s, gradient, f, p, n);
+    const Vec<D> part = eddy_stress<D>(at, eddy, u, gradient, f, p, n);
     rate[p] += part;
     rate[n] -= part;
   }
+}
+
+template <int D>
+void RateOperator<D>::add_eddies(const TurbulenceParameters& model, const Placement<D>& at,
+                                 const Vectors<D>& u, const Vectors<D>& u_boundary, std::vector<double>& eddy,
+                                 Vectors<D>& rate) {
+  velocity_gradient<D>(mesh_, at, u, u_boundary, gradient_);
+  eddy_viscosity<D>(model, at, gradient_, eddy);
+  add_stress(at, eddy, u, gradient_, rate);
 }
 
 template <int D>
@@ -206,13 +214,14 @@ void RateOperator<D>::apply(const State<D>& state, bool split, bool correct_obli
   face_loop(state, split, rates);
   if (fourth_) fourth_->add_rates(state, split ? 0 : nu_, rates.rate);
   if (compressible_) add_dilatation(state, rates.rate);
-  if (!correct_oblique && state.eddy.empty()) return;
+  const bool eddies = !split && !state.eddy.empty();
+  if (!correct_oblique && !eddies) return;
   if (!gradient) {
     velocity_gradient<D>(mesh_, *state.placement, state.u, state.u_boundary, gradient_);
     gradient = &gradient_;
   }
   if (correct_oblique) add_oblique(*state.placement, *gradient, split ? rates.viscous : rates.rate);
-  if (!state.eddy.empty()) add_eddies(state, *gradient, rates.rate);
+  if (eddies) add_stress(*state.placement, state.eddy, state.u, *gradient, rates.rate);
 }
 
 template <int D>

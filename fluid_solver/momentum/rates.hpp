@@ -31,21 +31,21 @@ void subtract_mean_flux(const mesh::Mesh& mesh, const Placement<D>& at, const Ve
 /// the difference of its two cells, in grad u^T too: the mean of their gradients may have the other sign, as beside a wall where
 /// a thin cell borders a thick one, and the stress would drive the velocity.
 template <int D>
-Vec<D> eddy_stress(const Placement<D>& at, const State<D>& s, const std::vector<Tensor<D>>& gradient, Index f,
-                   Index p, Index n) {
+Vec<D> eddy_stress(const Placement<D>& at, const std::vector<double>& eddy, const Vectors<D>& u,
+                   const std::vector<Tensor<D>>& gradient, Index f, Index p, Index n) {
   const double w = at.weight[f];
   const Tensor<D> mean = w * gradient[p] + (1 - w) * gradient[n];
   const Vec<D>& area = at.area[f];
-  const Vec<D> straight = area - at.oblique_of(f), change = s.u[n] - s.u[p];  // g d, u_N - u_P
+  const Vec<D> straight = area - at.oblique_of(f), change = u[n] - u[p];  // g d, u_N - u_P
   const double normal = (at.conductance[f] * change - mean * straight).dot(area) / area.squaredNorm();
-  return 0.5 * (s.eddy[p] + s.eddy[n]) *
+  return 0.5 * (eddy[p] + eddy[n]) *
          (at.conductance[f] * change + mean * at.oblique_of(f) + mean.transpose() * area + normal * area);
 }
 
 /// R = -sum phi u_f + nu sum [g du + (grad u)_f . k], see reference [trias2014] for the skew-symmetric
 /// mid-point u_f. All at level n, on mesh n. `split`: the viscous part goes to Rates::viscous.
 /// `correct_oblique`: the mesh is not orthogonal. With an eddy viscosity, which vanishes on walls, its stress
-/// nu_t (grad u + grad u^T) comes to the explicit part. Collective.
+/// nu_t (grad u + grad u^T) comes to the rate that is not split; beside an implicit viscous part add it by add_eddies(). Collective.
 template <int D>
 class RateOperator {
  public:
@@ -65,9 +65,13 @@ class RateOperator {
   void set_fourth(const FourthOrder<D>* fourth) { fourth_ = fourth; }
   /// state.eddy from state.u. Collective.
   void set_eddy_viscosity(const TurbulenceParameters& model, State<D>& state);
+  /// The eddy viscosity of any velocity field (ghosts current), and what its stress adds to `rate`. Collective.
+  void add_eddies(const TurbulenceParameters& model, const Placement<D>& at, const Vectors<D>& u,
+                  const Vectors<D>& u_boundary, std::vector<double>& eddy, Vectors<D>& rate);
 
  private:
-  void add_eddies(const State<D>& state, const std::vector<Tensor<D>>& gradient, Vectors<D>& rate) const;
+  void add_stress(const Placement<D>& at, const std::vector<double>& eddy, const Vectors<D>& u,
+                  const std::vector<Tensor<D>>& gradient, Vectors<D>& rate) const;
   void add_oblique(const Placement<D>& at, const std::vector<Tensor<D>>& gradient, Vectors<D>& rate) const;
   void face_loop(const State<D>& state, bool split, Rates<D>& rates) const;
   void add_dilatation(const State<D>& state, Vectors<D>& rate);

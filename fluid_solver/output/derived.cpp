@@ -156,7 +156,7 @@ EnergyBudget energy_budget(const Fluid<D>& fluid) {
     for (Index f = 0; f < mesh.n_interior; ++f) {
       const Index p = mesh.owner[f], n = mesh.neighbour[f];
       const int owned = (p < mesh.cells.n_owned()) + (n < mesh.cells.n_owned());
-      sums[2] += 0.5 * owned * rho * eddy_stress<D>(at, s, gradient, f, p, n).dot(s.u[n] - s.u[p]);
+      sums[2] += 0.5 * owned * rho * eddy_stress<D>(at, s.eddy, s.u, gradient, f, p, n).dot(s.u[n] - s.u[p]);
     }
   }
   MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, mesh.comm);

@@ -103,7 +103,7 @@ void check_eddies(BoxCells cells) {
   for (Index f = 0; f < flow.mesh.n_interior; ++f) {
     std::vector<Tensor<D>> gradient(flow.mesh.cells.n_local(), flow.slope);
     const Vec<D> stress =
-        eddy_stress<D>(*flow.at, s, gradient, f, flow.mesh.owner[f], flow.mesh.neighbour[f]);
+        eddy_stress<D>(*flow.at, s.eddy, s.u, gradient, f, flow.mesh.owner[f], flow.mesh.neighbour[f]);
     EXPECT_LT((stress - 0.7 * (flow.slope + flow.slope.transpose()) * flow.at->area[f]).norm(), 1e-12);
   }
 }

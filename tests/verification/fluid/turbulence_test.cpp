@@ -152,7 +152,7 @@ TEST(EddyStress, takes_energy_where_a_thin_cell_borders_a_thick_one) {
     const Index p = mesh.owner[f], n = mesh.neighbour[f];
     const Vec<2> change = s.u[n] - s.u[p];
     const Tensor<2> mean = at.weight[f] * gradient[p] + (1 - at.weight[f]) * gradient[n];
-    taken += eddy_stress<2>(at, s, gradient, f, p, n).dot(change);
+    taken += eddy_stress<2>(at, s.eddy, s.u, gradient, f, p, n).dot(change);
     of_means += (at.conductance[f] * change + mean.transpose() * at.area[f]).dot(change);
   }
   printf("taken %.2f, with the mean of the gradients %.2f\n", taken, of_means);
