@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh_mover/curved_slide.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,13 +15,17 @@ namespace {
 // 1 - |cosine| between a face and the patch's mean normal up to which it is flat.
 constexpr double flat = 1e-9;
 
+/// In planes of one direction; parts may face each other (the two sides of a slice), so that their face vectors add up to nothing.
 /// Collective.
 bool is_flat(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch) {
-  Vec3 sum = Vec3::Zero();
-  for (Index f = patch.first; f < patch.first + patch.count; ++f) sum += geometry.face_area[f];
-  MPI_Allreduce(MPI_IN_PLACE, sum.data(), 3, MPI_DOUBLE, MPI_SUM, mesh.comm);
-  if (!(sum.norm() > 0)) return false;
-  const Vec3 normal = sum.normalized();
+  Tensor3 sum = Tensor3::Zero();
+  for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+    const Vec3& area = geometry.face_area[f];
+    sum += area * area.transpose() / area.norm();
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sum.data(), 9, MPI_DOUBLE, MPI_SUM, mesh.comm);
+  const Vec3 normal =
+      Eigen::SelfAdjointEigenSolver<Tensor3>(sum).eigenvectors().col(2);  // of the largest value
   double off = 0;
   for (Index f = patch.first; f < patch.first + patch.count; ++f)
     off = std::max(off, 1 - std::abs(geometry.face_area[f].normalized().dot(normal)));

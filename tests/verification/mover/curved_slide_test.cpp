@@ -2,6 +2,7 @@
 // Points that slide along a curved patch stay on it: half a ring whose inner circle moves.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -84,6 +85,24 @@ TEST(CurvedSlide, flat_patches_and_points_that_do_not_move_are_left_alone) {
   EXPECT_FALSE(CurvedSlide(mesh, geometry, p).empty());
   p.boundaries["xmax"].motion = BoundaryMotion::fixed;
   EXPECT_TRUE(CurvedSlide(mesh, geometry, p).empty());
+}
+
+/// Both sides of a slice as one patch, whose face vectors add up to nothing: its points may go where it was not, which those of a
+/// patch that counts as curved could not.
+TEST(CurvedSlide, two_parallel_planes_are_flat) {
+  RawMesh raw;
+  if (parallel::comm_rank(MPI_COMM_WORLD) == 0) {
+    raw = make_box(BoxCells::hexahedra, {4, 3, 1}, Vec3::Zero(), Vec3::Ones());
+    const auto index = [&](const char* name) {
+      return static_cast<int>(std::ranges::find(raw.patches, name) - raw.patches.begin());
+    };
+    std::ranges::replace(raw.boundary_patch, index("zmax"), index("zmin"));
+    raw.patches[index("zmin")] = "sides";
+    raw.patches.pop_back();
+  }
+  const auto [mesh, geometry] = distribute(MPI_COMM_WORLD, raw);
+  ASSERT_TRUE(mesh.find_patch("sides"));
+  EXPECT_TRUE(CurvedSlide(mesh, geometry, sliding(mesh)).empty());
 }
 
 TEST(CurvedSlide, is_refused_by_the_laplacian_with_what_to_use) {

@@ -65,6 +65,24 @@ def loop(job):
     return "opening and closing, at a lift of point 2 of " + ", ".join(texts), None
 
 
+AIR = tuple(f"participants.fluid.{key}" for key in ("compressibility.speed-of-sound=346", "compressibility.upstream-volume=1e-4", "boundaries.outlet.absorbing=true"))
+
+
+def closing(job):
+    """The valve in air that compresses, with 100 cm^3 of it upstream: whether the reed comes back to its seat."""
+    run = valve(job, "air", *AIR)
+    t, z = columns(run, "reed/probes.csv", "point-1 z [m]")
+    s, force = columns(run, "reed/contact.csv", "force [N]")
+    highest, top, least, end = first_cycle(t, z)
+    lift, f = 1e3 * (highest + START), 1 / end
+    opened = t[z > 1e-3].min() if (z > 1e-3).any() else np.inf
+    lands = s[(force > 0) & (s > opened)]
+    again = lands.size > 0 and bool((z[t > lands[0]] > 1e-3).any())
+    where = f"lands at {1e3 * lands[0]:.1f} ms and {'opens again' if again else 'stays'}" if lands.size else f"does not land in 40 ms, least lift {1e3 * (least + START):.2f} mm"
+    return (f"{lift:.2f} mm at point 1 ({100 * (lift / 3.07 - 1):+.0f} %) at {1e3 * top:.1f} ms, {f:.1f} Hz ({100 * (f / 57.9 - 1):+.0f} %), {where}",
+            lands.size > 0 and again and abs(lift / 3.07 - 1) <= 0.1 and abs(f / 57.9 - 1) <= 0.1)
+
+
 def swapped(job):
     """The slice with the plate, with the modes of a solid, with the solid at large strain."""
     here = job.root / "configs/reed-slice"
