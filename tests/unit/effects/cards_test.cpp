@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/base/error.hpp"
 #include "common/effects/card.hpp"
 #include "coupler/parameters/effect_cards.hpp"
 #include "coupler/parameters/schedule.hpp"
@@ -253,9 +254,13 @@ TEST(Sound, is_that_of_a_key_a_pressure_a_substance_or_none) {
   EXPECT_NEAR(speed(p, 1, 1), 152.5, 1);
   p = {};
   p.substance = "water";
-  EXPECT_NEAR(speed(p, 1, 1), 1482, 2);
+  EXPECT_NEAR(speed(p, 998, 1e-3), 1482, 2);
+  EXPECT_THROW(speed(p, 1.2, 1.8e-5), Error) << "the sound of water in the density of air";
   p.temperature = 333.15;
-  EXPECT_NEAR(speed(p, 1, 1), 1551, 1) << "60 degC";
+  EXPECT_NEAR(speed(p, 983, 5e-4), 1551, 1) << "60 degC";
+  p = {};
+  p.substance = "air";
+  EXPECT_THROW(speed(p, 998, 1e-3), Error) << "the sound of air in the density of water";
   p = {};
   p.pressure = 5e5;  // air at 5 bar and 20 degC
   EXPECT_NEAR(speed(p, 5.94, 1.8e-5), std::sqrt(1.3 * 5e5 / 5.94), 20);

@@ -56,9 +56,27 @@ def arrays(folder):
         if file.parent.name == "checkpoints":
             continue
         with h5py.File(file, "r") as series:
-            series.visititems(lambda name, item: found.update({f"{file.relative_to(folder)}: {name}": np.asarray(item[...])})
-                              if isinstance(item, h5py.Dataset) else None)
+            raw = {}
+            series.visititems(lambda name, item: raw.update({name: np.asarray(item[...])}) if isinstance(item, h5py.Dataset) else None)
+        found.update({f"{file.relative_to(folder)}: {name}": values for name, values in by_number(raw).items()})
     return found
+
+
+def by_number(series):
+    """The datasets of one file in the order of the numbers of its cells and points: files hold them rank by rank."""
+    import numpy as np
+    cells, points = series.get("mesh/cell-id"), series.get("mesh/point-id")
+    if cells is None or points is None:
+        return series
+    order = {"cells": np.argsort(cells, kind="stable"), "points": np.argsort(points, kind="stable")}
+    place = {"mesh/cell-id": "cells", "mesh/point-id": "points", "mesh/coordinates": "points"}
+    sorted_ones = {}
+    for name, values in series.items():
+        of = place.get(name) or ("points" if name.endswith("/coordinates") else name.split("/")[-2] if name.count("/") > 1 else None)
+        if name == "mesh/cells" and values.ndim == 2:
+            values, of = points[values], "cells"
+        sorted_ones[name] = values[order[of]] if of in order and len(values) == len(order[of]) else values
+    return sorted_ones
 
 
 def values_in_force(folder):

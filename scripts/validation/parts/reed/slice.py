@@ -11,11 +11,11 @@ FLUIDS = {
 }
 MESHES, STEPS = (0.5, 0.75, 1), (100, 50, 25)  # cells along each side, of the case's; us
 FROM, END = 7e-3, 25e-3  # the jet has its velocity from 5 ms on [s]
-DIES_OUT = 0.5  # of the swing of the first half after FROM: what the second half of a reed that settles is below
+DIES_OUT = 0.5  # of the range of the first half after FROM: what the second half of a reed that settles is below
 
 
 def motion(job, name, mesh, step):
-    """(settles or oscillates, mean gap [mm], swing [mm] and frequency [Hz] of the second half)."""
+    """(settles or oscillates, mean gap [mm], range [mm] and frequency [Hz] of the second half)."""
     size = [f"participants.{p}.mesh-parameters={{f: {mesh}}}" for p in ("fluid", "mover", "reed")]
     sets = (*FLUIDS[name], *size, f"simulation.time-step={step}e-6", f"simulation.end-time={END}", "simulation.output.interval=0")
     run = job.coupled_run(job.root / "configs/reed-slice/case.yaml", f"slice-{list(FLUIDS).index(name)}-{mesh}-{step}", sets, timeout=3600)
@@ -35,8 +35,8 @@ def statements(job):
         by_mesh = [motion(job, name, mesh, 50) for mesh in MESHES]
         by_step = [motion(job, name, MESHES[0], step) for step in STEPS]
         same &= by_mesh[-1][0] == by_mesh[-2][0] == by_step[-1][0] == by_step[-2][0]
-        word, mean, swing, frequency = by_mesh[-1]
+        word, mean, span, frequency = by_mesh[-1]
         apart = [" and ".join(f"{abs(pair[-1][i] - pair[-2][i]):.2g}" for pair in (by_mesh, by_step)) for i in (1, 2, 3)]
         texts.append(f"{name}: {', '.join(dict.fromkeys(m[0] for m in (*by_mesh, *by_step)))}; finest mesh: mean gap {mean:.2f} mm ({apart[0]} between the two finest meshes and steps), "
-                     f"swing {swing:.2f} mm ({apart[1]}), {frequency:.0f} Hz ({apart[2]})")
+                     f"range {span:.2f} mm ({apart[1]}), {frequency:.0f} Hz ({apart[2]})")
     return "; ".join(texts), same
