@@ -94,8 +94,9 @@ def side_by_side(folder):
     same = call(bin_, "compare", folder / "b", folder / "c")
     check("both end well, with the same results", codes == [0, 0] and same.returncode == 0, same.stdout)
     alone = call(bin_, "run", case, "--participant", "fluid", "--set", f"simulation.output.folder={folder / 'one'}")
-    other = call(bin_, "compare", folder / "b", folder / "one", "--tolerance", "1e-4")
-    check("compare knows cells and points by their numbers: one rank is the same as two", alone.returncode == 0 and other.returncode == 0, other.stdout[-600:])
+    # Iterations and what round-off leaves differ between numbers of ranks; fields do not.
+    fields = re.findall(r"fluid\.h5: \S+: .* ([\d.e+-]+) of the largest", call(bin_, "compare", folder / "b", folder / "one").stdout)
+    check("compare knows cells and points by their numbers: one rank is the same as two", alone.returncode == 0 and fields and all(float(v) < 1e-6 for v in fields), fields)
 
 
 def stop(folder):
