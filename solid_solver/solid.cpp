@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/solid.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "common/base/error.hpp"
@@ -105,6 +106,10 @@ std::vector<std::string> Solid::finish() {
   std::vector<std::string> sentences = judge_.sentences();
   judge_.finish_path(sentences);
   if (!is_last_) estimate_quantities();  // a partner's load may be the last
+  if (errors_ && !quantities_.empty()) {
+    const double mesh = errors_->parts().mesh;
+    for (QuantityEstimate& q : quantities_) q.body = mesh > 0 ? mesh * std::abs(q.value) : 0;
+  }
   tell_quantities(body_.mesh().comm, context_, quantities_);
   for (const auto& effect : body_.effects()) effect->judge(sentences);
   return sentences;

@@ -21,6 +21,10 @@ namespace {
 constexpr double least_weight =
     1e-9;  // of a point in the value at a place; below, the place lies on a side without it
 
+std::string method_of(const QuantityEstimate& q) {
+  return q.body > 0 && q.error() == q.body ? "as the whole body" : "dual-weighted";
+}
+
 /// Of rank 0, which probes give their values to, on all ranks.
 double shared(MPI_Comm comm, const std::vector<double>& sampled, std::size_t i) {
   return parallel::sum(comm, sampled.empty() ? 0 : sampled[i]);
@@ -132,7 +136,7 @@ Vec3 place_of(const SolidQuantity& quantity) {
 double QuantityEstimate::error() const {
   if (std::isnan(local) || std::isnan(dual)) return std::nan("");
   const double larger = std::max(std::abs(local), std::abs(dual));
-  return is_signed ? std::max(std::abs(local + dual), larger / 2) : larger;
+  return std::max(body, is_signed ? std::max(std::abs(local + dual), larger / 2) : larger);
 }
 
 std::vector<QuantityEstimate> estimate_quantities(const SolidBody& body, const SolidFields& fields,
@@ -161,15 +165,15 @@ void tell_quantities(MPI_Comm comm, const SolidContext& context, const std::vect
     log::finding(rank, {.id = "quantity-error",
                         .severity = base::Severity::note,
                         .number = share,
-                        .sentence = fmt::format("{}: {} {}: {:.6g} {}, estimated error {}, dual-weighted",
-                                                q.name, q.what, where, q.value, q.unit, error)});
+                        .sentence = fmt::format("{}: {} {}: {:.6g} {}, estimated error {}, {}", q.name,
+                                                q.what, where, q.value, q.unit, error, method_of(q))});
   }
   if (rank != 0 || context.output_folder.empty()) return;
   std::ofstream file(context.output_folder / "quantities.csv");
-  file << "quantity,unit,value,estimated error,at the place,by the dual problem,method\n";
+  file << "quantity,unit,value,estimated error,at the place,by the dual problem,of the whole body,method\n";
   for (const QuantityEstimate& q : found)
-    file << fmt::format("\"{}\",{},{:.12g},{:.6g},{:.6g},{:.6g},dual-weighted\n", q.name, q.unit, q.value,
-                        q.error(), q.local, q.dual);
+    file << fmt::format("\"{}\",{},{:.12g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", q.name, q.unit, q.value,
+                        q.error(), q.local, q.dual, q.body, method_of(q));
 }
 
 }  // namespace couplet::solid

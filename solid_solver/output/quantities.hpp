@@ -21,10 +21,13 @@ struct QuantityEstimate {
   /// What the place itself adds: a displacement by the curvature that the weights of a vertex miss (quadratic_displacement()), a stress by
   /// what its recovery leaves.
   double local = 0;
-  double dual = 0;         ///< DualProblem::missed()
+  double dual = 0;  ///< DualProblem::missed()
+  /// The mesh's share of the displacement of the whole body, times the value: where the parts above miss everything, as on regular cells in
+  /// bending, whose residuals cancel.
+  double body = 0;
   std::string patch{};     ///< of a heat flow, in place of `place`
   bool is_signed = false;  ///< both parts have the sign of what is missed
-  /// In the unit: the larger part; with signs their sum, but at least half the larger, since what cancels does so to first order only.
+  /// In the unit: the larger part; with signs their sum, but at least half the larger, since what cancels does so to first order only; never less than `body`.
   /// Displacements within a factor of 3 of the truth, but for
   /// three-dimensional bodies in bending, where it is 4 to 50 times too large (scripts/validate one-budget).
   double error() const;
