@@ -85,7 +85,7 @@ void Solid::collect_errors() {
 
 coupling::ErrorParts Solid::error_parts() const {
   if (!errors_) return {};
-  const coupling::ErrorParts parts = errors_->parts();
+  const coupling::ErrorParts parts = parts_ ? *parts_ : errors_->parts();
   // Here, where the mesh's part has just been estimated, which costs more than the stresses do.
   if (stepper_.state().steps > 0) output_->tell_stresses(parts.mesh);
   return parts;
@@ -107,8 +107,8 @@ std::vector<std::string> Solid::finish() {
   judge_.finish_path(sentences);
   if (!is_last_) estimate_quantities();  // a partner's load may be the last
   if (errors_ && !quantities_.empty()) {
-    const double mesh = errors_->parts().mesh;
-    for (QuantityEstimate& q : quantities_) q.body = mesh > 0 ? mesh * std::abs(q.value) : 0;
+    parts_ = errors_->parts();
+    for (QuantityEstimate& q : quantities_) q.body = parts_->mesh > 0 ? parts_->mesh * std::abs(q.value) : 0;
   }
   tell_quantities(body_.mesh().comm, context_, quantities_);
   for (const auto& effect : body_.effects()) effect->judge(sentences);

@@ -63,7 +63,8 @@ class Solid final : public coupling::Participant, public coupling::EstimatesErro
   SolidJudge judge_;
   std::optional<SolidErrorEstimate> errors_;  // none: not wanted
   std::unique_ptr<SolidOutput> output_;
-  std::vector<QuantityEstimate> quantities_;  // of the state at the end of the run
+  std::vector<QuantityEstimate> quantities_;   // of the state at the end of the run
+  std::optional<coupling::ErrorParts> parts_;  // found by finish(), for the quantities; none: not yet
 };
 
 }  // namespace couplet::solid

@@ -242,6 +242,8 @@ void declare_models(config::Section& s, FluidParameters& p) {
       [](config::Section& c, CompressibilityParameters& known) { declare(c, known); },
       "weakly compressible fluid: pressure waves travel at the speed of sound, closed parts compress; absent: "
       "incompressible, judged by the speed of sound of a gas at 1 atm or of a liquid, by density and viscosity");
+  s.check([&p] { return p.compressibility ? misfit_of(*p.compressibility, p.density) : ""; },
+          "compressibility");
 }
 
 /// What is wrong with the patches of output.flow-areas; empty if nothing is.

@@ -38,25 +38,6 @@ constexpr std::array liquids{Liquid{"water", 1482, 998},   Liquid{"sea-water", 1
 // Of a liquid's density, for salt, sugar, temperature; pressure of a gas up to which it is nearly ideal [Pa].
 constexpr double least_share = 0.8, largest_share = 1.25, highest_pressure = 2e7;
 
-/// The sound of one substance in the density of another would be a wrong answer without a word.
-void check_density(const CompressibilityParameters& p, double density) {
-  for (const Liquid& liquid : liquids)
-    if (p.substance == liquid.name &&
-        (density < least_share * liquid.density || density > largest_share * liquid.density))
-      throw Error(
-          "compressibility.substance: {} has {:g} kg/m^3; 'density' is {:g} kg/m^3. Change one of them, or give "
-          "'speed-of-sound'.",
-          p.substance, liquid.density, density);
-  for (const Gas& gas : gases) {
-    const double pressure = density * gas_constant * p.temperature.value_or(room) / gas.molar_mass;
-    if (p.substance == gas.name && pressure > highest_pressure)
-      throw Error(
-          "compressibility.substance: {} of 'density' {:g} kg/m^3 would be at {:.3g} bar. Change one of them, or "
-          "give 'speed-of-sound'.",
-          p.substance, density, 1e-5 * pressure);
-  }
-}
-
 /// Marczak (1997), 0 to 95 degC.
 double of_water(double t) {
   constexpr std::array c{1402.385, 5.038813, -5.799136e-2, 3.287156e-4, -1.398845e-6, 2.787860e-9};
@@ -176,14 +157,28 @@ void declare(config::Section& s, CompressibilityParameters& p) {
   check_source_of_sound(s, p);
 }
 
+std::string misfit_of(const CompressibilityParameters& p, double density) {
+  for (const Liquid& liquid : liquids)
+    if (p.substance == liquid.name &&
+        (density < least_share * liquid.density || density > largest_share * liquid.density))
+      return fmt::format(
+          "{} has {:g} kg/m^3, but 'density' is {:g} kg/m^3; change one of them, or give 'speed-of-sound'",
+          p.substance, liquid.density, density);
+  for (const Gas& gas : gases) {
+    const double pressure = density * gas_constant * p.temperature.value_or(room) / gas.molar_mass;
+    if (p.substance == gas.name && pressure > highest_pressure)
+      return fmt::format(
+          "{} with a 'density' of {:g} kg/m^3 would be at {:.3g} bar; change one of them, or give 'speed-of-sound'",
+          p.substance, density, 1e-5 * pressure);
+  }
+  return "";
+}
+
 std::optional<Sound> sound_of(const std::optional<CompressibilityParameters>& given, double density,
                               double viscosity) {
   const CompressibilityParameters p = given.value_or(CompressibilityParameters{});
   if (p.speed_of_sound) return Sound{*p.speed_of_sound, "the fluid"};
-  if (!p.substance.empty()) {
-    check_density(p, density);
-    return of_substance(p);
-  }
+  if (!p.substance.empty()) return of_substance(p);
   if (p.pressure) return of_gas(density, *p.pressure, p.heat_capacity_ratio);
   // Gases of any temperature have 5e-6 to 1e-4 Pa s; a fluid as light and more viscous is a model.
   if (density > 0.02 && density < 50 && viscosity > 5e-6 && viscosity < 1e-4)

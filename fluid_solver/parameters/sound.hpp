@@ -29,6 +29,9 @@ void declare(config::Section& section, CompressibilityParameters& parameters);
 /// Gases by molar mass and ratio of heat capacities, liquids by their speed of sound.
 std::vector<std::string> substances();
 
+/// Why a fluid of this density [kg/m^3] cannot be the named substance; empty: it can, or none is named.
+std::string misfit_of(const CompressibilityParameters& parameters, double density);
+
 struct Sound {
   double speed = 0;  ///< [m/s]
   std::string of;    ///< "sf6 at 20 degC"

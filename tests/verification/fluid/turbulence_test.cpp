@@ -106,22 +106,33 @@ TEST(Wale, leaves_a_couette_flow_alone) {
   EXPECT_LT(c.largest_velocity_error([](const Vec3& x) { return Vec3(3 * x.y(), 0, 0); }), 1e-11);
 }
 
-/// What the model's stress takes from the kinetic energy of a vortex array is the power that the budget
-/// names.
-TEST(Smagorinsky, takes_the_energy_that_the_budget_names) {
+/// Vortices with Smagorinsky's model, in periodic_square().
+FluidParameters vortices(double constant) {
   FluidParameters p;
-  p.density = 2;
-  p.viscosity = 0;
-  p.viscous = ViscousTreatment::explicit_;
   p.pressure_tolerance = 1e-10;
-  p.turbulence = TurbulenceParameters{TurbulenceModel::smagorinsky, 0.6};
+  p.turbulence = TurbulenceParameters{TurbulenceModel::smagorinsky, constant};
   p.time_step = 1;
   all_sides(p, 2, boundary(BoundaryType::periodic));
   p.initial_velocity = {{"sin(x)*cos(y)"}, {"-cos(x)*sin(y)"}};
+  return p;
+}
+
+/// Of 2 pi, n cells a side.
+RawMesh periodic_square(int n) {
   const double length = 2 * std::numbers::pi;
-  RawMesh raw = make_box(BoxCells::quadrilaterals, {40, 40, 1}, Vec3::Zero(), Vec3(length, length, 1));
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {n, n, 1}, Vec3::Zero(), Vec3(length, length, 1));
   raw.periodic = {{"xmin", "xmax"}, {"ymin", "ymax"}};
-  FluidCase<2> c(MPI_COMM_WORLD, raw, p);
+  return raw;
+}
+
+/// What the model's stress takes from the kinetic energy of a vortex array is the power that the budget
+/// names.
+TEST(Smagorinsky, takes_the_energy_that_the_budget_names) {
+  FluidParameters p = vortices(0.6);
+  p.density = 2;
+  p.viscosity = 0;
+  p.viscous = ViscousTreatment::explicit_;
+  FluidCase<2> c(MPI_COMM_WORLD, periodic_square(40), p);
   c.run(0.2, 100);
   const EnergyBudget before = energy_budget(c.fluid());
   c.run(0.3, 50);
@@ -162,18 +173,12 @@ TEST(EddyStress, takes_energy_where_a_thin_cell_borders_a_thick_one) {
 
 /// A strong eddy viscosity beside an implicit viscous term: steps of a hundred times its explicit limit, second order in time.
 TEST(Smagorinsky, does_not_limit_an_implicit_step) {
-  FluidParameters p;
+  FluidParameters p = vortices(3.0);
   p.density = 1;
   p.viscosity = 1e-3;
   p.viscous = ViscousTreatment::implicit;
-  p.pressure_tolerance = 1e-10;
-  p.turbulence = TurbulenceParameters{TurbulenceModel::smagorinsky, 3.0};
-  p.time_step = 1;
-  all_sides(p, 2, boundary(BoundaryType::periodic));
   p.initial_velocity = {{"sin(x)*cos(y) + 0.1*sin(2*y)"}, {"-cos(x)*sin(y)"}};
-  const double length = 2 * std::numbers::pi;
-  RawMesh raw = make_box(BoxCells::quadrilaterals, {32, 32, 1}, Vec3::Zero(), Vec3(length, length, 1));
-  raw.periodic = {{"xmin", "xmax"}, {"ymin", "ymax"}};
+  const RawMesh raw = periodic_square(32);
   const auto velocity = [&](int steps) {
     FluidCase<2> c(MPI_COMM_WORLD, raw, p);
     c.run(0.4, steps);

@@ -25,7 +25,7 @@ def motion(job, name, mesh, step):
     first, second = gap[(t >= FROM) & (t < half)], gap[t >= half]
     late = second - second.mean()
     rises = t[t >= half][1:][(late[:-1] < 0) & (late[1:] >= 0)]
-    frequency = (len(rises) - 1) / (rises[-1] - rises[0]) if len(rises) > 1 else 0.0
+    frequency = (len(rises) - 1) / (rises[-1] - rises[0]) if len(rises) > 1 else float("nan")
     return ("settles" if np.ptp(second) < DIES_OUT * np.ptp(first) else "oscillates"), second.mean(), np.ptp(second), frequency
 
 
@@ -35,8 +35,8 @@ def statements(job):
         by_mesh = [motion(job, name, mesh, 50) for mesh in MESHES]
         by_step = [motion(job, name, MESHES[0], step) for step in STEPS]
         same &= by_mesh[-1][0] == by_mesh[-2][0] == by_step[-1][0] == by_step[-2][0]
-        word, mean, span, frequency = by_mesh[-1]
+        _, mean, span, frequency = by_mesh[-1]
         apart = [" and ".join(f"{abs(pair[-1][i] - pair[-2][i]):.2g}" for pair in (by_mesh, by_step)) for i in (1, 2, 3)]
         texts.append(f"{name}: {', '.join(dict.fromkeys(m[0] for m in (*by_mesh, *by_step)))}; finest mesh: mean gap {mean:.2f} mm ({apart[0]} between the two finest meshes and steps), "
-                     f"range {span:.2f} mm ({apart[1]}), {frequency:.0f} Hz ({apart[2]})")
+                     f"range {span:.2f} mm ({apart[1]}), " + (f"{frequency:.0f} Hz ({apart[2]})" if frequency > 0 else "fewer than two periods in the second half"))
     return "; ".join(texts), same
