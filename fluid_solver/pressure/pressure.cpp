@@ -39,6 +39,7 @@ void PressureEquation<D>::make_solver() {
     solver_ = std::make_unique<PoissonSolver>(
         "pressure", graph,
         direct_ ? PoissonSolver::Preconditioner::factors : PoissonSolver::Preconditioner::multigrid);
+    pinned_ = direct_;
     return;
   }
   linalg::Beside beside;
@@ -62,7 +63,7 @@ std::vector<double> PressureEquation<D>::diagonal(const Placement<D>& at, std::s
   for (std::size_t c = 0; c < storage.size(); ++c) sum[c] += storage[c];
   for (double& value : sum)
     if (value == 0) value = 1;  // inside a body: p = 0 there
-  if (singular() && owned > 0 && mesh_.cells.first() == 0) sum[0] *= 2;
+  if (singular() && pinned_ && owned > 0 && mesh_.cells.first() == 0) sum[0] *= 2;
   return sum;
 }
 
@@ -161,8 +162,9 @@ linalg::SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::
   const Index owned = mesh_.cells.n_owned();
   if (singular()) {
     remove_mean(b);
-    // Twice the first diagonal entry makes the matrix regular and p = 0 there, the same solution but for a
-    // constant.
+    // Twice the first diagonal entry makes the matrix regular for factors and p = 0 there, the same solution but for a
+    // constant. Conjugate gradients take the singular matrix as it is, for b sums up to nothing: regular, its least
+    // eigenvalue would be far below all others, and what multigrid leaves of that in single precision doubles the iterations on several ranks.
     double pin = owned > 0 ? p[0] : 0;
     MPI_Bcast(&pin, 1, MPI_DOUBLE, 0, mesh_.comm);
     linalg::shift(-pin, std::span(p).first(owned));

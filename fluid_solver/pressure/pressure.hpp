@@ -65,7 +65,8 @@ class PressureEquation {
   const Boundary<D>& boundary_;
   const Couplings* couplings_;  // null: none
   bool fixed_, regular_ = false;
-  bool direct_;  // small 2-D meshes: kept Cholesky factors
+  bool pinned_ = true;  // where the pressure is known up to a constant, one cell's is zero
+  bool direct_;         // small 2-D meshes: kept Cholesky factors
   std::unique_ptr<linalg::CellSolver> solver_;
   void fill(std::span<const double> coefficients);
   // Of a moving mesh: the matrix's diagonal per owned cell, one entry a face, then the couplings; and the preconditioner with those

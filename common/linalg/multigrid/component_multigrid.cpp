@@ -18,6 +18,8 @@ void set(FourFloats& v, int l, float value) { v[l] = value; }
 constexpr int most_levels = 12;
 // Rows of all ranks that are factored where they could not be made fewer, which are those of many ranks.
 constexpr GlobalIndex largest_dense = 1000;
+// A sum of a row over its diagonal, in single precision and with what makes a singular matrix regular.
+constexpr double nothing = 1e-4;
 /// Neighbours ascending, by insertion: rows are short and nearly in order.
 template <class Rows>
 void sort_rows(Rows& a) {
@@ -34,6 +36,7 @@ void sort_rows(Rows& a) {
 template <class Number>
 AggregationMultigrid<Number>::AggregationMultigrid(Rows rows, const Options& options)
     : coarse_factor_(options.coarse_factor),
+      closed_(options.closed),
       comm_(options.map && parallel::comm_size(options.comm) > 1 ? options.comm : MPI_COMM_SELF) {
   add_level(std::move(rows), comm_ == MPI_COMM_SELF ? nullptr : options.map, nullptr);
   while (n_levels() < most_levels && coarsen()) {
@@ -95,6 +98,7 @@ void AggregationMultigrid<Number>::factor_coarsest() {
   for (int l = 0; l < lanes; ++l) {
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(n, n);
     for (const Entry& e : entries) dense(e.row, e.column) = e.value[l];
+    closed_ &= dense.rowwise().sum().cwiseAbs().maxCoeff() < nothing * dense.diagonal().maxCoeff();
     coarsest_.emplace_back(dense);
   }
 }
@@ -111,7 +115,9 @@ void AggregationMultigrid<Number>::solve_coarsest(Level& level) const {
   Eigen::VectorXd b(std::ssize(right));
   for (int l = 0; l < lanes; ++l) {
     for (std::size_t i = 0; i < right.size(); ++i) b[Index(i)] = get(right[i], l);
+    if (closed_) b.array() -= b.mean();
     b = coarsest_[l].solve(b).eval();
+    if (closed_) b.array() -= b.mean();
     for (Index i = 0; i < level.a.size(); ++i) set(level.x[i], l, static_cast<float>(b[first_coarsest_ + i]));
   }
 }

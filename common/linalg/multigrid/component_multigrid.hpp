@@ -44,6 +44,8 @@ class AggregationMultigrid {
     float coarse_factor = 1;
     const parallel::IndexMap* map = nullptr;  ///< of the rows, by reference; none: no rank knows of another
     MPI_Comm comm = MPI_COMM_SELF;            ///< of the map
+    /// Where all rows sum to nothing the operator is singular, too: no constant in the answer of the coarsest level.
+    bool closed = false;
   };
   /// Collective over the ranks of the map.
   explicit AggregationMultigrid(Rows rows) : AggregationMultigrid(std::move(rows), Options{}) {}
@@ -87,6 +89,7 @@ class AggregationMultigrid {
   static void smooth_backward(Level& level);
 
   float coarse_factor_;
+  bool closed_;  // and all rows of the coarsest level sum to nothing
   MPI_Comm comm_;
   std::vector<Level> levels_;
   std::vector<Eigen::LLT<Eigen::MatrixXd>> coarsest_;  // one a component, of the rows of all ranks

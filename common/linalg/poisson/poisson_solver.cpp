@@ -54,8 +54,8 @@ void PoissonSolver::make_preconditioner() {
     single.index = rows.index;
     single.value.assign(rows.value.begin(), rows.value.end());
     single.diagonal.assign(diagonal.begin(), diagonal.begin() + n);
-    multigrid_ = std::make_unique<ColouredMultigrid>(std::move(single),
-                                                     ColouredMultigrid::Options{1, &graph.cells, graph.comm});
+    multigrid_ = std::make_unique<ColouredMultigrid>(
+        std::move(single), ColouredMultigrid::Options{1, &graph.cells, graph.comm, true});
     return;
   }
   std::vector<int> offset{0}, index;
