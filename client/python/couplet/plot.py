@@ -26,6 +26,12 @@ def read(file):
     return columns
 
 
+def is_monitor(file):
+    """Whether its first line names a time; the tables that a run leaves at its end do not."""
+    with open(file, "rb") as lines:
+        return lines.readline().lstrip(b'# "').startswith(b"time")
+
+
 def chosen(columns, options):
     names = [n for n in columns if n != next(iter(columns)) and n not in PLACES]
     if options.only:
@@ -162,9 +168,9 @@ def run(options):
     files, folders = [], 0
     for name in options.files:
         folders += name.is_dir()
-        files += sorted(name.rglob("*.csv")) if name.is_dir() else [name]
+        files += sorted(f for f in name.rglob("*.csv") if is_monitor(f)) if name.is_dir() else [name]
     expect(not options.picture or not folders and len(files) == 1, "--picture names one picture: give one file.")
-    expect(files, "There is no .csv in these folders. Run the case first.")
+    expect(files, "There is no monitor (.csv) in these folders. Run the case first.")
     failed = 0
     for file in files:
         try:

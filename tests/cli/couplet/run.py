@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command couplet on a small coupled case. Usage: run.py BIN PART [MPIRUN ...]; parts: by_hand, side_by_side, stop, wrong, kill, tell, gallery, python"""
+import os
 import pathlib
 import re
 import shutil
@@ -127,6 +128,8 @@ def stop(folder):
             last = max(float(step.attrs["time"]) for step in series["steps"].values())
         check(f"{name}: the fields of the last step are written", abs(last - saved) <= 1e-8 * saved, (last, saved))
     shutil.copytree(folder / "a/out", folder / "stopped")
+    refused = call(bin_, "resume", folder / "a/out", "--set", "participants.solid.material.density=2000 kg/m^3")
+    check("a resume with another density is refused, and leaves no trace", refused.returncode not in (0, 3) and "density" in refused.stderr, f"{refused.returncode} {refused.stderr[-300:]}")
     resumed = call(bin_, "resume", folder / "a/out")
     check("resume goes on to the end", resumed.returncode == 0 and "done in" in resumed.stdout, resumed.stdout[-200:] + resumed.stderr)
     same = call(bin_, "compare", folder / "whole", folder / "a/out")
@@ -167,7 +170,7 @@ def wrong(folder):
         check(said, result.returncode == 2 and said in result.stderr and "Traceback" not in result.stderr, result.stderr)
     case.write_text(text)
     for words, said in ((("run", folder / "none.yaml"), "does not exist"), (("run", case, "-n", "fluid=0"), "whole numbers"), (("run", case, "-n", "air=1"), "there is no participant 'air'"),
-                        (("run", case, "-n", "3"), "at least 4 ranks"), (("run", case, "--set", "a"), "a.b=value"), (("rnu", case), "did you mean 'run'"), (("run", case, "--fast"), "--fast"),
+                        (("run", case, "-n", "3"), "at least 4 ranks"), (("run", case, "-n", "fluid=100000"), "would not get on"), (("run", case, "--set", "a"), "a.b=value"), (("rnu", case), "did you mean 'run'"), (("run", case, "--fast"), "--fast"),
                         (("new", folder / "a"), "is there already"), (("new", folder / "b", "--from", "perpendicular-flop"), "near: perpendicular-flap")):
         result = ask(bin_, *words)
         check(" ".join(map(str, words[2:] or words)), result.returncode == 2 and said in result.stderr and "Traceback" not in result.stderr, result.stderr)
@@ -203,7 +206,16 @@ def kill(folder):
             time.sleep(0.05)
         job.communicate(timeout=60)
         check(f"{how}: nobody is left", until(lambda: not left_behind(folder / "a"), 20), left_behind(folder / "a"))
-    shutil.rmtree(folder / "a/out")
+    deaf = folder / "a/deaf/mpirun"
+    deaf.parent.mkdir()
+    deaf.write_text("#!/bin/sh\ntrap '' TERM\necho listens to nobody\nwhile true; do sleep 1; done\n")
+    deaf.chmod(0o755)
+    job = start(bin_, "run", case, env={**environment(bin_), "PATH": f"{deaf.parent}:{os.environ['PATH']}"})
+    check("mpirun does not listen", "nobody" in job.stdout.readline())
+    job.terminate()
+    job.communicate(timeout=30)
+    check("a job that ignores SIGTERM is killed", job.returncode not in (0, 3) and until(lambda: not left_behind(folder / "a"), 5), job.returncode)
+    shutil.rmtree(folder / "a/out", ignore_errors=True)
     job = start(bin_, "run", case)
     until(lambda: (folder / "a/out/solid/steps.csv").exists())
     solver = next(p.parent.name for p in pathlib.Path("/proc").glob("[0-9]*/cmdline") if p.read_bytes().startswith(str(bin_ / "solid_solver").encode()) and str(folder).encode() in p.read_bytes())

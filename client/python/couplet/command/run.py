@@ -92,6 +92,8 @@ def run(arguments):
     if arguments.print:
         print(job.line())
         return 0
+    from couplet.runs import ranks
+    ranks.fit(case, job.ranks, job.alone)
     return shown_run(job, arguments.picture, arguments.verbose)
 
 

@@ -69,15 +69,20 @@ def wait_for_end(folder, seconds):
     return True
 
 
+def sets_since(folder, seconds):
+    """Names of the complete checkpoints written since then."""
+    return [file.parent.name for file in (pathlib.Path(folder).absolute() / "checkpoints").glob("step-*/set.txt") if file.stat().st_mtime >= seconds]
+
+
 def checkpoint(folder):
     """Name of the complete checkpoint that has gone furthest of those that the run on record wrote, or of the one that it began with; None
     if there is none. Those of another run, left in the folder, may belong to another case."""
     all_sets = pathlib.Path(folder).absolute() / "checkpoints"
-    sets = {file.parent.name: file.stat().st_mtime for file in all_sets.glob("step-*/set.txt")}
+    sets = sets_since(folder, 0)
     record = read_record(folder)
     if "started" not in record:
         return max(sets, default=None)
-    own = [name for name, written in sets.items() if written >= datetime.datetime.fromisoformat(record["started"]).timestamp()]
+    own = sets_since(folder, datetime.datetime.fromisoformat(record["started"]).timestamp())
     begun = pathlib.Path(record["flags"][record["flags"].index("--restart") + 1]) if "--restart" in record["flags"] else None
     if not own and begun in (all_sets, all_sets.parent):
         return max(sets, default=None)

@@ -19,6 +19,7 @@ from couplet.runs.case import COUPLER, Case, expect, load, mapping_of
 from couplet.runs.launcher import Pages, culprit
 from couplet.runs.process import RunFailed, environment, last_words
 
+PATIENCE = 5.0  # for mpirun, asked to end, before everything is killed [s]: while it launches many processes it does not listen
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 PR_SET_PDEATHSIG = 1
 
@@ -66,7 +67,7 @@ class Job:
                    f"{case.file}: the program '{program.name}' of '{name}' is not in {program.parent}, not beside the case and not on the PATH. "
                    f"Give its command: --with {name}='COMMAND ...'")
         self.output = output_of(case, self.sets)
-        self.last, self.asked, self.started = collections.deque(maxlen=60), 0, None
+        self.last, self.asked, self.started, self.limit = collections.deque(maxlen=60), 0, None, float("inf")
 
     def line(self):
         """The launch line, to be typed into a shell."""
@@ -86,6 +87,7 @@ class Job:
             self.say("ends after the step under way, with a checkpoint; once more: at once")
         elif self.asked <= 2:
             self.process.send_signal(signal.SIGTERM)
+            self.limit = time.monotonic() + PATIENCE
         else:
             self.end_all()
 
@@ -139,6 +141,8 @@ class Job:
                 if not self.recorded and time.monotonic() > look:
                     self.note()
                     look = time.monotonic() + 0.1
+                if time.monotonic() > self.limit:
+                    self.end_all()
                 if self.process.poll() is not None and not selector.select(0):
                     break
 
@@ -147,6 +151,7 @@ class Job:
         expect(folders.driver(self.output) is None, f"{self.output} is in use by another job that is still running. End it (couplet stop {shlex.quote(str(self.output))}), or "
                "give this one another folder: --set simulation.output.folder=...")
         self.recorded, self.started, self.pages = False, time.monotonic(), Pages()
+        former, began = folders.read_record(self.output) if "--restart" in self.flags else {}, time.time()
         self.process = subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=surroundings(),
                                         start_new_session=True, preexec_fn=ends_with_us)
         before = {s: signal.signal(s, self.on_signal) for s in SIGNALS}
@@ -160,6 +165,8 @@ class Job:
         self.seconds = time.monotonic() - self.started
         if not self.recorded and code == 0 and (self.output / folders.LOCK).exists():  # quicker than a look
             folders.write_record(self.output, self.record())
+        if self.recorded and former and code not in (0, 3, 4) and not folders.sets_since(self.output, began):  # refused, say for a --set: the next resume knows nothing of it
+            folders.write_record(self.output, former)
         return code if code >= 0 else 128 - code
 
     def last_words(self):

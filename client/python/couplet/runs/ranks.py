@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """How a number of ranks is divided among the participants: by the work that an earlier run measured, else by what the programs expect."""
+import os
 import re
 import subprocess
 
 from couplet.runs.case import COUPLER, expect
+
+MOST_PER_CORE = 16
+ELSEWHERE = ("OMPI_MCA_orte_default_hostfile", "SLURM_JOB_ID", "PBS_NODEFILE", "LSB_HOSTS", "PE_HOSTFILE")
 
 
 def measured(case, folder):
@@ -40,6 +44,16 @@ def shares(work, total, together=False):
         best = max(ranks, key=lambda name: work[name] / (ranks[name] if together else ranks[name] * (ranks[name] + 1)))
         ranks[best] += 1
     return ranks
+
+
+def fit(case, ranks, alone=None):
+    """Refuses far more processes than this machine can turn over: each polls for its messages. Where a queue or a file names the machines, their number is not known here."""
+    if any(os.environ.get(name) for name in ELSEWHERE):
+        return
+    names = [alone] if alone else [*case.participants, *([COUPLER] if case.coupled else [])]
+    total, cores = sum(int(ranks.get(name, 1)) for name in names), len(os.sched_getaffinity(0))
+    expect(total <= MOST_PER_CORE * cores, f"{total} processes on {cores} cores would not get on, for each waits for messages by polling: at most {MOST_PER_CORE * cores} here. "
+           "On several machines use --slurm, or name their file in OMPI_MCA_orte_default_hostfile")
 
 
 def divide(case, total):
