@@ -2,6 +2,7 @@
 """How a bar gets its numbers: from the project's programs, test executables and scripts, never from a model beside them."""
 import dataclasses
 import functools
+import hashlib
 import importlib.util
 import json
 import os
@@ -12,7 +13,9 @@ import subprocess
 import tempfile
 from typing import Callable
 
-from couplet.runs import Case, Results, environment, launch
+from couplet.runs import Case, Cost, Results, environment, launch
+
+KEPT = "validated.json"  # in the folder of a kept run: what it was made of, and its cost
 
 
 @dataclasses.dataclass
@@ -30,19 +33,38 @@ class Bar:
         return f"{self.wanted} (not as first asked: {self.but})" if self.but else self.wanted
 
 
-class Job:
-    """Paths, a scratch folder, and results that several bars share (each made once)."""
+def made_of(command, folder):
+    """A digest of the words of a command, of the files that they name and of the case's own."""
+    digest = hashlib.sha256()
+    for word in map(str, command):
+        digest.update(word.encode() + b"\0")
+    named = [pathlib.Path(w) for w in map(str, command) if os.path.isfile(w)]
+    for file in sorted({*named, *(f for f in folder.iterdir() if f.is_file())}):
+        digest.update(file.read_bytes())
+    return digest.hexdigest()
 
-    def __init__(self, root, build, quick):
-        self.root, self.build, self.quick, self._kept = root, build, quick, {}
+
+def was_kept(out, identity):
+    return (out / KEPT).exists() and json.loads((out / KEPT).read_text())["of"] == identity
+
+
+class Job:
+    """Paths, a scratch folder, and results that several bars share (each made once). With `keep`, a folder, runs of cases stay there, and one that the same
+    programs made of the same case is not repeated."""
+
+    def __init__(self, root, build, quick, keep=None):
+        self.root, self.build, self.quick, self.keep, self._kept = root, build, quick, keep, {}
         self.environment = environment()
 
     def __enter__(self):
-        self.scratch = pathlib.Path(tempfile.mkdtemp(prefix="couplet-validate-"))
+        if self.keep:
+            self.keep.mkdir(parents=True, exist_ok=True)
+        self.scratch = self.keep or pathlib.Path(tempfile.mkdtemp(prefix="couplet-validate-"))
         return self
 
     def __exit__(self, *_):
-        shutil.rmtree(self.scratch, ignore_errors=True)
+        if not self.keep:
+            shutil.rmtree(self.scratch, ignore_errors=True)
 
     def once(self, key, make):
         """What make() gave, or the exception it ended in: a run of hours is not repeated for every row that reads it."""
@@ -136,9 +158,17 @@ class Job:
     def case_run(self, case, out, overrides, ranks, timeout):
         """Runs a case into a folder; gives its Results with `cost` and `log`. `ranks`: by participant."""
         command = Case(case, self.build).command({"simulation.output.folder": str(out)}, ranks=ranks, raw=overrides)
+        identity = self.keep and made_of(command, pathlib.Path(case).parent)
+        if self.keep and not was_kept(out, identity):
+            shutil.rmtree(out, ignore_errors=True)
         out.mkdir(parents=True, exist_ok=True)
         results = Results(out)
-        results.cost = launch(command, out / "run.log", timeout=timeout)
+        if self.keep and was_kept(out, identity):
+            results.cost = Cost(*json.loads((out / KEPT).read_text())["cost"])
+        else:
+            results.cost = launch(command, out / "run.log", timeout=timeout)
+            if self.keep:
+                (out / KEPT).write_text(json.dumps({"of": identity, "cost": dataclasses.astuple(results.cost)}))
         results.log = (out / "run.log").read_text(errors="replace")
         return results
 
@@ -158,7 +188,8 @@ class Job:
             file = self.root / "configs" / (f"{case}.yaml" if "/" in case else f"{case}/case.yaml")
             (participant,) = Case(file).participants
             keys = [f"participants.{participant}{o}" if o.startswith(".") else o for o in overrides]
-            results = self.case_run(file, self.scratch / f"solve-{len(self._kept)}", keys, {participant: ranks}, timeout)
+            name = hashlib.sha256(repr((case, tuple(overrides), ranks)).encode()).hexdigest()[:12]
+            results = self.case_run(file, self.scratch / f"solve-{name}", keys, {participant: ranks}, timeout)
             results.participant = participant
             return results
         return self.once(("solve", case, tuple(overrides), ranks), make)
