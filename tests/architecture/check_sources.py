@@ -212,6 +212,7 @@ def main(root):
     paths = [f.relative_to(root) for f in root.rglob("*.md")]
     notes = [(f, (root / f).read_text()) for f in paths if not any(p.startswith((".", "build")) for p in f.parts)]
     sources = [(f.relative_to(root), f.read_text()) for f in files]
+    trouble += [f"{f}: its first line is no heading: '# ...' (was it formatted as a source?)" for f, text in notes if f.name == "README.md" and not re.match("(<!--.*?-->\\s*)?# ", text, re.S)]
     trouble += check_references((root / "docs/references.bib").read_text(), sources + notes)
     trouble += crowded([path for path, _ in sources])
     for found in check_readers(sources):
