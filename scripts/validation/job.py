@@ -155,9 +155,9 @@ class Job:
         return self.once(("ctest", pattern), make)
 
     # -- programs -----------------------------------------------------------------------------------------------------
-    def case_run(self, case, out, overrides, ranks, timeout):
-        """Runs a case into a folder; gives its Results with `cost` and `log`. `ranks`: by participant."""
-        command = Case(case, self.build).command({"simulation.output.folder": str(out)}, ranks=ranks, raw=overrides)
+    def case_run(self, case, out, overrides, ranks, timeout, flags=()):
+        """Runs a case into a folder; gives its Results with `cost` and `log`. `ranks`: by participant; `flags`: further words of all programs."""
+        command = Case(case, self.build).command({"simulation.output.folder": str(out)}, ranks=ranks, raw=overrides, flags=flags)
         identity = self.keep and made_of(command, pathlib.Path(case).parent)
         if self.keep and not was_kept(out, identity):
             shutil.rmtree(out, ignore_errors=True)
@@ -172,10 +172,10 @@ class Job:
         results.log = (out / "run.log").read_text(errors="replace")
         return results
 
-    def coupled_run(self, case, folder, overrides=(), ranks=(1, 1, 1, 1), timeout=3600):
+    def coupled_run(self, case, folder, overrides=(), ranks=(1, 1, 1, 1), timeout=3600, flags=()):
         """Results of a coupled case in scratch/folder. Ranks: coupler, fluid, solid, mover."""
         by_name = dict(zip(("coupler", "fluid", "solid", "mover"), ranks))
-        return self.once(("coupled", folder), lambda: self.case_run(case, self.scratch / folder, overrides, by_name, timeout))
+        return self.once(("coupled", folder), lambda: self.case_run(case, self.scratch / folder, overrides, by_name, timeout, flags))
 
     def coupled(self, *what, **more):
         """The folder of coupled_run()."""
