@@ -42,10 +42,8 @@ const std::array cards{
     Card{"rotations carried into the mesh", "`method: rotations`",
          [](const P& p) { return when(p.method == Method::rotations, "method: rotations"); },
          "a second Laplacian solve; none where everything moves as one rigid body"},
-    Card{"mesh motion by a barrier", "`method: barrier`, or `auto` where it is chosen",
-         [](const P& p) {
-           return when(p.method == Method::barrier || p.method == Method::automatic, "method");
-         },
+    Card{"mesh motion by a barrier", "`method: barrier`, or `auto` where laplacian would invert a cell",
+         [](const P& p) { return when(p.method == Method::barrier, "method: barrier"); },
          "Newton's method on the distortion of the cells: a matrix and its factors where they have aged"},
     Card{"incremental mesh motion", "`form: incremental`",
          [](const P& p) { return when(p.form == Form::incremental, "form: incremental"); },

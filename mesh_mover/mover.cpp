@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh_mover/mover.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "common/base/error.hpp"
@@ -68,6 +70,7 @@ Mover::Mover(mesh::LoadedMesh loaded, const Parameters& parameters, const app::P
       periodic_(mesh_, geometry_),
       guard_(mesh_, geometry_, parameters),
       curved_(mesh_, geometry_, parameters),
+      chooses_(parameters.method == Method::automatic && !incremental() && periodic_.empty()),
       interface_(mesh_, interface_patches(parameters)),
       displacement_(std::size_t(mesh_.points.n_local()) * mesh_.dim, 0.0),
       accepted_(displacement_) {
@@ -75,8 +78,10 @@ Mover::Mover(mesh::LoadedMesh loaded, const Parameters& parameters, const app::P
   if (!context.coupled && moving_.empty() && context.mesh_peer == MPI_COMM_NULL &&
       interface_patches(parameters).empty())
     log::warn("participant '{}': no patch moves (type: moving, or interface in a coupled job).", name_);
-  make_method();
-  if (parameters.method == Method::automatic) choose_method(context.simulation.end_time);
+  if (chooses_)
+    choose_method(context.simulation);
+  else
+    make_method();
   if (parameters.form == Form::automatic && parallel::comm_rank(mesh_.comm) == 0)
     log::info(
         "mesh motion: displacements from the reference mesh (form: total), so the mesh depends only on the "
@@ -147,7 +152,13 @@ coupling::Interface Mover::initialise() {
   return interface;
 }
 
-void Mover::begin_step(const coupling::Step& step) { step_ = step; }
+/// A step that is tried again begins with the Laplacian, if the one before was: what folded the mesh may have been a guess of the coupling.
+void Mover::begin_step(const coupling::Step& step) {
+  step_ = step;
+  if (!laplacian_) return;
+  method_ = std::move(laplacian_);
+  parameters_.method = Method::automatic;
+}
 
 /// dim values per local point, of points on patches that move; relative to the mesh of the method.
 std::vector<double> Mover::prescribed(const coupling::Exchange& in) const {
@@ -211,24 +222,43 @@ void Mover::refuse_torn() const {
         name_, step_.time, gap);
 }
 
-coupling::Exchange Mover::solve(const coupling::Exchange& in) {
+/// What is wrong with the mesh of displacement_; empty: nothing. Collective.
+std::string Mover::place_and_judge() {
   placed_ = false;
+  curved_.put_back(displacement_);
+  refuse_torn();
+  place();
+  return guard_.refusal(moved_);
+}
+
+/// displacement_ and moved_.
+void Mover::move(const coupling::Exchange& in) {
+  const std::vector<double> wanted = prescribed(in);
+  displacement_ = method_->solve(wanted);
+  if (incremental())
+    for (std::size_t i = 0; i < displacement_.size(); ++i) displacement_[i] += accepted_[i];
+  std::string refusal = place_and_judge();
+  if (!refusal.empty() && chooses_ && parameters_.method == Method::automatic) {
+    laplacian_ = std::move(method_);
+    parameters_.method = Method::barrier;
+    make_method();
+    reason_ = fmt::format("the motion from t = {:.4g} s with laplacian {}", step_.time,
+                          refusal.substr(0, refusal.find(". ")));
+    displacement_ = method_->solve(wanted);
+    refusal = place_and_judge();
+  }
+  if (!refusal.empty())
+    throw SolveFailure(
+        "participant '{}': the mesh motion from t = {:.6g} s {}{}", name_, step_.time, refusal,
+        incremental() || chooses_ || parameters_.method == Method::rotations
+            ? ""
+            : " 'form: incremental' with 'stiffening-volumes: current' tolerates larger motions, but its "
+              "mesh depends on the path.");
+}
+
+coupling::Exchange Mover::solve(const coupling::Exchange& in) {
   try {
-    displacement_ = method_->solve(prescribed(in));
-    if (parameters_.method == Method::automatic) leave_laplacian(in);
-    if (incremental())
-      for (std::size_t i = 0; i < displacement_.size(); ++i) displacement_[i] += accepted_[i];
-    curved_.put_back(displacement_);
-    refuse_torn();
-    place();
-    const std::string refusal = guard_.refusal(moved_);
-    if (!refusal.empty())
-      throw SolveFailure(
-          "participant '{}': the mesh motion from t = {:.6g} s {}{}", name_, step_.time, refusal,
-          incremental() || parameters_.method == Method::rotations
-              ? ""
-              : " 'form: incremental' with 'stiffening-volumes: current' tolerates larger motions, but its "
-                "mesh depends on the path.");
+    move(in);
   } catch (const SolveFailure&) {
     if (sink_) sink_->send_failure();
     throw;
@@ -240,6 +270,8 @@ coupling::Exchange Mover::solve(const coupling::Exchange& in) {
 coupling::StepReport Mover::accept_step() {
   const coupling::StepReport report{.dt = step_.dt, .iterations = method_->last().iterations};
   accepted_ = displacement_;
+  if (laplacian_) tell_choice();
+  laplacian_.reset();
   if (incremental()) make_method();
   return report;
 }
@@ -252,16 +284,21 @@ MeshState Mover::state() {
 void Mover::save(io::CheckpointWriter& file) const {
   file.on(mesh_);
   file.write(mesh::Entries::points, "displacement", accepted_);
-  file.write_scalar("barrier-in-force", parameters_.method == Method::barrier ? 1 : 0);
-  if (!incremental()) method_->save(file);  // else it starts from nothing in each step
+  file.write_scalar("barrier-in-force", parameters_.method == Method::barrier && !laplacian_ ? 1 : 0);
+  if (!incremental())
+    (laplacian_ ? laplacian_ : method_)->save(file);  // else it starts from nothing in each step
 }
 
 void Mover::load(io::CheckpointReader& file) {
   file.on(mesh_);
   file.read(mesh::Entries::points, "displacement", accepted_);
-  if (file.read_scalar("barrier-in-force") > 0 && parameters_.method == Method::automatic)
-    use_barrier("it was in force when the checkpoint was written");
   displacement_ = accepted_;
+  laplacian_.reset();
+  const Method wrote = file.read_scalar("barrier-in-force") > 0 ? Method::barrier : Method::automatic;
+  if (chooses_ && parameters_.method != wrote) {  // another end time looks ahead to other motions
+    parameters_.method = wrote;
+    make_method();
+  }
   placed_ = false;
   if (incremental())
     make_method();

@@ -57,9 +57,10 @@ class Mover final : public coupling::Participant, public effects::KnowsItsPlace 
   bool incremental() const { return parameters_.form == Form::incremental; }
   void set_up_moving();
   void make_method();
-  void use_barrier(const std::string& reason);
-  void choose_method(double end);
-  void leave_laplacian(const coupling::Exchange& in);
+  void tell_choice() const;
+  void choose_method(const app::SimulationParameters& simulation);
+  void move(const coupling::Exchange& in);
+  std::string place_and_judge();
   std::vector<double> prescribed(const coupling::Exchange& in) const;
   /// Of the points of patches that move by themselves, zero elsewhere; empty without such patches.
   std::vector<double> body_velocities() const;
@@ -76,6 +77,9 @@ class Mover final : public coupling::Participant, public effects::KnowsItsPlace 
   Guard guard_;
   CurvedSlide curved_;
   std::unique_ptr<MotionMethod> method_;
+  bool chooses_;                             // method: auto
+  std::string reason_;                       // why the barrier
+  std::unique_ptr<MotionMethod> laplacian_;  // aside while the barrier moves a step that is not accepted yet
   coupling::InterfaceMap interface_;
   std::vector<Moving> moving_;
   std::unique_ptr<coupling::MeshMotionSink> sink_;

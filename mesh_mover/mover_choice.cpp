@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "common/base/error.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "mesh_mover/mover.hpp"
@@ -11,51 +13,41 @@
 namespace couplet::mesh_mover {
 namespace {
 
-// Times of a run at which the prescribed motions are tried.
-constexpr int looks_ahead = 40;
+// Times of a run at which the prescribed motions are tried: one for five steps, so that looking ahead costs a fifth of moving.
+constexpr int most_looks = 40;
+constexpr double looks_per_step = 0.2;
 
 }  // namespace
 
-void Mover::use_barrier(const std::string& reason) {
-  parameters_.method = Method::barrier;
-  make_method();
-  if (parallel::comm_rank(mesh_.comm) == 0) log::info("auto: method: barrier ({})", reason);
+void Mover::tell_choice() const {
+  if (parallel::comm_rank(mesh_.comm) == 0) log::info("auto: method: barrier ({})", reason_);
 }
 
 /// Looks ahead: the Laplacian moves the mesh to some times of the run.
-void Mover::choose_method(double end) {
-  if (!moving_.empty() && periodic_.empty())
-    for (int i = 1; i <= looks_ahead; ++i) {
-      step_ = {.time = 0, .dt = end * i / looks_ahead};
-      displacement_ = method_->solve(prescribed({}));
-      placed_ = false;
-      place();
-      const std::string refusal = guard_.refusal(moved_);
-      if (refusal.empty()) continue;
-      use_barrier(fmt::format("at t = {:.4g} s the prescribed motion with laplacian {}", step_.dt,
-                              refusal.substr(0, refusal.find(". "))));
-      break;
-    }
-  if (parameters_.method == Method::automatic) {
+void Mover::choose_method(const app::SimulationParameters& simulation) {
+  try {
     make_method();
-    if (parallel::comm_rank(mesh_.comm) == 0)
-      log::info(
-          "auto: method: laplacian (no prescribed motion inverts a cell); barrier from the first motion that does");
+  } catch (const Error& error) {  // on all ranks alike
+    reason_ = error.what();
+    reason_ = reason_.substr(0, reason_.find(". "));
+  }
+  const double steps = simulation.time_step > 0 ? simulation.end_time / simulation.time_step : most_looks;
+  const int looks = static_cast<int>(std::clamp(std::ceil(looks_per_step * steps), 1.0, double(most_looks)));
+  for (int i = 1; i <= looks && reason_.empty() && !moving_.empty(); ++i) {
+    step_ = {.time = 0, .dt = simulation.end_time * i / looks};
+    displacement_ = method_->solve(prescribed({}));
+    const std::string refusal = place_and_judge();
+    if (!refusal.empty())
+      reason_ = fmt::format("at t = {:.4g} s the prescribed motion with laplacian {}", step_.dt,
+                            refusal.substr(0, refusal.find(". ")));
   }
   step_ = {};
   std::ranges::fill(displacement_, 0.0);
   placed_ = false;
-}
-
-/// Where the Laplacian's mesh is refused the barrier moves it, from now on.
-void Mover::leave_laplacian(const coupling::Exchange& in) {
-  place();
-  const std::string refusal = guard_.refusal(moved_);
-  if (refusal.empty() || !periodic_.empty()) return;  // no barrier across periodic patches
-  use_barrier(fmt::format("the motion from t = {:.4g} s with laplacian {}", step_.time,
-                          refusal.substr(0, refusal.find(". "))));
-  displacement_ = method_->solve(prescribed(in));
-  placed_ = false;
+  if (reason_.empty()) return;
+  parameters_.method = Method::barrier;
+  make_method();
+  tell_choice();
 }
 
 std::vector<effects::Coordinate> Mover::position() const {

@@ -25,7 +25,7 @@ void declare_boundary(config::Section& s, Boundary& b) {
               .doc("the patch that is the translated copy of this one, as in the fluid");
         }}},
       "interface: moves with the structure; moving: moves as 'motion' prescribes; fixed: at rest; slip: "
-      "slides along the patch (curved ones with method: pseudo-solid); free: follows the interior; "
+      "slides along the patch (curved ones with method: pseudo-solid or barrier); free: follows the interior; "
       "periodic: moves as its partner, across which the mesh continues",
       true);
 }
@@ -62,7 +62,8 @@ void declare_method(config::Section& s, Parameters& p) {
           "and rotation; rotations: rotation and displacement of the surface are propagated into the mesh, "
           "tolerates the largest rotations; barrier: least distortion of the cells, which grows without "
           "bound as a cell flattens: cannot fold, costs several linear solves per motion; auto: laplacian, or barrier if the "
-          "prescribed motions would invert a cell, or from the first motion of an interface that does (total form)");
+          "prescribed motions would invert a cell, or from the first motion of an interface that does; laplacian "
+          "with form: incremental and with periodic patches");
   s.choice("form", p.form,
            {{"auto", Form::automatic}, {"total", Form::total}, {"incremental", Form::incremental}})
       .doc(
@@ -76,13 +77,6 @@ void declare_method(config::Section& s, Parameters& p) {
            {{"reference", StiffeningVolumes::reference}, {"current", StiffeningVolumes::current}})
       .doc("reference volumes of the stiffening; current: those of the last step, for form: incremental");
   s.value("poisson-ratio", p.poisson_ratio).range(-0.9, 0.45).doc("Poisson's ratio of the pseudo-solid");
-  s.check(
-      [&p] {
-        return p.method == Method::automatic && p.form == Form::incremental
-                   ? "auto requires the total form: remove 'form: incremental'"
-                   : "";
-      },
-      "method");
   s.check(
       [&p] {
         if (p.stiffening_volumes == StiffeningVolumes::current && p.form != Form::incremental)

@@ -62,7 +62,7 @@ struct Parameters {
   std::map<std::string, double> mesh_parameters;
   double mesh_scale = 1;
   int dimension = 3;
-  Method method = Method::laplacian;
+  Method method = Method::automatic;
   Form form = Form::automatic;
   /// chi of thesis (4.12): stiffness V^-chi of the cells.
   double stiffening = 1.0;

@@ -262,7 +262,7 @@ TEST(Mover, gives_the_same_mesh_for_the_same_interface_whatever_came_between) {
   const std::vector<double> first = mover.displacement();
   EXPECT_GT(parallel::max(MPI_COMM_WORLD, *std::max_element(first.begin(), first.end())), 0.05);
   mover.solve(push_middle(interface, -0.2));
-  EXPECT_THROW(mover.solve(push_middle(interface, -0.9)), SolveFailure);
+  mover.solve(push_middle(interface, -0.9));  // by the barrier: as far as a guess of the coupling may go
   mover.begin_step({.time = 0, .dt = 0.05, .scheme = Scheme::implicit, .number = 1});
   mover.solve(push_middle(interface, 0.1));
   EXPECT_LT(largest_difference(mover.mesh(), mover.displacement(), first), 1e-14);
@@ -287,7 +287,9 @@ TEST(Mover, is_restored_from_a_checkpoint_bit_for_bit) {
 }
 
 TEST(Mover, refuses_an_inverted_cell_by_name_and_place) {
-  Mover mover(square(), context_of_the_test());
+  Parameters parameters = square();
+  parameters.method = Method::laplacian;
+  Mover mover(parameters, context_of_the_test());
   const Interface interface = mover.initialise();
   mover.begin_step({.time = 1.5, .dt = 0.1, .scheme = Scheme::implicit, .number = 3});
   try {

@@ -11,7 +11,7 @@ from .atlas import Axis, Map
 from .strong import changed
 
 CASE = ROOT / "configs" / "perpendicular-flap"
-MOVERS = {"laplacian": "", "pseudo-solid": "\n    method: pseudo-solid",
+MOVERS = {"auto": "", "laplacian": "\n    method: laplacian", "pseudo-solid": "\n    method: pseudo-solid",
           "pseudo-solid, incremental": "\n    method: pseudo-solid\n    form: incremental\n    stiffening-volumes: current"}
 END, FINE = 0.8, 0.01  # [s]; the step of the reference
 COARSE = "{n_side: 8, n_tip: 1, growth: 1.5, wall_growth: 1.5, wall_cells: 4}"
@@ -47,6 +47,6 @@ MAPS = [
     Map("coupling-soft", "Coupling: a soft flap whose mesh follows it", "largest displacement of the tip over its height",
         Axis("Young's modulus [Pa]", [2e5, 5e5, 1e6, 4e6]), Axis("step [s]", [0.02, 0.04, 0.08]), list(MOVERS), run,
         about="""Mechanism: the softer the flap (configs/perpendicular-flap on coarse cells, 300 kg/m^3, at large strain), the farther its tip goes and the more the cells around it
-are sheared and turned, until one folds; shorter steps do not help, `form: incremental` does for a while. Criterion: beside steps of 0.01 s with the
-incremental mesh. The run stops with the cell that folds."""),
+are sheared and turned, until one folds, with the methods `laplacian` and `pseudo-solid`; shorter steps do not help, `form: incremental` does for a while. The default,
+`auto`, goes on with the barrier. Criterion: beside steps of 0.01 s with the incremental mesh. A run that stops names the cell that folds."""),
 ]
