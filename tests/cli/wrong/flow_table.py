@@ -78,6 +78,9 @@ case.yaml:12:29: participants.fluid.boundaries.right.velocity: this key is not v
     fluid("two sides without a Robin condition", """
 case.yaml:12:32: participants.fluid.boundaries.right.sides: there is no Robin condition here: set 'surface-density' or 'impedance: structure', or remove the key.
 """, ("type: outlet, pressure: 0", "type: interface, sides: apart")),
+    fluid("sides together without a Robin condition", """
+case.yaml:12:32: participants.fluid.boundaries.right.sides: there is no Robin condition here: set 'surface-density' or 'impedance: structure', or remove the key.
+""", ("type: outlet, pressure: 0", "type: interface, sides: together")),
     fluid("unknown treatment", """
 case.yaml:10:5: participants.fluid.viscous: 'implizit' is not one of: auto, explicit, implicit. Did you mean 'implicit'?
 """, ("    boundaries", "    viscous: implizit\n    boundaries")),
