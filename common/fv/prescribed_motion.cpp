@@ -57,6 +57,12 @@ void declare(config::Section& s, MotionParameters& m, bool with_radii) {
   }
   s.check(
       [&m] {
+        const bool moves = !m.translation.empty() || m.angle.text != "0" || !m.displacement.empty();
+        return moves ? "" : "nothing moves without a 'translation', an 'angle' or a 'displacement'";
+      },
+      "");
+  s.check(
+      [&m] {
         if (!m.outer_radius && m.inner_radius > 0)
           return std::string("'inner-radius' has no effect without 'outer-radius'; give both or neither");
         if (m.outer_radius && *m.outer_radius <= m.inner_radius)

@@ -34,6 +34,8 @@ constexpr std::array ids{
     FindingId{answer, "given-step", "a prescribed time step far too long for the viscous term on this mesh"},
     FindingId{answer, "balance-of-the-kinetic-energy", "the flow has kinetic energy that no work explains"},
     FindingId{answer, "resolved-walls", "a turbulence model on walls that the mesh does not resolve"},
+    FindingId{answer, "eddy-viscosity-in-two-dimensions",
+              "a turbulence model in two dimensions, where it is added friction only"},
     FindingId{answer, "walls-that-move-along-themselves", "fluid crosses a moving wall on a mesh at rest"},
     FindingId{answer, "gaps-that-close", "gaps block most of the cells"},
     FindingId{answer, "ringing-pressure", "waves that no step resolves ring in a trapezoidal rule"},

@@ -42,7 +42,7 @@ struct RotationParameters {
 /// Who says what mass per area stands behind an interface of type Robin.
 enum class Impedance { given, structure };
 /// What faces on the two sides of a thin body do, both of type Robin.
-enum class Sides { together, apart };
+enum class Sides { automatic, together, apart };
 
 /// The keys of all conditions; what a condition does not read stays as it is here.
 struct BoundaryParameters {
@@ -60,7 +60,7 @@ struct BoundaryParameters {
   std::string partner;                               // periodic
   std::optional<double> surface_density;             // [kg/m^2], interface: of the structure behind it
   Impedance impedance = Impedance::given;            // interface
-  Sides sides = Sides::together;                     // interface
+  Sides sides = Sides::automatic;                    // interface
   /// The wall's answer is foreseen in the pressure equation.
   bool foresees() const { return surface_density || impedance == Impedance::structure; }
 };

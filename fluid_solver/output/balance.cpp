@@ -45,8 +45,8 @@ template <int D>
 void FluidOutput<D>::write_balance(double time) {
   const State<D>& s = fluid_.state();
   const Placement<D>& at = *s.placement;
-  enum { inflow, outflow, volume, energy, divergence };
-  double sums[5] = {};
+  enum { inflow, outflow, volume, energy, divergence, taken_up };
+  double sums[6] = {};
   divergence_.assign(mesh_.cells.n_local(), 0.0);
   subtract_outflow(mesh_, -1, s.phi, divergence_);
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
@@ -60,8 +60,9 @@ void FluidOutput<D>::write_balance(double time) {
       sum_cells(std::span(at.volume).first(mesh_.cells.n_owned()), divergence_.data(), s.u.data());
   sums[divergence] = over_cells.divergence, sums[volume] = over_cells.volume;
   sums[energy] = 0.5 * fluid_.parameters().density * over_cells.squares;
+  if (s.pressure[0]) sums[taken_up] = s.pressure[0]->taken_up;
   double worst = over_cells.worst;
-  MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  MPI_Allreduce(MPI_IN_PLACE, sums, 6, MPI_DOUBLE, MPI_SUM, mesh_.comm);
   worst = parallel::max(mesh_.comm, worst);
   if (!root_) return;
   if (!balance_)
@@ -69,10 +70,10 @@ void FluidOutput<D>::write_balance(double time) {
         open("balance.csv", {"time [s]", "inflow [m^3/s]", "outflow [m^3/s]", "volume [m^3]",
                              "kinetic energy [J]", "largest divergence [1/s]", "mean divergence [1/s]",
                              "mass defect [m^3/s]", "sub-steps [-]", "pressure iterations so far [-]"}));
-  balance_->row(std::array<double, 10>{time, sums[inflow], sums[outflow], sums[volume], sums[energy], worst,
-                                       sums[divergence] / sums[volume], sums[outflow] - sums[inflow],
-                                       double(fluid_.statistics().sub_steps),
-                                       double(fluid_.statistics().pressure_iterations)});
+  balance_->row(std::array<double, 10>{
+      time, sums[inflow], sums[outflow], sums[volume], sums[energy], worst, sums[divergence] / sums[volume],
+      sums[outflow] - sums[inflow] + sums[taken_up], double(fluid_.statistics().sub_steps),
+      double(fluid_.statistics().pressure_iterations)});
 }
 
 template void FluidOutput<2>::write_balance(double);

@@ -24,12 +24,16 @@ bool has_interface(const S& s) {
 
 const std::array cards{
     FluidCard{
-        "turbulence model", "`turbulence`",
-        [](const S& s) { return when(s.parameters.turbulence.has_value(), "turbulence"); },
+        "turbulence model", "`turbulence` in three dimensions",
+        [](const S& s) { return when(s.parameters.turbulence && s.parameters.dimension == 3, "turbulence"); },
         "an eddy viscosity per cell, a velocity gradient per step",
         "max cell Reynolds number, 50, or 250 with resolved walls (y+ up to 1); beyond that the flow's own by the hydraulic "
         "diameter, 3450: laminar below",
         judge_turbulence, false, spare_turbulence},
+    FluidCard{
+        "eddy viscosity in two dimensions", "`turbulence` in two dimensions, where it models no turbulence",
+        [](const S& s) { return when(s.parameters.turbulence && s.parameters.dimension == 2, "turbulence"); },
+        "as a turbulence model", "max eddy viscosity over the molecular, 0.01", judge_flat_eddies, true},
     FluidCard{"resolved walls", "`turbulence`",
               [](const S& s) { return when(s.parameters.turbulence.has_value(), "turbulence"); }, "",
               "with a turbulence model: max y+, 2", judge_walls, true},

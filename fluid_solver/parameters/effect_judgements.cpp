@@ -80,7 +80,11 @@ V judge_turbulence(const S& s, const E& e) {
   effects::EffectVerdict v{
       "", e.largest_peclet, limit,
       fmt::format("max cell Reynolds number = {:.3g}, max y+ = {:.3g}", e.largest_peclet, e.largest_yplus),
-      "steep layers may be thinner than the mesh: refine it, or add 'turbulence' if the flow is turbulent"};
+      s.parameters.dimension == 2
+          ? "steep layers may be thinner than the mesh: refine it; if the flow is turbulent, use 'turbulence' "
+            "and 'dimension: 3'"
+          : "steep layers may be thinner than the mesh: refine it, or add 'turbulence' if the flow is "
+            "turbulent"};
   const double reynolds = s.parameters.density * e.largest_speed * e.width / s.parameters.viscosity;
   if (e.largest_peclet > limit && reynolds < laminar_below) {
     v.number = reynolds, v.threshold = laminar_below;
@@ -111,6 +115,19 @@ V spare_turbulence(const S&, const E& e) {
       .sentence = fmt::format("max eddy viscosity = {:.2g} of the molecular", e.eddy_viscosity)};
   v.saves = effects::saved_share("fluid_solver", "turbulence model");
   return v;
+}
+
+// Turbulence passes its energy to ever smaller eddies as vortices stretch, which those of two dimensions do not: there the models
+// are added friction only, and layers thicken with the root of the viscosity.
+V judge_flat_eddies(const S& s, const E& e) {
+  if (std::isnan(e.eddy_viscosity)) return {};
+  V spare = spare_turbulence(s, e);
+  if (spare->could_be_omitted()) return spare;
+  spare->saves = 0;
+  spare->recommendation =
+      "vortices in two dimensions do not stretch, so it models no turbulence: omit 'turbulence', or use 'dimension: 3'";
+  spare->share = 1 - 1 / std::sqrt(1 + e.eddy_viscosity);
+  return spare;
 }
 
 // Density changes go with the Mach number squared over two: 5 % at 0.3.

@@ -13,6 +13,8 @@ std::optional<effects::EffectVerdict> judge_turbulence(const FluidScene& scene,
 std::optional<effects::EffectVerdict> judge_walls(const FluidScene& scene, const FluidEvidence& evidence);
 std::optional<effects::EffectVerdict> spare_turbulence(const FluidScene& scene,
                                                        const FluidEvidence& evidence);
+std::optional<effects::EffectVerdict> judge_flat_eddies(const FluidScene& scene,
+                                                        const FluidEvidence& evidence);
 std::optional<effects::EffectVerdict> judge_compressibility(const FluidScene& scene,
                                                             const FluidEvidence& evidence);
 std::optional<effects::EffectVerdict> judge_small_changes(const FluidScene& scene,

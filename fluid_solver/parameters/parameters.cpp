@@ -22,38 +22,6 @@ std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& 
 
 namespace {
 
-void declare_gap(config::Section& s, GapParameters& gap) {
-  s.value("between", gap.between).required().doc("the two walls (patches), a valve and its seat");
-  s.value("opening", gap.opening)
-      .unit("m")
-      .plausible(1e-8, 10)
-      .positive()
-      .required()
-      .doc("cells where the walls are closer than this are blocked");
-  s.value("height", gap.height)
-      .unit("m")
-      .plausible(1e-9, 1e4)
-      .doc(
-          "height of the seat, the second wall, along 'direction', of x, y, z at rest: the mesh is refused if its wall is "
-          "elsewhere, and the 'contact' of a structure may name the gap; absent: where the mesh has it");
-  s.value("direction", gap.direction).doc("direction from the seat to the valve; absent: z, in 2-D y");
-  s.check([&gap] { return gap.height ? fv::problem_of(*gap.height) : std::string(); }, "height");
-  s.check(
-      [&gap] {
-        const auto& d = gap.direction;
-        const bool fits = d.empty() || ((d.size() == 2 || d.size() == 3) &&
-                                        std::hypot(d[0], d[1], d.size() > 2 ? d[2] : 0) > 0);
-        return fits ? std::string() : "two or three numbers are needed, not all 0";
-      },
-      "direction");
-  s.check(
-      [&gap] {
-        const bool two = gap.between.size() == 2 && gap.between[0] != gap.between[1];
-        return two ? std::string() : "requires two different patches";
-      },
-      "between");
-}
-
 /// Mesh and fluid.
 void declare_scene(config::Section& s, FluidParameters& p) {
   s.value("mesh", p.mesh)
@@ -199,10 +167,7 @@ void declare_moving_parts(config::Section& s, FluidParameters& p) {
       },
       "body",
       "rigid bodies in a mesh that does not conform to them and may move through them; requires an outlet");
-  s.map<GapParameters>(
-      "gaps", p.gaps, declare_gap, "gap",
-      "gaps that nearly close as the mesh moves: their cells block the flow, do not limit the step size, "
-      "and open again");
+  declare_gaps(s, p);
   s.optional_section<fv::MotionParameters>(
       "motion", p.motion,
       [](config::Section& m, fv::MotionParameters& motion) { couplet::fv::declare(m, motion, true); },

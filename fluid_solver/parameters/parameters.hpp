@@ -133,6 +133,8 @@ struct FluidParameters {
 std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& parameters);
 
 void declare(config::Section& section, FluidParameters& parameters);
+/// The section `gaps`; after `boundaries`, at which it looks.
+void declare_gaps(config::Section& section, FluidParameters& parameters);
 /// The section `output`.
 void declare_output(config::Section& section, FluidOutputParameters& parameters);
 

@@ -69,6 +69,9 @@ double Compression<D>::add_to(std::vector<double>& b) const {
 
 template <int D>
 void Compression<D>::complete(PressureLevel<D>& level) const {
+  if (active())
+    for (std::size_t c = 0; c < storage_.size(); ++c)
+      level.taken_up += storage_[c] * k_.step.dt / k_.rho * (level.p[c] + past_[c] / rate_);
   if (!trapezoidal_) return;
   level.end = level.p;
   level.end.push_back(0);  // of the volume upstream, if there is one

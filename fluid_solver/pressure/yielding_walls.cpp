@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "common/base/error.hpp"
 #include "common/log/log.hpp"
+#include "common/parallel/collective.hpp"
 
 namespace couplet::fluid {
 namespace {
@@ -11,12 +13,29 @@ namespace {
 // Of the interface's area: with less of it opposite itself nothing is said of two sides.
 constexpr double worth_telling = 0.05;
 
+/// Where the case states that two sides move together there are two. Collective.
+void check_sides(const mesh::Mesh& mesh, const FluidParameters& parameters, const OppositeFaces& opposite) {
+  for (const mesh::Patch& patch : mesh.patches) {
+    if (parameters.boundaries.at(patch.name).sides != Sides::together) continue;
+    const bool any = std::ranges::any_of(opposite.pairs(), [&](const OppositeFaces::Pair& pair) {
+      const Index at = mesh.n_interior + pair.face - patch.first;
+      return at >= 0 && at < patch.count;
+    });
+    if (!parallel::any(mesh.comm, any))
+      throw Error(
+          "boundaries.{}.sides: together, but none of its faces lies opposite another face of the interface, on the "
+          "other side of a body no thicker than a quarter of the interface's extent; use 'auto' or 'apart'.",
+          patch.name);
+  }
+}
+
 }  // namespace
 
 template <int D>
 YieldingWalls<D>::YieldingWalls(StepWork<D>& work) : k_(work) {
   const mesh::Geometry geometry = mesh::compute_geometry(k_.mesh, k_.points_at_rest);
   opposite_ = OppositeFaces(k_.mesh, geometry, k_.boundary.faces_with_two_sides());
+  check_sides(k_.mesh, k_.parameters, opposite_);
   const std::size_t faces = std::size_t(k_.mesh.boundary.n_owned());
   alone_.assign(faces, 1.);
   std::vector<GlobalIndex> cell(std::size_t(opposite_.map().n_local()));

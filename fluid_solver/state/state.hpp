@@ -30,6 +30,8 @@ struct PressureLevel {
   double upstream = 0;  ///< of the volume behind the inlets [Pa]
   std::vector<double>
       end;  ///< trapezoidal rule only: p at the end of the step, per local cell; last: `upstream` there [Pa]
+  double taken_up =
+      0;  ///< by this rank's cells at the end of the step: V dp/dt / (rho c^2) [m^3/s]; not saved
 };
 
 /// At the absorbing boundaries, per boundary face: what leaves beyond what is given, phi/S of outlets and (w - given).n of

@@ -79,10 +79,14 @@ class FileCheck {
     const auto has = [](const Names& names, const std::string& name) {
       return std::find(names.begin(), names.end(), name) != names.end();
     };
-    for (const std::string& entry : entries)
-      if (!has(patches, entry))
-        report("boundaries." + entry, fmt::format("the mesh has no patch with this name. {}",
-                                                  base::did_you_mean(entry, patches, "patches")));
+    for (const char* key : {"boundaries", "heat.boundaries"})
+      for (const std::string& entry : config::keys_of(document_, section_ + "." + key))
+        if (!has(patches, entry))
+          report(fmt::format("{}.{}", key, entry),
+                 fmt::format("the mesh has no patch with this name. {}",
+                             base::did_you_mean(entry, patches, "patches")));
+    // Of conduction alone: a patch without an entry is adiabatic.
+    if (config::text_of(document_, section_ + ".analysis") == "thermal") return;
     for (const std::string& patch : patches)
       if (!has(entries, patch))
         report("boundaries", fmt::format("the patch '{}' of the mesh has no entry here.", patch));

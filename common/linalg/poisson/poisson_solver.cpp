@@ -25,6 +25,26 @@ constexpr int most_with_kept_factors = 8;
 // Fresh factors in double precision need one iteration, two at very tight tolerances: more than this many with factors in single
 // precision mean that cells are too thin for them.
 constexpr int most_with_new_single_factors = 6;
+// Sums of rows over their diagonals: of round-off, so that x is known up to a constant; of what is small beside the faces and yet all that
+// holds a constant, which multigrid in single precision would lose (a closed fluid that hardly compresses).
+constexpr double round_off = 1e-13, little = 1e-5;
+
+struct RowSums {
+  double largest = 0;  ///< over the diagonal
+  double all = 0;
+};
+/// Collective.
+RowSums sums_of(const CellMatrix::Rows& rows, std::span<const double> diagonal, MPI_Comm comm) {
+  RowSums sums;
+  for (std::size_t c = 0; c + 1 < rows.offset.size(); ++c) {
+    if (rows.offset[c] == rows.offset[c + 1]) continue;  // blocked: an equation of its own
+    double sum = diagonal[c];
+    for (auto e = rows.offset[c]; e < rows.offset[c + 1]; ++e) sum += rows.value[e];
+    sums.largest = std::max(sums.largest, std::abs(sum) / diagonal[c]);
+    sums.all += sum;
+  }
+  return {parallel::max(comm, sums.largest), parallel::sum(comm, sums.all)};
+}
 
 }  // namespace
 
@@ -54,8 +74,11 @@ void PoissonSolver::make_preconditioner() {
     single.index = rows.index;
     single.value.assign(rows.value.begin(), rows.value.end());
     single.diagonal.assign(diagonal.begin(), diagonal.begin() + n);
+    const RowSums sums = sums_of(rows, diagonal, graph.comm);
+    const bool closed = sums.largest < little;
     multigrid_ = std::make_unique<ColouredMultigrid>(
-        std::move(single), ColouredMultigrid::Options{1, &graph.cells, graph.comm, true});
+        std::move(single), ColouredMultigrid::Options{1, &graph.cells, graph.comm, closed});
+    constant_ = closed && sums.largest > round_off ? 1 / sums.all : 0;
     return;
   }
   std::vector<int> offset{0}, index;
@@ -77,9 +100,10 @@ void PoissonSolver::precondition(double size) {
   const std::size_t n = matrix_.graph().cells.n_owned();
   const std::span<const double> r(r_.data(), n);
   const std::span<double> z(z_.data(), n);
-  if (multigrid_)
+  if (multigrid_) {
     multigrid_->apply(r, z, size);
-  else if (memory_.is_single)
+    if (constant_ > 0) shift(constant_ * parallel::sum(matrix_.graph().comm, sum_of(r)), z);
+  } else if (memory_.is_single)
     factors_->apply(r, z);
   else
     factors_->apply_double(r, z);

@@ -53,6 +53,7 @@ class PoissonSolver final : public CellSolver {
   std::vector<double> faces_;
   std::unique_ptr<SingleFactors> factors_;        // null: none yet
   std::unique_ptr<ColouredMultigrid> multigrid_;  // the same
+  double constant_ = 0;  // 1/(1.A 1), by which constants are answered beside multigrid; 0: they are not
   PreconditionerMemory memory_;
   int built_ = 0;
   double rz_step_ = 0;  // of the last iteration: along p

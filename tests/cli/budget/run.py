@@ -151,7 +151,7 @@ SCENES = {  # what is neglected: how it is measured, the effect that the budget 
 }
 IDLE = {  # an effect that does nothing: what the run says could be omitted
     "slow ramp as dynamic": (SOLID, "cantilever", [*DYNAMIC, pull('[0, "125*t/2000", 0]'), "simulation.end-time=2000 s", "simulation.time-step=40 s"], "inertia"),
-    "turbulence model in a laminar channel": (FLUID, "pulsing-channel", [F + "turbulence={model: wale}", F + 'boundaries.inlet={type: inlet, velocity: ["4*y*(1-y)", 0]}', F + 'initial-velocity=["4*y*(1-y)", 0]', "simulation.end-time=0.5 s"], "turbulence model"),
+    "turbulence model in a laminar channel": (FLUID, "pulsing-channel", [F + "turbulence={model: wale}", F + 'boundaries.inlet={type: inlet, velocity: ["4*y*(1-y)", 0]}', F + 'initial-velocity=["4*y*(1-y)", 0]', "simulation.end-time=0.5 s"], "eddy viscosity in two dimensions"),
 }
 QUICK = ("hot bar without thermal strain", "large deflection as linear", "slow ramp as dynamic", "turbulence model in a laminar channel")
 

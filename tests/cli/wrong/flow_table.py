@@ -37,6 +37,14 @@ case.yaml:10:18: participants.fluid.turbulence.model: 'smagorinski' is not one o
     fluid("immersed body without a level", """
 case.yaml:10:14: participants.fluid.bodies.ball.level: this required key is missing (expression of x, y, z [m] and t [s]: negative inside, approximately the distance near the surface: number or expression in m).
 """, ("    boundaries:\n", "    bodies: {ball: {velocity: [1, 0]}}\n    boundaries:\n")),
+    fluid("motion that moves nothing", """
+case.yaml:10:5: participants.fluid.motion: nothing moves without a 'translation', an 'angle' or a 'displacement'.
+""", ("    boundaries:\n", "    motion: {outer-radius: 1}\n    boundaries:\n")),
+    fluid("gap between walls at rest", """
+warning: case.yaml:10:5: participants.fluid.gaps: both walls of 'slot' are at rest, so that it neither closes nor opens: one of them must be of `type: interface` or `body`.
+""", ("    boundaries:\n", "    gaps: {slot: {between: [bottom, left], opening: 1 mm}}\n    boundaries:\n"), exit_code=0),
+    fluid("gap with a wall that may move", "",
+          ("    boundaries:\n", "    gaps: {slot: {between: [bottom, top], opening: 1 mm}}\n    boundaries:\n"), exit_code=0),
     fluid("periodic without partner", """
 case.yaml:12:7: participants.fluid.boundaries.right.partner: this required key is missing (the patch that is a translated copy of this one: text).
 """, ("{type: outlet, pressure: 0}", "{type: periodic}")),
@@ -70,6 +78,9 @@ case.yaml:12:29: participants.fluid.boundaries.right.velocity: this key is not v
     fluid("two sides without a Robin condition", """
 case.yaml:12:32: participants.fluid.boundaries.right.sides: there is no Robin condition here: set 'surface-density' or 'impedance: structure', or remove the key.
 """, ("type: outlet, pressure: 0", "type: interface, sides: apart")),
+    fluid("sides together without a Robin condition", """
+case.yaml:12:32: participants.fluid.boundaries.right.sides: there is no Robin condition here: set 'surface-density' or 'impedance: structure', or remove the key.
+""", ("type: outlet, pressure: 0", "type: interface, sides: together")),
     fluid("unknown treatment", """
 case.yaml:10:5: participants.fluid.viscous: 'implizit' is not one of: auto, explicit, implicit. Did you mean 'implicit'?
 """, ("    boundaries", "    viscous: implizit\n    boundaries")),

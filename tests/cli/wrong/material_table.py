@@ -1,5 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wrong materials of solids; joined by table.py."""
+"""Wrong materials of solids and heat; joined by table.py."""
+
+ENTRIES = """    boundaries:
+      left: {type: fixed-displacement, value: [0, 0]}
+      right: {type: traction, value: [1000, 0]}
+      bottom: {type: free}
+      top: {type: free}
+"""
 
 
 def cases(solid):
@@ -26,4 +33,11 @@ case.yaml:6:5: participants.solid.kinematics: an orthotropic material is linear;
 """, ("      youngs-modulus: 1 MPa\n      poissons-ratio: 0.3\n",
           "      orthotropic: {youngs-moduli: [1e6, 1e6, 1e6], poissons-ratios: [0.3, 0.3, 0.3], shear-moduli: [1e6, 1e6, 1e6]}\n"),
               ("    mesh:", "    kinematics: finite-strain\n    mesh:")),
+        solid("conduction alone, whose other patches are adiabatic", "", ("analysis: dynamic", "analysis: thermal"),
+              ("poissons-ratio: 0.3", "poissons-ratio: 0.3\n      conductivity: 50"),
+              (ENTRIES, "    heat: {analysis: steady, boundaries: {left: {type: temperature, value: 300 K}}}\n"), exit_code=0),
+        solid("heat through a patch that is not there", """
+case.yaml:14:43: participants.solid.heat.boundaries.lift: the mesh has no patch with this name. Did you mean 'left'?
+""", ("analysis: dynamic", "analysis: thermal"), ("poissons-ratio: 0.3", "poissons-ratio: 0.3\n      conductivity: 50"),
+              (ENTRIES, "    heat: {analysis: steady, boundaries: {lift: {type: temperature, value: 300 K}}}\n")),
     ]

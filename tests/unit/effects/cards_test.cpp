@@ -195,6 +195,24 @@ TEST(EffectCards, fluid_verdicts_turn_at_their_thresholds) {
                           fluid::FluidEvidence{.largest_peclet = 1e4}));
 }
 
+// The same verdict on the turbulence as without the model, and one on the viscosity that it adds.
+TEST(EffectCards, an_eddy_viscosity_in_two_dimensions_models_no_turbulence) {
+  fluid::FluidScene scene;
+  scene.parameters.dimension = 2;
+  const auto model = [&](double eddy) {
+    const fluid::FluidEvidence seen{.largest_peclet = 500, .eddy_viscosity = eddy};
+    return model_error(audit(fluid::fluid_effect_cards(), scene, seen));
+  };
+  const ModelError without = model(fluid::FluidEvidence::unknown);
+  EXPECT_NEAR(without.sum, 1 - std::sqrt(0.1), 1e-12);
+  EXPECT_THAT(without.largest, HasSubstr("'dimension: 3'"));
+  scene.parameters.turbulence.emplace();
+  EXPECT_NEAR(model(3).sum, without.sum + 0.5, 1e-12);
+  EXPECT_THAT(model(100).largest, HasSubstr("models no turbulence"));
+  EXPECT_THAT(model(0.009).omittable, HasSubstr("eddy viscosity in two dimensions ("));
+  EXPECT_THAT(model(0.011).omittable, IsEmpty());
+}
+
 // The scenes of the issue: SF6 at 48 m/s, a reed's channel, and a model fluid of which nothing can be said.
 TEST(EffectCards, compressibility_is_judged_by_what_it_does) {
   const auto verdict = [](const char* effect, const fluid::FluidScene& scene, const fluid::FluidEvidence& e) {

@@ -2,11 +2,15 @@
 // Weak compressibility: pulses, standing waves, openings, closed cylinders and the way back to the incompressible fluid.
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <sstream>
 
 #include "common/base/error.hpp"
 #include "fluid_case.hpp"
 #include "fluid_solver/judge/ringing.hpp"
+#include "fluid_solver/output/output.hpp"
 #include "fluid_solver/state/state_io.hpp"
 
 namespace couplet::fluid::test::sound_test {
@@ -245,6 +249,39 @@ TEST(Sound, a_piston_compresses_a_closed_cylinder) {
   }
   RecordProperty("piston_error", fmt::format("{}", worst));
   EXPECT_LT(worst, 2e-3);
+}
+
+// What leaves and what compression takes up, dp/dt V/(rho c^2) by the rule of the step itself, add up to nothing.
+TEST_P(Pulse, keeps_the_mass_in_each_row_of_its_balance) {
+  FluidParameters p = pulse(GetParam());
+  p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"0.01*sin(3000*t)", "0"});
+  FluidCase<2> d(MPI_COMM_WORLD, duct(50), p);
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() /
+      fmt::format("couplet-sound-{}-{}", parallel::comm_size(MPI_COMM_WORLD), int(GetParam()));
+  if (parallel::comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::create_directories(folder);
+  MPI_Barrier(MPI_COMM_WORLD);
+  {
+    FluidOutput<2> output(d.fluid(), d.geometry(), {.output_folder = folder});
+    for (int i = 0; i < 40; ++i) {
+      d.step(i < 20 ? 50e-6 : 20e-6);
+      output.write_series(d.state().time);
+    }
+  }
+  if (parallel::comm_rank(MPI_COMM_WORLD) > 0) return;
+  std::ifstream in(folder / "balance.csv");
+  double net = 0, defect = 0;
+  std::string line;
+  std::getline(in, line);
+  while (std::getline(in, line)) {
+    std::vector<double> row;
+    std::istringstream words(line);
+    for (std::string word; std::getline(words, word, ',');) row.push_back(std::stod(word));
+    net = std::max(net, std::abs(row.at(2) - row.at(1))), defect = std::max(defect, std::abs(row.at(7)));
+  }
+  RecordProperty("mass_defect", fmt::format("{} of {}", defect, net));
+  EXPECT_GT(net, 1e-5);
+  EXPECT_LT(defect, 1e-7 * net);
 }
 
 /// Pressures and velocities of all cells in a row.
