@@ -70,11 +70,11 @@ Mover::Mover(mesh::LoadedMesh loaded, const Parameters& parameters, const app::P
       periodic_(mesh_, geometry_),
       guard_(mesh_, geometry_, parameters),
       curved_(mesh_, geometry_, parameters),
+      moving_(mesh_, geometry_, parameters),
       chooses_(parameters.method == Method::automatic && !incremental() && periodic_.empty()),
       interface_(mesh_, interface_patches(parameters)),
       displacement_(std::size_t(mesh_.points.n_local()) * mesh_.dim, 0.0),
       accepted_(displacement_) {
-  set_up_moving();
   if (!context.coupled && moving_.empty() && context.mesh_peer == MPI_COMM_NULL &&
       interface_patches(parameters).empty())
     log::warn("participant '{}': no patch moves (type: moving, or interface in a coupled job).", name_);
@@ -99,21 +99,6 @@ Mover::Mover(mesh::LoadedMesh loaded, const Parameters& parameters, const app::P
     columns.push_back(column);
   quality_ =
       std::make_unique<io::Series>(context.output_folder / "quality.csv", columns, context.restart_time);
-}
-
-void Mover::set_up_moving() {
-  for (const mesh::Patch& patch : mesh_.patches) {
-    const Boundary& boundary = parameters_.boundaries.at(patch.name);
-    if (boundary.motion != BoundaryMotion::moving) continue;
-    Moving moving{{}, fv::PrescribedMotion(boundary.prescribed, mesh_.dim)};
-    for (const auto& [first, count] :
-         {std::pair{patch.first, patch.count}, {patch.ghost_first, patch.ghost_count}})
-      for (Index f = first; f < first + count; ++f)
-        moving.points.insert(moving.points.end(), mesh_.face_points[f].begin(), mesh_.face_points[f].end());
-    std::ranges::sort(moving.points);
-    moving.points.erase(std::unique(moving.points.begin(), moving.points.end()), moving.points.end());
-    moving_.push_back(std::move(moving));
-  }
 }
 
 /// On the geometry as read, or on that of the last accepted step.
@@ -164,14 +149,7 @@ void Mover::begin_step(const coupling::Step& step) {
 std::vector<double> Mover::prescribed(const coupling::Exchange& in) const {
   const int dim = mesh_.dim;
   std::vector<double> values(displacement_.size(), 0.0);
-  for (const Moving& moving : moving_) {
-    std::vector<Vec3> reference;
-    for (const Index v : moving.points) reference.push_back(geometry_.points[v]);
-    const std::vector<Vec3> places = moving.motion.places(reference, step_.time + step_.dt);
-    for (std::size_t i = 0; i < places.size(); ++i)
-      for (int c = 0; c < dim; ++c)
-        values[std::size_t(moving.points[i]) * dim + c] = places[i][c] - reference[i][c];
-  }
+  moving_.displace(step_.time + step_.dt, values);
   const auto given = in.find("displacement");
   const std::vector<double> at_interface =
       interface_.scatter_vertices(given == in.end() ? std::vector<double>{} : given->second, dim);
@@ -180,22 +158,6 @@ std::vector<double> Mover::prescribed(const coupling::Exchange& in) const {
       values[std::size_t(interface_.points()[i]) * dim + c] = at_interface[i * dim + c];
   if (incremental())
     for (std::size_t i = 0; i < values.size(); ++i) values[i] -= accepted_[i];
-  return values;
-}
-
-std::vector<double> Mover::body_velocities() const {
-  std::vector<double> values;
-  if (moving_.empty()) return values;
-  values.assign(displacement_.size(), 0.0);
-  for (const Moving& moving : moving_) {
-    std::vector<Vec3> reference;
-    for (const Index v : moving.points) reference.push_back(geometry_.points[v]);
-    const std::vector<Vec3> velocity = moving.motion.velocities(reference, step_.time + step_.dt, step_.dt);
-    for (std::size_t i = 0; i < velocity.size(); ++i)
-      for (int c = 0; c < mesh_.dim; ++c)
-        values[std::size_t(moving.points[i]) * mesh_.dim + c] = velocity[i][c];
-  }
-  mesh_.points.update_ghosts(values, mesh_.dim);
   return values;
 }
 
@@ -263,7 +225,7 @@ coupling::Exchange Mover::solve(const coupling::Exchange& in) {
     if (sink_) sink_->send_failure();
     throw;
   }
-  if (sink_) sink_->send(displacement_, body_velocities());
+  if (sink_) sink_->send(displacement_, moving_.velocities(step_.time + step_.dt, step_.dt));
   return {};
 }
 

@@ -11,13 +11,13 @@
 #include "common/coupling/mesh_motion.hpp"
 #include "common/coupling/participant.hpp"
 #include "common/effects/position.hpp"
-#include "common/fv/prescribed_motion.hpp"
 #include "common/io/fields/field_writer.hpp"
 #include "common/io/series.hpp"
 #include "common/mesh/periodic_points.hpp"
 #include "mesh_mover/curved_slide.hpp"
 #include "mesh_mover/guard.hpp"
 #include "mesh_mover/motion_method.hpp"
+#include "mesh_mover/moving_patches.hpp"
 #include "mesh_mover/parameters.hpp"
 
 namespace couplet::mesh_mover {
@@ -50,20 +50,13 @@ class Mover final : public coupling::Participant, public effects::KnowsItsPlace 
 
  private:
   Mover(mesh::LoadedMesh loaded, const Parameters& parameters, const app::ParticipantContext& context);
-  struct Moving {
-    std::vector<Index> points;  // local
-    fv::PrescribedMotion motion;
-  };
   bool incremental() const { return parameters_.form == Form::incremental; }
-  void set_up_moving();
   void make_method();
   void tell_choice() const;
   void choose_method(const app::SimulationParameters& simulation);
   void move(const coupling::Exchange& in);
   std::string place_and_judge();
   std::vector<double> prescribed(const coupling::Exchange& in) const;
-  /// Of the points of patches that move by themselves, zero elsewhere; empty without such patches.
-  std::vector<double> body_velocities() const;
   void refuse_torn() const;
   /// The geometry for displacement_, made once a motion. Collective.
   void place();
@@ -76,12 +69,12 @@ class Mover final : public coupling::Participant, public effects::KnowsItsPlace 
   std::unique_ptr<mesh::Geometry> base_;  // incremental: that of the last step
   Guard guard_;
   CurvedSlide curved_;
+  MovingPatches moving_;
   std::unique_ptr<MotionMethod> method_;
   bool chooses_;                             // method: auto
   std::string reason_;                       // why the barrier
   std::unique_ptr<MotionMethod> laplacian_;  // aside while the barrier moves a step that is not accepted yet
   coupling::InterfaceMap interface_;
-  std::vector<Moving> moving_;
   std::unique_ptr<coupling::MeshMotionSink> sink_;
   coupling::Step step_;
   std::vector<double> displacement_, accepted_;

@@ -35,7 +35,7 @@ def is_monitor(file):
 def chosen(columns, options):
     names = [n for n in columns if n != next(iter(columns)) and n not in PLACES]
     if options.only:
-        names = [n for n in names if any(word in n for word in options.only)]
+        names = [n for n in names if any(word.lower() in n.lower() for word in options.only)]
         expect(names, f"no column holds {' or '.join(options.only)}; there are: {', '.join(list(columns)[1:])}")
     return names
 
@@ -55,7 +55,7 @@ def curves(x, label, columns, names, log, title):
             y = np.abs(columns[name]) if log else columns[name]
             if np.isfinite(y).any():
                 ax.plot(x, y, lw=1, marker="." if len(x) < 30 else None, label=name.partition(" [")[0])
-        if log:
+        if log and any((np.asarray(line.get_ydata()) > 0).any() for line in ax.get_lines()):
             ax.set_yscale("log")
         ax.set_ylabel(f"[{unit}]")
         ax.grid(alpha=0.3)

@@ -48,5 +48,5 @@ MAPS = [
         Axis("Young's modulus [Pa]", [2e5, 5e5, 1e6, 4e6]), Axis("step [s]", [0.02, 0.04, 0.08]), list(MOVERS), run,
         about="""Mechanism: the softer the flap (configs/perpendicular-flap on coarse cells, 300 kg/m^3, at large strain), the farther its tip goes and the more the cells around it
 are sheared and turned, until one folds, with the methods `laplacian` and `pseudo-solid`; shorter steps do not help, `form: incremental` does for a while. The default,
-`auto`, goes on with the barrier. Criterion: beside steps of 0.01 s with the incremental mesh. A run that stops names the cell that folds."""),
+`auto`, continues with the barrier. Criterion: beside steps of 0.01 s with the incremental mesh. A run that stops names the cell that folds."""),
 ]

@@ -14,6 +14,7 @@ def declare(parser):
     parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER", help="the output folder of the run")
     parser.add_argument("-n", "--ranks", action="append", default=[], metavar="NAME=N", help=f"other ranks than before: {RANKS_HELP}")
     parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="a further change, such as simulation.end-time='10 s'")
+    parser.add_argument("--restart-with-changes", action="store_true", help="continues although keys that change the solution differ")
     parser.add_argument("--print", action="store_true", help="prints the launch line only")
 
 
@@ -29,7 +30,7 @@ def run(arguments):
     record = folders.read_record(folder)
     expect(record, f"{arguments.folder}: was not started by couplet run (no {folders.RECORD}). Continue with: couplet run CASE --restart {arguments.folder / 'checkpoints'}")
     expect(folders.checkpoint(folder), f"{arguments.folder}: no complete checkpoint to continue from; `simulation.checkpoint.interval` writes them. Start again: couplet run {shlex.quote(str(record['case']))}")
-    flags = [*without_restart(record["flags"]), "--restart", str(folder / "checkpoints" / folders.checkpoint(folder))]
+    flags = [*without_restart(record["flags"]), *(["--restart-with-changes"] if arguments.restart_with_changes and "--restart-with-changes" not in record["flags"] else []), "--restart", str(folder / "checkpoints" / folders.checkpoint(folder))]
     case = Case(record["case"], pathlib.Path(record["bin"]).parent)
     job = Job(case, {**record["ranks"], **ranks_of(arguments.ranks, case)}, [*record["sets"], f"simulation.output.folder={folder}", *arguments.set],
               flags, record["alone"], record["with"])

@@ -52,12 +52,17 @@ def pairs(words, option):
     return dict(w.split("=", 1) for w in words)
 
 
-def ranks_of(words, case):
+def ranks_of(words, case, here=True):
+    """`here`: the job runs on this machine."""
     words = [w for word in words for w in word.split(",")]
     if len(words) == 1 and words[0].isdigit():
-        from couplet.runs.ranks import divide
+        from couplet.runs.ranks import divide, fit_total
+        if here:
+            fit_total(int(words[0]))
         return divide(case, int(words[0]))
+    expect(all("=" in w for w in words), f"-n {','.join(words)}: expected one whole number for all together, or NAME=N")
     found = pairs(words, "-n")
+    expect(len(found) == len(words), f"-n {','.join(words)}: a participant stands there twice")
     expect(all(n.isdigit() and int(n) > 0 for n in found.values()), f"-n {','.join(words)}: expected whole numbers from 1 on, such as -n fluid=4,solid=2")
     return {name: int(n) for name, n in found.items()}
 
@@ -84,7 +89,7 @@ def build_of(folder):
 def run(arguments):
     case = Case(arguments.case, build_of(arguments.bin))
     expect(all("=" in s for s in arguments.set), "--set: expected a.b=value")
-    job = Job(case, ranks_of(arguments.ranks, case), arguments.set, flags_of(arguments), arguments.participant,
+    job = Job(case, ranks_of(arguments.ranks, case, arguments.slurm is None and not arguments.print), arguments.set, flags_of(arguments), arguments.participant,
               {**{name: shlex.split(words) for name, words in pairs(arguments.played_by, "--with").items()}, **relays(arguments.separate, case)})
     if arguments.slurm is not None:
         from couplet.runs import slurm
@@ -150,7 +155,7 @@ def finish(job, code, picture):
         return code
     if code == 3 or (job.asked and job.recorded and folders.checkpoint(job.output)):
         print(f"stopped after {took}, saved as {folders.checkpoint(job.output)}; continue: {again}", file=sys.stderr)
-        return 3 if code == 3 else code
+        return 3
     fix = "fix the errors above"
     if any("cannot start" in line for line in job.last):  # mistakes of the case; others, such as of --restart, it does not know
         fix += f"; all mistakes of the file at once: couplet check {shlex.quote(shown(job.case.file))}" + "".join(f" --set {shlex.quote(s)}" for s in job.sets)

@@ -7,6 +7,7 @@ import subprocess
 from couplet.runs.case import COUPLER, expect
 
 MOST_PER_CORE = 16
+MOST = 1_000_000
 ELSEWHERE = ("OMPI_MCA_orte_default_hostfile", "SLURM_JOB_ID", "PBS_NODEFILE", "LSB_HOSTS", "PE_HOSTFILE")
 
 
@@ -47,11 +48,17 @@ def shares(work, total, together=False):
 
 
 def fit(case, ranks, alone=None):
-    """Refuses far more processes than this machine can turn over: each polls for its messages. Where a queue or a file names the machines, their number is not known here."""
+    """Refuses more processes than this machine can turn over."""
+    names = [alone] if alone else [*case.participants, *([COUPLER] if case.coupled else [])]
+    fit_total(sum(int(ranks.get(name, 1)) for name in names))
+
+
+def fit_total(total):
+    """Each process polls for its messages. Where a queue or a file names the machines, their number is not known here."""
+    expect(total <= MOST, f"{total} processes are more than any job has: at most {MOST}")
     if any(os.environ.get(name) for name in ELSEWHERE):
         return
-    names = [alone] if alone else [*case.participants, *([COUPLER] if case.coupled else [])]
-    total, cores = sum(int(ranks.get(name, 1)) for name in names), len(os.sched_getaffinity(0))
+    cores = len(os.sched_getaffinity(0))
     expect(total <= MOST_PER_CORE * cores, f"{total} processes on {cores} cores would not get on, for each waits for messages by polling: at most {MOST_PER_CORE * cores} here. "
            "On several machines use --slurm, or name their file in OMPI_MCA_orte_default_hostfile")
 
