@@ -7,6 +7,7 @@
 
 #include "common/app/case/case_roles.hpp"
 #include "common/app/case/shared_seat.hpp"
+#include "common/app/case/wall_mass.hpp"
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/fv/expression.hpp"
@@ -178,6 +179,9 @@ CaseFile read_case(const CommandLine& command_line, const ProgramKind& kind) {
     }
     append(result.errors, problems);
     append(result.doubts, doubts);
+    // Once a job.
+    if (config::text_of(*result.document, "coupling.fluid.participant") == result.participant)
+      append(result.doubts, doubts_of_wall_mass(*result.document));
   } catch (const Error& error) {
     result.errors.emplace_back(error.what());
   }

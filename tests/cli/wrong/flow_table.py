@@ -1,6 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
 """Wrong fluids; joined by table.py."""
 
+REED = """simulation: {end-time: 1 s, time-step: 0.5 s}
+participants:
+  fluid:
+    program: fluid_solver
+    dimension: 2
+    boundaries:
+      left: {type: inlet, velocity: [1 m/s, 0 m/s]}
+      top: {type: interface, surface-density: MASS}
+      right: {type: outlet}
+      bottom: {type: no-slip}
+    mesh: square.msh
+    density: 1 kg/m^3
+    viscosity: 1e-3 Pa s
+  reed:
+    program: plate_modal
+    mesh: square.msh
+    material: {density: 7850 kg/m^3, youngs-modulus: 200 GPa, poissons-ratio: 0.3}
+    thickness: 0.4 mm
+    boundaries: {left: {type: clamped}, right: {type: free}, top: {type: free}, bottom: {type: free}}
+coupling:
+  fluid: {participant: fluid}
+  structure: {participant: reed}
+"""
+
 
 def cases(fluid, RUN):
     return [
@@ -45,6 +69,10 @@ warning: case.yaml:10:5: participants.fluid.gaps: both walls of 'slot' are at re
 """, ("    boundaries:\n", "    gaps: {slot: {between: [bottom, left], opening: 1 mm}}\n    boundaries:\n"), exit_code=0),
     fluid("gap with a wall that may move", "",
           ("    boundaries:\n", "    gaps: {slot: {between: [bottom, top], opening: 1 mm}}\n    boundaries:\n"), exit_code=0),
+    fluid("wall a thousand times as heavy as its plate", """
+warning: case.yaml:8:30: participants.fluid.boundaries.top.surface-density: 3140 kg/m^2, but the plate 'reed' has 3.14 kg/m^2, density times thickness: implausible; check the number and its unit.
+""", text=REED.replace("MASS", "3140 kg/m^2"), exit_code=0),
+    fluid("wall as heavy as its plate", "", text=REED.replace("MASS", "3.14 kg/m^2"), exit_code=0),
     fluid("periodic without partner", """
 case.yaml:12:7: participants.fluid.boundaries.right.partner: this required key is missing (the patch that is a translated copy of this one: text).
 """, ("{type: outlet, pressure: 0}", "{type: periodic}")),
