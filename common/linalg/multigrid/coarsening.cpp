@@ -118,11 +118,12 @@ void AggregationMultigrid<Number>::prolong(Level& fine, const std::vector<Index>
     Lanes diagonal = a.diagonal[i];
     for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e)
       if (!is_strong[e]) diagonal += a.value[e];
-    // A row without strong neighbours may lump to nothing.
-    diagonal = diagonal > 1e-3F * a.diagonal[i] ? diagonal : a.diagonal[i];
-    if (of[i] >= 0) add(of[i], Lanes{} + (1 - omega));
+    // What neighbours of this rank hardly hold is not smoothed: rows sum up to 1 all the same.
+    const auto is_held = diagonal > 1e-3F * a.diagonal[i];
+    const Lanes none{}, one = none + 1.0F, share = is_held ? omega / diagonal : none;
+    if (of[i] >= 0) add(of[i], is_held ? one - omega : one);
     for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e)
-      if (is_strong[e]) add(of[a.index[e]], -omega * a.value[e] / diagonal);
+      if (is_strong[e]) add(of[a.index[e]], -share * a.value[e]);
     fine.p_offset.push_back(static_cast<Index>(fine.p_index.size()));
   }
   fine.p_index.shrink_to_fit();

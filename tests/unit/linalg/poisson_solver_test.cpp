@@ -105,7 +105,7 @@ int iterations(const Box& box, Kind kind) {
   std::vector<double> x(box.diagonal.size(), 0.0);
   const int taken = solve(solver, box, x).iterations;
   const std::vector<double> b = box.right_side();
-  EXPECT_LE(std::sqrt(box.left(b, x)), 1.1e-9 * solver.norm(b));
+  EXPECT_LE(std::sqrt(box.left(b, x)), 1.2e-9 * solver.norm(b));
   return taken;
 }
 
@@ -116,11 +116,10 @@ TEST(PoissonSolver, multigrid_iterations_hardly_grow_with_the_mesh_nor_with_the_
   EXPECT_LE(iterations(Box(3, 3), Kind::multigrid), 8);  // the coarsest level alone
 }
 
-// A closed fluid's. With one cell pinned, so that the matrix is regular, its least eigenvalue is far below all others, and on two ranks
-// that takes 21 iterations (the failing neighbour).
+// A closed fluid's. The failing neighbour is a prolongation whose rows do not sum up to 1 where the neighbours are other ranks': 18 iterations.
 TEST(PoissonSolver, a_singular_matrix_takes_no_more_iterations_on_several_ranks) {
-  Box box(33, 33, 1, false, true);
-  const auto taken = [&](Box& of) {
+  const Box box(33, 33, 1, false, true);
+  const auto taken = [&](const Box& of) {
     PoissonSolver solver("p", of.graph(), Kind::multigrid);
     std::vector<double> b = of.right_side(), x(b.size(), 0.0);
     double sum = 0;
@@ -132,11 +131,7 @@ TEST(PoissonSolver, a_singular_matrix_takes_no_more_iterations_on_several_ranks)
     EXPECT_LE(std::sqrt(of.left(b, x)), 1.1e-9 * solver.norm(b));
     return n;
   };
-  EXPECT_LE(taken(box), 18);
-  if (comm_rank(MPI_COMM_WORLD) == 0) box.diagonal[0] *= 2;
-  if (comm_size(MPI_COMM_WORLD) == 2) {
-    EXPECT_GT(taken(box), 19);
-  }
+  EXPECT_LE(taken(box), 16);
 }
 
 // A closed fluid that hardly compresses: what its cells store is small beside their faces, and is all that holds the pressure's level.
