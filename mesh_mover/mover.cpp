@@ -78,10 +78,7 @@ Mover::Mover(mesh::LoadedMesh loaded, const Parameters& parameters, const app::P
   if (!context.coupled && moving_.empty() && context.mesh_peer == MPI_COMM_NULL &&
       interface_patches(parameters).empty())
     log::warn("participant '{}': no patch moves (type: moving, or interface in a coupled job).", name_);
-  if (chooses_)
-    choose_method(context.simulation);
-  else
-    make_method();
+  choose_method(context.simulation);
   if (parameters.form == Form::automatic && parallel::comm_rank(mesh_.comm) == 0)
     log::info(
         "mesh motion: displacements from the reference mesh (form: total), so the mesh depends only on the "
@@ -256,16 +253,17 @@ void Mover::load(io::CheckpointReader& file) {
   file.read(mesh::Entries::points, "displacement", accepted_);
   displacement_ = accepted_;
   laplacian_.reset();
-  const Method wrote = file.read_scalar("barrier-in-force") > 0 ? Method::barrier : Method::automatic;
-  if (chooses_ && parameters_.method != wrote) {  // another end time looks ahead to other motions
-    parameters_.method = wrote;
+  const bool by_barrier = file.read_scalar("barrier-in-force") > 0;
+  if (chooses_ && by_barrier && parameters_.method == Method::automatic) {
+    parameters_.method = Method::barrier;
     make_method();
   }
   placed_ = false;
   if (incremental())
     make_method();
-  else
+  else if (!chooses_ || by_barrier == (parameters_.method == Method::barrier))
     method_->load(file);
+  // else a later end has more motions to look at: the barrier from here on, which starts from the mesh as read
 }
 
 void Mover::write_monitors(double time) {

@@ -25,6 +25,12 @@ void Mover::tell_choice() const {
 
 /// Looks ahead: the Laplacian moves the mesh to some times of the run.
 void Mover::choose_method(const app::SimulationParameters& simulation) {
+  if (!chooses_) {
+    if (parameters_.method == Method::automatic && parallel::comm_rank(mesh_.comm) == 0)
+      log::info("auto: method: laplacian (the barrier is not available with {})",
+                incremental() ? "form: incremental" : "periodic patches");
+    return make_method();
+  }
   try {
     make_method();
   } catch (const Error& error) {  // on all ranks alike

@@ -129,6 +129,15 @@ void declare(config::Section& section, Parameters& p) {
             .doc("maximum number of iterations, for cg-multigrid");
       },
       "solution of the motion equations");
+  section.check(
+      [&p] {
+        const bool joins = std::ranges::any_of(
+            p.boundaries, [](const auto& b) { return b.second.motion == BoundaryMotion::periodic; });
+        return joins && p.method == Method::barrier
+                   ? "barrier is not available with periodic patches: use pseudo-solid, or type: slip for both patches"
+                   : "";
+      },
+      "method");
 }
 
 }  // namespace couplet::mesh_mover

@@ -167,6 +167,14 @@ void declare_moving_parts(config::Section& s, FluidParameters& p) {
       },
       "body",
       "rigid bodies in a mesh that does not conform to them and may move through them; requires an outlet");
+  s.check(
+      [&p] {
+        const bool open = p.is_compressible() || std::ranges::any_of(p.boundaries, [](const auto& b) {
+                            return gives_pressure(b.second);
+                          });
+        return p.bodies.empty() || open ? "" : "immersed bodies may displace fluid, which needs an outlet";
+      },
+      "bodies");
   declare_gaps(s, p);
   s.optional_section<fv::MotionParameters>(
       "motion", p.motion,

@@ -61,6 +61,9 @@ case.yaml:10:18: participants.fluid.turbulence.model: 'smagorinski' is not one o
     fluid("immersed body without a level", """
 case.yaml:10:14: participants.fluid.bodies.ball.level: this required key is missing (expression of x, y, z [m] and t [s]: negative inside, approximately the distance near the surface: number or expression in m).
 """, ("    boundaries:\n", "    bodies: {ball: {velocity: [1, 0]}}\n    boundaries:\n")),
+    fluid("immersed body in a closed fluid", """
+case.yaml:10:5: participants.fluid.bodies: immersed bodies may displace fluid, which needs an outlet.
+""", ("    boundaries:\n", "    bodies: {ball: {level: x}}\n    boundaries:\n"), ("{type: outlet, pressure: 0}", "{type: no-slip}")),
     fluid("motion that moves nothing", """
 case.yaml:10:5: participants.fluid.motion: nothing moves without a 'translation', an 'angle' or a 'displacement'.
 """, ("    boundaries:\n", "    motion: {outer-radius: 1}\n    boundaries:\n")),

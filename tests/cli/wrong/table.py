@@ -376,6 +376,7 @@ case.yaml:32:15: participants.mover.boundaries.right.type: 'loose' is not one of
           "interface, moving, fixed, slip, free, periodic).", ("right: {type: fixed}", "right: {}")),
     mover("a moving patch without a motion", "case.yaml:34:7: participants.mover.boundaries.top.motion: nothing moves without a 'translation', an 'angle' or a "
           "'displacement'.", ("top: {type: fixed}", "top: {type: moving}")),
+    mover("a barrier across periodic patches", "case.yaml:27:5: participants.mover.method: barrier is not available with periodic patches: use pseudo-solid, or type: slip for both patches.", ("  mover:\n", "  mover:\n    method: barrier\n"), ("right: {type: fixed}", "right: {type: periodic, partner: left}"), ("left: {type: fixed}", "left: {type: periodic, partner: right}")),
     mover("limit of the guard out of range", """
 case.yaml:27:13: participants.mover.guard.largest-angle: 100 is out of range; expected a value from 0 to 90.
 """, ("  mover:\n", "  mover:\n    guard: {largest-angle: 100}\n")),
