@@ -39,7 +39,7 @@ def made_of(command, folder):
     for word in map(str, command):
         digest.update(word.encode() + b"\0")
     named = [pathlib.Path(w) for w in map(str, command) if os.path.isfile(w)]
-    for file in sorted({*named, *(f for f in folder.iterdir() if f.is_file())}):
+    for file in sorted({*named, *(f for f in folder.iterdir() if f.is_file() and ".cache." not in f.name)}):
         digest.update(file.read_bytes())
     return digest.hexdigest()
 
