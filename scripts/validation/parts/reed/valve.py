@@ -8,7 +8,7 @@ import numpy as np
 START = 0.3e-3  # lift at rest [m]
 
 POINTS = ("; where the source's control points lie is unknown: its instants at a lift of 0.08 d = 2.79 mm at point 2 rule out that 3.89 mm is the tip and point 2 the centre, "
-          "for the first mode lifts the tip 1.59 times as far as the centre; the cause is not known: a finer mesh lifts the reed further")
+          "for the first mode lifts the tip 1.59 times as far as the centre; on 46 k cells the tip is 39 % too high")
 
 
 def columns(run, file, *names):
