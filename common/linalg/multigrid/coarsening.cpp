@@ -120,10 +120,10 @@ void AggregationMultigrid<Number>::prolong(Level& fine, const std::vector<Index>
       if (!is_strong[e]) diagonal += a.value[e];
     // What neighbours of this rank hardly hold is not smoothed: rows sum up to 1 all the same.
     const auto is_held = diagonal > 1e-3F * a.diagonal[i];
-    const Lanes none{}, one = none + 1.0F, share = is_held ? omega / diagonal : none;
+    const Lanes none{}, one = none + 1.0F;
     if (of[i] >= 0) add(of[i], is_held ? one - omega : one);
     for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e)
-      if (is_strong[e]) add(of[a.index[e]], -share * a.value[e]);
+      if (is_strong[e]) add(of[a.index[e]], is_held ? -omega * a.value[e] / diagonal : none);
     fine.p_offset.push_back(static_cast<Index>(fine.p_index.size()));
   }
   fine.p_index.shrink_to_fit();
