@@ -143,7 +143,7 @@ def fine_lifts(job):
             f"least lift {1000 * (least + START):.2f} mm at {1000 * end:.1f} ms, {1 / end:.1f} Hz ({100 * (1 / end / 56.3 - 1):+.0f} %)"), abs(tops[0] / 3.89 - 1) <= 0.1
 
 
-STIFF = (1e-2, 1, 1e2, 1e4)  # of the seat of configs/reed-slice
+STIFF = (0.1, 1, 1e2, 1e4)  # of the seat of configs/reed-slice; a hundredth lets the reed through the wall, half an opening below the seat
 
 
 def any_stiffness(job):
