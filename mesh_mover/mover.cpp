@@ -253,17 +253,19 @@ void Mover::load(io::CheckpointReader& file) {
   file.read(mesh::Entries::points, "displacement", accepted_);
   displacement_ = accepted_;
   laplacian_.reset();
-  const bool by_barrier = file.read_scalar("barrier-in-force") > 0;
-  if (chooses_ && by_barrier && parameters_.method == Method::automatic) {
-    parameters_.method = Method::barrier;
+  // A later end looks ahead to more motions: then the barrier from here on, from the mesh as read.
+  const bool by_barrier = file.read_scalar("barrier-in-force") > 0,
+             begins = chooses_ && ahead_ && !by_barrier;
+  const Method wanted = by_barrier || ahead_ ? Method::barrier : Method::automatic;
+  if (chooses_ && (begins || parameters_.method != wanted)) {
+    parameters_.method = wanted;
     make_method();
   }
   placed_ = false;
   if (incremental())
     make_method();
-  else if (!chooses_ || by_barrier == (parameters_.method == Method::barrier))
+  else if (!begins)
     method_->load(file);
-  // else a later end has more motions to look at: the barrier from here on, which starts from the mesh as read
 }
 
 void Mover::write_monitors(double time) {

@@ -72,6 +72,7 @@ class Mover final : public coupling::Participant, public effects::KnowsItsPlace 
   MovingPatches moving_;
   std::unique_ptr<MotionMethod> method_;
   bool chooses_;                             // method: auto
+  bool ahead_ = false;                       // a prescribed motion of the run needs the barrier
   std::string reason_;                       // why the barrier
   std::unique_ptr<MotionMethod> laplacian_;  // aside while the barrier moves a step that is not accepted yet
   coupling::InterfaceMap interface_;

@@ -50,7 +50,8 @@ void Mover::choose_method(const app::SimulationParameters& simulation) {
   step_ = {};
   std::ranges::fill(displacement_, 0.0);
   placed_ = false;
-  if (reason_.empty()) return;
+  ahead_ = !reason_.empty();
+  if (!ahead_) return;
   parameters_.method = Method::barrier;
   make_method();
   tell_choice();

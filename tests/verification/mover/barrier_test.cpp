@@ -280,8 +280,28 @@ TEST(Barrier, auto_chooses_it_where_the_laplacian_would_fold) {
   run(laplacian, 0, 0.1, 2);
   EXPECT_EQ(gentle.displacement(), laplacian.displacement());
   EXPECT_NE(gentle.displacement(), chosen);
+  const support::SavedState early(gentle);
   run(gentle, 0.1, 1, 18);  // further than it was told: it leaves the Laplacian on the way
   EXPECT_GT(gentle.state().worst[MeshState::scaled_jacobian].value, 0);
+  const std::vector<double> late = gentle.displacement();
+  early.load_into(gentle);  // back to the Laplacian
+  run(gentle, 0.1, 1, 18);
+  EXPECT_EQ(gentle.displacement(), late);
+
+  if (parallel::comm_size(MPI_COMM_WORLD) > 1)
+    return;  // in one process a second mesh is shared out otherwise
+  p.method = Method::automatic;
+  c.simulation.end_time = 1;
+  Mover later(p, c);  // a run that is resumed with a later end: the barrier at once
+  later.initialise();
+  early.load_into(later);
+  EXPECT_EQ(later.displacement(), laplacian.displacement());
+  run(later, 0.1, 0.15, 1);
+  run(barrier, 0.1, 0.15, 1);
+  double apart = 0;
+  for (std::size_t i = 0; i < later.displacement().size(); ++i)
+    apart = std::max(apart, std::abs(later.displacement()[i] - barrier.displacement()[i]));
+  EXPECT_LT(apart, 1e-3);
 }
 
 /// On a turned box, so that no plane is normal to an axis: a corner point rests, one at an edge slides along it.
