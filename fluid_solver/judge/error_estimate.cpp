@@ -234,8 +234,7 @@ coupling::ErrorParts FluidErrorEstimate<D>::parts() const {
   parts.dimension = D;
   const double speed = size(fluid_.state().u);
   if (!(speed > 0) || seen_ == 0) return parts;
-  // Of an oscillation that ends at an instant of rest: of what it was.
-  parts.mesh = recovered_difference() / std::max(speed, steps_.size());
+  parts.mesh = recovered_difference() / speed;
   parts.step = step_part();
   const double across = std::pow(double(fluid_.mesh().cells.n_global()), 1. / D);
   const auto& known =

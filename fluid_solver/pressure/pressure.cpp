@@ -164,7 +164,7 @@ linalg::SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::
     remove_mean(b);
     // Twice the first diagonal entry makes the matrix regular for factors and p = 0 there, the same solution but for a
     // constant. Conjugate gradients take the singular matrix as it is, for b sums up to nothing: regular, its least
-    // eigenvalue would be far below all others, and what multigrid leaves of that in single precision doubles the iterations on several ranks.
+    // eigenvalue would be far below all others, which multigrid in single precision answers badly (cavity 32^3 on two ranks: 214 iterations in 30 steps for 151).
     double pin = owned > 0 ? p[0] : 0;
     MPI_Bcast(&pin, 1, MPI_DOUBLE, 0, mesh_.comm);
     linalg::shift(-pin, std::span(p).first(owned));

@@ -118,7 +118,7 @@ void AggregationMultigrid<Number>::prolong(Level& fine, const std::vector<Index>
     Lanes diagonal = a.diagonal[i];
     for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e)
       if (!is_strong[e]) diagonal += a.value[e];
-    // What neighbours of this rank hardly hold is not smoothed: rows sum up to 1 all the same.
+    // A row that is hardly coupled within its rank is not smoothed, so that it, too, sums up to 1.
     const auto is_held = diagonal > 1e-3F * a.diagonal[i];
     const Lanes none{}, one = none + 1.0F;
     if (of[i] >= 0) add(of[i], is_held ? one - omega : one);

@@ -44,7 +44,7 @@ class AggregationMultigrid {
     float coarse_factor = 1;
     const parallel::IndexMap* map = nullptr;  ///< of the rows, by reference; none: no rank knows of another
     MPI_Comm comm = MPI_COMM_SELF;            ///< of the map
-    /// Where all rows sum to nothing the operator is singular, too: no constant in the answer of the coarsest level.
+    /// All rows sum up to nothing, or nearly: the coarsest level gives no constant.
     bool closed = false;
   };
   /// Collective over the ranks of the map.
@@ -89,7 +89,7 @@ class AggregationMultigrid {
   static void smooth_backward(Level& level);
 
   float coarse_factor_;
-  bool closed_;  // and all rows of the coarsest level sum to nothing
+  bool closed_;
   MPI_Comm comm_;
   std::vector<Level> levels_;
   std::vector<Eigen::LLT<Eigen::MatrixXd>> coarsest_;  // one a component, of the rows of all ranks

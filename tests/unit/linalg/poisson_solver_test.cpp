@@ -105,7 +105,7 @@ int iterations(const Box& box, Kind kind) {
   std::vector<double> x(box.diagonal.size(), 0.0);
   const int taken = solve(solver, box, x).iterations;
   const std::vector<double> b = box.right_side();
-  EXPECT_LE(std::sqrt(box.left(b, x)), 1.2e-9 * solver.norm(b));
+  EXPECT_LE(std::sqrt(box.left(b, x)), 1.1e-9 * solver.norm(b));
   return taken;
 }
 
@@ -116,7 +116,7 @@ TEST(PoissonSolver, multigrid_iterations_hardly_grow_with_the_mesh_nor_with_the_
   EXPECT_LE(iterations(Box(3, 3), Kind::multigrid), 8);  // the coarsest level alone
 }
 
-// A closed fluid's. The failing neighbour is a prolongation whose rows do not sum up to 1 where the neighbours are other ranks': 18 iterations.
+// A closed fluid's. The failing neighbour is a prolongation whose rows do not sum up to 1 where the neighbours are on other ranks: 18 iterations on three.
 TEST(PoissonSolver, a_singular_matrix_takes_no_more_iterations_on_several_ranks) {
   const Box box(33, 33, 1, false, true);
   const auto taken = [&](const Box& of) {
@@ -135,10 +135,10 @@ TEST(PoissonSolver, a_singular_matrix_takes_no_more_iterations_on_several_ranks)
 }
 
 // A closed fluid that hardly compresses: what its cells store is small beside their faces, and is all that holds the pressure's level.
-// Multigrid alone, in single precision, takes 21 iterations on one rank and 32 on two (the failing neighbour).
+// Multigrid alone, in single precision, takes 26 iterations on one rank and 28 on two (the failing neighbour).
 TEST(PoissonSolver, a_matrix_that_is_nearly_singular_takes_no_more_iterations) {
   Box box(33, 33, 1, false, true);
-  for (double& d : box.diagonal) d *= 1 + 1e-7;
+  for (double& d : box.diagonal) d *= 1 + 1e-6;
   EXPECT_LE(iterations(box, Kind::multigrid), 20);
 }
 
