@@ -170,7 +170,8 @@ def wrong(folder):
         check(said, result.returncode == 2 and said in result.stderr and "Traceback" not in result.stderr, result.stderr)
     case.write_text(text)
     for words, said in ((("run", folder / "none.yaml"), "does not exist"), (("run", case, "-n", "fluid=0"), "whole numbers"), (("run", case, "-n", "air=1"), "there is no participant 'air'"),
-                        (("run", case, "-n", "3"), "at least 4 ranks"), (("run", case, "-n", "fluid=100000"), "would not get on"), (("run", case, "--set", "a"), "a.b=value"), (("rnu", case), "did you mean 'run'"), (("run", case, "--fast"), "--fast"),
+                        (("run", case, "-n", "3"), "at least 4 ranks"), (("run", case, "-n", "fluid=100000"), "would hardly advance"), (("run", case, "--print", "-n", "1" + 20 * "0"), "at most 1000000"),
+                        (("run", case, "-n", "fluid=2,fluid=3"), "a participant twice"), (("run", case, "-n", "1e3"), "one whole number"), (("run", case, "--set", "a"), "a.b=value"), (("rnu", case), "did you mean 'run'"), (("run", case, "--fast"), "--fast"),
                         (("new", folder / "a"), "is there already"), (("new", folder / "b", "--from", "perpendicular-flop"), "near: perpendicular-flap")):
         result = ask(bin_, *words)
         check(" ".join(map(str, words[2:] or words)), result.returncode == 2 and said in result.stderr and "Traceback" not in result.stderr, result.stderr)

@@ -62,7 +62,7 @@ def ranks_of(words, case, here=True):
         return divide(case, int(words[0]))
     expect(all("=" in w for w in words), f"-n {','.join(words)}: expected one whole number for all together, or NAME=N")
     found = pairs(words, "-n")
-    expect(len(found) == len(words), f"-n {','.join(words)}: a participant stands there twice")
+    expect(len(found) == len(words), f"-n {','.join(words)}: names a participant twice")
     expect(all(n.isdigit() and int(n) > 0 for n in found.values()), f"-n {','.join(words)}: expected whole numbers from 1 on, such as -n fluid=4,solid=2")
     return {name: int(n) for name, n in found.items()}
 
@@ -97,14 +97,14 @@ def run(arguments):
     if arguments.print:
         print(job.line())
         return 0
-    from couplet.runs import ranks
-    ranks.fit(case, job.ranks, job.alone)
     return shown_run(job, arguments.picture, arguments.verbose)
 
 
 def shown_run(job, picture=False, verbose=False):
     """Runs it; on a terminal as a digest, else with the programs' own lines."""
+    from couplet.runs import ranks
     from couplet.runs.terminal import Digest, Plain
+    ranks.fit(job.case, job.ranks, job.alone)
     if not sys.stdout.isatty() or verbose:
         return finish(job, job.run(Plain()), picture)
     digest = Digest(job)
@@ -155,7 +155,7 @@ def finish(job, code, picture):
         return code
     if code == 3 or (job.asked and job.recorded and folders.checkpoint(job.output)):
         print(f"stopped after {took}, saved as {folders.checkpoint(job.output)}; continue: {again}", file=sys.stderr)
-        return 3
+        return 3 if code == 3 or folders.sets_since(job.output, job.asked_at) else code
     fix = "fix the errors above"
     if any("cannot start" in line for line in job.last):  # mistakes of the case; others, such as of --restart, it does not know
         fix += f"; all mistakes of the file at once: couplet check {shlex.quote(shown(job.case.file))}" + "".join(f" --set {shlex.quote(s)}" for s in job.sets)

@@ -67,7 +67,7 @@ class Job:
                    f"{case.file}: the program '{program.name}' of '{name}' is not in {program.parent}, not beside the case and not on the PATH. "
                    f"Give its command: --with {name}='COMMAND ...'")
         self.output = output_of(case, self.sets)
-        self.last, self.asked, self.started, self.limit = collections.deque(maxlen=60), 0, None, float("inf")
+        self.last, self.asked, self.asked_at, self.started, self.limit = collections.deque(maxlen=60), 0, None, None, float("inf")
 
     def line(self):
         """The launch line, to be typed into a shell."""
@@ -81,6 +81,7 @@ class Job:
     def on_signal(self, number, _):
         """First: the end after the step under way, with a checkpoint. Again: at once."""
         self.asked += 1
+        self.asked_at = self.asked_at or time.time()
         if not self.recorded:
             self.note()  # quicker than a look: the launcher itself would end the job in the middle of a step
         if self.asked == 1 and self.recorded and folders.stop(self.output):

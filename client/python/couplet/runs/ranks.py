@@ -55,17 +55,17 @@ def fit(case, ranks, alone=None):
 
 def fit_total(total):
     """Each process polls for its messages. Where a queue or a file names the machines, their number is not known here."""
-    expect(total <= MOST, f"{total} processes are more than any job has: at most {MOST}")
     if any(os.environ.get(name) for name in ELSEWHERE):
         return
     cores = len(os.sched_getaffinity(0))
-    expect(total <= MOST_PER_CORE * cores, f"{total} processes on {cores} cores would not get on, for each waits for messages by polling: at most {MOST_PER_CORE * cores} here. "
+    expect(total <= MOST_PER_CORE * cores, f"{total} processes on {cores} cores would hardly advance, since each polls for its messages: at most {MOST_PER_CORE * cores} here. "
            "On several machines use --slurm, or name their file in OMPI_MCA_orte_default_hostfile")
 
 
 def divide(case, total):
     """{participant: ranks}; the coupler has one of its own, which counts."""
     from couplet.runs.job import output_of
+    expect(total <= MOST, f"-n {total}: at most {MOST} processes")
     names = [n for n in case.participants if not case.guest(n)]
     free = total - (len(case.participants) - len(names)) - (1 if case.coupled else 0)
     expect(free >= len(names), f"-n {total}: '{case.file}' needs at least {total - free + len(names)} ranks" + (f", one of them for the {COUPLER}" if case.coupled else ""))
