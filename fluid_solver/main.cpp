@@ -33,6 +33,10 @@ int main(int argc, char** argv) {
                 std::move(loaded), parameters,
                 {context.name, context.output_folder, context.restart_time, context.simulation.fields}, link);
           },
+      .diagnose =
+          [](const couplet::coupling::Participant& participant, couplet::diagnostics::Diagnostics& all) {
+            couplet::fluid::add_diagnostics(participant, all);
+          },
       .environment = couplet::linalg::petsc_environment,
       .effects =
           [&](const couplet::effects::EffectScene& scene) {

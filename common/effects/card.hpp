@@ -18,7 +18,9 @@ namespace couplet::effects {
 /// is empty where it is off. `judge` says of an effect that is off (or, with `judged_when_on`, of one that is
 /// on) what the evidence of the run says about it; null: nothing can be said from inside the run. It returns
 /// no verdict where it has no evidence.
-template <class Parameters, class Evidence>
+struct NoEvidence {};
+
+template <class Parameters, class Evidence = NoEvidence>
 struct EffectCard {
   const char* name;
   const char* keys;  ///< what switches it on, for the documents

@@ -17,6 +17,11 @@ struct Coordinate {
   bool floor = false;  ///< true: from here up
   /// Of the way to the limit [1]: beyond it above 1. With a floor the way begins at 1, the best value.
   double used() const { return floor ? (1 - value) / (1 - limit) : value / limit; }
+  /// For checkpoints.
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(quantity, value, limit, map, floor);
+  }
 };
 
 /// A participant that knows where it stands.

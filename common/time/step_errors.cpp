@@ -6,14 +6,12 @@
 #include <limits>
 
 #include "common/base/error.hpp"
-#include "common/base/saved_numbers.hpp"
 
 namespace couplet::time {
 namespace {
 
 // "Of late" is about this part of the time that has gone by.
 constexpr double window = 0.25;
-constexpr std::size_t scalars = 6;
 
 }  // namespace
 
@@ -50,39 +48,6 @@ double StepErrors::over_size() const {
   double all = 0;
   for (const auto& [swing, error] : left) all += std::min(error, 2 * amplitude_.at(swing));
   return all / size_;
-}
-
-std::vector<double> StepErrors::state() const {
-  std::vector<double> values{rate_, size_, below_, highest_, time_, double(amplitude_.size())};
-  for (const auto& [swing, amplitude] : amplitude_) values.insert(values.end(), {double(swing), amplitude});
-  for (const auto& [key, sum] : errors_)
-    values.insert(values.end(), {double(key.first), double(key.second), sum.all, sum.kept});
-  return values;
-}
-
-void StepErrors::restore(std::span<const double> state) {
-  *this = {};
-  if (state.empty()) return;  // of a run that did not collect them
-  base::SavedNumbers saved(state, "step errors");
-  const std::span<const double> head = saved.next(scalars - 1);
-  rate_ = head[0], size_ = head[1], below_ = head[2], highest_ = head[3], time_ = head[4];
-  const auto key = [&] {  // may be negative
-    const double value = saved.real();
-    if (!(value >= std::numeric_limits<int>::min() && value <= std::numeric_limits<int>::max()))
-      saved.damaged();
-    return int(value);
-  };
-  for (std::size_t n = saved.count_of(2); n > 0; --n) {
-    const int at = key();
-    amplitude_[at] = saved.real();
-  }
-  if (saved.left() % 4 != 0) saved.damaged();
-  while (saved.left() > 0) {
-    const int first = key(), second = key();
-    if (!amplitude_.contains(first)) saved.damaged();
-    Sum& sum = errors_[{first, second}];
-    sum.all = saved.real(), sum.kept = saved.real();
-  }
 }
 
 }  // namespace couplet::time

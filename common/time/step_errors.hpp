@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/base/numbers.hpp"
+
 namespace couplet::time {
 
 /// What the local errors of all steps so far leave in the solution now.
@@ -35,12 +37,26 @@ class StepErrors {
   /// The error left over the size of the solution [1]; NaN before the first step.
   double over_size() const;
   /// For checkpoints.
-  std::vector<double> state() const;
-  void restore(std::span<const double> state);
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(rate_, size_, below_, highest_, time_, amplitude_, errors_);
+    for (const auto& [of, sum] : errors_)
+      if (!amplitude_.contains(of.first)) numbers.damaged();
+  }
+  std::vector<double> state() const { return base::to_numbers(*this); }
+  /// Empty: of a run that did not collect them.
+  void restore(std::span<const double> state) {
+    *this = {};
+    if (!state.empty()) base::from_numbers(state, *this, "step errors");
+  }
 
  private:
   struct Sum {
     double all = 0, kept = 0;  // as they were made; of these what damping has not taken away
+    template <class Numbers>
+    void visit(Numbers& numbers) {
+      numbers(all, kept);
+    }
   };
   // By the binary logarithms of frequency and of the rate when they were made.
   std::map<std::pair<int, int>, Sum> errors_;

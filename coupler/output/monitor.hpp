@@ -14,8 +14,8 @@
 #include "coupler/acceleration/fixed_point.hpp"
 #include "coupler/acceleration/volume_level.hpp"
 #include "coupler/exchange/partners.hpp"
-#include "coupler/judge/mechanics.hpp"
 #include "coupler/mapping/links.hpp"
+#include "coupler/output/mechanics.hpp"
 #include "coupler/parameters/schedule.hpp"
 
 namespace couplet::coupler {

@@ -32,7 +32,8 @@ ALLOWED = {
     "io": ["fv", "mesh", "linalg", "parallel", "config", "csv", "log", "base"],
     "modes": ["io", "mesh", "linalg", "parallel", "log", "base"],
     "coupling": ["io", "mesh", "parallel", "effects", "config", "log", "base"],
-    "app": ["coupling", "effects", "io", "fv", "mesh", "linalg", "parallel", "config", "csv", "log", "base"],
+    "diagnostics": ["coupling", "effects", "io", "log", "base"],
+    "app": ["diagnostics", "coupling", "effects", "io", "fv", "mesh", "linalg", "parallel", "config", "csv", "log", "base"],
 }
 NOT_FOR = {"coupler": ["mesh", "fv"]}
 # Third-party headers by pattern, and the folders that may include them.

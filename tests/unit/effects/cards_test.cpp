@@ -6,7 +6,7 @@
 #include "common/effects/card.hpp"
 #include "coupler/parameters/effect_cards.hpp"
 #include "coupler/parameters/schedule.hpp"
-#include "fluid_solver/judge/compliance.hpp"
+#include "fluid_solver/diagnostics/compliance.hpp"
 #include "fluid_solver/parameters/effect_cards.hpp"
 #include "plate_modal/effect_cards.hpp"
 #include "solid_solver/effects/effect_cards.hpp"
