@@ -1,11 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures of issue "what accuracy costs in time": studies, --for-error, parts of the error, interruption, peers, one runner."""
-import csv
-import functools
 import json
 import math
-import re
-import subprocess
 import sys
 
 from couplet.runs import Case
@@ -24,22 +20,6 @@ TARGETS = {  # study: (quantity, three targets)
     "vibrating-cantilever": ("period", ("0.3%", "0.1%", "0.03%")), "taylor-green-2d": ("velocity", ("1%", "0.3%", "0.1%")),
     "cylinder-2d-1": ("cd", ("1.5%", "0.8%", "0.5%")), "perpendicular-flap": ("tip at 0.4 s", ("5%", "2%", "1%")),
     "thermocline-andasol": ("thickness", ("20%", "10%", "6%"))}
-
-
-def rows_of(job, name):
-    with open(job.root / "docs/validation/studies" / name / "runs.csv", newline="") as file:
-        return list(csv.DictReader(file))
-
-
-def committed(job, name):
-    """The committed study: its runs and their least error."""
-    folder, rows = job.root / "docs/validation/studies" / name, rows_of(job, name)
-    errors = [k for k in rows[0] if k.startswith("error of")] or [k for k in rows[0] if k in ("displacement", "velocity", "hoop stress", "fluid", "u minimum")]
-    good = [r for r in rows if not r["reason"]]
-    least = min(float(r[errors[0]]) for r in good if r[errors[0]] and float(r[errors[0]]) > 0)  # the reference itself has none
-    pictures = list(folder.glob("*.png"))
-    text = f"{len(rows)} runs, {len(rows) - len(good)} failed with their reason, {len(pictures)} pictures, least error {least:.2g}"
-    return text, len(good) >= 4 and len(pictures) >= 3 and (folder / "report.md").exists()
 
 
 def asked_for(job, name, target):
@@ -176,29 +156,3 @@ def estimated(job):
     pictures.scatter("estimated and true error, runs of all studies", found, job.root / "docs/validation/studies/estimates.png")
     inside = estimates.inside(found)
     return f"{inside} of {len(found)} runs ({100 * inside / len(found):.0f} %); by a run and what was run no finer; true errors below 4 times what a reference is good to omitted; the bounds of observed orders (1/2 to 3) were chosen on these runs", inside >= 0.8 * len(found)
-
-
-def test_passes(job, pattern):
-    passed, total, skipped, output = job.ctest(pattern)
-    looked = "; the page was looked at" if "the browser draws the page from top to bottom" in output else "; no browser is installed"
-    return f"{passed} of {total} tests passed{looked}", total > 0 and passed == total and "looked at" in looked
-
-
-@functools.cache
-def lines(root, commit):
-    """Lines of the four harnesses and of the runner at a commit (the studies by axes, which are new, are not counted)."""
-    names = subprocess.run(["git", "-C", root, "ls-tree", "-r", "--name-only", commit, "--", "scripts", "client/python", "benchmarks"], capture_output=True, text=True).stdout.split()
-    chosen = [n for n in names if re.match(r"scripts/(accuracy|study|validate|couplet_run/.*|validation/job\.py|couplet_study/variants\.py)$|"
-              r"client/python/couplet/(runs/.*|study/(main|accuracy|variants)\.py)$|benchmarks/(?!README)", n)]
-    return sum(subprocess.run(["git", "-C", root, "show", f"{commit}:{n}"], capture_output=True, text=True).stdout.count("\n") for n in chosen)
-
-
-def less_code(job):
-    before, now = lines(str(job.root), "6c5b36a"), lines(str(job.root), "HEAD")
-    return f"{now} lines, {before} before; the runner's locks, records and resuming are new in it", now < before
-
-
-def on_the_plot(job, name, peers):
-    text = (job.root / "docs/validation/studies" / name / "report.md").read_text()
-    there = [p for p in peers if p in text]
-    return ', '.join(there) or 'none: the committed study was run before the peer was added', len(there) == len(peers)

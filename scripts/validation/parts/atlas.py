@@ -14,17 +14,6 @@ BETWEEN = [
 ]
 
 
-def colours(job):
-    from couplet.atlas import atlas
-    from couplet.atlas.main import MAPS
-    squares = {m.name: atlas.read(job.root / f"docs/stability/{m.name}.csv") for m in MAPS}
-    whole = [m for m in MAPS if len(squares[m.name]) == len(m.panels) * len(m.x.values) * len(m.y.values)]
-    counts = {o: sum(s.outcome == o for table in squares.values() for s in table.values()) for o in (atlas.HOLDS, atlas.POOR, atlas.WARNED, atlas.REFUSED, atlas.RED)}
-    silent = [f"{m.name} {sum(s.outcome == atlas.RED for s in squares[m.name].values())}" for m in MAPS if any(s.outcome == atlas.RED for s in squares[m.name].values())]
-    text = f"{len(whole)} of {len(MAPS)} maps; {', '.join(f'{n} {o}' for o, n in counts.items())}{' (' + ', '.join(silent) + ')' if silent else ''}"
-    return text, len(whole) == len(MAPS) and counts[atlas.RED] == 0
-
-
 def placed(folder):
     """Largest share of the way to a limit in any run.json of the folder; None without one."""
     found = [c for file in pathlib.Path(folder).glob("out/*/run.json") for c in json.loads(file.read_text()).get("atlas", []) if c["map"] != "strong-robin"]

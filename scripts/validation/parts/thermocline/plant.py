@@ -72,17 +72,6 @@ def row(job, case, name, points=None, percent=None):
     return text, not outside
 
 
-def numerical_diffusion(job, case):
-    """How much of the thermocline's thickness and of what it costs is the first-order scheme's."""
-    upwind, tvd, print_ = study(job, case), study(job, case, TVD), published(job, case)
-    parts = []
-    for name in ("h_th/h_bed", "eta_th", "Q_C/Q_excess", "B_D"):
-        a, b = upwind[ROWS[name]], tvd[ROWS[name]]
-        share = {v: 100 * (a[v] - b[v]) / a[v] for v in VARIANTS}
-        parts.append(f"{name} {shown(share)} %")
-    return "part of the upwind value that goes with TVD: " + "; ".join(parts), bool(print_)
-
-
 # -- identities -------------------------------------------------------------------------------------------------------
 def solar_field(job):
     tests, _ = job.gtest(TESTS)

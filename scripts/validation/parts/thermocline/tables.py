@@ -163,35 +163,3 @@ def before(job):
             job.done(command, timeout=7200)
         return build / "bin/thermocline", tree / "configs/thermocline-andasol/case.yaml"
     return job.once("before", make)
-
-
-def pairs(job, days=60, turns=7):
-    """Processor time a cell-step of the bed, today's over that before, turn by turn on the same case."""
-    import statistics
-    program, case = before(job)
-    ours, ratios = [], []
-    for turn in range(turns):
-        each = []
-        for name, binary in (("now", job.build / "bin/thermocline"), ("then", program)):
-            seconds, text = processor_seconds(job, [binary, case, f"--set=simulation.end-time={days} day",
-                                                    f"--set=simulation.output.folder={job.scratch / name}"])
-            steps, cells = map(int, re.search(r"in (\d+) steps of (\d+) cells", text).groups())
-            each.append(1e9 * seconds / steps / cells)
-        ours, ratios = ours + each[:1], ratios + [each[0] / each[1]]
-    ratio = statistics.median(ratios)
-    return (f"{ratio:.3f} times (median of {turns} pairs, {min(ratios):.3f} to {max(ratios):.3f}); now {statistics.median(ours):.1f} ns "
-            f"in {days} days of case A, start-up included", ratio <= 1)
-
-
-def off_is_off(job):
-    """What only looks changes nothing: with pump, prices, a tariff and a constant load the temperatures are the same bits."""
-    case = job.root / "configs/thermocline-andasol/case.yaml"
-    outs = []
-    for name, sets in (("off", []), ("on", ["participants.tank.pump={}", "participants.tank.report.economics={field: 200}",
-                                            "participants.tank.flow.tariff=[50]", "participants.tank.flow.load=[1]"])):
-        out = job.scratch / f"bits-{name}"
-        job.done([job.build / "bin/thermocline", case, "--set=simulation.end-time=3 day", "--set=simulation.output.interval=1 day",
-                 "--set=participants.tank.report.run-in=1 day", f"--set=simulation.output.folder={out}",
-                 *(f"--set={s}" for s in sets)])
-        outs.append((out / "tank/bed.csv").read_bytes() + (out / "tank/wall.csv").read_bytes())
-    return "bed.csv and wall.csv " + ("are the same bytes" if outs[0] == outs[1] else "differ"), outs[0] == outs[1]
