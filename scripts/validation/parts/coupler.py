@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The coupler: added mass, acceleration, maps, schemes, programs of others."""
-import csv
 import json
 import os
 import re
-import resource
 import sys
 
 import numpy as np
@@ -208,25 +206,6 @@ def coupler_ranks(job):
     for n in (2, 3):
         gaps.append(np.abs(tips(one) - tips(flap(job, f"ranks-{n}", ranks=(n, 1, 1, 1)))).max() / np.abs(tips(one)).max())
     return f"{max(gaps):.1e} apart, {length(job)}", bool(max(gaps) <= 1e-10)
-
-
-def participants(folder):
-    """Rows of the steps but the first."""
-    with open(folder / "coupler" / "participants.csv", encoding="utf-8") as file:
-        return list(csv.DictReader(file))[1:]
-
-
-def own_share(job):
-    """Processor seconds of the coupler outside its waiting, beside those of all programs of the job."""
-    def make():
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        folder = flap(job, "own-share")
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        return participants(folder), after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    rows, everybody = job.once("own share", make)
-    own = sum(float(r["coupler working [s]"]) for r in rows)
-    return f"{100 * own / everybody:.2f} %: {1e3 * own / len(rows):.2f} ms of a step's {1e3 * everybody / len(rows):.0f} ms, {length(job)}", \
-        bool(rows and 0 < own < 0.03 * everybody)
 
 
 def refused(job, *sets):

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measures of the error budget, the predictions and the atlas. Built so far: other programs on a case by one command, pictures that can be
-read, --for-error beside ladders of runs, the budget with the model in it, a flow
-that a clock drives, the atlas."""
+"""Estimated errors beside the true ones: other programs on a case by one command, a flow that a clock drives, quantities of one run, the positions that runs
+report on the atlas of stability."""
 import csv
 import json
+import pathlib
 import re
 import sys
+import tempfile
 
+import atlas
 
 FOAM = "solidDisplacementFoam"
 # What of a study is run (--only: the sizes that a busy machine allows), its quantity, and the error that each program's best run has at most.
@@ -25,7 +27,7 @@ def beside(job, name):
     """One command on the case as it is; what was run before with the same programs and input is not run again."""
     file, only, quantity, wanted = PEERS[name]
     case = job.root / "configs" / file
-    done = job.run([job.root / "scripts/study", case, "--peers", f"--only={only}", f"--build={job.build}"], timeout=7200)
+    done = job.run([job.root / "scripts/couplet", "study", case, "--peers", f"--only={only}", f"--build={job.build}"], timeout=7200)
     folder = case.parent / "out" / "study"
     if done.returncode != 0:
         return f"exit code {done.returncode}: {(done.stderr or done.stdout).strip()[-200:]}", False
@@ -81,7 +83,7 @@ def interest(job):
     parts, met = [], True
     for case, truths in INTEREST.items():
         out = job.scratch / f"quantities-{case}"
-        done = job.run([sys.executable, job.root / "scripts/study", job.root / f"configs/{case}/case.yaml", "--quantities", f"--build={job.build}", f"--out={out}"])
+        done = job.run([sys.executable, job.root / "scripts/couplet", "study", job.root / f"configs/{case}/case.yaml", "--quantities", f"--build={job.build}", f"--out={out}"])
         file = out / "quantities/quantities.json"
         if done.returncode != 0 or not file.exists():
             raise RuntimeError((done.stderr or done.stdout)[-300:])
@@ -131,6 +133,13 @@ def heat_weighted(job):
     return "{:.0f} of {:.0f} within a factor of 2".format(*counts), counts[0] == counts[1]
 
 
+STUDIES = {  # folder in docs/validation/studies: file in configs
+    "elliptic-plate": "elliptic-plate/case", "le1": "le1/case", "le11": "le11/case", "cantilever": "cantilever/case",
+    "vibrating-cantilever": "vibrating-cantilever/case", "heated-cylinder": "heated-cylinder/case", "taylor-green-2d": "taylor-green-2d/case",
+    "cylinder-2d-1": "cylinder/study-2d-1", "cylinder-2d-2": "cylinder/study-2d-2", "cavity": "cavity/study",
+    "perpendicular-flap": "perpendicular-flap/study", "schumann": "schumann/case", "thermocline-andasol": "thermocline-andasol/study",
+    "bent-beam": "bent-beam/study",
+    **{f"{case}-gradients": f"{case}/study-gradients" for case in ("elliptic-plate", "le1", "le10", "le11", "cantilever")}}
 # Words of series that are not what a run does by default: symmetric gradient, solver by choice, trapezoidal rule, flux-memory, implicit coupling,
 # a tank's upwind scheme. Series of the first name of the study alone ("thesis-gradient") begin with theirs.
 OTHERS = ("thesis", "corrected", "block-coupled", "segregated", "aitken", "anderson", "newton-krylov", "bathe", "euler", "three-point", "loose-pressure",
@@ -142,7 +151,6 @@ def all_studies(job):
     from couplet.runs import Case
     from couplet.study import estimates, table
     from couplet.study.study import Study
-    from validation.parts.accuracy_cost import STUDIES
     judged, coarse, lines = [], [], []
     for name, case in STUDIES.items():
         study = Study(Case(job.root / "configs" / f"{case}.yaml", job.build), job.scratch / "estimates")
@@ -159,3 +167,50 @@ def all_studies(job):
     good, all_ = estimates.inside(judged) + estimates.inside(coarse), len(judged) + len(coarse)
     return (f"{good} of {all_} runs ({100 * good / all_:.0f} %): {estimates.inside(judged)} of {len(judged)} with a clear reference, {estimates.inside(coarse)} of "
             f"{len(coarse)} whose reference is too coarse; beyond: {', '.join(lines)}"), good >= 0.85 * all_
+
+
+# -- positions on the atlas --------------------------------------------------------------------------------------------
+# Of each map: its panels, places between its squares, and the quantity whose number is the map's own axis (by a factor).
+BETWEEN = [
+    ("fluid-diffusion", ["explicit, Adams-Bashforth", "explicit, Runge-Kutta"], [0.07, 0.11, 0.13, 0.2, 0.35], [0.25, 0.75]),
+    ("fluid-convection", ["explicit, Adams-Bashforth", "implicit viscous term", "explicit, Runge-Kutta"], [0.3, 0.7, 1.2, 1.7], [0.25, 0.75]),
+    ("coupling-mass", ["explicit, predictor 1", "explicit, predictor 2"], [0.5, 0.8, 1.5, 5], [0.05]),
+]
+
+
+def placed(folder):
+    """Largest share of the way to a limit in any run.json of the folder; None without one."""
+    found = [c for file in pathlib.Path(folder).glob("out/*/run.json") for c in json.loads(file.read_text()).get("atlas", []) if c["map"] != "strong-robin"]
+    return max(((1 - c["value"]) / (1 - c["limit"]) if c["floor"] else c["value"] / c["limit"] for c in found), default=None)
+
+
+def halved(folder):
+    """Whether a failed step made the run continue with shorter ones."""
+    for file in pathlib.Path(folder).glob("out/*/steps.csv"):
+        with open(file, newline="") as rows:
+            steps = [float(r["dt [s]"]) for r in csv.DictReader(rows)]
+        if steps and min(steps) < 0.75 * steps[0]:
+            return True
+    return False
+
+
+def positions(job):
+    maps = atlas.maps()
+    right, early, saved, wrong = 0, 0, 0, []
+    with tempfile.TemporaryDirectory(prefix="couplet-atlas-") as scratch:
+        for name, panels, xs, ys in BETWEEN:
+            for panel, x, y in ((p, x, y) for p in panels for x in xs for y in ys):
+                runner = atlas.Runner(job.build, pathlib.Path(scratch) / f"{name}-{panels.index(panel)}-{x}-{y}".replace(" ", ""))
+                square = atlas.judged(maps[name], *maps[name].run(panel, x, y, runner))
+                used = placed(next(runner.scratch.iterdir()))
+                held = square.outcome in (atlas.HOLDS, atlas.POOR)
+                if used is not None and held == (used <= 1):
+                    right += 1
+                elif used is not None and held and used <= 1.5:
+                    early += 1  # a bound on the eigenvalues is beyond them on oblique cells
+                elif used is not None and held and halved(next(runner.scratch.iterdir())):
+                    saved += 1  # the first steps were where it is printed
+                else:
+                    wrong.append(f"{name} {panel} {x:g}, {y:g}: {used if used is None else round(used, 2)} of the way, {square.outcome}")
+    total = right + early + saved + len(wrong)
+    return f"{right} of {total} agree, {early} hold up to 1.5 times the limit, {saved} begin beyond it and hold by halved steps" + (f"; not: {'; '.join(wrong)}" if wrong else ""), total >= 50 and not wrong

@@ -7,9 +7,8 @@ import zlib
 
 import numpy as np
 
+import atlas
 import couplet
-from couplet.atlas import strong
-from couplet.atlas.atlas import Runner
 from couplet.runs.process import RunFailed
 
 
@@ -189,8 +188,8 @@ def passes_of_a_step(job, name, overrides=()):
 
 def robin(job, panel, most, inverses):
     """Largest mean number of passes over mass ratios and two decades of steps."""
-    runner = Runner(job.build, pathlib.Path(job.scratch) / f"robin-{panel.replace(' ', '-')}")
-    values = {(i, dt): strong.wall(panel, i, dt, runner)[0] for i in inverses for dt in (1e-4, 1e-3, 1e-2)}
+    runner = atlas.Runner(job.build, pathlib.Path(job.scratch) / f"robin-{panel.replace(' ', '-')}")
+    values = {(i, dt): atlas.maps()["strong-robin"].run(panel, i, dt, runner)[0] for i in inverses for dt in (1e-4, 1e-3, 1e-2)}
     worst = max(values, key=lambda key: values[key] if np.isfinite(values[key]) else np.inf)
     return f"{values[worst]:.2f} at most, for {worst[0]:g} and steps of {worst[1]:g} s", \
         all(np.isfinite(v) for v in values.values()) and values[worst] <= most

@@ -131,7 +131,7 @@ def solid(job):
         folder.mkdir()
         shutil.copy(job.root / "configs/cantilever/cantilever.geo", folder)
         job.done(["gmsh", "-3", "-setnumber", "n_length", "40", "-setnumber", "n_side", "5", "cantilever.geo", "-o", "mesh.msh"], cwd=folder)
-        case = (job.root / "configs/cantilever/case.yaml").read_text().split("\n# scripts/study")[0]
+        case = (job.root / "configs/cantilever/case.yaml").read_text().split("\n# scripts/couplet study")[0]
         case = re.sub(r"^ *mesh-parameters:.*\n", "", case, flags=re.M).replace("cantilever.geo", "mesh.msh")
         (folder / "case.yaml").write_text(case)
         return folder

@@ -58,7 +58,7 @@ def cost_of(rows, series, size):
 
 def asked(job, name, target):
     quantity, out = CASES[name][0], job.scratch / f"prediction-{name}"
-    done = job.run([sys.executable, job.root / "scripts/study", HERE / f"{name}.yaml", f"--build={job.build}", f"--out={out}", f"--for-error={target}"], timeout=3600)
+    done = job.run([sys.executable, job.root / "scripts/couplet", "study", HERE / f"{name}.yaml", f"--build={job.build}", f"--out={out}", f"--for-error={target}"], timeout=3600)
     file = out / f"for-error-{quantity.replace(' ', '-')}-{target.replace('%', 'pc')}.json"
     if not file.exists():
         raise RuntimeError((done.stderr or done.stdout)[-300:])

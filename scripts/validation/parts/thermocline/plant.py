@@ -36,7 +36,7 @@ def study(job, case, changes=(), only=",".join(VARIANTS)):
     out = job.scratch / f"study-{case}-{abs(hash((changes, only)))}"
 
     def make():
-        command = [job.root / "scripts/study", job.root / "configs" / folder / "case.yaml", f"--only={only}", f"--out={out}",
+        command = [job.root / "scripts/couplet", "study", job.root / "configs" / folder / "case.yaml", f"--only={only}", f"--out={out}",
                    f"--build={job.build}"]
         job.done([*command, *(f"--set={c}" for c in changes)], timeout=7200)
         return read_table(out / "table.csv")
@@ -83,7 +83,7 @@ def solar_field(job):
 # -- cost -------------------------------------------------------------------------------------------------------------
 def scaling(job):
     """The 18 variants over fewer days, one and two at a time, alternately: the better time of each."""
-    command = [job.root / "scripts/study", *(job.root / "configs" / folder / "case.yaml" for folder, _ in CASES.values()),
+    command = [job.root / "scripts/couplet", "study", *(job.root / "configs" / folder / "case.yaml" for folder, _ in CASES.values()),
                f"--only={','.join(VARIANTS)}", f"--build={job.build}", f"--out={job.scratch / 'scaling'}", "--again",
                "--set=simulation.end-time=10 day", "--set=participants.tank.report.run-in=2 day"]
     seconds = {1: [], 2: []}
