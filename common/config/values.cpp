@@ -192,7 +192,7 @@ void read_value(const YAML::Node& node, const Facts& facts, const Slot& slot,
 std::string unknown_key(std::string_view name, const std::vector<std::string>& known) {
   if (name == "quantities")
     return "unknown key. Quantities of this program (a force, a value at a probe, an extreme) belong to the section 'study: {quantities: ...}' of the "
-           "case; 'scripts/study CASE --quantities' estimates their errors by differences of coarser runs (docs/studies.md).";
+           "case; 'couplet study CASE --quantities' estimates their errors by differences of coarser runs (docs/studies.md).";
   return "unknown key. " + base::did_you_mean(name, known, "keys");
 }
 

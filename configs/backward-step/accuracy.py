@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs for scripts/accuracy: meshes of 16 to 48 cells over the height, each until the flow stands."""
+"""Runs for scripts/couplet accuracy: meshes of 16 to 48 cells over the height, each until the flow stands."""
 from lengths import GARTLING, lengths
 
 PROGRAM = "fluid_solver"

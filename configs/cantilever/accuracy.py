@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs for scripts/accuracy: meshes of cubes, direct and iterative solves."""
+"""Runs for scripts/couplet accuracy: meshes of cubes, direct and iterative solves."""
 import pathlib
 import sys
 

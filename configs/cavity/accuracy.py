@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs for scripts/accuracy: meshes with even cells and with cells that are finer towards the walls."""
+"""Runs for scripts/couplet accuracy: meshes with even cells and with cells that are finer towards the walls."""
 import pathlib
 import sys
 

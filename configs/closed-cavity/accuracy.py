@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs for scripts/accuracy: schemes, accelerations and steps of a closed box under a light lid; to 0.4 s, on 8 x 8 cells."""
+"""Runs for scripts/couplet accuracy: schemes, accelerations and steps of a closed box under a light lid; to 0.4 s, on 8 x 8 cells."""
 import pathlib
 import sys
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs for scripts/accuracy: meshes, the least-squares and the corrected face gradient, methods, tolerances."""
+"""Runs for scripts/couplet accuracy: meshes, the least-squares and the corrected face gradient, methods, tolerances."""
 import nine_points
 
 PROGRAM = "solid_solver"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs for scripts/accuracy: what each method of mesh motion leaves of the cells against its time. A plate is turned by 30 degrees."""
+"""Runs for scripts/couplet accuracy: what each method of mesh motion leaves of the cells against its time. A plate is turned by 30 degrees."""
 import couplet
 
 PROGRAM = "mesh_mover"

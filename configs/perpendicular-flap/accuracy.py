@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs for scripts/accuracy: schemes, accelerations and tolerances of a light flap (density 42) in a flow
+"""Runs for scripts/couplet accuracy: schemes, accelerations and tolerances of a light flap (density 42) in a flow
 that starts smoothly; 20 steps of 10 ms on a coarse mesh. A flap is wet on both sides: Robin foresees half its thickness."""
 import pathlib
 import sys

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs for scripts/accuracy: face values of second and of fourth order, on meshes refined with the step."""
+"""Runs for scripts/couplet accuracy: face values of second and of fourth order, on meshes refined with the step."""
 import pathlib
 import sys
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs for scripts/accuracy: schemes, cells and steps through the first five days of case A, against 3200 cells of the scheme
+"""Runs for scripts/couplet accuracy: schemes, cells and steps through the first five days of case A, against 3200 cells of the scheme
 of second order. Long exchange steps also show what the plant's and the wall's explicit coupling costs."""
 import csv
 import functools

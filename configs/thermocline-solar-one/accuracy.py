@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs for scripts/accuracy: schemes, cells and steps of the bed after six hours of the first charge, against 4000 cells
+"""Runs for scripts/couplet accuracy: schemes, cells and steps of the bed after six hours of the first charge, against 4000 cells
 of the scheme of second order."""
 import functools
 import pathlib

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs for scripts/accuracy: schemes, accelerations and tolerances of the elastic tube, 20 steps of 0.2 ms on a coarse mesh. Within a
+"""Runs for scripts/couplet accuracy: schemes, accelerations and tolerances of the elastic tube, 20 steps of 0.2 ms on a coarse mesh. Within a
 series only the error of early stopping differs; implicit and semi-implicit differ by their splitting, too."""
 import pathlib
 import sys

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""scripts/accuracy on the two coarsest meshes of a case. Usage: accuracy.py BUILD"""
+"""scripts/couplet accuracy on the two coarsest meshes of a case. Usage: accuracy.py BUILD"""
 import csv
 import pathlib
 import subprocess
@@ -11,7 +11,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 
 with tempfile.TemporaryDirectory() as folder:
     picture = pathlib.Path(folder) / "accuracy.png"
-    result = subprocess.run([sys.executable, ROOT / "scripts/accuracy", "cantilever", "--build", sys.argv[1], "--only", "direct",
+    result = subprocess.run([sys.executable, ROOT / "scripts/couplet", "accuracy", "cantilever", "--build", sys.argv[1], "--only", "direct",
                              "--meshes", "20x2x2", "40x4x4", "--picture", picture], capture_output=True, text=True)
     assert result.returncode == 0, result.stdout + result.stderr
     rows = list(csv.DictReader(open(picture.with_suffix(".csv"), newline="")))
@@ -20,5 +20,5 @@ with tempfile.TemporaryDirectory() as folder:
     assert 0.1 > errors[1] > 0 and errors[1] < 0.5 * errors[0], errors
     assert all(0 < float(row["wall [s]"]) < 60 and 20 < float(row["memory [MB]"]) < 2000 for row in rows), rows
     assert picture.stat().st_size > 10_000
-wrong = subprocess.run([sys.executable, ROOT / "scripts/accuracy", "nothing"], capture_output=True, text=True)
+wrong = subprocess.run([sys.executable, ROOT / "scripts/couplet", "accuracy", "nothing"], capture_output=True, text=True)
 assert wrong.returncode != 0 and "Cases that have one: " in wrong.stderr and "cantilever" in wrong.stderr, wrong.stderr

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""scripts/study --quantities: parts of the error from runs that are made up, what is made coarser in cases of several kinds, and, with
+"""scripts/couplet study --quantities: parts of the error from runs that are made up, what is made coarser in cases of several kinds, and, with
 a build, Cook's membrane beside its converged reference.  Usage: study_interest.py [BUILD]"""
 import json
 import pathlib
@@ -44,13 +44,13 @@ assert longer.changes(2)["simulation.time-step"] == 1
 assert step.name == "step" and step.changes(2)["simulation.time-step"] == 2 * step.changes(1)["simulation.time-step"]
 
 # -- a setting that the sources would override is refused, not ignored
-done = subprocess.run([sys.executable, ROOT / "scripts/study", ROOT / "configs/taylor-green-2d/case.yaml", "--quantities", "--set", "simulation.time-step=0.01"],
+done = subprocess.run([sys.executable, ROOT / "scripts/couplet", "study", ROOT / "configs/taylor-green-2d/case.yaml", "--quantities", "--set", "simulation.time-step=0.01"],
                       capture_output=True, text=True, timeout=60)
 assert done.returncode != 0 and "study.sources gives it its own values" in done.stdout + done.stderr, done
 
 if len(sys.argv) > 1:
     with tempfile.TemporaryDirectory(prefix="couplet-interest-") as folder:
-        done = subprocess.run([sys.executable, ROOT / "scripts/study", ROOT / "configs/cook/case.yaml", "--quantities", "--out", folder, "--build", sys.argv[1]],
+        done = subprocess.run([sys.executable, ROOT / "scripts/couplet", "study", ROOT / "configs/cook/case.yaml", "--quantities", "--out", folder, "--build", sys.argv[1]],
                               capture_output=True, text=True, timeout=280)
         assert done.returncode == 0, done.stdout + done.stderr
         found = json.loads((pathlib.Path(folder) / "quantities/quantities.json").read_text())["displacement of the corner"]

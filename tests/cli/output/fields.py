@@ -12,6 +12,9 @@ import tempfile
 import h5py
 import numpy
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import require  # noqa: E402
+
 BIN, CASES = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 
 
@@ -35,12 +38,6 @@ def series(file):
     return found
 
 
-def check(claim, holds, value=""):
-    print(f"{'ok' if holds else 'not ok'}  {claim}: {value}")
-    if not holds:
-        sys.exit(1)
-
-
 def same(part, whole):
     """Whether what stands in `part` stands in `whole`, with the same value."""
     return all(numpy.array_equal(value, whole[time][field][key]) for time, fields in part.items() for field, values in fields.items() for key, value in values.items())
@@ -53,13 +50,13 @@ with tempfile.TemporaryDirectory(prefix="couplet-fields-") as folder:
     for name in ("fluid", "solid"):
         whole = series(run(here, name, "whole", "steps: true") / f"{name}.h5")
         times = sorted(whole)
-        check(f"{name}: outputs", len(times) >= 5, times)
+        require(f"{name}: outputs", len(times) >= 5, times)
         every = run(here, name, "every", "every: 2")
-        check(f"{name}: each second output", sorted(series(every / f"{name}.h5")) == times[::2])
-        check(f"{name}: patches at each output", len(series(every / "surface-bottom.h5")) >= len(times) - 1)
+        require(f"{name}: each second output", sorted(series(every / f"{name}.h5")) == times[::2])
+        require(f"{name}: patches at each output", len(series(every / "surface-bottom.h5")) >= len(times) - 1)
         none = run(here, name, "none", "every: 0")
-        check(f"{name}: patches alone", not (none / f"{name}.h5").exists() and (none / "surface-bottom.h5").exists())
+        require(f"{name}: patches alone", not (none / f"{name}.h5").exists() and (none / "surface-bottom.h5").exists())
         for ranks in (1, 2):
             box = series(run(here, name, f"box-{ranks}", "box: {from: [0, 0, 0], to: [0.5, 0.5, 0]}, compression: 4", ranks) / f"{name}.h5")
             cells = [len(next(values for field, values in fields.items() if field.startswith("cells"))) for fields in (box[times[-1]], whole[times[-1]])]
-            check(f"{name}: a box, compressed, {ranks} rank(s)", sorted(box) == times and 0 < cells[0] < cells[1] and (ranks > 1 or same(box, whole)), cells)
+            require(f"{name}: a box, compressed, {ranks} rank(s)", sorted(box) == times and 0 < cells[0] < cells[1] and (ranks > 1 or same(box, whole)), cells)

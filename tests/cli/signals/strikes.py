@@ -8,7 +8,6 @@ Usage: strikes.py BIN CASE_FOLDER COUNT [SEED [END_TIME]] [--couplet]     --coup
 import os
 import pathlib
 import random
-import re
 import shutil
 import signal
 import subprocess

@@ -9,6 +9,9 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import check, end  # noqa: E402
+
 project, build = map(pathlib.Path, sys.argv[1:3])
 mpirun, what = sys.argv[3:sys.argv.index("--")], sys.argv[-1]
 here = project / "tests/coupling/client"
@@ -16,13 +19,6 @@ environment = dict(os.environ, PYTHONPATH=str(project / "client/python"))
 body_of = {"c++": [build / "bin/tests/spring_cylinder"], "c": [build / "bin/tests/spring_cylinder_c"],
            "python": ["/usr/bin/python3", project / "client/examples/spring_cylinder.py"]}
 parameters = ["body", "2", "0.1", "3", "0.05"]
-failed = []
-
-
-def check(claim, holds, detail=""):
-    print(f"{'ok' if holds else 'not ok'}  {claim}  {detail}", flush=True)
-    if not holds:
-        failed.append(claim)
 
 
 def run(folder, body, coupler_ranks=1, fluid_ranks=1, sets=(), restart=None, code=0):
@@ -209,5 +205,4 @@ def tube():
 
 
 {"examples": examples, "install": install, "handshake": handshake, "fenicsx": fenicsx, "tube": tube}[what]()
-print(f"{len(failed)} checks failed" if failed else "all checks passed")
-sys.exit(1 if failed else 0)
+end()

@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The coupler and the toy participants as one MPMD job: ranks, restart and step halving do not change the answer."""
 import os
+import pathlib
 import subprocess
 import sys
 import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import check, end  # noqa: E402
 
 os.environ["PATH"] = os.pathsep.join(sys.argv[1:3] + [os.environ["PATH"]])
 for name in ("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"):
@@ -24,7 +28,6 @@ coupling:
   structure: {participant: solid}
   convergence: {relative: 1e-9, max-iterations: 100}
 """
-failed = []
 
 
 def run(folder, ranks=(1, 1), sets=(), restart=None):
@@ -51,12 +54,6 @@ def text(folder, file):
 
 def rows(folder, file):
     return [[float(word) for word in line.split(",")] for line in text(folder, file).splitlines()[1:]]
-
-
-def check(claim, holds, detail=""):
-    print(f"{'ok' if holds else 'not ok'}  {claim}  {detail}", flush=True)
-    if not holds:
-        failed.append(claim)
 
 
 def difference(a, b):
@@ -99,5 +96,4 @@ with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as othe
     off = difference(halved, fine)
     check("a participant that fails above a step is followed by halving", off < 1e-7, f"difference {off:.1e}")
 
-print(f"{len(failed)} checks failed" if failed else "all checks passed")
-sys.exit(1 if failed else 0)
+end()

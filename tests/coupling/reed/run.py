@@ -9,14 +9,10 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import check, end  # noqa: E402
+
 project, programs, mpirun = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3:]
-failed = []
-
-
-def check(claim, holds, detail=""):
-    print(f"{'ok' if holds else 'not ok'}  {claim}  {detail}", flush=True)
-    if not holds:
-        failed.append(claim)
 
 
 def run(top, name, end, ranks=(1, 1, 1, 1), restart=None):
@@ -63,5 +59,4 @@ with tempfile.TemporaryDirectory() as folder:
     check("on 3 ranks of the fluid and of the mover: the same", len(ranks) == 4 and off < 1e-6, f"{off:.1e}")
     rest = run(top, "rest", 4e-4, restart="whole/checkpoints/step-00000004")
     check("restarted bit for bit", len(rest) == 4 and rest == whole[4:], str(rest[-1:]))
-print(f"{len(failed)} checks failed" if failed else "all checks passed")
-sys.exit(1 if failed else 0)
+end()

@@ -11,6 +11,10 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+import checks  # noqa: E402
+from checks import check, end  # noqa: E402
+
 binaries, configs = map(pathlib.Path, sys.argv[1:3])
 MPIRUN = ["mpirun", "--oversubscribe"]
 PATIENCE = 120  # [s] with one job: nothing here takes more than seconds
@@ -26,14 +30,7 @@ COARSE = {"perpendicular-flap": {"participants.fluid.mesh-parameters": "{n_side:
 SHORT = {"simulation.end-time": "0.05 s", "simulation.output.interval": "1 s", "simulation.checkpoint.interval": "0 s"}
 for name in ("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"):
     os.environ.setdefault(name, "1")
-failed = []
 counts = {"refused": 0, "right": 0}
-
-
-def check(claim, holds, detail=""):
-    print(f"{'ok' if holds else 'not ok'}  {claim}  {detail if not holds else ''}", flush=True)
-    if not holds:
-        failed.append(claim)
 
 
 def run(words, folder):
@@ -168,5 +165,5 @@ def two_flaps(folder):
 start = time.monotonic()
 with tempfile.TemporaryDirectory(prefix="couplet-roles-") as scratch:
     {"check": by_check, "launch": launched, "flaps": two_flaps}[sys.argv[3]](pathlib.Path(scratch))
-print(f"{counts['refused']} refused by name, {counts['right']} right, {len(failed)} failed in {time.monotonic() - start:.0f} s")
-sys.exit(1 if failed else 0)
+print(f"{counts['refused']} refused by name, {counts['right']} right, {len(checks.failed)} failed in {time.monotonic() - start:.0f} s")
+end()

@@ -50,12 +50,12 @@ class Results:
 
     def surfaces(self, participant):
         """Patches of which it wrote fields (`output.surfaces`)."""
-        from couplet.surfaces import surface_names
+        from couplet.series import surface_names
         return surface_names(self.folder / participant)
 
     def surface(self, participant, patch):
         """Fields on a patch over time, one row per face or point; areas, integrals, the chain of edges in 2-D."""
-        from couplet.surfaces import find_surface
+        from couplet.series import find_surface
         return find_surface(self.folder / participant, patch)
 
     def probes(self, participant):
@@ -96,3 +96,9 @@ class Results:
                 label = phase if len(self.participants()) == 1 else f"{name}: {phase}"
                 found["phases"][label] = found["phases"].get(label, 0) + seconds
         return found
+
+
+def passes_a_step(folder):
+    """Mean number of passes of the coupling in a step, of a run's output folder."""
+    passes = read_csv(pathlib.Path(folder) / "coupler" / "residuals.csv")
+    return len(passes["step"]) / len(set(passes["step"]))

@@ -8,13 +8,13 @@ with the observed order p between 0.5 and the formal one; the formal one where t
 
 What is made coarser: `study.sources` (docs/studies.md) where the case has it, from the setting that it names; else the size of the study's
 refining axis that gives the mesh of the case, and `simulation.time-step` where the run has more than one step."""
-import copy
 import json
 import math
 
 import yaml
 
 from couplet.runs import Task, expect, run_all
+from couplet.runs.case import with_changes
 from couplet.study.axes import Axes
 from couplet.study.dominance import Source, source_of
 from couplet.study.quantities import quantities_of
@@ -27,20 +27,6 @@ LARGEST = 4  # sizes up to this many times the largest of the axis are looked at
 def value_at(data, key):
     for part in key.split("."):
         data = data.get(part) if isinstance(data, dict) else None
-    return data
-
-
-def as_it_stands(case, base):
-    """The content of the case with `base`, {absolute key: value or its text}."""
-    data = copy.deepcopy(case.data)
-    for key, value in base.items():
-        *above, last = key.split(".")
-        node = data
-        for part in above:
-            if not isinstance(node.get(part), dict):
-                node[part] = {}
-            node = node[part]
-        node[last] = yaml.safe_load(value) if isinstance(value, str) else value
     return data
 
 
@@ -62,7 +48,7 @@ def sources_of(case, participant, base=None):
     section, base = case.study, base or {}
     if section.get("sources"):
         return [s for s in (source_of(n, g, case.file) for n, g in section["sources"].items()) if not s.tolerance]
-    data = as_it_stands(case, base)
+    data = with_changes(case.data, base)
     found = [mesh_source(case, section, participant, data)]
     if found[0] and "simulation.time-step" in found[0].changes(1):
         return found  # mesh and step together

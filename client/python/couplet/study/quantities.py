@@ -21,7 +21,7 @@ import sys
 import numpy as np
 
 from couplet.runs import expect
-from couplet.study.expressions import evaluate
+from couplet.study.axes import evaluate
 
 FUNCTIONS = {name: getattr(np, name) for name in ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "abs", "sinh", "cosh", "where")}
 KEYS = {"probe", "file", "column", "summary", "python", "item", "field", "exact", "over", "against", "at", "from", "reference", "absolute",
