@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fluid_solver/boundary/face_rows.hpp"
@@ -49,6 +50,10 @@ class Boundary {
   /// What it said, at boundary faces [kg/m^2]; counts where it was asked. Whether one of this rank's has changed. Throws
   /// Error if one is not above 0.
   bool set_wall_mass(std::span<const Index> boundary_faces, std::span<const double> masses);
+
+  /// Pressure that gave walls which yield their velocity, per boundary face [Pa].
+  void set_wall_load(std::vector<double> load) { wall_load_ = std::move(load); }
+  const std::vector<double>& wall_load() const { return wall_load_; }
 
   /// w at time t [m/s] at the faces with given velocity; interface faces are left as they are.
   void velocity_at(double t, const std::vector<Vec3>& centres, Vectors<D>& w) const;
@@ -98,7 +103,7 @@ class Boundary {
   bool closed_ = true, yields_ = false, asks_for_mass_ = false, turns_ = false;
   std::vector<AbsorbingPatch> absorbing_patches_;
   std::vector<FaceRange> upstream_patches_;
-  std::vector<double> wall_mass_;
+  std::vector<double> wall_mass_, wall_load_;
   std::vector<Index> two_sided_;
   std::vector<char> asked_;  // by boundary face: its mass is the structure's word
 };

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "common/mesh/periodic_points.hpp"
-#include "fluid_solver/motion/step_work.hpp"
+#include "fluid_solver/parameters/parameters.hpp"
+#include "fluid_solver/state/step.hpp"
 
 namespace couplet::fluid {
 

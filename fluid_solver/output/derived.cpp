@@ -37,7 +37,7 @@ template <int D>
 std::vector<std::array<double, 2>> wall_units(const Fluid<D>& fluid) {
   const mesh::Mesh& mesh = fluid.mesh();
   const Placement<D>& at = *fluid.state().placement;
-  const double rho = fluid.parameters().density, nu = fluid.parameters().viscosity / rho;
+  const auto [rho, mu, nu, sound] = fluid.parameters().properties();
   std::vector<std::array<double, 2>> units(fluid.viscous_force().size());
   for (std::size_t b = 0; b < units.size(); ++b) {
     const Index f = mesh.n_interior + static_cast<Index>(b);

@@ -48,7 +48,7 @@ effects::EffectChoice turbulence(const FluidParameters& p, const mesh::MeshFacts
   };
   if (mesh.dim == 2) return without("eddies are three-dimensional");
   if (!(speed > 0)) return without("no boundary or initial condition sets a speed");
-  const double nu = p.viscosity / p.density;
+  const double nu = p.kinematic_viscosity();
   if (!(nu > 0)) return without("inviscid fluid");
   const double reynolds = speed * mesh.smallest_side() / nu, cell = speed * mesh.mean_cell / nu;
   if (reynolds < laminar)
@@ -65,7 +65,7 @@ effects::EffectChoice turbulence(const FluidParameters& p, const mesh::MeshFacts
 /// Explicit diffusion holds to nu dt (sum of 4/h^2) <= 1, convection to about half a cell a step: the implicit term costs about
 /// as much as two explicit steps.
 effects::EffectChoice viscous(const FluidParameters& p, const mesh::MeshFacts& mesh, double speed) {
-  const double nu = p.viscosity / p.density, h = mesh.shortest_edge;
+  const double nu = p.kinematic_viscosity(), h = mesh.shortest_edge;
   const double diffusion = nu > 0 ? h * h / (4 * mesh.dim * nu) : std::numeric_limits<double>::infinity();
   const double convection = speed > 0 ? 0.5 * h / speed : std::numeric_limits<double>::infinity();
   const bool implicit = diffusion < 0.5 * convection && !std::isinf(diffusion);

@@ -94,6 +94,14 @@ struct ProbeParameters {
   Vec3 point = Vec3::Zero();  // [m]
 };
 
+/// A fluid by its numbers.
+struct Properties {
+  double rho = 0;    ///< density [kg/m^3]
+  double mu = 0;     ///< dynamic viscosity [Pa s]
+  double nu = 0;     ///< kinematic viscosity [m^2/s]
+  double sound = 0;  ///< speed of sound [m/s]; 0: incompressible
+};
+
 struct FluidParameters {
   std::string mesh;
   std::map<std::string, double> mesh_parameters;
@@ -127,6 +135,8 @@ struct FluidParameters {
   /// [m/s]; 0: the fluid is computed as incompressible.
   double sound_speed() const { return solved_sound(compressibility, density, viscosity); }
   bool is_compressible() const { return compressibility && compressibility->is_solved(); }
+  double kinematic_viscosity() const { return viscosity / density; }  ///< [m^2/s]
+  Properties properties() const { return {density, viscosity, kinematic_viscosity(), sound_speed()}; }
 };
 
 /// Pairs of periodic patches. Throws Error if two patches do not name each other.

@@ -50,6 +50,12 @@ struct Placement {
   /// k of a face [m^2], whether or not there is the array.
   Vec<D> oblique_of(Index face) const { return oblique.empty() ? Vec<D>(Vec<D>::Zero()) : oblique[face]; }
 };
+/// What a value linear between the cells lacks at an interior face of a skewed mesh.
+template <int D>
+double skew_part(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& gradient, Index f) {
+  const double weight = at.weight[f];
+  return (weight * gradient[mesh.owner[f]] + (1 - weight) * gradient[mesh.neighbour[f]]).dot(at.skew[f]);
+}
 /// |k|/|S| up to which a mesh counts as orthogonal.
 constexpr double orthogonal = 1e-9;
 

@@ -43,7 +43,7 @@ class Fluid {
   /// Walls of a known mass then answer to what the pressure differs from it (see yielding_walls.cpp).
   void yield_from(std::vector<double> load) {
     yields_ = boundary_.yields();
-    step_.set_wall_load(std::move(load));
+    boundary_.set_wall_load(std::move(load));
   }
   /// Before yield_from(): Boundary::set_wall_mass. Collective.
   void set_wall_mass(std::span<const Index> boundary_faces, std::span<const double> masses) {

@@ -22,8 +22,7 @@ double parts(double dt, double limit) {
 template <int D>
 SubStepSize<D>::SubStepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary,
                             const FluidParameters& parameters)
-    : parameters_(parameters),
-      size_(mesh, boundary, parameters.viscosity / parameters.density, parameters.scheme) {}
+    : parameters_(parameters), size_(mesh, boundary, parameters.kinematic_viscosity(), parameters.scheme) {}
 
 template <int D>
 void SubStepSize<D>::begin_step(const State<D>& level, double time, double dt, double frame_rate,

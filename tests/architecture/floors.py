@@ -23,8 +23,6 @@ FLOORS = {
 # Functions of a class above, written where their subject is.
 UPWARDS = {
     ("mesh_mover/mover.cpp", "mesh_mover/barrier/barrier_motion.hpp"),  # makes the method
-    ("fluid_solver/motion/rotating_frame.cpp", "fluid_solver/step/fluid.hpp"),
-    ("fluid_solver/motion/turning_walls.cpp", "fluid_solver/step/fluid.hpp"),
 }
 
 
