@@ -81,7 +81,6 @@ void Compression<D>::complete(PressureLevel<D>& level) const {
       level.taken_up += storage_[c] * step_.dt / scene_.fluid.rho * (level.p[c] + past_[c] / rate_);
   if (!trapezoidal_) return;
   level.end = level.p;
-  level.end.push_back(0);  // of the volume upstream, if there is one
   if (step_.by.pressure[0]) {
     const std::vector<double>& p = begin();
     for (std::size_t c = 0; c < level.p.size(); ++c) level.end[c] = 2 * level.p[c] - p[c];

@@ -46,7 +46,7 @@ void UpstreamVolume<D>::respond(PressureEquation<D>& equation) {
 template <int D>
 double UpstreamVolume<D>::begin() const {
   const PressureLevel<D>& level = *step_.by.pressure[0];
-  return level.end.empty() ? level.upstream : level.end.back();
+  return level.end.empty() ? level.upstream : level.upstream_end;
 }
 
 template <int D>
@@ -120,7 +120,7 @@ void UpstreamVolume<D>::start(const Placement<D>& at, PressureLevel<D>& level) c
 template <int D>
 void UpstreamVolume<D>::complete(PressureLevel<D>& level) const {
   level.upstream = pressure_;
-  if (trapezoidal_) level.end.back() = step_.by.pressure[0] ? 2 * pressure_ - begin() : pressure_;
+  if (trapezoidal_) level.upstream_end = step_.by.pressure[0] ? 2 * pressure_ - begin() : pressure_;
 }
 
 template <int D>

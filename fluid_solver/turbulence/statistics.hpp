@@ -32,6 +32,8 @@ class RunningStatistics {
   void load(io::CheckpointReader& file);
 
  private:
+  template <class Self, class Use>
+  static void visit(Self& self, const Use& use);
   void add(std::size_t entry, const Vec<D>& velocity, double dt);
   void add_pressure(std::size_t entry, double pressure, double dt);
 
