@@ -7,7 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/pressure/largest_entry.hpp"
+#include "fluid_solver/state/largest_cell.hpp"
 
 namespace couplet::fluid {
 namespace {
@@ -115,7 +115,7 @@ int ViscousSolver<D>::solve(const Vectors<D>& w, double tolerance, Vectors<D>& b
     throw SolveFailure(
         "The implicit viscous solve did not converge: residual {:.3e} of {:.3e} after {} iterations. {}",
         std::sqrt(rr), std::sqrt(sums[0]), iterations,
-        largest_entry<D>(mesh_, *at_, [&](Index c) { return b[c].norm(); }));
+        largest_entry(find_largest(mesh_, *at_, [&](Index c) { return b[c].norm(); })));
   for (Index c = 0; c < owned; ++c) u[c] = scale_[c] * x_[c];
   mesh_.cells.update_ghosts(flat<D>(u), D);
   return iterations;

@@ -56,6 +56,18 @@ void Boundary<D>::add_turn(const mesh::Mesh& mesh, std::span<const Vec3> points,
 }
 
 template <int D>
+void set_face_means(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const Vec3> velocities,
+                    Vectors<D>& w) {
+  auto next = velocities.begin();
+  for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+    const auto n = mesh.face_points[f].size();
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = 0; i < n; ++i) sum += *next++;
+    w[f - mesh.n_interior] = (sum / double(n)).template head<D>();
+  }
+}
+
+template <int D>
 double set_body_start(const mesh::Mesh& mesh, std::span<const Vec3> points, const Boundary<D>& boundary,
                       const fv::MotionParameters& motion, double time, Vectors<D>& w, Vectors<D>& turn) {
   const fv::PrescribedMotion prescribed(motion, D);
@@ -67,14 +79,9 @@ double set_body_start(const mesh::Mesh& mesh, std::span<const Vec3> points, cons
       for (const Index v : mesh.face_points[f]) corners.push_back(points[v]);
     const std::vector<Vec3> velocities = prescribed.starting_velocities(corners, time, length);
     if (!turn.empty()) set_turn<D>(mesh, *patch, points, velocities, turn);
-    auto next = velocities.begin();
-    for (Index f = patch->first; f < patch->first + patch->count; ++f) {
-      const auto n = mesh.face_points[f].size();
-      Vec3 sum = Vec3::Zero();
-      for (std::size_t i = 0; i < n; ++i) sum += *next++;
-      w[f - mesh.n_interior] = (sum / double(n)).template head<D>();
+    set_face_means<D>(mesh, *patch, velocities, w);
+    for (Index f = patch->first; f < patch->first + patch->count; ++f)
       largest = std::max(largest, w[f - mesh.n_interior].norm());
-    }
   }
   return parallel::max(mesh.comm, largest);
 }
@@ -87,6 +94,8 @@ template void set_turn<3>(const mesh::Mesh&, const mesh::Patch&, std::span<const
                           Vectors<3>&);
 template void Boundary<2>::add_turn(const mesh::Mesh&, std::span<const Vec3>, double, Vectors<2>&) const;
 template void Boundary<3>::add_turn(const mesh::Mesh&, std::span<const Vec3>, double, Vectors<3>&) const;
+template void set_face_means<2>(const mesh::Mesh&, const mesh::Patch&, std::span<const Vec3>, Vectors<2>&);
+template void set_face_means<3>(const mesh::Mesh&, const mesh::Patch&, std::span<const Vec3>, Vectors<3>&);
 template double set_body_start<2>(const mesh::Mesh&, std::span<const Vec3>, const Boundary<2>&,
                                   const fv::MotionParameters&, double, Vectors<2>&, Vectors<2>&);
 template double set_body_start<3>(const mesh::Mesh&, std::span<const Vec3>, const Boundary<3>&,

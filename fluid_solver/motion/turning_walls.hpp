@@ -21,6 +21,11 @@ template <int D>
 void set_turn(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const Vec3> points,
               std::span<const Vec3> velocities, Vectors<D>& turn);
 
+/// Sets w at the faces of a patch to the means of the velocities of their corners, which stand face by face.
+template <int D>
+void set_face_means(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const Vec3> velocities,
+                    Vectors<D>& w);
+
 /// Force on what is outside by the transposed gradient, -mu T; that by du/dn is the flux of Loads.
 template <int D>
 Vec<D> turning_force(double viscosity, const Vec<D>& turn) {

@@ -15,7 +15,7 @@ namespace {
 constexpr double mean_times = 10;
 
 /// Largest extent of the mesh [m]. Collective.
-double size_of(const mesh::Mesh& mesh, std::span<const Vec3> points) {
+double mesh_extent(const mesh::Mesh& mesh, std::span<const Vec3> points) {
   constexpr double far = std::numeric_limits<double>::max();
   double size = 0;
   for (int c = 0; c < mesh.dim; ++c) {
@@ -32,7 +32,7 @@ template <int D>
 AbsorbingBoundaries<D>::AbsorbingBoundaries(const Scene<D>& scene, const Step<D>& step,
                                             const Prediction<D>& prediction)
     : Term<D>(scene, step, prediction) {
-  const double size = size_of(scene.mesh, scene.points_at_rest);
+  const double size = mesh_extent(scene.mesh, scene.points_at_rest);
   mean_time_ = scene.parameters.compressibility->mean_time.value_or(mean_times * size / scene.fluid.sound);
 }
 

@@ -10,7 +10,7 @@
 #include "common/linalg/poisson/petsc_cell_solver.hpp"
 #include "common/linalg/poisson/poisson_solver.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/pressure/largest_entry.hpp"
+#include "fluid_solver/state/largest_cell.hpp"
 
 namespace couplet::fluid {
 
@@ -143,7 +143,9 @@ template <int D>
 linalg::SolveStatistics PressureEquation<D>::solve_or_tell(const Placement<D>& at, std::span<const double> b,
                                                            std::span<double> p, double relative,
                                                            double absolute) {
-  const auto where = [&] { return largest_entry<D>(mesh_, at, [&](Index c) { return b[c]; }); };
+  const auto where = [&] {
+    return largest_entry(find_largest(mesh_, at, [&](Index c) { return std::abs(b[c]); }));
+  };
   if (!std::isfinite(absolute))
     throw SolveFailure("The fluxes of the pressure equation are out of range. {}", where());
   try {

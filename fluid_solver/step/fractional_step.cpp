@@ -9,12 +9,14 @@
 #include "common/base/processor_clones.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
+#include "fluid_solver/state/largest_cell.hpp"
 
 namespace couplet::fluid {
 namespace {
 
-constexpr double least_share = 0.5;  // of cells and directions that have lines, for which fourth order pays
-constexpr double explosion = 1e3;    // growth of the largest speed in one step that is called divergence
+constexpr double least_share_of_lines =
+    0.5;                           // of cells and directions that have lines, for which fourth order pays
+constexpr double explosion = 1e3;  // growth of the largest speed in one step that is called divergence
 
 COUPLET_PROCESSOR_CLONES void velocity_pass(std::span<const double> predicted, double factor,
                                             std::span<const double> gradient, std::span<double> u) {
@@ -68,7 +70,7 @@ template <int D>
 std::shared_ptr<const Placement<D>> FractionalStep<D>::raise_order(std::shared_ptr<const Placement<D>> at) {
   Lines<D> lines(mesh_, *at);
   if (scene_.parameters.face_values == FaceValues::automatic) {
-    const bool pays = lines.share >= least_share;
+    const bool pays = lines.share >= least_share_of_lines;
     log::info("Face values: {} (auto: fourth order is possible on {:.0f} % of the mesh)",
               pays ? "fourth-order" : "second-order", 100 * lines.share);
     if (!pays) return at;
@@ -309,32 +311,16 @@ void FractionalStep<D>::check(const State<D>& from) {
   const bool created =
       judgement_.energy.out_of_bounds && (!scene_.obstacles || scene_.obstacles->is_in_budget());
   if (finite && !fast && !created) return;
-  struct {
-    double value;
-    int rank;
-  } worst{-std::numeric_limits<double>::infinity(), parallel::comm_rank(mesh_.comm)};
-  Index where = 0;
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+  const LargestCell worst = find_largest(mesh_, *step_.to, [&](Index c) {
     const double square = u_[c].squaredNorm();
-    double value = std::isfinite(square) ? square : std::numeric_limits<double>::max();
     if (finite && !fast)
-      value = step_.to->volume[c] * square - from.placement->volume[c] * from.u[c].squaredNorm();
-    if (value <= worst.value) continue;
-    worst.value = value;
-    where = c;
-  }
-  MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, mesh_.comm);
+      return step_.to->volume[c] * square - from.placement->volume[c] * from.u[c].squaredNorm();
+    return std::isfinite(square) ? square : std::numeric_limits<double>::max();
+  });
   std::string cause;
-  double data[4] = {};
-  if (parallel::comm_rank(mesh_.comm) == worst.rank) {
-    Vec3 place = Vec3::Zero();
-    place.template head<D>() = step_.to->centre[where];
-    std::copy_n(place.data(), 3, data);
-    data[3] = double(mesh_.cell_id[where]);
-    cause = likely_cause(mesh_, scene_.boundary, energy_step(from), where, scene_.fluid.nu, step_.by.implicit,
-                         scene_.frame ? scene_.frame->rate(step_.begin(), step_.dt) : 0);
-  }
-  MPI_Bcast(data, 4, MPI_DOUBLE, worst.rank, mesh_.comm);
+  if (worst.here >= 0)
+    cause = likely_cause(mesh_, scene_.boundary, energy_step(from), worst.here, scene_.fluid.nu,
+                         step_.by.implicit, scene_.frame ? scene_.frame->rate(step_.begin(), step_.dt) : 0);
   parallel::broadcast(mesh_.comm, cause, worst.rank);
   if (scene_.obstacles)
     if (const std::string shut = scene_.obstacles->cause(*step_.to); !shut.empty()) cause = shut;
@@ -348,7 +334,7 @@ void FractionalStep<D>::check(const State<D>& from) {
                     e.gain, e.ledger.energy, e.work);
   throw SolveFailure(
       "The flow diverges at t = {:.6g} s: {}, mostly in cell {} at ({:.6g}, {:.6g}, {:.6g}) m. {}",
-      step_.end(), what, GlobalIndex(data[3]), data[0], data[1], data[2], cause);
+      step_.end(), what, worst.id, worst.place.x(), worst.place.y(), worst.place.z(), cause);
 }
 
 template class FractionalStep<2>;
