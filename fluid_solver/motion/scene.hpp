@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "fluid_solver/boundary/boundary.hpp"
-#include "fluid_solver/lines/fourth_order.hpp"
 #include "fluid_solver/motion/obstacles.hpp"
 #include "fluid_solver/motion/rotating_frame.hpp"
+#include "fluid_solver/state/fourth_order.hpp"
 
 namespace couplet::fluid {
 

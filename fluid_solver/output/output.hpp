@@ -10,9 +10,9 @@
 #include "common/io/fields/field_writer.hpp"
 #include "fluid_solver/output/samples.hpp"
 #include "fluid_solver/output/series.hpp"
+#include "fluid_solver/output/statistics.hpp"
 #include "fluid_solver/output/surfaces.hpp"
 #include "fluid_solver/step/fluid.hpp"
-#include "fluid_solver/turbulence/statistics.hpp"
 
 namespace couplet::fluid {
 

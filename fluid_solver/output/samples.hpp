@@ -8,8 +8,8 @@
 
 #include "common/fv/vertex_interpolation.hpp"
 #include "common/io/probes/probe.hpp"
+#include "fluid_solver/output/statistics.hpp"
 #include "fluid_solver/step/fluid.hpp"
-#include "fluid_solver/turbulence/statistics.hpp"
 
 namespace couplet::fluid {
 

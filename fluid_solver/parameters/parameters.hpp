@@ -9,7 +9,7 @@
 
 #include "common/config/section.hpp"
 #include "common/fv/prescribed_motion.hpp"
-#include "fluid_solver/conditions/condition.hpp"
+#include "fluid_solver/parameters/condition.hpp"
 #include "fluid_solver/parameters/sound.hpp"
 
 namespace couplet::fluid {
@@ -143,8 +143,6 @@ struct FluidParameters {
 std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& parameters);
 
 void declare(config::Section& section, FluidParameters& parameters);
-/// The section `gaps`; after `boundaries`, at which it looks.
-void declare_gaps(config::Section& section, FluidParameters& parameters);
 /// The section `output`.
 void declare_output(config::Section& section, FluidOutputParameters& parameters);
 
