@@ -72,7 +72,7 @@ void ImplicitFriction<D>::add_eddies(const State<D>& from, Vectors<D>& side) {
   eddy_rate_.assign(between_.size(), Vec<D>::Zero());
   rate_operator_.add_eddies(*scene_.parameters.turbulence, *from.placement, between_, between_boundary_,
                             eddy_, eddy_rate_);
-  if (scene_.obstacles) scene_.obstacles->clear(eddy_rate_);
+  scene_.obstacles->clear(eddy_rate_);
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) side[c] += step_.dt * eddy_rate_[c];
 }
 

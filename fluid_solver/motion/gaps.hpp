@@ -39,7 +39,9 @@ class Gaps final : public Obstacles<D> {
   void hold(const Placement<D>& at, double dt, Vectors<D>& u) const override;
   /// Nothing passes, phi is what the mesh sweeps.
   void block(const Step<D>& step, std::vector<double>& phi) const override;
+  using Obstacles<D>::block;
   void correct_memory(State<D>& state) const override;
+  bool parts() const override { return active_; }
   void part(const Placement<D>& at, const std::vector<double>& p, const Vectors<D>* gradient,
             const Vectors<D>& area, Vectors<D>& sum) const override;
   std::string cause(const Placement<D>& at) const override;

@@ -9,8 +9,8 @@
 
 namespace couplet::fluid {
 
-/// Parts of the mesh that the fluid does not enter: immersed bodies or closed gaps. Every function is called a few times per step and
-/// loops over cells or faces itself.
+/// Parts of the mesh that the fluid does not enter: immersed bodies or closed gaps, in this class itself none. Every function is called
+/// a few times per step and loops over cells or faces itself.
 template <int D>
 class Obstacles {
  public:
@@ -19,8 +19,9 @@ class Obstacles {
 
   enum class Changed { nothing, shares, cells };  ///< `cells`: other cells are closed than before
   /// Marks the cells of a placement at time t [s]. The same on all ranks. Collective.
-  virtual Changed mark(double t, const std::shared_ptr<const Placement<D>>& at,
-                       const std::vector<Vec3>& points) = 0;
+  virtual Changed mark(double, const std::shared_ptr<const Placement<D>>&, const std::vector<Vec3>&) {
+    return Changed::nothing;
+  }
   /// Prepares what the other functions need in a step from a level, with the given velocities w [m/s]. Collective.
   virtual void begin(const Step<D>&, const State<D>&, const Vectors<D>&) {}
   /// The multi-step schemes begin anew after this step, which has an impulse.
@@ -41,15 +42,15 @@ class Obstacles {
   const Placement<D>* around() const { return around_.get(); }
 
   /// Sets u in and beside closed cells. Ghosts current before and after. Collective.
-  virtual void hold(const Placement<D>& at, double dt, Vectors<D>& u) const = 0;
+  virtual void hold(const Placement<D>&, double, Vectors<D>&) const {}
   /// Fluxes of a velocity through the faces as if all of each were open. Collective.
   virtual void carry(const Placement<D>&, const Vectors<D>&, std::vector<double>&) const {}
   /// Reduces these fluxes to what passes the open part of each flux face, and adds what moves with the obstacle [m^3/s].
-  virtual void block(const Step<D>& step, std::vector<double>& phi) const = 0;
+  virtual void block(const Step<D>&, std::vector<double>&) const {}
   /// The same for the boundary faces of given flux.
   virtual void block(const Step<D>&, const std::vector<Index>&, std::vector<double>&) const {}
   /// Corrects the memory of the fluxes of a state, which starts anew at closed faces. Collective.
-  virtual void correct_memory(State<D>& state) const = 0;
+  virtual void correct_memory(State<D>&) const {}
 
   /// The cells inside have a pressure of their own.
   virtual bool has_pressure() const { return true; }
@@ -57,6 +58,8 @@ class Obstacles {
   virtual void before(std::vector<double>& b, std::vector<double>&) const { clear(b); }
   /// The solution, in closed cells. Collective.
   virtual void after(const Placement<D>&, std::vector<double>&) const {}
+  /// part() has something to add.
+  virtual bool parts() const { return false; }
   /// Adds to `sum` of the free cells at closed faces sign area (p_P - p_f), p_f linear between the cells (with `gradient` also on
   /// skewed meshes): such a cell sees its own pressure there, as at a wall.
   virtual void part(const Placement<D>&, const std::vector<double>&, const Vectors<D>*, const Vectors<D>&,

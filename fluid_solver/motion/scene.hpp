@@ -20,14 +20,15 @@ struct Scene {
   const Boundary<D>& boundary;
   const FluidParameters& parameters;
   Properties fluid;
-  bool oblique = false;                       ///< the non-orthogonal parts are needed
-  std::optional<RotatingFrame<D>> frame{};    ///< empty: none
-  std::unique_ptr<FourthOrder<D>> fourth{};   ///< nullptr: second order everywhere
-  std::unique_ptr<Obstacles<D>> obstacles{};  ///< nullptr: none; each step marks its cells
+  bool oblique = false;                      ///< the non-orthogonal parts are needed
+  std::optional<RotatingFrame<D>> frame{};   ///< empty: none
+  std::unique_ptr<FourthOrder<D>> fourth{};  ///< nullptr: second order everywhere
+  /// Each step marks their cells.
+  std::unique_ptr<Obstacles<D>> obstacles = std::make_unique<Obstacles<D>>(mesh);
 
   /// The placement as the pressure equation sees it.
   const Placement<D>& around(const Step<D>& step) const {
-    return obstacles && obstacles->around() ? *obstacles->around() : *step.to;
+    return obstacles->around() ? *obstacles->around() : *step.to;
   }
   const std::vector<Vec3>& points_of(const Step<D>& step) const {
     return step.points.empty() ? points_at_rest : step.points;

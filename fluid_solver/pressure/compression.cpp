@@ -50,7 +50,7 @@ void Compression<D>::prepare(const State<D>& from) {
   set_past(from);
   const double factor = rate_ / (scene_.fluid.sound * scene_.fluid.sound * step_.dt);
   for (Index c = 0; c < owned; ++c) storage_[c] = factor * step_.to->volume[c];
-  if (scene_.obstacles) scene_.obstacles->clear(storage_);
+  scene_.obstacles->clear(storage_);
 }
 
 template <int D>

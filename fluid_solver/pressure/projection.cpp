@@ -224,7 +224,7 @@ void PressureProjection<D>::set_boundary_flux(const Vectors<D>& w) {
     const Index f = mesh_.n_interior + b;
     out_.phi[f] = out_.w[b].dot(step_.to->area[f]);
   }
-  if (scene_.obstacles) scene_.obstacles->block(step_, rows.of_flux, out_.phi);
+  scene_.obstacles->block(step_, rows.of_flux, out_.phi);
   if (equation_.singular()) balance_closed_domain();
 }
 
@@ -293,7 +293,7 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
     size += out_.phi[f] * out_.phi[f];
     side_.b[mesh_.owner[f]] += scene_.boundary.rows().pressure[b] * around.conductance[f] * out_.boundary[b];
   }
-  if (scene_.obstacles) scene_.obstacles->before(side_.b, out_.p);
+  scene_.obstacles->before(side_.b, out_.p);
   side_.b.resize(mesh_.cells.n_owned());
   for (const auto& term : terms_) term->before(out_, side_);
   const double floor = flux_floor * factor * std::sqrt(parallel::sum(mesh_.comm, size));
@@ -301,7 +301,7 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
       equation_.solve(now, side_.b, out_.p, tolerance, std::max(floor, std::numeric_limits<double>::min()),
                       answer, side_.size);
   iterations_ += solved.iterations;
-  if (scene_.obstacles) scene_.obstacles->after(now, out_.p);
+  scene_.obstacles->after(now, out_.p);
   for (const auto& term : terms_) term->after(out_);
   set_boundary_pressure(from);
 }
@@ -333,11 +333,11 @@ void PressureProjection<D>::pressure_gradient(const Placement<D>& at, const std:
     const Index f = mesh_.n_interior + static_cast<Index>(b);
     sum[mesh_.owner[f]] += boundary[b] * at.area[f];
   }
-  const Obstacles<D>* obstacles = scene_.obstacles.get();
-  if (obstacles) obstacles->part(at, p, nullptr, at.area, sum);
+  const Obstacles<D>& obstacles = *scene_.obstacles;
+  obstacles.part(at, p, nullptr, at.area, sum);
   if (!at.skewed()) return;
-  const bool clears = obstacles && !obstacles->has_pressure();  // deeper cells have no pressure
-  if (clears) obstacles->clear(sum);
+  const bool clears = !obstacles.has_pressure();  // deeper cells have no pressure
+  if (clears) obstacles.clear(sum);
   Vectors<D> gradient(sum.size());
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
     gradient[c] = at.gradient_cure[c].transpose() * sum[c] / at.volume[c];
@@ -347,7 +347,7 @@ void PressureProjection<D>::pressure_gradient(const Placement<D>& at, const std:
     sum[mesh_.owner[f]] += part;
     sum[mesh_.neighbour[f]] -= part;
   }
-  if (clears) obstacles->clear(sum);
+  if (clears) obstacles.clear(sum);
 }
 
 template <int D>
@@ -386,12 +386,12 @@ void PressureProjection<D>::solve_initial(const Placement<D>& at) {
     if (f < mesh_.n_interior) side_.b[mesh_.neighbour[f]] += out_.phi[f];
     size += out_.phi[f] * out_.phi[f];
   }
-  if (scene_.obstacles) scene_.obstacles->before(side_.b, out_.p);
+  scene_.obstacles->before(side_.b, out_.p);
   side_.b.resize(mesh_.cells.n_owned());
   const double floor = 1e-14 * std::sqrt(parallel::sum(mesh_.comm, size));
   equation_.solve(at, side_.b, out_.p, std::min(1e-8, scene_.parameters.pressure_tolerance),
                   std::max(floor, std::numeric_limits<double>::min()));
-  if (scene_.obstacles) scene_.obstacles->after(at, out_.p);
+  scene_.obstacles->after(at, out_.p);
 }
 
 template <int D>

@@ -73,12 +73,12 @@ void FaceFlux<D>::predict(const State<D>& from, const Vectors<D>& u) {
     const Index f = mesh_.n_interior + b;
     phi_[f] = u[mesh_.owner[f]].dot(now.area[f]);
   }
-  if (scene_.obstacles) scene_.obstacles->carry(now, u, phi_);
+  scene_.obstacles->carry(now, u, phi_);
   if (scene_.parameters.projection == Projection::incremental)
     add_increment(from);
   else if (!from.memory.empty())
     add_memory(from);
-  if (scene_.obstacles) scene_.obstacles->block(step_, phi_);
+  scene_.obstacles->block(step_, phi_);
 }
 
 /// Rate at which friction and convection even out a difference in the cells, per local cell [1/s]. Fluxes
@@ -184,7 +184,7 @@ void FaceFlux<D>::remember(State<D>& s) {
                           gradient_.values, s.phi, s.memory);
     if (step_.to->skewed()) gradient_.number = s.number;
   }
-  if (scene_.obstacles) scene_.obstacles->correct_memory(s);
+  scene_.obstacles->correct_memory(s);
 }
 
 template class FaceFlux<2>;

@@ -84,7 +84,6 @@ std::shared_ptr<const Placement<D>> FractionalStep<D>::raise_order(std::shared_p
 /// The obstacles at the end of the step.
 template <int D>
 void FractionalStep<D>::mark(double time) {
-  if (!scene_.obstacles) return;
   using Changed = typename Obstacles<D>::Changed;
   const Changed changed = scene_.obstacles->mark(time, step_.to, scene_.points_of(step_));
   if (changed != Changed::nothing) projection_.forget_matrix();
@@ -103,10 +102,10 @@ void FractionalStep<D>::predict(const State<D>& from, const History<D>& by, SubS
       prediction_.w[b] = step_.swept[f] / (step_.dt * step_.to->area[f].squaredNorm()) * step_.to->area[f];
     }
   mark(step_.end());
-  if (scene_.obstacles) scene_.obstacles->begin(step_, from, prediction_.w);
+  scene_.obstacles->begin(step_, from, prediction_.w);
   predictor_.predict(from);
   mesh_.cells.update_ghosts(flat<D>(prediction_.u), D);
-  if (scene_.obstacles) scene_.obstacles->hold(*step_.to, step_.dt, prediction_.u);
+  scene_.obstacles->hold(*step_.to, step_.dt, prediction_.u);
   flux_.predict(from, prediction_.u);
   projection_.prepare(from);
 }
@@ -127,7 +126,6 @@ void FractionalStep<D>::project(const State<D>& from, const Vectors<D>& w, doubl
 
 template <int D>
 void FractionalStep<D>::mark_level(State<D>& s) {
-  if (!scene_.obstacles) return;
   step_.to = s.placement;
   step_.points = s.points;
   step_.swept.clear();
@@ -146,13 +144,13 @@ void FractionalStep<D>::project_initial(State<D>& s) {
   projected_.phi.assign(mesh_.n_flux_faces(), 0.0);
   step_ = {SubStep<D>{scene_.fluid.rho, s.placement, {}, s.points}, s};  // dt/rho = 1
   mark_level(s);
-  if (scene_.obstacles) scene_.obstacles->hold(at, step_.dt, s.u);
+  scene_.obstacles->hold(at, step_.dt, s.u);
   mean_flux<D>(mesh_, at, scene_.flux_velocity(at, s.u), s.u_boundary, gradient_.values, projected_.phi);
-  if (scene_.obstacles) scene_.obstacles->carry(at, s.u, projected_.phi);
+  scene_.obstacles->carry(at, s.u, projected_.phi);
   for (std::size_t b = 0; b < s.w.size(); ++b)
     projected_.phi[mesh_.n_interior + b] = s.u_boundary[b].dot(at.area[mesh_.n_interior + b]);
   u_.resize(s.u.size());
-  if (scene_.obstacles) scene_.obstacles->block(step_, projected_.phi);
+  scene_.obstacles->block(step_, projected_.phi);
   projected_.w = s.w;
   projected_.gradient.clear();
   prediction_.u = s.u;
@@ -210,7 +208,7 @@ std::shared_ptr<PressureLevel<D>> FractionalStep<D>::correct() {
   velocity_pass(flat<D>(prediction_.u), factor, flat<D>(level->gradient),
                 flat<D>(u).first(std::size_t(mesh_.cells.n_owned()) * D));
   mesh_.cells.update_ghosts(flat<D>(u), D);
-  if (scene_.obstacles) scene_.obstacles->hold(now, step_.dt, u);
+  scene_.obstacles->hold(now, step_.dt, u);
   return level;
 }
 
@@ -249,15 +247,14 @@ void FractionalStep<D>::commit(State<D>& s) {
   s.rates_old.viscous.swap(prediction_.rates.viscous);
   s.shear_old.swap(prediction_.shear);
   s.placement = step_.to;
-  if (scene_.obstacles) s.blocked = scene_.obstacles->marks();
+  s.blocked = scene_.obstacles->marks();
   s.points.swap(step_.points);
   s.mesh_flux.swap(step_.swept);
   for (double& flux : s.mesh_flux) flux /= step_.dt;
   s.dt_old = step_.dt;
   s.time += step_.dt;
-  if (s.start == Start::at_rest ||
-      (scene_.obstacles &&
-       scene_.obstacles->starts_anew())) {  // the multi-step schemes begin after the impulse
+  if (s.start == Start::at_rest || scene_.obstacles->starts_anew()) {
+    // The multi-step schemes begin after the impulse.
     s.start = Start::after_impulse;
     s.dt_old = 0;
   }
@@ -308,8 +305,7 @@ template <int D>
 void FractionalStep<D>::check(const State<D>& from) {
   const bool finite = std::isfinite(judgement_.speed);
   const bool fast = too_fast();
-  const bool created =
-      judgement_.energy.out_of_bounds && (!scene_.obstacles || scene_.obstacles->is_in_budget());
+  const bool created = judgement_.energy.out_of_bounds && scene_.obstacles->is_in_budget();
   if (finite && !fast && !created) return;
   const LargestCell worst = find_largest(mesh_, *step_.to, [&](Index c) {
     const double square = u_[c].squaredNorm();
@@ -322,8 +318,7 @@ void FractionalStep<D>::check(const State<D>& from) {
     cause = likely_cause(mesh_, scene_.boundary, energy_step(from), worst.here, scene_.fluid.nu,
                          step_.by.implicit, scene_.frame ? scene_.frame->rate(step_.begin(), step_.dt) : 0);
   parallel::broadcast(mesh_.comm, cause, worst.rank);
-  if (scene_.obstacles)
-    if (const std::string shut = scene_.obstacles->cause(*step_.to); !shut.empty()) cause = shut;
+  if (const std::string shut = scene_.obstacles->cause(*step_.to); !shut.empty()) cause = shut;
   const EnergyJudgement& e = judgement_.energy;
   const std::string what =
       !finite ? "its velocity is not finite"

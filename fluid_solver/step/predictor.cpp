@@ -112,7 +112,6 @@ template <int D>
 void Predictor<D>::set_rates(const State<D>& from, bool implicit) {
   rate_operator_.apply(from, implicit, scene_.oblique, out_.rates, gradient_.of(from));
   wall_flux<D>(mesh_, *from.placement, scene_.fluid.mu, from.u, from.u_boundary, out_.shear);
-  if (!scene_.obstacles) return;
   scene_.obstacles->clear(out_.rates.rate);
   scene_.obstacles->clear(out_.rates.viscous);
 }
@@ -175,7 +174,7 @@ void Predictor<D>::add_old_pressure(const State<D>& from, bool implicit) {
     old_pressure_[p] += back;
     old_pressure_[n] -= back;
   }
-  if (scene_.obstacles) {
+  if (scene_.obstacles->parts()) {
     Vectors<D> more(old.area.size());
     for (std::size_t f = 0; f < more.size(); ++f) more[f] = -factor * 0.5 * (old.area[f] - now.area[f]);
     scene_.obstacles->part(now, level.p, &level.gradient, more, side_);
