@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the participant tells its fluid of the walls that others move.
+// Data of the walls that other programs or a prescribed motion move.
 #include <algorithm>
 #include <cmath>
 
@@ -112,7 +112,7 @@ void FluidParticipant<D>::take_wall_mass(const coupling::Exchange& in) {
   fluid_->set_wall_mass(faces, masses);
 }
 
-/// Of the faces of the interface: largest mean displacement over the height of the cell beside them.
+/// Largest mean displacement of an interface face over the height of the cell beside it.
 /// Collective.
 template <int D>
 double FluidParticipant<D>::wall_displacement(const coupling::Exchange& in) const {

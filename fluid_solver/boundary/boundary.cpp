@@ -43,7 +43,7 @@ Boundary<D>::Boundary(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
   rows_.sort();
 }
 
-/// What a compressible fluid makes of inlets and outlets.
+/// Adds the absorbing patches and the inlets before a volume, which only a compressible fluid has.
 template <int D>
 void Boundary<D>::add_openings(const mesh::Mesh& mesh, const FluidParameters& parameters) {
   const bool compressible = parameters.is_compressible();

@@ -25,7 +25,7 @@ class Boundary {
   /// Throws Error if a patch has no boundary or a boundary names no patch.
   Boundary(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const FluidParameters& parameters);
 
-  /// What the conditions give to the loops over boundary faces.
+  /// Numbers of the conditions for the loops over boundary faces.
   const FaceRows& rows() const { return rows_; }
   /// No face of the whole domain has a given pressure: the pressure level is free.
   bool closed() const { return closed_; }
@@ -76,7 +76,7 @@ class Boundary {
     return convective_patches_.empty() ? is_interface(boundary_face) : convective_[boundary_face] != 0;
   }
   bool has_convective_outlet() const { return !convective_patches_.empty(); }
-  /// The same patches in the same order on all ranks.
+  /// Absorbing patches, in the same order on all ranks.
   const std::vector<AbsorbingPatch>& absorbing_patches() const { return absorbing_patches_; }
   /// Inlets of a compressible fluid behind which a volume lies: faces of given pressure, that of the volume, whose given
   /// velocity is what flows into the volume.

@@ -34,7 +34,7 @@ double go_along(double alpha, std::span<const double> s, std::span<const double>
 /// The next search direction: s = r + gamma s.
 void turn_search(double gamma, std::span<const double> r, std::span<double> s);
 
-/// Of an eddy viscosity in the matrix: theta dt nu_t at interior faces, nu_t the mean of two cells.
+/// Share of an eddy viscosity in the matrix: theta dt nu_t at interior faces, nu_t the mean of two cells.
 struct EddyShare {
   const std::vector<double>* eddy = nullptr;  ///< nu_t per local cell [m^2/s]; null: none
   double factor = 0;                          ///< theta dt [s]
@@ -50,7 +50,7 @@ class ViscousSolver {
   ViscousSolver(const mesh::Mesh& mesh, const Boundary<D>& boundary) : mesh_(mesh), boundary_(boundary) {}
   /// The system of the solves that follow. Collective.
   void prepare(std::shared_ptr<const Placement<D>> at, double beta, const EddyShare& eddies = {});
-  /// Of its diagonal D, per owned cell.
+  /// Inverse of its diagonal D, per owned cell.
   const std::vector<double>& inverse_diagonal() const { return inverse_diagonal_; }
   /// `b`: per local cell (owned ones count) without boundary parts; `w`: given velocity per boundary face;
   /// `u`: guess on entry, with ghosts current on exit. Returns the iterations; throws SolveFailure.
@@ -58,7 +58,7 @@ class ViscousSolver {
   int solve(const Vectors<D>& w, double tolerance, Vectors<D>& b, Vectors<D>& u);
 
  private:
-  /// What a boundary face adds to the row of its cell: beta g [t I + (1 - t) n n], see FaceRow.
+  /// Addition of a boundary face to the row of its cell: beta g [t I + (1 - t) n n], see FaceRow.
   struct BoundaryRow {
     Index cell;
     double both, normal;  // beta g t, beta g (1 - t)

@@ -95,7 +95,7 @@ double size_of(const Piece<D>& piece) {
   if constexpr (D == 3) return side.cross(piece[2].place - piece[0].place).norm();
 }
 
-/// Of the simplex with its tip at `apex`, times a number that is the same for all.
+/// Volume of the simplex with its tip at `apex`, times a number that is the same for all.
 template <int D>
 double volume_of(const Piece<D>& piece, const Vec3& apex) {
   const Vec3 a = piece[0].place - apex, b = piece[1].place - apex;
@@ -117,7 +117,7 @@ void for_pieces(std::span<const Index> face, const Levels& levels, const Use& us
   }
 }
 
-/// Of a cell: levels of its corners, and sums over its simplices: volume, open volume, integral of the level over that.
+/// Levels of the corners of a cell, and sums over its simplices: volume, open volume, integral of the level over that.
 struct Sums {
   double low = 0, high = 0, volume = 0, open = 0, moment = 0;
   bool passes = false;

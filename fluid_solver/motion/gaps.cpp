@@ -16,7 +16,7 @@ namespace couplet::fluid {
 namespace {
 
 constexpr double near_enough = 0.1;  // of the opening
-// Of its conductance a blocked face keeps this share: what leaks is as small, and the pressure in the gap is that
+// A blocked face keeps this share of its conductance. The leak is as small, and the pressure in the gap is that
 // of a fluid at rest in a slot between the pressures at its two ends (lubrication: linear along a parallel slot).
 constexpr double kept = 1e-6;
 
@@ -26,7 +26,7 @@ Vec3 direction_of(const GapParameters& gap, int dimension) {
   return Vec3(d[0], d[1], d.size() > 2 ? d[2] : 0).normalized();
 }
 
-/// Of x from segments (2-D) or triangles, whose corners stand one after the other.
+/// Distance of x from segments (2-D) or triangles, whose corners stand one after the other.
 template <int D>
 double distance(const Vec3& x, const std::vector<double>& corners) {
   double least = base::infinity;
@@ -115,7 +115,7 @@ void Gaps<D>::Wall::extend(const mesh::Mesh& mesh, std::span<const Vec3> points,
   MPI_Allreduce(MPI_IN_PLACE, high.data(), 3, MPI_DOUBLE, MPI_MAX, mesh.comm);
 }
 
-/// Of the faces of all ranks that reach into a box, as segments or triangles.
+/// Corners of the faces of all ranks that reach into a box, as segments or triangles.
 template <int D>
 std::vector<double> Gaps<D>::Wall::corners(const mesh::Mesh& mesh, std::span<const Vec3> points,
                                            const Vec3& low, const Vec3& high) const {
@@ -241,7 +241,7 @@ void Gaps<D>::part(const Placement<D>& at, const std::vector<double>& p, const V
   }
 }
 
-/// What is shut off of a compressible fluid compresses.
+/// A compressible fluid compresses in the parts that are shut off.
 template <int D>
 std::string Gaps<D>::cause(const Placement<D>& at) const {
   return active_ && !compressible_ ? pockets_.cause(at) : std::string();

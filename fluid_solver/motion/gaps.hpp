@@ -47,7 +47,7 @@ class Gaps final : public Obstacles<D> {
   std::string cause(const Placement<D>& at) const override;
 
   const std::vector<std::string>& names() const { return names_; }
-  /// Of each gap at the last mark(): least opening at a cell [m] (NaN: everywhere beyond the limit), blocked
+  /// State of a gap at the last mark(): least opening at a cell [m] (NaN: everywhere beyond the limit), blocked
   /// cells, their volume [m^3].
   struct Facts {
     double opening = 0, cells = 0, volume = 0;

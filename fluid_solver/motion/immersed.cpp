@@ -137,7 +137,8 @@ void ImmersedBodies<D>::block(const Step<D>& step, const std::vector<Index>& bou
   }
 }
 
-/// Of the flux that the whole face would have with the velocity in its open part. A closed face remembers that nothing passes: what
+/// The memory is that of the flux that the whole face would have with the velocity in its open part. A closed face remembers that
+/// nothing passes: what
 /// opens next begins without a flux, whatever the velocities beside it.
 template <int D>
 void ImmersedBodies<D>::correct_memory(State<D>& s) const {

@@ -11,7 +11,7 @@
 namespace couplet::fluid {
 namespace {
 
-// Of the distance of periodic patches: how far apart their sides may move.
+// Largest relative motion of the sides of periodic patches, as a share of their distance.
 constexpr double most_torn = 1e-8;
 
 /// Whoever moved the points: a cell turned over has no flow.

@@ -47,7 +47,7 @@ class Obstacles {
   virtual void carry(const Placement<D>&, const Vectors<D>&, std::vector<double>&) const {}
   /// Reduces these fluxes to what passes the open part of each flux face, and adds what moves with the obstacle [m^3/s].
   virtual void block(const Step<D>&, std::vector<double>&) const {}
-  /// The same for the boundary faces of given flux.
+  /// Does so at the boundary faces of given flux.
   virtual void block(const Step<D>&, const std::vector<Index>&, std::vector<double>&) const {}
   /// Corrects the memory of the fluxes of a state, which starts anew at closed faces. Collective.
   virtual void correct_memory(State<D>&) const {}

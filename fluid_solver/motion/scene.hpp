@@ -12,7 +12,7 @@
 
 namespace couplet::fluid {
 
-/// What all steps of a run have in common.
+/// Everything that stays the same in all steps of a run.
 template <int D>
 struct Scene {
   const mesh::Mesh& mesh;

@@ -37,7 +37,7 @@ void set_turn(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const 
   }
 }
 
-/// Of the walls whose velocity the case gives; the others' was given before.
+/// Adds the walls whose velocity the case gives; the others were added before.
 template <int D>
 void Boundary<D>::add_turn(const mesh::Mesh& mesh, std::span<const Vec3> points, double t,
                            Vectors<D>& turn) const {

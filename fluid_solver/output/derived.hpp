@@ -29,7 +29,7 @@ WallSummary summarise_wall(const Fluid<D>& fluid, const mesh::Patch& patch);
 template <int D>
 std::vector<std::array<double, 2>> wall_units(const Fluid<D>& fluid);
 
-/// Of the moving walls of a mesh at rest the largest sum of |w . S| over the sum of |w| |S|; NaN without such walls, or
+/// Largest sum of |w . S| over the sum of |w| |S| of the moving walls of a mesh at rest; NaN without such walls, or
 /// before they move. Collective.
 template <int D>
 double through_moving_walls(const Fluid<D>& fluid);
@@ -57,7 +57,7 @@ struct EnergyBudget {
 template <int D>
 EnergyBudget energy_budget(const Fluid<D>& fluid);
 
-/// What passes through a patch out of the fluid, relative to the patch where it moves.
+/// Fluxes through a patch out of the fluid, relative to the patch where it moves.
 template <int D>
 struct PatchFlux {
   std::string patch;
@@ -66,7 +66,7 @@ struct PatchFlux {
   double mean_pressure = 0, area = 0;  ///< [Pa], over the area; [m^2]
 };
 
-/// What an ideal flow would need to carry the same mass with the same difference of pressure, (KA)_e in [thesis] eq. (4.35).
+/// Area that an ideal flow would need to carry the same mass with the same difference of pressure, (KA)_e in [thesis] eq. (4.35).
 struct FlowArea {
   double mass_flow = 0;      ///< into the fluid through the first patch [kg/s]
   double pressure_drop = 0;  ///< mean pressures of the first less the second patch [Pa]
@@ -76,7 +76,7 @@ struct FlowArea {
 template <int D>
 FlowArea flow_area(const PatchFlux<D>& from, const PatchFlux<D>& to, double density);
 
-/// Of all patches with faces: volume, carried momentum and pressure at the accepted time, loads (those of forces.csv) as
+/// Fluxes of all patches with faces: volume, carried momentum and pressure at the accepted time, loads (those of forces.csv) as
 /// means over the last step; in a steady flow without body forces the sums of volume and momentum are zero. Nothing
 /// before the first step. Collective.
 template <int D>

@@ -35,7 +35,7 @@ class FluidOutput {
   /// Where output `number` has fields in the volume. `statistics` may be null.
   void write_fields(double time, int number, const RunningStatistics<D>* statistics);
   void write_series(double time);
-  /// Of patches, where they are asked for. Collective.
+  /// Writes the patches that the case asks for. Collective.
   void write_surfaces(double time);
   /// Lines and planes. `statistics` may be null. Collective.
   void write_samples(double time, const RunningStatistics<D>* statistics);

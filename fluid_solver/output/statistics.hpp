@@ -13,7 +13,7 @@ class RunningStatistics {
  public:
   static constexpr int n_shear = D * (D - 1) / 2;
   RunningStatistics(std::size_t cells, std::size_t faces);
-  /// What is known before the first state: NaN everywhere.
+  /// Statistics before the first state: NaN everywhere.
   static RunningStatistics nothing_yet(std::size_t cells, std::size_t faces);
   /// `state` and `pressure` (null: none) held for dt [s].
   void add(const State<D>& state, const PressureLevel<D>* pressure, double dt);

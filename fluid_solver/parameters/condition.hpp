@@ -42,7 +42,7 @@ struct RotationParameters {
 
 /// Who says what mass per area stands behind an interface of type Robin.
 enum class Impedance { given, structure };
-/// What faces on the two sides of a thin body do, both of type Robin.
+/// Motion of Robin faces on the two sides of a thin body.
 enum class Sides { automatic, together, apart };
 
 /// The keys of all conditions; what a condition does not read stays as it is
@@ -67,7 +67,7 @@ struct BoundaryParameters {
   bool foresees() const { return surface_density || impedance == Impedance::structure; }
 };
 
-/// What a condition gives to the equations at each of its faces, as numbers:
+/// Numbers that a condition gives to the equations at each of its faces:
 /// with w the velocity and p_b the pressure that are given, L the slip length,
 /// g the conductance and S the area of a face, t = S/(S + L g), n its normal, P
 /// its cell,
@@ -115,7 +115,7 @@ struct Condition {
   bool joined = false;              ///< its faces are interior ones
 };
 
-/// Of a patch.
+/// Condition of a patch.
 const Condition& condition_of(const BoundaryParameters& boundary);
 inline bool is_wall(const BoundaryParameters& b) { return condition_of(b).wall; }
 inline bool gives_pressure(const BoundaryParameters& b) { return condition_of(b).row(b).pressure > 0; }

@@ -145,7 +145,7 @@ void declare_steps(config::Section& s, FluidParameters& p) {
           "coupled run needs about 1e-4 of the coupling tolerance");
 }
 
-/// What the fluid starts from, and what pulls at it.
+/// Initial state and body forces.
 void declare_start(config::Section& s, FluidParameters& p) {
   s.value("initial-velocity", p.initial_velocity)
       .unit("m/s")
@@ -199,7 +199,7 @@ void declare_schemes(config::Section& s, FluidParameters& p) {
           "pressures keep zero mean");
 }
 
-/// What moves, closes or rotates.
+/// Parts that move, close or rotate.
 void declare_moving_parts(config::Section& s, FluidParameters& p) {
   s.map<BodyParameters>(
       "bodies", p.bodies,
@@ -278,7 +278,7 @@ void declare_models(config::Section& s, FluidParameters& p) {
           "compressibility");
 }
 
-/// What is wrong with the patches of output.flow-areas; empty if nothing is.
+/// Describes an error in the patches of output.flow-areas; empty if there is none.
 std::string wrong_flow_areas(const FluidParameters& p) {
   std::vector<std::string> patches;
   for (const auto& [patch, unused] : p.boundaries) patches.push_back(patch);
@@ -290,7 +290,7 @@ std::string wrong_flow_areas(const FluidParameters& p) {
   return "";
 }
 
-/// What is written.
+/// Output.
 void declare_written(config::Section& s, FluidParameters& p) {
   s.section(
       "output",

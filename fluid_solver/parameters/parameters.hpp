@@ -15,7 +15,7 @@
 namespace couplet::fluid {
 
 enum class ViscousTreatment { automatic, explicit_, implicit };
-/// Of the explicit terms: Adams-Bashforth of two levels, or Heun's Runge-Kutta of three stages.
+/// Scheme of the explicit terms: Adams-Bashforth of two levels, or Heun's Runge-Kutta of three stages.
 enum class ExplicitScheme { adams_bashforth, runge_kutta };
 /// How the face fluxes follow the cells' velocities from step to step.
 enum class Projection { flux_memory, incremental, non_incremental };

@@ -11,7 +11,7 @@
 namespace couplet::fluid {
 namespace {
 
-// Of the travel time of sound across the mesh: the time of the means by default.
+// Default time of the means, in travel times of sound across the mesh.
 constexpr double mean_times = 10;
 
 /// Largest extent of the mesh [m]. Collective.

@@ -22,7 +22,7 @@ class AbsorbingBoundaries final : public Term<D> {
   double version() const override { return weight_[0] * step_.dt; }
   void add_to_diagonal(Diagonal& diagonal) override;
   void foresee(const State<D>& from, Projected<D>& projected) override;
-  /// What the faces of given pressure take off what they have there.
+  /// Subtracts at faces of given pressure what their answer takes away.
   void before(Projected<D>& projected, RightSide& side) override;
   void after(Projected<D>& projected) override;
   /// Sets state.openings.

@@ -41,7 +41,7 @@ class PressureEquation {
   /// The preconditioner lags behind a matrix that moves: what it was made from, to make it again. A fixed matrix needs
   /// none of this.
   void save(io::CheckpointWriter& file) const;
-  /// What save() saves is what there is now.
+  /// Makes the present state the one that save() saves.
   void accept() { accepted_ = now_; }
   /// The matrix is then that of the preconditioner: set() has to come before the next solve. Collective.
   void load(io::CheckpointReader& file);

@@ -33,7 +33,7 @@ constexpr double first_pass_tolerance = 10, loosest_tolerance = 0.5;
 
 // A closed domain: share of the boundary fluxes that a moving wall may leave over as an error of
 // discretisation, and the speed below which there is no flow [m/s].
-// What walls that only move along themselves leave over of their speeds is the error of these.
+// Walls that only move along themselves leave over a share of their speeds, which is the error of these.
 constexpr double largest_leftover = 0.1, least_speed = 1e-9, round_speed = 1e-6;
 
 template <int D>

@@ -41,7 +41,7 @@ class PressureProjection {
   PressureEquation<D>& equation() { return equation_; }
   const std::vector<std::unique_ptr<Term<D>>>& terms() const { return terms_; }
   int iterations() const { return iterations_; }
-  /// What the solves depend on beside the level they start from, as of the last accept(). load(): collective.
+  /// State of the solvers beside the level they start from, as of the last accept(). load() is collective.
   void accept();
   void save(io::CheckpointWriter& file) const;
   void load(io::CheckpointReader& file);

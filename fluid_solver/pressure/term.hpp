@@ -44,7 +44,7 @@ class Term {
   /// Sets pressures, velocities and fluxes of the boundary once p is known. Collective.
   virtual void after(Projected<D>&) {}
 
-  /// What follows from p alone to the next step.
+  /// Adds to the level what the next step needs and p determines.
   virtual void complete(PressureLevel<D>&) const {}
   /// Level n+1 in the place of level n. Collective.
   virtual void commit(const Projected<D>&, State<D>&) const {}
@@ -52,7 +52,7 @@ class Term {
   virtual void start(const Placement<D>&, PressureLevel<D>&) const {}
   virtual void start(State<D>&) const {}
 
-  /// What the next solves depend on beside the level, as of the last accept(). load(): collective.
+  /// State of the solvers beside the level, as of the last accept(). load() is collective.
   virtual void accept() {}
   virtual void save(io::CheckpointWriter&) const {}
   virtual void load(io::CheckpointReader&) {}

@@ -11,9 +11,9 @@
 namespace couplet::fluid {
 namespace {
 
-// Of y: what it misses is lost to the volume's balance.
+// Tolerance of y. Its error is missing in the volume's balance.
 constexpr double response_tolerance = 1e-10;
-// Of the faces' conductance: cells that follow the volume's pressure by all but this do not say what it is.
+// Share of the faces' conductance. Cells that follow the volume's pressure up to this share do not determine it.
 constexpr double least_answer = 1e-9;
 
 }  // namespace
@@ -100,7 +100,7 @@ void UpstreamVolume<D>::before(Projected<D>& out, RightSide& side) {
       side.b[mesh_.owner[f]] += at.conductance[f] * pressure_;
       square += std::pow(at.conductance[f] * change, 2);
     }
-  // Of a fluid at rest the volume's pressure may be all that there is.
+  // In a fluid at rest there may be nothing but the volume's pressure.
   const double size = std::sqrt(parallel::sum(mesh_.comm, square));
   if (side.size >= 0) side.size = std::hypot(side.size, size);
 }

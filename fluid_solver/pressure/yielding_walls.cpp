@@ -10,7 +10,7 @@
 namespace couplet::fluid {
 namespace {
 
-// Of the interface's area: with less of it opposite itself nothing is said of two sides.
+// Share of the interface's area that must lie opposite itself for a line in the log.
 constexpr double worth_telling = 0.05;
 
 /// Where the case states that two sides move together there are two. Collective.
@@ -99,7 +99,7 @@ double YieldingWalls<D>::answer_of(const OppositeFaces::Pair& pair) const {
   return here.resistance > 0 && there.resistance > 0 ? pair.area / (here.resistance + there.resistance) : 0;
 }
 
-/// Of the faces that lie opposite on other ranks.
+/// Updates the copies of faces that lie opposite on other ranks.
 template <int D>
 void YieldingWalls<D>::share() {
   opposite_.map().update_ghosts(std::as_writable_bytes(std::span(sides_)), sizeof(Side));

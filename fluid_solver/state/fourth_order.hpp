@@ -31,7 +31,7 @@ struct Lines {
   std::shared_ptr<const Placement<D>> seen(const mesh::Mesh& mesh, const Placement<D>& at) const;
 };
 
-/// What the links of lines add to the operators of second order (docs/theory.md, 2 "Fourth order"); D the second difference of
+/// Terms that the links of lines add to the operators of second order (docs/theory.md, 2 "Fourth order"); D the second difference of
 /// a link, U its flux velocity times S.
 template <int D>
 class FourthOrder {

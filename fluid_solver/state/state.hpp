@@ -26,11 +26,11 @@ struct PressureLevel {
   std::vector<double> boundary;  ///< p_b per boundary face [Pa]
   Vectors<D> gradient;  ///< (1/V) sum p_f S per local cell [Pa/m]; the latest level only, on oblique meshes
                         ///< the latest two
-  // Of a compressible fluid.
+  // Compressible fluids only.
   double upstream = 0;      ///< of the volume behind the inlets [Pa]
   std::vector<double> end;  ///< trapezoidal rule only: p at the end of the step, per local cell [Pa]
   double upstream_end = 0;  ///< likewise, of the volume [Pa]
-  /// By this rank's cells at the end of the step: V dp/dt / (rho c^2) [m^3/s]; not saved.
+  /// Sum of V dp/dt / (rho c^2) over this rank's cells at the end of the step [m^3/s]; not saved.
   double taken_up = 0;
 };
 

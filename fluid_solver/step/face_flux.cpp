@@ -14,7 +14,7 @@ namespace {
 // Decay of the flux memory in one step for which its AB2 is stable and does not overshoot.
 constexpr double largest_decay = 2.0 / 3;
 
-/// Of add_memory().
+/// Weights for add_memory().
 struct MemoryWeights {
   double dt, now, before;  // a step, and delta at its middle from that of two levels
 };
@@ -137,7 +137,7 @@ void FaceFlux<D>::add_increment(const State<D>& from) {
   }
 }
 
-/// Of the flux of fourth order the part of the old pressure that its gradient makes is in the mean velocity already.
+/// In a flux of fourth order the part of the old pressure that its gradient makes is in the mean velocity already.
 template <int D>
 bool FaceFlux<D>::increment_of_fourth() const {
   return scene_.fourth && scene_.parameters.projection == Projection::incremental && step_.by.pressure[0];

@@ -53,7 +53,7 @@ class FractionalStep {
   /// Makes the initial velocity divergence-free: state.u, w and u_boundary (u at the faces) are given, phi is
   /// filled.
   void project_initial(State<D>& state);
-  /// What the terms of the pressure keep in a state that no step made. Collective.
+  /// Sets what the terms of the pressure keep in a state that no step made. Collective.
   void start_terms(State<D>& state) const {
     for (const auto& term : projection_.terms()) term->start(state);
   }
@@ -66,7 +66,7 @@ class FractionalStep {
   std::shared_ptr<PressureLevel<D>> pressure_level() const { return projection_.pressure_level(); }
   /// Fills what follows from p and boundary in a level that no step made. Collective.
   void start_level(const Placement<D>& at, PressureLevel<D>& level) const { projection_.start(at, level); }
-  /// Of the last project(), acting on what is outside the fluid [N]: Loads.
+  /// Forces on what is outside the fluid after the last project() [N], see Loads.
   const Vectors<D>& pressure_force() const { return loads_.pressure; }
   const Vectors<D>& viscous_force() const { return loads_.viscous; }
   /// state.eddy, if there is a turbulence model. Collective.
@@ -77,21 +77,21 @@ class FractionalStep {
   const RotatingFrame<D>* frame() const { return scene_.frame ? &*scene_.frame : nullptr; }
   /// The masses of such walls have changed: the pressure matrix is made anew when it is needed next.
   void forget_walls() { projection_.forget_matrix(); }
-  /// Of the last project(), per boundary face [Pa].
+  /// Pressure of the last project() per boundary face [Pa].
   const std::vector<double>& boundary_pressure() const { return projected_.boundary; }
-  /// What the next solves depend on beside the level they start from, as of the last keep(). load(): collective.
+  /// State of the solvers beside the level they start from, as of the last keep(). load() is collective.
   void keep() { projection_.accept(); }
   void save(io::CheckpointWriter& file) const { projection_.save(file); }
   void load(io::CheckpointReader& file) { projection_.load(file); }
-  /// Of the linear solvers so far.
+  /// Iterations of the linear solvers so far.
   int pressure_iterations() const { return projection_.iterations(); }
   int viscous_iterations() const { return predictor_.iterations(); }
   double size() const { return step_.dt; }
-  /// Of its points at the end.
+  /// Placement at the end of the step.
   const Placement<D>& to() const { return *step_.to; }
   /// At the end; empty: the mesh rests.
   const std::vector<Vec3>& points() const { return step_.points; }
-  /// Of the accepted steps [m/s].
+  /// Largest speed of the accepted steps [m/s].
   double largest_speed() const { return speed_scale_; }
   /// The mesh is not orthogonal, or may become so.
   bool oblique() const { return scene_.oblique; }

@@ -14,7 +14,7 @@ struct Loads {
   Vectors<D> pressure;  ///< and the normal part of the viscous flux
   Vectors<D> viscous;   ///< its tangential part
 
-  /// Of a step from a level, after its projection.
+  /// Sets the forces of a step from a level, after its projection.
   void set(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
            const Projected<D>& projected, const State<D>& from);
 };

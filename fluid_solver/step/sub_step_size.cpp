@@ -55,7 +55,7 @@ void SubStepSize<D>::choose_viscous_treatment(const State<D>& level, History<D>&
   begin.dt_old = 0;
 }
 
-/// By stability, and by accuracy where that is asked for.
+/// Limit by stability, and by accuracy where the case asks for it.
 template <int D>
 double SubStepSize<D>::implicit_limit(const StepLimits& limits) const {
   if (!parameters_.implicit_stretch) return limits.implicit_viscous;
