@@ -2,9 +2,9 @@
 #include "common/app/program.hpp"
 #include "common/io/cut/load_mesh.hpp"
 #include "common/linalg/petsc_environment.hpp"
+#include "fluid_solver/boundary/given_velocity.hpp"
 #include "fluid_solver/parameters/auto_effects.hpp"
 #include "fluid_solver/parameters/effect_cards.hpp"
-#include "fluid_solver/parameters/files.hpp"
 #include "fluid_solver/participant.hpp"
 
 int main(int argc, char** argv) {

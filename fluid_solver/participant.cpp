@@ -15,7 +15,7 @@
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/boundary/cavity.hpp"
-#include "fluid_solver/motion/body_start.hpp"
+#include "fluid_solver/motion/turning_walls.hpp"
 #include "fluid_solver/output/derived.hpp"
 #include "fluid_solver/state/state_io.hpp"
 

@@ -94,7 +94,7 @@ class FrictionOfTheGuess final : public diagnostics::Diagnostic {
 template <int D>
 double rate_of(const mesh::Mesh& mesh, const Fluid<D>& fluid, GlobalIndex cell, bool friction) {
   const State<D>& s = fluid.state();
-  const double nu = fluid.parameters().viscosity / fluid.parameters().density;
+  const double nu = fluid.parameters().kinematic_viscosity();
   double rate = 0;
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
     const bool inside = f < mesh.n_interior;

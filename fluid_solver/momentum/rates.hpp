@@ -4,7 +4,7 @@
 #include <span>
 
 #include "fluid_solver/boundary/boundary.hpp"
-#include "fluid_solver/lines/fourth_order.hpp"
+#include "fluid_solver/state/fourth_order.hpp"
 #include "fluid_solver/state/state.hpp"
 
 namespace couplet::fluid {

@@ -9,7 +9,7 @@
 
 namespace couplet::fluid {
 
-/// What closed gaps shut off: the parts of the fluid that no free cells join to an outlet. What inlets let into
+/// Parts that closed gaps shut off: those of the fluid that no free cells join to an outlet. What inlets let into
 /// such a part has nowhere to go; through the small conductance that blocked faces keep it would be pressed all
 /// the same, so it is refused.
 template <int D>

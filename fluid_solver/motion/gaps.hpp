@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "fluid_solver/motion/gap_pockets.hpp"
+#include "fluid_solver/motion/obstacles.hpp"
 #include "fluid_solver/parameters/parameters.hpp"
-#include "fluid_solver/state/state.hpp"
 
 namespace couplet::fluid {
 
@@ -20,52 +21,64 @@ namespace couplet::fluid {
 ///
 /// The opening at a cell: the distance of its centre from the one wall plus that from the other.
 template <int D>
-class Gaps {
+class Gaps final : public Obstacles<D> {
  public:
-  /// Throws Error if a gap names what is no patch, or less than two.
-  Gaps(const mesh::Mesh& mesh, const FluidParameters& parameters);
+  using Changed = typename Obstacles<D>::Changed;
 
-  /// Marks the cells of a placement. Gives whether any mark changed on any rank. Collective.
-  bool mark(std::span<const Vec3> points, const Placement<D>& at);
-  /// The velocity of blocked cells in a step: that of their centres. `dt` 0: at rest.
-  void follow(const Placement<D>& from, const Placement<D>& to, double dt);
-  /// Gives the blocked cells that velocity.
-  void hold(Vectors<D>& u) const;
-  bool active() const { return active_; }  ///< any cell of any rank is blocked
-  /// Per local cell the gap that blocks it, below 0: free.
-  const std::vector<int>& blocked_by() const { return gap_; }
-  bool is_blocked(Index cell) const { return gap_[cell] >= 0; }
-  bool blocked(Index f) const { return is_blocked(mesh_.owner[f]) || is_blocked(mesh_.neighbour[f]); }
+  /// Throws Error if a gap names what is no patch, or if its seat is elsewhere. `points`: at rest. Collective.
+  Gaps(const mesh::Mesh& mesh, const FluidParameters& parameters, std::span<const Vec3> points);
+
+  Changed mark(double t, const std::shared_ptr<const Placement<D>>& at,
+               const std::vector<Vec3>& points) override;
+  /// Throws SchemeFailure if w presses fluid into a part that is shut off, see GapPockets.
+  void begin(const Step<D>& step, const State<D>& from, const Vectors<D>& w) override;
+  /// Cells are blocked or freed: an impulse, as in a first step.
+  bool starts_anew() const override { return changed_; }
+  std::shared_ptr<const std::vector<char>> marks() const override;
+  /// Blocked cells move with their centres.
+  void hold(const Placement<D>& at, double dt, Vectors<D>& u) const override;
+  /// Nothing passes, phi is what the mesh sweeps.
+  void block(const Step<D>& step, std::vector<double>& phi) const override;
+  using Obstacles<D>::block;
+  void correct_memory(State<D>& state) const override;
+  bool parts() const override { return active_; }
+  void part(const Placement<D>& at, const std::vector<double>& p, const Vectors<D>* gradient,
+            const Vectors<D>& area, Vectors<D>& sum) const override;
+  std::string cause(const Placement<D>& at) const override;
+
   const std::vector<std::string>& names() const { return names_; }
-  /// Of each gap at the last mark(): least opening at a cell [m] (NaN: everywhere beyond the limit), blocked
+  /// State of a gap at the last mark(): least opening at a cell [m] (NaN: everywhere beyond the limit), blocked
   /// cells, their volume [m^3].
   struct Facts {
     double opening = 0, cells = 0, volume = 0;
   };
   const std::vector<Facts>& facts() const { return facts_; }
-  /// Of the blocked cells as they are now, per local cell, for StepSize; null where none is.
-  std::shared_ptr<const std::vector<char>> marks() const;
-  /// From those of another level (null: none blocked)? Collective.
-  bool differs(const std::vector<char>* marks) const;
 
  private:
+  using Obstacles<D>::mesh_;
+  using Obstacles<D>::around_;
+  using Obstacles<D>::is_closed;
   struct Wall {
     std::vector<const mesh::Patch*> patches;
     std::vector<double> corners(const mesh::Mesh& mesh, std::span<const Vec3> points, const Vec3& low,
                                 const Vec3& high) const;
     void extend(const mesh::Mesh& mesh, std::span<const Vec3> points, Vec3& low, Vec3& high) const;
   };
+  bool is_blocked(Index f) const { return is_closed(mesh_.owner[f]) || is_closed(mesh_.neighbour[f]); }
   void mark_gap(int gap, std::span<const Vec3> points, const Placement<D>& at);
 
-  const mesh::Mesh& mesh_;
+  GapPockets<D> pockets_;
+  bool compressible_;
   std::vector<std::string> names_;
   std::vector<double> limit_;               // opening [m]
   std::vector<std::array<Wall, 2>> walls_;  // of each gap
   std::vector<char> never_;                 // per local cell: it has a face of given pressure
-  std::vector<int> gap_;                    // per local cell
+  std::vector<int> gap_;                    // per local cell the gap that blocks it; below 0: free
   Vectors<D> velocity_;                     // per local cell, of blocked ones [m/s]
   std::vector<Facts> facts_;
-  bool active_ = false;
+  bool active_ = false;   // any cell of any rank is blocked
+  bool changed_ = false;  // in this step
+  std::shared_ptr<const Placement<D>> marked_;
 };
 
 }  // namespace couplet::fluid

@@ -8,8 +8,8 @@
 
 #include "common/fv/vertex_interpolation.hpp"
 #include "common/io/probes/probe.hpp"
+#include "fluid_solver/output/statistics.hpp"
 #include "fluid_solver/step/fluid.hpp"
-#include "fluid_solver/turbulence/statistics.hpp"
 
 namespace couplet::fluid {
 
@@ -45,7 +45,7 @@ class Sample {
          const SampleParameters& parameters);
   const std::string& name() const { return name_; }
   const std::vector<io::Probe>& probes() const { return probes_; }
-  /// Of each probe: how far along from-to and from-up, 0 to 1.
+  /// Position of each probe along from-to and from-up, 0 to 1.
   const std::vector<std::array<double, 2>>& along() const { return along_; }
   /// Values at each probe from those at local points, `components` each, on rank 0; empty elsewhere. Collective.
   std::vector<double> gather(MPI_Comm comm, std::span<const double> at_points, int components) const;

@@ -3,21 +3,27 @@
 
 #include <vector>
 
-#include "fluid_solver/motion/step_work.hpp"
+#include "fluid_solver/pressure/term.hpp"
 #include "fluid_solver/pressure/wave_rule.hpp"
 
 namespace couplet::fluid {
 
-/// Of the work's step; three levels at most.
+/// The rule of a step; three levels at most.
 template <int D>
-WaveRule wave_rule(const StepWork<D>& k) {
+WaveRule wave_rule(const Step<D>& step) {
   std::array<double, 2> times{};
   std::size_t levels = 0;
-  while (levels < times.size() && k.by.pressure[levels]) {
-    times[levels] = k.by.pressure[levels]->time;
+  while (levels < times.size() && step.by.pressure[levels]) {
+    times[levels] = step.by.pressure[levels]->time;
     ++levels;
   }
-  return three_level_rule(k.by.time + k.step.dt / 2, k.by.time + k.step.dt, std::span(times).first(levels));
+  return three_level_rule(step.middle(), step.end(), std::span(times).first(levels));
+}
+/// Factor of p in dp/dt at the end of the step [1/s]; 0 in a step that starts a flow without a pressure.
+template <int D>
+double wave_rate(const Step<D>& step, bool trapezoidal) {
+  if (!step.by.pressure[0]) return 0;
+  return trapezoidal ? 4 / step.dt : wave_rule(step).rate;
 }
 
 /// Weak compressibility in the pressure equation: dp/dt + rho c^2 div u = 0 in every cell, u relative to faces that may
@@ -27,32 +33,28 @@ WaveRule wave_rule(const StepWork<D>& k) {
 /// p^{n+1} = 2 p - p^n, which keeps the energy of what a step does not resolve, too. In the pressure equation
 /// V rate/(c^2 dt) joins the diagonal and -V past/(c^2 dt) the right side.
 template <int D>
-class Compression {
+class Compression final : public Term<D> {
  public:
-  explicit Compression(StepWork<D>& work);
+  Compression(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction);
 
-  /// For the work's step.
-  void prepare(const State<D>& from);
-  /// False in a step that starts a flow without a pressure.
-  bool active() const { return rate_ > 0; }
-  /// Of p in dp/dt at the end of the step [1/s].
-  double rate() const { return rate_; }
-  /// Per owned cell [m]; none in blocked cells.
-  const std::vector<double>& storage() const { return storage_; }
-  /// `b`: per owned cell. Gives the size of b less what of it holds p as it was: what the step changes, by which the
-  /// solution is to be judged. Collective.
-  double add_to(std::vector<double>& b) const;
-  /// What follows from p alone to the next step.
-  void complete(PressureLevel<D>& level) const;
+  void prepare(const State<D>& from) override;
+  bool sets_level() const override { return rate_ > 0; }
+  double version() const override { return rate_ / step_.dt; }
+  void add_to_diagonal(Diagonal& diagonal) override;
+  /// The size of b less what of it holds p as it was is what the step changes.
+  void before(Projected<D>& projected, RightSide& side) override;
+  void complete(PressureLevel<D>& level) const override;
 
  private:
+  using Term<D>::scene_;
+  using Term<D>::mesh_;
+  using Term<D>::step_;
   void set_past(const State<D>& from);
   const std::vector<double>& begin() const;
 
-  StepWork<D>& k_;
   bool trapezoidal_;
-  double rate_ = 0;
-  std::vector<double> past_, storage_;  // per owned cell [Pa/s], [m]
+  double rate_ = 0;                     // of p in dp/dt at the end of the step [1/s]
+  std::vector<double> past_, storage_;  // per owned cell [Pa/s], [m]; nothing is stored in closed cells
 };
 
 }  // namespace couplet::fluid

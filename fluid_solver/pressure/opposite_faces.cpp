@@ -90,7 +90,7 @@ class Walls {
   double widest_ = 0, reach_ = 0;  // largest radius; largest thickness [m]
 };
 
-/// What a face says of another rank's: they have this area in common.
+/// Area that a face has in common with one of another rank.
 struct Told {
   Index to, from;
   double area;

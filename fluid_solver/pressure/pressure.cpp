@@ -10,7 +10,7 @@
 #include "common/linalg/poisson/petsc_cell_solver.hpp"
 #include "common/linalg/poisson/poisson_solver.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/pressure/largest_entry.hpp"
+#include "fluid_solver/state/largest_cell.hpp"
 
 namespace couplet::fluid {
 
@@ -49,8 +49,7 @@ void PressureEquation<D>::make_solver() {
 }
 
 template <int D>
-std::vector<double> PressureEquation<D>::diagonal(const Placement<D>& at, std::span<const double> admittance,
-                                                  std::span<const double> storage) const {
+std::vector<double> PressureEquation<D>::diagonal(const Placement<D>& at, const Diagonal& added) const {
   const Index owned = mesh_.cells.n_owned();
   std::vector<double> sum(owned, 0.0);
   for (Index f = 0; f < mesh_.n_interior; ++f)
@@ -58,9 +57,9 @@ std::vector<double> PressureEquation<D>::diagonal(const Placement<D>& at, std::s
       if (cell < owned) sum[cell] += at.conductance[f];
   for (const Index b : boundary_.rows().of_pressure)
     sum[mesh_.owner[mesh_.n_interior + b]] += at.conductance[mesh_.n_interior + b];
-  for (std::size_t b = 0; b < admittance.size(); ++b)
-    sum[mesh_.owner[mesh_.n_interior + static_cast<Index>(b)]] += admittance[b];
-  for (std::size_t c = 0; c < storage.size(); ++c) sum[c] += storage[c];
+  for (std::size_t b = 0; b < added.faces.size(); ++b)
+    sum[mesh_.owner[mesh_.n_interior + static_cast<Index>(b)]] += added.faces[b];
+  for (std::size_t c = 0; c < added.cells.size(); ++c) sum[c] += added.cells[c];
   for (double& value : sum)
     if (value == 0) value = 1;  // inside a body: p = 0 there
   if (singular() && pinned_ && owned > 0 && mesh_.cells.first() == 0) sum[0] *= 2;
@@ -121,11 +120,10 @@ void PressureEquation<D>::load(io::CheckpointReader& file) {
 }
 
 template <int D>
-void PressureEquation<D>::set(const Placement<D>& at, bool regular, std::span<const double> admittance,
-                              std::span<const double> storage) {
+void PressureEquation<D>::set(const Placement<D>& at, bool regular, const Diagonal& added) {
   regular_ = regular;
   if (!solver_) make_solver();
-  values_ = diagonal(at, admittance, storage);
+  values_ = diagonal(at, added);
   for (Index f = 0; f < mesh_.n_interior; ++f) values_.push_back(-at.conductance[f]);
   if (couplings_) values_.insert(values_.end(), couplings_->value.begin(), couplings_->value.end());
   fill(values_);
@@ -145,7 +143,9 @@ template <int D>
 linalg::SolveStatistics PressureEquation<D>::solve_or_tell(const Placement<D>& at, std::span<const double> b,
                                                            std::span<double> p, double relative,
                                                            double absolute) {
-  const auto where = [&] { return largest_entry<D>(mesh_, at, [&](Index c) { return b[c]; }); };
+  const auto where = [&] {
+    return largest_entry(find_largest(mesh_, at, [&](Index c) { return std::abs(b[c]); }));
+  };
   if (!std::isfinite(absolute))
     throw SolveFailure("The fluxes of the pressure equation are out of range. {}", where());
   try {

@@ -3,8 +3,7 @@
 
 #include <vector>
 
-#include "fluid_solver/motion/step_work.hpp"
-#include "fluid_solver/pressure/pressure.hpp"
+#include "fluid_solver/pressure/term.hpp"
 
 namespace couplet::fluid {
 
@@ -13,33 +12,34 @@ namespace couplet::fluid {
 /// one step with them: the answer y of the cells to its pressure, A y = G with the conductance G of its faces, gives the
 /// flux before p is solved for, since A p = b + G p_0 makes G.p = y.(b + G p_0) for the symmetric matrix A.
 template <int D>
-class UpstreamVolume {
+class UpstreamVolume final : public Term<D> {
  public:
-  explicit UpstreamVolume(StepWork<D>& work);
+  UpstreamVolume(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction);
 
-  /// y, of a new matrix. Collective.
-  void respond(PressureEquation<D>& equation);
-  /// For the work's step, whose rule has the `rate`. Collective.
-  void prepare(const State<D>& from, double rate);
+  void prepare(const State<D>& from) override;
+  /// Solves for y.
+  void respond(PressureEquation<D>& equation) override;
   /// No pressure at its faces as long as it is not known.
-  void foresee();
-  /// Its pressure, onto its faces and into b, per owned cell, which lacks them. Gives the size of what its change
-  /// puts into b. Collective.
-  double add_to(std::vector<double>& b);
-  /// At the pressure of its faces. Collective.
-  void start(const Placement<D>& at, PressureLevel<D>& level) const;
-  void complete(PressureLevel<D>& level) const;
+  void foresee(const State<D>& from, Projected<D>& projected) override;
+  /// Its pressure, onto its faces and into b, which lacks them.
+  void before(Projected<D>& projected, RightSide& side) override;
+  void complete(PressureLevel<D>& level) const override;
+  /// At the pressure of its faces.
+  void start(const Placement<D>& at, PressureLevel<D>& level) const override;
+  using Term<D>::start;
   /// y is where the next one is looked for: of the accepted level.
-  void accept() { accepted_ = response_; }
-  void save(io::CheckpointWriter& file) const {
+  void accept() override { accepted_ = response_; }
+  void save(io::CheckpointWriter& file) const override {
     file.write(mesh::Entries::cells, "upstream-response", accepted_);
   }
-  void load(io::CheckpointReader& file);
+  void load(io::CheckpointReader& file) override;
 
  private:
+  using Term<D>::scene_;
+  using Term<D>::mesh_;
+  using Term<D>::step_;
   double begin() const;
 
-  StepWork<D>& k_;
   bool trapezoidal_;
   double stiffness_;  // rho c^2/V_0 [Pa/m^3]
   double rate_ = 0, past_ = 0, pressure_ = 0;

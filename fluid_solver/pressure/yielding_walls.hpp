@@ -3,9 +3,8 @@
 
 #include <vector>
 
-#include "fluid_solver/motion/step_work.hpp"
 #include "fluid_solver/pressure/opposite_faces.hpp"
-#include "fluid_solver/pressure/pressure.hpp"
+#include "fluid_solver/pressure/term.hpp"
 
 namespace couplet::fluid {
 
@@ -18,30 +17,31 @@ namespace couplet::fluid {
 ///   +- S' [(p_P + q) - (p_P + q)']/(Z + Z' + D + D')
 /// which couples the cells of the two sides in the matrix, symmetric and positive as before.
 template <int D>
-class YieldingWalls {
+class YieldingWalls final : public Term<D> {
  public:
   /// Collective.
-  explicit YieldingWalls(StepWork<D>& work);
+  YieldingWalls(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction);
 
-  /// Where there are entries; the values come with respond().
-  const Couplings& couplings() const { return couplings_; }
-  /// For the work's step: to what the walls add to the diagonal of the pressure equation, per boundary face [m], and the
-  /// values of couplings(). Collective.
-  void respond(std::vector<double>& admittance);
-  /// What is known of w before the pressure is. Collective.
-  void foresee(const State<D>& from);
-  /// The rest, once it is. Collective.
-  void follow();
+  bool sets_level() const override { return step_.yields; }
+  double version() const override { return step_.yields; }
+  const Couplings* couplings() const override { return &couplings_; }
+  void add_to_diagonal(Diagonal& diagonal) override;
+  void foresee(const State<D>& from, Projected<D>& projected) override;
+  void after(Projected<D>& projected) override;
 
  private:
+  using Term<D>::scene_;
+  using Term<D>::mesh_;
+  using Term<D>::step_;
+  using Term<D>::prediction_;
   struct Side {
     double resistance = 0, pressure = 0;  // Z + D [kg/(m^2 s)], [Pa]
   };
   void set_resistances();
   void share();
   double answer_of(const OppositeFaces::Pair& pair) const;
-  void add_answers();
-  StepWork<D>& k_;
+  void add_answers(Projected<D>& projected);
+
   OppositeFaces opposite_;
   std::vector<double> alone_;  // area that has nothing opposite, over that of the face, per boundary face
   std::vector<Side> sides_;    // per entry of the map

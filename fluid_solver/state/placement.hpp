@@ -22,7 +22,7 @@ std::span<const double> flat(const Vectors<D>& values) {
   return {values.empty() ? nullptr : values.front().data(), values.size() * D};
 }
 
-/// What the face loops need of one placement of the points. Faces are the flux faces of the mesh (interior,
+/// Data of one placement of the points for the face loops. Faces are the flux faces of the mesh (interior,
 /// then the boundary of owned cells).
 template <int D>
 struct Placement {
@@ -50,6 +50,12 @@ struct Placement {
   /// k of a face [m^2], whether or not there is the array.
   Vec<D> oblique_of(Index face) const { return oblique.empty() ? Vec<D>(Vec<D>::Zero()) : oblique[face]; }
 };
+/// Error of a value linear between the cells at an interior face of a skewed mesh.
+template <int D>
+double skew_part(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& gradient, Index f) {
+  const double weight = at.weight[f];
+  return (weight * gradient[mesh.owner[f]] + (1 - weight) * gradient[mesh.neighbour[f]]).dot(at.skew[f]);
+}
 /// |k|/|S| up to which a mesh counts as orthogonal.
 constexpr double orthogonal = 1e-9;
 
@@ -58,11 +64,11 @@ template <int D>
 std::shared_ptr<const Placement<D>> make_placement(const mesh::Mesh& mesh, const mesh::Geometry& geometry);
 template <int D>
 std::shared_ptr<const Placement<D>> make_placement(const mesh::Mesh& mesh, std::span<const Vec3> points);
-/// The same shape elsewhere: only the centres differ. `from` must have a shape.
+/// Moves a placement: only the centres differ. `from` must have a shape.
 template <int D>
 std::shared_ptr<const Placement<D>> translated(const Placement<D>& from, const Vec3& by);
 
-/// The same with values at the marked interior faces that are means of the cells' values, wherever the face lies between them.
+/// Placement with values at the marked interior faces that are means of the cells' values, wherever the face lies between them.
 template <int D>
 std::shared_ptr<const Placement<D>> in_the_middle(const mesh::Mesh& mesh, const Placement<D>& from,
                                                   std::span<const char> faces);

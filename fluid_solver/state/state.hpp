@@ -26,12 +26,12 @@ struct PressureLevel {
   std::vector<double> boundary;  ///< p_b per boundary face [Pa]
   Vectors<D> gradient;  ///< (1/V) sum p_f S per local cell [Pa/m]; the latest level only, on oblique meshes
                         ///< the latest two
-  // Of a compressible fluid.
-  double upstream = 0;  ///< of the volume behind the inlets [Pa]
-  std::vector<double>
-      end;  ///< trapezoidal rule only: p at the end of the step, per local cell; last: `upstream` there [Pa]
-  double taken_up =
-      0;  ///< by this rank's cells at the end of the step: V dp/dt / (rho c^2) [m^3/s]; not saved
+  // Compressible fluids only.
+  double upstream = 0;      ///< of the volume behind the inlets [Pa]
+  std::vector<double> end;  ///< trapezoidal rule only: p at the end of the step, per local cell [Pa]
+  double upstream_end = 0;  ///< likewise, of the volume [Pa]
+  /// Sum of V dp/dt / (rho c^2) over this rank's cells at the end of the step [m^3/s]; not saved.
+  double taken_up = 0;
 };
 
 /// At the absorbing boundaries, per boundary face: what leaves beyond what is given, phi/S of outlets and (w - given).n of
@@ -79,8 +79,8 @@ struct State : History<D> {
   Vectors<D> turn;        ///< of the walls per boundary face at t^n, see turn_of() [m^2/s]; only with `turns`
   bool turns = false;     ///< the same on all ranks
   std::vector<double> phi;  ///< absolute volume flux per flux face at t^n [m^3/s]
-  std::vector<double> memory,
-      memory_old;  ///< delta^n per interior face [m^3/s] (incremental: what is left of delta^0)
+  /// delta^n per interior face [m^3/s] (incremental: what is left of delta^0).
+  std::vector<double> memory, memory_old;
 
   OpeningsState openings;  ///< empty: no absorbing boundaries
 

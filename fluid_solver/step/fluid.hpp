@@ -43,7 +43,7 @@ class Fluid {
   /// Walls of a known mass then answer to what the pressure differs from it (see yielding_walls.cpp).
   void yield_from(std::vector<double> load) {
     yields_ = boundary_.yields();
-    step_.set_wall_load(std::move(load));
+    boundary_.set_wall_load(std::move(load));
   }
   /// Before yield_from(): Boundary::set_wall_mass. Collective.
   void set_wall_mass(std::span<const Index> boundary_faces, std::span<const double> masses) {
@@ -69,7 +69,7 @@ class Fluid {
   const State<D>& state() const { return accepted_; }
   /// The pressure of the accepted state; null: none yet. In a frame that turns the state's lacks the centrifugal part.
   std::shared_ptr<const PressureLevel<D>> pressure() const;
-  /// Of the step that was prepared.
+  /// Placement at the end of the step that was prepared.
   const Placement<D>& end() const { return step_.to(); }
   /// For checkpoints: replaces the accepted state.
   void restore(State<D> state);
@@ -96,7 +96,7 @@ class Fluid {
   const Gaps<D>* gaps() const { return step_.gaps(); }
 
  private:
-  /// What the sub-step under way starts from.
+  /// State that the sub-step under way starts from.
   const State<D>& level() const { return split_ ? trial_ : accepted_; }
   void run_stages(SubStep<D>& step, double done, const Vectors<D>& wall_velocity);
   void start(const mesh::Geometry& geometry, double time);

@@ -20,7 +20,7 @@ namespace {
 // AB2 is not quite stable on the imaginary axis: growth per step that the scheme's own damping elsewhere
 // makes up for.
 constexpr double tolerated_growth = 5e-4;
-// Of cells with few faces, in limits of the explicit term: see StepSize.
+// Limit of cells with few faces, in limits of the explicit term, see StepSize.
 constexpr double longest_implicit = 16;
 // Largest eigenvalues of the operators of fourth order over those of second: of (8 sin k - sin 2k)/6, and 16/3 over 4.
 constexpr double fourth_convection = 1.3722, fourth_friction = 4. / 3;
@@ -88,7 +88,7 @@ const LimitTable& implicit_table() {
 constexpr std::array<double, 6> degrees{0, 45, 60, 75, 85, 90},
     adams_bashforth{1, 0.96, 0.91, 0.81, 0.63, 0.25}, runge_kutta{2.51, 2.37, 2.5, 2.4, 2.1, 1.73};
 
-/// What the limit is at least: cells that this keeps from deciding are passed over, which spares most of them
+/// Lower bound of the limit: cells that this keeps from deciding are passed over, which spares most of them
 /// the angle.
 double lowest_limit(double convection, double diffusion, ExplicitScheme scheme) {
   const bool rk = scheme == ExplicitScheme::runge_kutta;
@@ -121,7 +121,7 @@ StepSize<D>::StepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary, doubl
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) few_faces_.push_back(faces[c] < 2 * D);
 }
 
-/// Of the implicit term, by what friction does in a cell whose explicit rates have this angle and size.
+/// Limit of the implicit term by friction in a cell whose explicit rates have this angle and size.
 template <int D>
 double StepSize<D>::friction_limit(Index cell, double angle, double size) const {
   return few_faces_[cell] && size > 0 ? longest_implicit * explicit_limit(angle, scheme_) / size

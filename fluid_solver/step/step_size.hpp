@@ -43,7 +43,7 @@ class StepSize {
   void set_frame_rate(double rate) { frame_rate_ = rate; }
   void set_fourth(bool fourth) { fourth_ = fourth; }
   StepLimits limits(const State<D>& state);
-  /// Of limits(), for one treatment of the viscous term; one more loop over faces and cells. Collective.
+  /// The cell that limits one treatment of the viscous term; one more loop over faces and cells. Collective.
   StepLimiter limiter(const State<D>& state, bool implicit);
   /// StepLimits::explicit_viscous < `size`? Where one face is stiff enough to say so nothing else is looked
   /// at. Collective.

@@ -22,8 +22,7 @@ double parts(double dt, double limit) {
 template <int D>
 SubStepSize<D>::SubStepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary,
                             const FluidParameters& parameters)
-    : parameters_(parameters),
-      size_(mesh, boundary, parameters.viscosity / parameters.density, parameters.scheme) {}
+    : parameters_(parameters), size_(mesh, boundary, parameters.kinematic_viscosity(), parameters.scheme) {}
 
 template <int D>
 void SubStepSize<D>::begin_step(const State<D>& level, double time, double dt, double frame_rate,
@@ -56,7 +55,7 @@ void SubStepSize<D>::choose_viscous_treatment(const State<D>& level, History<D>&
   begin.dt_old = 0;
 }
 
-/// By stability, and by accuracy where that is asked for.
+/// Limit by stability, and by accuracy where the case asks for it.
 template <int D>
 double SubStepSize<D>::implicit_limit(const StepLimits& limits) const {
   if (!parameters_.implicit_stretch) return limits.implicit_viscous;

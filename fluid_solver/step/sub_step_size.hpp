@@ -11,9 +11,9 @@ class SubStepSize {
  public:
   SubStepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary, const FluidParameters& parameters);
 
-  /// Whether operators are of fourth order.
+  /// Sets whether operators are of fourth order.
   void set_fourth(bool fourth) { size_.set_fourth(fourth); }
-  /// Of a coupling step [s] that starts from `level`; `frame_rate`: see StepSize. Chooses begin.implicit, and begins the
+  /// Begins a coupling step [s] that starts from `level`; `frame_rate`: see StepSize. Chooses begin.implicit, and begins the
   /// multi-step schemes anew where that changes. Collective.
   void begin_step(const State<D>& level, double time, double dt, double frame_rate, History<D>& begin);
   /// Equal parts of what remains [s], each within the limit of the present flow; `done`: sub-steps so far. Throws
@@ -23,7 +23,7 @@ class SubStepSize {
   const StepLimits& limits() const { return limits_; }
   /// Largest cell Reynolds number |phi| / (nu g) of a state. Collective.
   double largest_peclet(const State<D>& state);
-  /// What limits the steps that follow a state. Collective.
+  /// The cell that limits the steps that follow a state. Collective.
   StepLimiter limiter(const State<D>& state) { return size_.limiter(state, state.implicit); }
 
  private:

@@ -15,7 +15,7 @@ namespace couplet::fluid {
 template <int D>
 double eddy_viscosity(const TurbulenceParameters& model, const Tensor<D>& gradient, double volume);
 
-/// The same for all local cells. `gradient` has its ghosts.
+/// Eddy viscosity of all local cells. `gradient` has its ghosts.
 template <int D>
 void eddy_viscosity(const TurbulenceParameters& model, const Placement<D>& at,
                     const std::vector<Tensor<D>>& gradient, std::vector<double>& eddy);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/turbulence/statistics.hpp"
+#include "fluid_solver/output/statistics.hpp"
 
 #include <cmath>
 #include <limits>
@@ -86,32 +86,32 @@ std::vector<double> RunningStatistics<D>::reynolds_shear() const {
   return shear;
 }
 
+/// `use`: entries, name, values; first those of the cells, then those of the boundary faces.
+template <int D>
+template <class Self, class Use>
+void RunningStatistics<D>::visit(Self& self, const Use& use) {
+  const auto both = [&](const std::string& name, auto values, std::size_t width) {
+    use(mesh::Entries::cells, "statistics-" + name, values.first(self.cells_ * width));
+    use(mesh::Entries::owned_boundary, "statistics-boundary-" + name, values.subspan(self.cells_ * width));
+  };
+  both("velocity", flat<D>(self.velocity_), D);
+  both("normal", flat<D>(self.normal_), D);
+  both("pressure", std::span(self.pressure_), 1);
+  both("pressure-square", std::span(self.pressure_square_), 1);
+  use(mesh::Entries::cells, "statistics-shear", std::span(self.shear_));
+}
+
 template <int D>
 void RunningStatistics<D>::save(io::CheckpointWriter& file) const {
   file.write_scalar("statistics-duration", duration_);
-  const auto write = [&](const std::string& name, std::span<const double> values, std::size_t width) {
-    file.write(mesh::Entries::cells, "statistics-" + name, values.first(cells_ * width));
-    file.write(mesh::Entries::owned_boundary, "statistics-boundary-" + name, values.subspan(cells_ * width));
-  };
-  write("velocity", flat<D>(velocity_), D);
-  write("normal", flat<D>(normal_), D);
-  write("pressure", pressure_, 1);
-  write("pressure-square", pressure_square_, 1);
-  file.write(mesh::Entries::cells, "statistics-shear", shear_);
+  visit(*this,
+        [&](auto entries, const std::string& name, auto values) { file.write(entries, name, values); });
 }
 
 template <int D>
 void RunningStatistics<D>::load(io::CheckpointReader& file) {
   duration_ = file.read_scalar("statistics-duration");
-  const auto read = [&](const std::string& name, std::span<double> values, std::size_t width) {
-    file.read(mesh::Entries::cells, "statistics-" + name, values.first(cells_ * width));
-    file.read(mesh::Entries::owned_boundary, "statistics-boundary-" + name, values.subspan(cells_ * width));
-  };
-  read("velocity", flat<D>(velocity_), D);
-  read("normal", flat<D>(normal_), D);
-  read("pressure", pressure_, 1);
-  read("pressure-square", pressure_square_, 1);
-  file.read(mesh::Entries::cells, "statistics-shear", shear_);
+  visit(*this, [&](auto entries, const std::string& name, auto values) { file.read(entries, name, values); });
 }
 
 template class RunningStatistics<2>;

@@ -13,7 +13,7 @@ class RunningStatistics {
  public:
   static constexpr int n_shear = D * (D - 1) / 2;
   RunningStatistics(std::size_t cells, std::size_t faces);
-  /// What is known before the first state: NaN everywhere.
+  /// Statistics before the first state: NaN everywhere.
   static RunningStatistics nothing_yet(std::size_t cells, std::size_t faces);
   /// `state` and `pressure` (null: none) held for dt [s].
   void add(const State<D>& state, const PressureLevel<D>* pressure, double dt);
@@ -32,6 +32,8 @@ class RunningStatistics {
   void load(io::CheckpointReader& file);
 
  private:
+  template <class Self, class Use>
+  static void visit(Self& self, const Use& use);
   void add(std::size_t entry, const Vec<D>& velocity, double dt);
   void add_pressure(std::size_t entry, double pressure, double dt);
 
