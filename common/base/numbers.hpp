@@ -66,6 +66,8 @@ class Numbers final {
       if (!is_there) value.reset();
       if (is_there && !value) value.emplace();
       if (is_there) one(*value);
+    } else if constexpr (requires { value.derived(); }) {  // of Eigen, which has a visit() of its own
+      container(value);
     } else if constexpr (requires { value.visit(*this); }) {
       value.visit(*this);
     } else if constexpr (requires { typename T::mapped_type; }) {
@@ -102,11 +104,9 @@ class Numbers final {
 
   template <class T>
   void container(T& values) {
-    const std::size_t n = size(values.size());
-    if constexpr (requires { values.resize(n); })
-      values.resize(n);
-    else if (n != values.size())
-      damaged();
+    const std::size_t n = size(static_cast<std::size_t>(values.size()));
+    if constexpr (requires { values.resize(n); }) values.resize(n);
+    if (n != static_cast<std::size_t>(values.size())) damaged();
     for (auto& value : values) one(value);
   }
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "common/base/error.hpp"
-#include "common/io/checkpoint.hpp"
+#include "common/io/archive.hpp"
 #include "common/log/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
@@ -175,22 +175,11 @@ std::vector<std::string> SolidJudge::sentences() const {
   return sentences;
 }
 
-void SolidJudge::save(io::CheckpointWriter& file) const {
-  file.write_scalar("audit-scale", energy_audit_.scale);
-  file.write_scalar("largest-gradient", largest_gradient_);
-  file.write_scalar("inertia-over-load", inertia_over_load_);
-  file.write_scalar("largest-kinetic", largest_kinetic_);
-  file.write_scalar("largest-strain-energy", largest_strain_energy_);
-}
-
-void SolidJudge::load(io::CheckpointReader& file) {
-  latest_.reset();
-  equilibrium_.forget(body_);
-  energy_audit_.scale = file.read_scalar("audit-scale");
-  largest_gradient_ = file.read_scalar("largest-gradient");
-  inertia_over_load_ = file.read_scalar("inertia-over-load");
-  largest_kinetic_ = file.read_scalar("largest-kinetic");
-  largest_strain_energy_ = file.read_scalar("largest-strain-energy");
+void SolidJudge::visit(io::Archive& archive) {
+  archive.common("judge", largest_gradient_, inertia_over_load_, largest_kinetic_, largest_strain_energy_,
+                 audit_, energy_audit_, large_strain_, equilibrium_, buckling_told_, buckling_factor_,
+                 compression_seen_, strain_told_, energy_told_);
+  if (archive.reads()) latest_.reset();
 }
 
 }  // namespace couplet::solid

@@ -14,6 +14,10 @@
 #include "solid_solver/stability/buckling_estimate.hpp"
 #include "solid_solver/stability/equilibrium.hpp"
 
+namespace couplet::io {
+class Archive;
+}
+
 namespace couplet::solid {
 
 /// Whether the answer of a run is to be trusted: what it has seen of itself so far. It says so once, and ends a
@@ -51,8 +55,7 @@ class SolidJudge final {
   /// For the end of the run.
   std::vector<std::string> sentences() const;
 
-  void save(io::CheckpointWriter& file) const;
-  void load(io::CheckpointReader& file);
+  void visit(io::Archive& archive);
 
  private:
   void look_at_finite();

@@ -24,6 +24,10 @@ struct LargeStrainEstimate {
   bool is_known() const { return change == change; }
   /// One sentence with the number.
   std::string text() const;
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(change, ratio, cubic);
+  }
 };
 
 /// Two linear solves and some evaluations of the forces, with an operator of its own. `unknowns`, `known`: of the linear

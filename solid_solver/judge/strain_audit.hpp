@@ -42,6 +42,11 @@ struct StrainAudit {
   }
   /// One sentence with the numbers.
   std::string text() const;
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(strain_energy, stress_work, gradient_difference, compares_gradients, inner_variation,
+            smooth_difference, recovered_difference);
+  }
 };
 
 /// Energy that a dynamic run has found beside what it was given [J]; over all ranks.
@@ -66,6 +71,10 @@ struct EnergyAudit {
   bool is_hopeless() const { return !(created() <= hopeless); }
   /// What is held and what was given, with the growth in per cent.
   std::string text() const;
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(held, given, scale, is_driven);
+  }
 };
 
 }  // namespace couplet::solid
