@@ -229,4 +229,64 @@ template FlowArea flow_area<3>(const PatchFlux<3>&, const PatchFlux<3>&, double)
 template std::vector<PatchFlux<2>> patch_fluxes<2>(const Fluid<2>&);
 template std::vector<PatchFlux<3>> patch_fluxes<3>(const Fluid<3>&);
 
+template <int D>
+Quantities<D>::Quantities(const Fluid<D>& fluid) : fluid_(fluid), pressure_(fluid.pressure()) {
+  const State<D>& s = fluid.state();
+  all_.push_back({"velocity", "m/s", D, flat<D>(s.u), flat<D>(s.u_boundary)});
+  if (pressure_)
+    all_.push_back({"pressure", "Pa", 1, pressure_->p, pressure_->boundary});
+  else
+    all_.push_back({"pressure", "Pa", 1, keep(std::vector<double>(fluid.mesh().cells.n_local(), 0.0)), {}});
+}
+
+template <int D>
+std::span<const double> Quantities<D>::keep(std::vector<double> values) {
+  kept_.push_back(std::move(values));
+  return kept_.back();
+}
+
+/// `values`: of the cells, then of the boundary faces.
+template <int D>
+void Quantities<D>::add(const char* name, const char* unit, int components, std::span<const double> values,
+                        std::size_t cells) {
+  const std::size_t n = cells * static_cast<std::size_t>(components);
+  all_.push_back({name, unit, components, values.first(n), values.subspan(n)});
+}
+
+template <int D>
+void Quantities<D>::add(const RunningStatistics<D>& statistics) {
+  const std::size_t n = statistics.cells();
+  const Vectors<D> velocity_rms = statistics.velocity_rms();
+  const std::span<const double> rms = flat<D>(velocity_rms);
+  add("velocity-mean", "m/s", D, flat<D>(statistics.velocity_mean()), n);
+  add("pressure-mean", "Pa", 1, statistics.pressure_mean(), n);
+  add("velocity-rms", "m/s", D, keep({rms.begin(), rms.end()}), n);
+  add("pressure-rms", "Pa", 1, keep(statistics.pressure_rms()), n);
+}
+
+template <int D>
+void Quantities<D>::add_in_cells(const RunningStatistics<D>* statistics) {
+  const State<D>& s = fluid_.state();
+  const FluidOutputParameters& wanted = fluid_.parameters().output;
+  const std::size_t n = s.u.size();
+  std::vector<Tensor<D>> gradient;
+  if (wanted.vorticity || wanted.q_criterion)
+    velocity_gradient<D>(fluid_.mesh(), *s.placement, s.u, s.u_boundary, gradient);
+  if (wanted.vorticity) add("vorticity", "1/s", D == 2 ? 1 : 3, keep(vorticity<D>(gradient)), n);
+  if (wanted.q_criterion) add("q-criterion", "1/s^2", 1, keep(q_criterion<D>(gradient)), n);
+  if (!s.eddy.empty()) add("eddy-viscosity", "m^2/s", 1, s.eddy, n);
+  if (statistics)
+    add("reynolds-shear", "m^2/s^2", RunningStatistics<D>::n_shear, keep(statistics->reynolds_shear()), n);
+}
+
+template <int D>
+int Quantities<D>::width() const {
+  int sum = 0;
+  for (const Quantity& quantity : all_) sum += quantity.components;
+  return sum;
+}
+
+template class Quantities<2>;
+template class Quantities<3>;
+
 }  // namespace couplet::fluid

@@ -2,9 +2,13 @@
 #pragma once
 
 #include <array>
+#include <deque>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "fluid_solver/output/statistics.hpp"
 #include "fluid_solver/step/fluid.hpp"
 
 namespace couplet::fluid {
@@ -81,5 +85,40 @@ FlowArea flow_area(const PatchFlux<D>& from, const PatchFlux<D>& to, double dens
 /// before the first step. Collective.
 template <int D>
 std::vector<PatchFlux<D>> patch_fluxes(const Fluid<D>& fluid);
+
+/// A field of the fluid as files, probes and samples show it.
+struct Quantity {
+  std::string name, unit;
+  int components = 1;
+  std::span<const double> cells;     ///< per local cell
+  std::span<const double> boundary;  ///< per owned boundary face; empty: it is known in the cells only
+};
+
+/// The fields of the accepted state that the case asks for. They refer to the fluid, which must not step on meanwhile.
+template <int D>
+class Quantities {
+ public:
+  /// Velocity and pressure, which is zero before the first step.
+  explicit Quantities(const Fluid<D>& fluid);
+  Quantities(const Quantities&) = delete;
+  /// Means and root mean squares.
+  void add(const RunningStatistics<D>& statistics);
+  /// Fields that are known in the cells only. `statistics`: nullptr if there are none. Collective.
+  void add_in_cells(const RunningStatistics<D>* statistics);
+
+  const std::vector<Quantity>& all() const { return all_; }
+  /// Sum of the components.
+  int width() const;
+
+ private:
+  std::span<const double> keep(std::vector<double> values);
+  void add(const char* name, const char* unit, int components, std::span<const double> values,
+           std::size_t cells);
+
+  const Fluid<D>& fluid_;
+  std::vector<Quantity> all_;
+  std::shared_ptr<const PressureLevel<D>> pressure_;
+  std::deque<std::vector<double>> kept_;  // values that were computed for this
+};
 
 }  // namespace couplet::fluid

@@ -15,11 +15,13 @@
 namespace couplet::fluid {
 namespace {
 
-template <int D>
-void add_columns(std::vector<std::string>& columns, const std::string& after) {
-  for (int c = 0; c < D; ++c)
-    columns.push_back(fmt::format("velocity{} {} [m/s]", after, base::axis_letters[c]));
-  columns.push_back(fmt::format("pressure{} [Pa]", after));
+std::vector<std::string> columns_of(const std::vector<Quantity>& quantities) {
+  std::vector<std::string> columns;
+  for (const Quantity& q : quantities)
+    for (int c = 0; c < q.components; ++c)
+      columns.push_back(q.components == 1 ? fmt::format("{} [{}]", q.name, q.unit)
+                                          : fmt::format("{} {} [{}]", q.name, base::axis_letters[c], q.unit));
+  return columns;
 }
 
 }  // namespace
@@ -71,43 +73,13 @@ void FluidOutput<D>::write_fields(double time, int number, const RunningStatisti
   if (!fields_)
     fields_.emplace(mesh_, fluid_.points_at_rest(), context_.output_folder, context_.name, fluid_.moving(),
                     context_.restart_time, context_.fields);
-  using Place = io::OutputField::Place;
-  const State<D>& s = fluid_.state();
-  const FluidOutputParameters& wanted = fluid_.parameters().output;
-  const std::vector<double> none(mesh_.cells.n_local(), 0.0);
-  const auto pressure = fluid_.pressure();
-  std::vector<io::OutputField> fields{{"velocity", "m/s", Place::cells, D, flat<D>(s.u)},
-                                      {"pressure", "Pa", Place::cells, 1, pressure ? pressure->p : none}};
-  std::vector<double> curl, q, p_rms, shear;
-  Vectors<D> u_rms;
-  if (wanted.vorticity || wanted.q_criterion) {
-    std::vector<Tensor<D>> gradient;
-    velocity_gradient<D>(mesh_, *s.placement, s.u, s.u_boundary, gradient);
-    if (wanted.vorticity) {
-      curl = vorticity<D>(gradient);
-      fields.push_back({"vorticity", "1/s", Place::cells, D == 2 ? 1 : 3, curl});
-    }
-    if (wanted.q_criterion) {
-      q = q_criterion<D>(gradient);
-      fields.push_back({"q-criterion", "1/s^2", Place::cells, 1, q});
-    }
-  }
-  if (!s.eddy.empty()) fields.push_back({"eddy-viscosity", "m^2/s", Place::cells, 1, s.eddy});
-  if (statistics) {
-    u_rms = statistics->velocity_rms();
-    p_rms = statistics->pressure_rms();
-    shear = statistics->reynolds_shear();
-    fields.push_back({"velocity-mean", "m/s", Place::cells, D,
-                      flat<D>(statistics->velocity_mean()).first(statistics->cells() * D)});
-    fields.push_back({"velocity-rms", "m/s", Place::cells, D,
-                      std::span<const double>(flat<D>(u_rms)).first(statistics->cells() * D)});
-    fields.push_back({"pressure-mean", "Pa", Place::cells, 1,
-                      std::span(statistics->pressure_mean()).first(statistics->cells())});
-    fields.push_back(
-        {"pressure-rms", "Pa", Place::cells, 1, std::span<const double>(p_rms).first(statistics->cells())});
-    fields.push_back({"reynolds-shear", "m^2/s^2", Place::cells, RunningStatistics<D>::n_shear, shear});
-  }
-  fields_->write(time, fluid_.moving() ? s.points : fluid_.points_at_rest(), fields);
+  Quantities<D> quantities(fluid_);
+  if (statistics) quantities.add(*statistics);
+  quantities.add_in_cells(statistics);
+  std::vector<io::OutputField> fields;
+  for (const Quantity& q : quantities.all())
+    fields.push_back({q.name, q.unit, io::OutputField::Place::cells, q.components, q.cells});
+  fields_->write(time, fluid_.moving() ? fluid_.state().points : fluid_.points_at_rest(), fields);
 }
 
 template <int D>
@@ -142,15 +114,15 @@ Row FluidOutput<D>::probes() {
   Row row;
   if (!fluid_.state().pressure[0]) return row;
   point_values_->follow();
-  std::vector<double> at_points(mesh_.points.n_local() * (D + 1), 0.0);
-  point_values_->state(probes_, at_points);
+  const Quantities<D> quantities(fluid_);
+  const std::vector<std::string> columns = columns_of(quantities.all());
+  std::vector<double> at_points(std::size_t(mesh_.points.n_local()) * columns.size(), 0.0);
+  point_values_->fill(quantities, probes_, at_points);
   auto named = fluid_.parameters().probes.begin();
   for (const io::Probe& probe : probes_) {
     const std::string& name = named++->first;
-    const std::vector<double> sampled = probe.sample(at_points, D + 1);  // on the root
-    if (!root_) continue;
-    add_to_row<D>(row, name + " velocity", "m/s", sampled.data());
-    row.emplace_back(name + " pressure [Pa]", sampled[D]);
+    const std::vector<double> sampled = probe.sample(at_points, quantities.width());  // on the root
+    for (std::size_t i = 0; i < sampled.size(); ++i) row.emplace_back(name + " " + columns[i], sampled[i]);
   }
   return row;
 }
@@ -160,30 +132,26 @@ void FluidOutput<D>::write_samples(double time, const RunningStatistics<D>* stat
   if (samples_.empty() || context_.output_folder.empty() || !fluid_.state().pressure[0]) return;
   point_values_->follow();
   const std::vector<Vec3>& points = fluid_.moving() ? fluid_.state().points : fluid_.points_at_rest();
-  const int means = statistics ? 2 * (D + 1) : 0;
-  std::vector<double> now(mesh_.points.n_local() * (D + 1), 0.0),
-      of_time(mesh_.points.n_local() * means, 0.0);
+  Quantities<D> quantities(fluid_);
+  if (statistics) quantities.add(*statistics);
+  const int width = quantities.width();
+  std::vector<double> at_points(std::size_t(mesh_.points.n_local()) * width, 0.0);
   const std::span<const double> places{points.empty() ? nullptr : points.front().data(), 3 * points.size()};
   for (std::size_t k = 0; k < samples_.size(); ++k) {
     const Sample& sample = samples_[k];
-    point_values_->state(sample.probes(), now);
-    if (statistics) point_values_->means(*statistics, sample.probes(), of_time);
+    point_values_->fill(quantities, sample.probes(), at_points);
     const std::vector<double> at = sample.gather(mesh_.comm, places, 3),
-                              values = sample.gather(mesh_.comm, now, D + 1),
-                              mean = statistics ? sample.gather(mesh_.comm, of_time, means) : at;
+                              values = sample.gather(mesh_.comm, at_points, width);
     if (!root_) continue;
     if (!sample_series_[k]) {
       std::vector<std::string> columns{"time [s]", "along [-]", "up [-]", "x [m]", "y [m]", "z [m]"};
-      add_columns<D>(columns, "");
-      if (statistics) add_columns<D>(columns, "-mean");
-      if (statistics) add_columns<D>(columns, "-rms");
+      for (std::string& column : columns_of(quantities.all())) columns.push_back(std::move(column));
       sample_series_[k].emplace(open("sample-" + sample.name() + ".csv", columns));
     }
     for (std::size_t i = 0; i < sample.probes().size(); ++i) {
       std::vector<double> row{time, sample.along()[i][0], sample.along()[i][1]};
       row.insert(row.end(), at.begin() + 3 * i, at.begin() + 3 * (i + 1));
-      row.insert(row.end(), values.begin() + (D + 1) * i, values.begin() + (D + 1) * (i + 1));
-      row.insert(row.end(), mean.begin() + means * i, mean.begin() + means * (i + 1));
+      row.insert(row.end(), values.begin() + width * i, values.begin() + width * (i + 1));
       sample_series_[k]->row(row);
     }
   }

@@ -15,15 +15,16 @@
 
 namespace couplet::fluid {
 
+namespace {
+
+using Walls = std::vector<const mesh::Patch*>;
+
+/// Adds the components of a vector.
 template <int D>
 void add_to_row(Row& row, const std::string& name, const char* unit, const double* values) {
   for (int c = 0; c < D; ++c)
     row.emplace_back(fmt::format("{} {} [{}]", name, base::axis_letters[c], unit), values[c]);
 }
-
-namespace {
-
-using Walls = std::vector<const mesh::Patch*>;
 
 /// Forces of the fluid on each wall, means over the coupling step.
 template <int D>
@@ -221,8 +222,6 @@ std::vector<SeriesTable> tables_of(const Fluid<D>& fluid, const Walls& walls) {
   return all;
 }
 
-template void add_to_row<2>(Row&, const std::string&, const char*, const double*);
-template void add_to_row<3>(Row&, const std::string&, const char*, const double*);
 template std::vector<SeriesTable> tables_of<2>(const Fluid<2>&, const Walls&);
 template std::vector<SeriesTable> tables_of<3>(const Fluid<3>&, const Walls&);
 

@@ -15,10 +15,6 @@ namespace couplet::fluid {
 /// Numbers of one time, each with its name and unit, "drag [-]".
 using Row = std::vector<std::pair<std::string, double>>;
 
-/// Adds the components of a vector.
-template <int D>
-void add_to_row(Row& row, const std::string& name, const char* unit, const double* values);
-
 /// A file with one row per step, opened with the first row.
 struct SeriesTable {
   std::string file;

@@ -51,8 +51,7 @@ FractionalStep<D>::FractionalStep(const mesh::Mesh& mesh, const std::vector<Vec3
       predictor_(scene_, step_, gradient_, prediction_),
       flux_(scene_, step_, gradient_),
       projection_(scene_, step_, prediction_, projected_, moving),
-      energy_guard_(mesh, boundary, parameters.density, parameters.viscosity, parameters.pressure_tolerance,
-                    scene_.fluid.sound) {
+      energy_guard_(mesh, boundary, scene_.fluid, parameters.pressure_tolerance) {
   if (parameters.rotating_frame) scene_.frame.emplace(*parameters.rotating_frame);
   if (!parameters.bodies.empty()) {
     auto bodies = std::make_unique<ImmersedBodies<D>>(mesh, parameters);
