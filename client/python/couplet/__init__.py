@@ -20,7 +20,7 @@ choose()  # before anybody starts MPI
 _PLACES = {
     "participant": ("Client",),
     "series": ("FieldSeries", "Surface", "WIDTH", "extrema", "find_series", "find_surface", "surface_names"),
-    "runs": ("Case", "Results", "RunFailed", "Wrong", "passes_a_step", "read_csv", "run"),
+    "runs": ("Case", "Results", "RunFailed", "Wrong", "read_csv", "run"),
 }
 __getattr__ = lazy.names(__name__, _PLACES)
 

@@ -72,11 +72,6 @@ def slopes(job):
             of_u >= 1.7 and min(of_stress) >= 0.9)
 
 
-def thin(job, across, along):
-    u, _ = beam(job, across, along, "saint-venant-kirchhoff", 1.6)
-    return f"{u:.5f}, {100 * (u / SVK[1.6] - 1):+.2f} % of the converged value", True
-
-
 def newton_steps(job):
     worst = max(max(beam(job, n, 10 * n, "saint-venant-kirchhoff", 1.6)[1]) for n in (4, 8))
     hooked = max(max(beam(job, n, 10 * n, "neo-hookean", 10, steps=8)[1]) for n in (4, 8))

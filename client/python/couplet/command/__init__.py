@@ -24,7 +24,6 @@ SUBCOMMANDS = {
     "study": ("study.main", "runs the study of a case: variants, error against time, the best of some variables"),
     "mesh": ("command.mesh", "makes meshes that no rank has to hold, and opens them"),
     "export": ("command.export", "writes a case as input of CalculiX or OpenFOAM"),
-    "accuracy": ("study.accuracy", "measures error against time of a case of the gallery"),
     "validate": ("command.validate", "measures the project's bars (in a checkout)"),
     "doctor": ("command.doctor", "checks whether this machine can run coupled cases"),
 }
@@ -74,7 +73,7 @@ def dispatch(name, words):
         print(f"{prog}: " + ": ".join(str(part) for part in (error.filename, error.strerror or error) if part), file=sys.stderr)
         return 1
     except KeyboardInterrupt:
-        print(f"{prog}: interrupted" + ("; start it again to continue" if name in ("study", "accuracy") else ""), file=sys.stderr)
+        print(f"{prog}: interrupted" + ("; start it again to continue" if name == "study" else ""), file=sys.stderr)
         return 128 + signal.SIGINT
 
 

@@ -4,5 +4,5 @@ benchmarks/."""
 from couplet import lazy
 
 PLACES = {"case": ("Case", "Wrong", "expect", "text_of"), "job": ("Job", "run"), "process": ("Cost", "RunFailed", "environment", "launch"), "pool": ("run_all", "warnings_of"),
-          "results": ("Results", "passes_a_step", "read_csv"), "task": ("Record", "Task")}
+          "results": ("Results", "read_csv"), "task": ("Record", "Task")}
 __getattr__ = lazy.names(__name__, PLACES)

@@ -96,9 +96,3 @@ class Results:
                 label = phase if len(self.participants()) == 1 else f"{name}: {phase}"
                 found["phases"][label] = found["phases"].get(label, 0) + seconds
         return found
-
-
-def passes_a_step(folder):
-    """Mean number of passes of the coupling in a step, of a run's output folder."""
-    passes = read_csv(pathlib.Path(folder) / "coupler" / "residuals.csv")
-    return len(passes["step"]) / len(set(passes["step"]))

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The reed: mesh motion, the blocked layer, contact, mesh 1 of the source, the slice."""
+"""The reed: mesh motion, contact, mesh 1 of the source."""
 import re
-import resource
 
 import numpy as np
 
@@ -57,13 +56,13 @@ SCENES = {
 }
 
 
-def run(job, scene, method, share=1.0, again=0):
-    """Rows of quality.csv, whether it came to the end, its message, cpu seconds of the whole run, seconds of its steps."""
+def run(job, scene, method):
+    """Rows of quality.csv, whether it came to the end, its message."""
     def make():
         mesh, dimension, parameters, end, steps, boundaries = SCENES[scene]
-        folder = job.scratch / f"reed-{list(SCENES).index(scene)}-{method}-{share}-{again}"
+        folder = job.scratch / f"reed-{list(SCENES).index(scene)}-{method}"
         folder.mkdir()
-        (folder / "case.yaml").write_text(f"""simulation: {{end-time: {end * share}, time-step: {end / steps}, max-step-halvings: 0, output: {{folder: out, interval: {end}}}, checkpoint: {{interval: 0}}}}
+        (folder / "case.yaml").write_text(f"""simulation: {{end-time: {end}, time-step: {end / steps}, max-step-halvings: 0, output: {{folder: out, interval: {end}}}, checkpoint: {{interval: 0}}}}
 participants:
   mover:
     program: mesh_mover
@@ -73,17 +72,13 @@ participants:
     method: {method}
     boundaries: {{{boundaries}}}
 """)
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
         done = job.run([job.build / "bin" / "mesh_mover", folder / "case.yaml"], 1200)
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        total = re.search(r"^total +([\d.]+) +100", done.stdout + done.stderr, re.M)
         file = folder / "out" / "mover" / "quality.csv"
         if not file.exists():
             raise RuntimeError((done.stderr or done.stdout)[-400:])
         said = re.search(r"(inverts cell|makes cell|no valid mesh)", done.stderr + done.stdout)
-        return (couplet.read_csv(file), done.returncode == 0, said[1] if said else "",
-                after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, float(total[1]) if total else float("nan"))
-    return job.once(("reed mesh", scene, method, share, again), make)
+        return couplet.read_csv(file), done.returncode == 0, said[1] if said else ""
+    return job.once(("reed mesh", scene, method), make)
 
 
 def end_of(scene, rows):
@@ -92,70 +87,14 @@ def end_of(scene, rows):
 
 
 def reaches(job, scene):
-    rows, valid, said, *_ = run(job, scene, "barrier")
+    rows, valid, said = run(job, scene, "barrier")
     least = min(rows[LAST])
     text = f"all cells valid, least scaled Jacobian {least:.4f}" if valid else f"refused at {end_of(scene, rows)} of the way ({said})"
     beside = []
     for method in ("laplacian", "pseudo-solid"):
-        other, came, said, *_ = run(job, scene, method)
+        other, came, said = run(job, scene, method)
         beside.append(f"{method} " + ("comes through too" if came else f"refused at {end_of(scene, other)} ({said})"))
     return f"{text}; {', '.join(beside)}", valid and least > 0
-
-
-CAUSE = ("; two fifths of it are conjugate gradients, a third the assembly of eight simplices in three components per hexahedron, though the slice is one cell "
-         "deep: factors in place of multigrid took 16 times; in two dimensions the slice meets the bar")
-
-
-def price(job, scene):
-    """Over the way that the Laplacian stands, in the same steps; the least of three runs each."""
-    rows = run(job, scene, "laplacian")[0]
-    share = round(float(rows["time [s]"][-1]) / SCENES[scene][3], 6)
-    runs = {m: [run(job, scene, m, share, i) for i in (1, 2, 3)] for m in ("laplacian", "pseudo-solid", "barrier")}
-    steps, whole = ({m: min(r[k] for r in of) for m, of in runs.items()} for k in (4, 3))
-    all_of_it = min(run(job, scene, "barrier", 1.0, i)[4] for i in (1, 2))
-    against = lambda cost, m: f"{cost[m] / cost['laplacian']:.1f}"
-    met = steps["barrier"] <= 6 * steps["laplacian"]
-    return (f"steps {against(steps, 'barrier')} times ({steps['barrier']:.3f}, {steps['laplacian']:.3f} s; pseudo-solid {against(steps, 'pseudo-solid')} times), "
-            f"whole runs {against(whole, 'barrier')} times in cpu, over the {100 * share:.0f} % of the way that the laplacian stands; barrier over the whole "
-            f"way {all_of_it:.2f} s{'' if met else CAUSE}"), met
-
-
-# -- layer ------------------------------------------------------------------------------------------------------------
-PROGRAM, TEST = "verification_fluid_seat_layer", "passes_without_spikes"
-SHARES, LIDS = (100, 10, 1), (5, 3)
-
-
-def worst(job, key):
-    """By cells per step, the larger of both lids."""
-    found, good = [], True
-    for share in SHARES:
-        values = []
-        for lid in LIDS:
-            (value,), passed = job.recorded(PROGRAM, TEST, f"lid_{lid}_percent_of_a_cell_{share}_{key}")
-            values.append(abs(value))
-            good = good and passed
-        found.append(max(values))
-    return found, good
-
-
-def mass(job):
-    found, passed = worst(job, "mass")
-    return ", ".join(f"{v:.1e}" for v in found) + " of the inflow", passed and max(found) <= 1e-12
-
-
-def pressure(job):
-    found, passed = worst(job, "pressure")
-    (coarse,), _ = job.recorded(PROGRAM, "blocked_at_once", "at_once_tenth_pressure")
-    (fine,), _ = job.recorded(PROGRAM, "blocked_at_once", "at_once_hundredth_pressure")
-    return (", ".join(f"{100 * v:.1f}" for v in found) + f" % of the pressure before the seat; cells blocked at once: {100 * coarse:.0f} % at 0.1, {100 * fine:.0f} % at 0.01",
-            passed and max(found) <= 0.05)
-
-
-def force(job):
-    most, _ = worst(job, "force")
-    steps, _ = worst(job, "force_step")
-    return ("changes of " + ", ".join(f"{100 * v:.1f}" for v in most) + " %, from step to step " + ", ".join(f"{100 * v:.1f}" for v in steps) +
-            " % of the pressure times the seat: when a row of cells opens or closes its own pressure takes the place of that beside it, and the friction at the edge of the orifice changes cells"), steps[2] <= 0.1 * steps[1]
 
 
 # -- contact ----------------------------------------------------------------------------------------------------------
@@ -234,43 +173,3 @@ def mesh_one(job):
     return (f"{cells / 1000:.0f} k cells, {2 * cells / 1000:.0f} k of the whole valve: {hours:.2f} core-hours per millisecond on 4 processes and two cores, {whole.cost.memory:.0f} MB in the largest; "
             f"8 ms at that rate {wall:.1f} h of wall time; restarted: {'bit for bit' if again == 0 else f'{again:.0e} apart'}, fluid and mover on two ranks: {ranks:.0e} apart",
             again == 0 and ranks < 1e-4 and wall <= 3)
-
-
-# -- slice ------------------------------------------------------------------------------------------------------------
-REST = 0.3  # gap under the tip at rest [mm]
-FLUIDS = {
-    "air and 50 cm^3 of it upstream": (),
-    "air, nothing upstream": ("participants.fluid.compressibility.upstream-volume=0",),
-    "incompressible": ("participants.fluid.compressibility.scheme=none", "participants.fluid.boundaries.outlet.absorbing=false"),
-}
-MESHES, STEPS = (0.5, 0.75, 1), (100, 50, 25)  # cells along each side, of the case's; us
-FROM, END = 7e-3, 25e-3  # the jet has its velocity from 5 ms on [s]
-DIES_OUT = 0.5  # of the range of the first half after FROM: what the second half of a reed that settles is below
-
-
-def motion(job, name, mesh, step):
-    """(settles or oscillates, mean gap [mm], range [mm] and frequency [Hz] of the second half)."""
-    size = [f"participants.{p}.mesh-parameters={{f: {mesh}}}" for p in ("fluid", "mover", "reed")]
-    sets = (*FLUIDS[name], *size, f"simulation.time-step={step}e-6", f"simulation.end-time={END}", "simulation.output.interval=0")
-    run = job.coupled_run(job.root / "configs/reed-slice/case.yaml", f"slice-{list(FLUIDS).index(name)}-{mesh}-{step}", sets, timeout=3600)
-    rows = couplet.read_csv(run.folder / "reed/probes.csv")
-    t, gap = np.array(rows["time [s]"]), 1e3 * np.array(rows["tip z [m]"]) + REST
-    half = (FROM + END) / 2
-    first, second = gap[(t >= FROM) & (t < half)], gap[t >= half]
-    late = second - second.mean()
-    rises = t[t >= half][1:][(late[:-1] < 0) & (late[1:] >= 0)]
-    frequency = (len(rises) - 1) / (rises[-1] - rises[0]) if len(rises) > 1 else float("nan")
-    return ("settles" if np.ptp(second) < DIES_OUT * np.ptp(first) else "oscillates"), second.mean(), np.ptp(second), frequency
-
-
-def statements(job):
-    texts, same = [], True
-    for name in FLUIDS:
-        by_mesh = [motion(job, name, mesh, 50) for mesh in MESHES]
-        by_step = [motion(job, name, MESHES[0], step) for step in STEPS]
-        same &= by_mesh[-1][0] == by_mesh[-2][0] == by_step[-1][0] == by_step[-2][0]
-        _, mean, span, frequency = by_mesh[-1]
-        apart = [" and ".join(f"{abs(pair[-1][i] - pair[-2][i]):.2g}" for pair in (by_mesh, by_step)) for i in (1, 2, 3)]
-        texts.append(f"{name}: {', '.join(dict.fromkeys(m[0] for m in (*by_mesh, *by_step)))}; finest mesh: mean gap {mean:.2f} mm ({apart[0]} between the two finest meshes and steps), "
-                     f"range {span:.2f} mm ({apart[1]}), " + (f"{frequency:.0f} Hz ({apart[2]})" if frequency > 0 else "fewer than two periods in the second half"))
-    return "; ".join(texts), same
