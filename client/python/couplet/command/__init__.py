@@ -25,6 +25,7 @@ SUBCOMMANDS = {
     "study": ("study.main", "runs the study of a case: variants, error against time, the best of some variables"),
     "mesh": ("command.mesh", "makes meshes that no rank has to hold, and opens them"),
     "export": ("command.export", "writes a case as input of CalculiX or OpenFOAM"),
+    "weather": ("command.weather", "converts a weather file to the CSV that a tank reads"),
     "accuracy": ("study.accuracy", "measures error against time of a case of the gallery"),
     "atlas": ("atlas.main", "maps where each scheme is stable"),
     "validate": ("command.validate", "measures the project's bars (in a checkout)"),
