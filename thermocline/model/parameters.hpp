@@ -13,7 +13,7 @@
 #include "thermocline/wall/shell.hpp"
 #include "thermocline/wall/ullage.hpp"
 #include "thermocline/wall/wall_interface.hpp"
-#include "thermocline/weather/weather_parameters.hpp"
+#include "thermocline/weather/weather.hpp"
 
 namespace couplet::thermocline {
 

@@ -11,7 +11,7 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "thermocline/base/clock.hpp"
-#include "thermocline/weather/weather_date.hpp"
+#include "thermocline/weather/weather_file.hpp"
 
 namespace couplet::thermocline {
 namespace {

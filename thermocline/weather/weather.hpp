@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "common/config/section.hpp"
 #include "thermocline/base/interfaces.hpp"
-#include "thermocline/weather/weather_hours.hpp"
+#include "thermocline/weather/made_days.hpp"
 
 namespace couplet::thermocline {
 
@@ -57,5 +60,40 @@ class Weather final : public AmbientSource {
   std::vector<double> slope_;      ///< of the irradiance over each hour [W/m^2 per hour]
   std::vector<double> cumulated_;  ///< irradiation before each hour [J/m^2], one more than hours
 };
+
+enum class WeatherKind { constant, file, clear_sky, smooth_days };
+
+/// Where on earth a weather file belongs, for files that do not say it.
+struct SiteParameters {
+  double latitude = 0, longitude = 0;  ///< [deg], north and east positive
+  double time_zone = 0;                ///< hours that the file's clock is ahead of Greenwich
+};
+void declare(config::Section& section, SiteParameters& site);
+
+/// What the section `weather` of the YAML says.
+struct WeatherParameters {
+  WeatherKind kind = WeatherKind::constant;
+  std::string file;
+  std::optional<SiteParameters> site;
+  ClearSky sky;
+  SmoothDays smooth;
+  double shift_hours = 0;  ///< by which the clock of the simulation is ahead of that of the file
+  bool mean_days = false;
+  std::string from = "01-01", to;  ///< dates MM-DD; empty: the whole year
+  Ambient constant;
+};
+void declare(config::Section& section, WeatherParameters& parameters);
+
+/// Reads or makes it. Throws Error.
+std::unique_ptr<Weather> make_weather(const WeatherParameters& parameters,
+                                      const std::filesystem::path& case_folder);
+
+/// The same record with each hour's irradiance replaced by the mean over that hour of all days of its month
+/// (of the record), as tables of average days give it. The energy of every month stays.
+WeatherHours with_mean_days(WeatherHours record);
+
+/// Reasons to doubt the sun of a record with a site: irradiance while the sun is below the horizon, a clock far
+/// from that of the longitude. Sentences.
+std::vector<std::string> doubts_about_sun(const WeatherHours& record);
 
 }  // namespace couplet::thermocline

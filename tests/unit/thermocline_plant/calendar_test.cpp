@@ -7,7 +7,7 @@
 
 #include "tests/unit/thermocline_plant/support.hpp"
 #include "thermocline/plant/plant.hpp"
-#include "thermocline/weather/weather_date.hpp"
+#include "thermocline/weather/weather_file.hpp"
 
 namespace couplet::thermocline::calendar_test {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "thermocline/economics/day_report.hpp"
 #include "thermocline/plant/plant_control.hpp"
-#include "thermocline/weather/weather_parameters.hpp"
+#include "thermocline/weather/weather.hpp"
 
 namespace couplet::thermocline::economics_test {
 namespace {

@@ -9,7 +9,7 @@
 #include "tests/unit/thermocline_plant/support.hpp"
 #include "thermocline/bed/thickness.hpp"
 #include "thermocline/economics/day_report.hpp"
-#include "thermocline/weather/weather_parameters.hpp"
+#include "thermocline/weather/weather.hpp"
 
 namespace couplet::thermocline::report_test {
 namespace {

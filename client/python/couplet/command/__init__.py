@@ -24,6 +24,7 @@ SUBCOMMANDS = {
     "study": ("study.main", "runs the study of a case: variants, error against time, the best of some variables"),
     "mesh": ("command.mesh", "makes meshes that no rank has to hold, and opens them"),
     "export": ("command.export", "writes a case as input of CalculiX or OpenFOAM"),
+    "weather": ("command.weather", "converts a weather file to the CSV that a tank reads"),
     "validate": ("command.validate", "measures the project's bars (in a checkout)"),
     "doctor": ("command.doctor", "checks whether this machine can run coupled cases"),
 }
