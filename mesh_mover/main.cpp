@@ -19,8 +19,8 @@ int main(int argc, char** argv) {
           },
       .diagnose =
           [](const couplet::coupling::Participant& participant, couplet::diagnostics::Diagnostics& all) {
-            couplet::mesh_mover::add_diagnostics(
-                dynamic_cast<const couplet::mesh_mover::Mover&>(participant), all);
+            couplet::mesh_mover::add_diagnostics(dynamic_cast<const couplet::mesh_mover::Mover&>(participant),
+                                                 all);
           },
       .environment = couplet::linalg::petsc_environment,
       .effects =

@@ -9,7 +9,6 @@
 #include "common/io/checkpoint.hpp"
 #include "common/io/probes/probe.hpp"
 #include "common/log/log.hpp"
-#include "solid_solver/effects/effect_cards.hpp"
 #include "solid_solver/output/output.hpp"
 
 namespace couplet::solid {
@@ -90,10 +89,6 @@ coupling::ErrorParts Solid::error_parts() const {
   // Here, where the mesh's part has just been estimated, which costs more than the stresses do.
   if (stepper_.state().steps > 0) output_->tell_stresses(parts.mesh);
   return parts;
-}
-
-std::vector<effects::EffectVerdict> Solid::audit() const {
-  return couplet::effects::audit(solid_effect_cards(), body_.parameters(), judge_.evidence());
 }
 
 std::vector<std::string> Solid::finish() {

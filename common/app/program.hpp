@@ -45,7 +45,7 @@ struct Program {
   /// Called once after reading; the parameters are those that `declare` filled.
   std::function<std::unique_ptr<coupling::Participant>(const ParticipantContext&)> make;
   /// Adds the diagnostics of the participant, once that is initialised; empty: it has none.
-  std::function<void(const coupling::Participant&, diagnostics::Diagnostics&)> diagnose = {};
+  std::function<void(coupling::Participant&, diagnostics::Diagnostics&)> diagnose = {};
   /// What the program's libraries need from before the participant is made until after it is gone (petsc_environment());
   /// empty: nothing. A program without one links no PETSc, whose libraries take 60 ms to load.
   std::function<std::shared_ptr<void>(MPI_Comm)> environment = {};

@@ -10,7 +10,7 @@
 namespace couplet::app {
 
 /// Adds the diagnostics of an initialised participant; empty: it judges itself.
-using Diagnose = std::function<void(const coupling::Participant&, diagnostics::Diagnostics&)>;
+using Diagnose = std::function<void(coupling::Participant&, diagnostics::Diagnostics&)>;
 
 /// The participant alone, from start to end. Returns the exit code.
 int run_alone(const Job& job, coupling::Participant& participant, const Diagnose& diagnose = {});

@@ -34,10 +34,6 @@ class Timed {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-void keep(double& part, double value) {
-  if (!std::isnan(value)) part = value;
-}
-
 }  // namespace
 
 void Diagnostics::take(Report& report) {
@@ -85,7 +81,7 @@ std::vector<std::string> Diagnostics::conclude(bool failed) {
     take(report);
     if (with_errors_) {
       errors_ = report.errors;
-      add_model();
+      add_model(worst_, errors_);
     }
   }
   for (const log::Finding& f : worst_)
@@ -96,21 +92,20 @@ std::vector<std::string> Diagnostics::conclude(bool failed) {
   return report.sentences;
 }
 
-/// The model's part of the error is the sum of the shares that are known.
-void Diagnostics::add_model() {
+void add_model(const std::vector<log::Finding>& findings, coupling::ErrorParts& errors) {
   double largest = 0;
-  for (const log::Finding& f : worst_) {
+  for (const log::Finding& f : findings) {
     if (f.saves > 0)
-      errors_.omittable += fmt::format("{}{} saves about {:.0f} % of the time",
-                                       errors_.omittable.empty() ? "" : ", ", f.sentence, 100 * f.saves);
+      errors.omittable += fmt::format("{}{} saves about {:.0f} % of the time",
+                                      errors.omittable.empty() ? "" : ", ", f.sentence, 100 * f.saves);
     if (std::isnan(f.share)) continue;
-    errors_.model = std::isnan(errors_.model) ? f.share : errors_.model + f.share;
+    errors.model = std::isnan(errors.model) ? f.share : errors.model + f.share;
     if (!(f.share > largest)) continue;
     largest = f.share;
     const bool is_justified = f.severity == Severity::note && f.share < 0.1;
-    errors_.model_by = f.effect + (is_justified       ? ", which is justified"
-                                   : f.advice.empty() ? ""
-                                                      : ": " + f.advice);
+    errors.model_by = f.effect + (is_justified       ? ", which is justified"
+                                  : f.advice.empty() ? ""
+                                                     : ": " + f.advice);
   }
 }
 

@@ -42,7 +42,6 @@ class Diagnostics {
     std::shared_ptr<Diagnostic> diagnostic;
   };
   void take(Report& report);
-  void add_model();
 
   int rank_;
   bool with_errors_;
@@ -57,10 +56,10 @@ class Diagnostics {
 
 /// A finding about an effect that a scene leaves out, or that it has. Nothing if `number` is not known.
 struct EffectFinding {
-  const char* effect;  ///< its name; the id of the finding is the name in lower case with hyphens
-  double number = 0;   ///< size of what is left out; NaN: not known
-  double limit = 0;    ///< neglecting it is justified up to here
-  std::string what;    ///< the number in words, with its unit: "max |grad u| = 0.29"
+  const char* effect = "";  ///< its name; the id of the finding is the name in lower case with hyphens
+  double number = 0;        ///< size of what is left out; NaN: not known
+  double limit = 0;         ///< neglecting it is justified up to here
+  std::string what;         ///< the number in words, with its unit: "max |grad u| = 0.29"
   std::string advice{};
   bool left_out = true;  ///< false: the scene has it
   /// The answer is useless from here on.
@@ -69,5 +68,8 @@ struct EffectFinding {
   double saves = 0;                                         ///< see log::Finding
 };
 std::optional<log::Finding> finding_of(const EffectFinding& effect);
+
+/// Adds the model's part of the error: the sum of the shares that are known, and what could be omitted.
+void add_model(const std::vector<log::Finding>& findings, coupling::ErrorParts& errors);
 
 }  // namespace couplet::diagnostics

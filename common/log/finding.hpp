@@ -13,10 +13,10 @@ namespace couplet::log {
 /// What a run found out about its own answer. Printed as "<sentence>; <advice> [<id>]", where the sentence has the form
 /// "effect: number (limit): verdict".
 struct Finding {
-  std::string id;  ///< one of finding_ids()
+  std::string id{};  ///< one of finding_ids()
   base::Severity severity = base::Severity::warning;
   double number = std::numeric_limits<double>::quiet_NaN(), limit = number;  ///< NaN: none
-  std::string sentence;
+  std::string sentence{};
   std::string advice{};  ///< what to do; empty: the sentence says it
   /// Part of the answer that a neglected effect changes [1]; its part of the error budget. NaN: not known.
   double share = std::numeric_limits<double>::quiet_NaN();

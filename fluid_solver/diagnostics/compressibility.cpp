@@ -10,37 +10,16 @@
 #include "common/io/archive.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/diagnostics/compliance.hpp"
+#include "fluid_solver/diagnostics/effects.hpp"
 #include "fluid_solver/diagnostics/view.hpp"
 
 namespace couplet::fluid {
 namespace {
 
-using diagnostics::EffectFinding;
-
 template <int D>
 std::optional<Sound> sound_in(const FluidView<D>& view) {
   const FluidParameters& p = view.parameters();
   return sound_of(p.compressibility, p.density, p.viscosity);
-}
-
-// Where flow is stopped or driven faster than waves cross the domain the pressure rises as rho c du or rho L
-// du/dt, whatever the Mach number; the density follows by dp/(rho c^2). What the speed itself explains of that, 2 M^2 of a
-// body in a stream (pressures from 1 to -3 of rho u^2/2), is the compressibility's share.
-template <int D>
-EffectFinding change_of_density(const FluidView<D>& view, const char* effect, double range,
-                                const Sound& sound) {
-  const FluidParameters& p = view.parameters();
-  const double change = range / (p.density * sound.speed * sound.speed);
-  return {
-      .effect = effect,
-      .number = change,
-      .limit = 0.05,
-      .what = fmt::format("pressure range {:.3g} Pa: density change of {} = {:.2g}", range, sound.of, change),
-      .advice = p.is_compressible()
-                    ? "'compressibility' holds for small changes of density only: use a compressible solver"
-                    : "the flow changes faster than pressure waves would allow: add 'compressibility'",
-      .left_out = !p.is_compressible(),
-      .share = std::max(0., change - 2 * std::pow(largest_speed(view) / sound.speed, 2))};
 }
 
 /// Largest extent of the points [m]. Collective.
@@ -92,7 +71,7 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
   void look(diagnostics::Report& report) override {
     if (view_.parameters().is_compressible()) return;
     if (const auto range = pressure_range(view_))
-      add(report, change_of_density(view_, "waves of pressure", *range, sound_));
+      add(report, change_of_density(false, density(), *range, largest_speed(view_), sound_));
   }
   /// Means over the run count at its end only: while a flow starts, its pressures compress much and walls have hardly moved.
   void conclude(diagnostics::Report& report) override {
@@ -103,8 +82,10 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
     if (!(walls[0] > 0)) return;
     const ComplianceWatch::Totals totals = watch_.totals();
     // A plate in the fluid sweeps as much on one side as it leaves on the other.
-    compliance(report, std::max(totals.swept, 0.5 * walls[2]), totals.pressure_volume);
-    wave_time(report, std::sqrt(walls[1] / walls[0]));
+    const double stroke = std::max(totals.swept, 0.5 * walls[2]);
+    const double size = size_of(view_.mesh, view_.fluid.state().placement->boundary_centre);
+    add(report, compliance(density(), stroke, totals.pressure_volume, sound_));
+    add(report, wave_time(std::sqrt(walls[1] / walls[0]), size, sound_));
   }
   void visit(io::Archive& archive) override {
     if (!moves_) return;
@@ -126,41 +107,13 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
   }
 
  private:
+  double density() const { return view_.parameters().density; }
   static bool has_bodies(const FluidView<D>& view) { return !view.fluid.boundary().body_patches().empty(); }
   const Vec3& centre(Index face) const {
     return view_.fluid.state().placement->boundary_centre[face - view_.mesh.n_interior];
   }
-  static void add(diagnostics::Report& report, const EffectFinding& effect) {
+  static void add(diagnostics::Report& report, const diagnostics::EffectFinding& effect) {
     if (auto finding = diagnostics::finding_of(effect)) report.findings.push_back(std::move(*finding));
-  }
-
-  // What the walls displace goes partly into compression, V dp / (rho c^2) = V dp / (gamma p) of a gas: of the volume of their
-  // stroke it is what an incompressible fluid pushes through the openings instead.
-  void compliance(diagnostics::Report& report, double stroke, double pressure_volume) const {
-    const double share = pressure_volume / (view_.parameters().density * sound_.speed * sound_.speed) /
-                         std::max(stroke, 1e-300);
-    add(report,
-        {.effect = "waves of pressure",
-         .number = share,
-         .limit = 0.1,
-         .what = fmt::format("compression of {} / volume displaced by the walls = {:.2g}", sound_.of, share),
-         .advice = "the compliance of the fluid may change frequencies and stability of the coupled "
-                   "motion: add 'compressibility'",
-         .share = share});
-  }
-
-  // A column of length L answers a motion of rate omega as tan(omega L/c) / (omega L/c): 3 % more than without waves at 0.3.
-  void wave_time(diagnostics::Report& report, double rate) const {
-    const double size = size_of(view_.mesh, view_.fluid.state().placement->boundary_centre);
-    const double phase = rate * size / sound_.speed;
-    add(report,
-        {.effect = "waves of pressure",
-         .number = phase,
-         .limit = 0.3,
-         .what = fmt::format("sound crosses {} in {:.2g} s = {:.2g} of 1/omega = {:.2g} s of the wall motion",
-                             sound_.of, size / sound_.speed, phase, 1 / rate),
-         .advice = "pressure waves return while the walls move: add 'compressibility'",
-         .share = phase < 1 ? std::tan(phase) / std::max(phase, 1e-300) - 1 : 1});
   }
 
   FluidView<D> view_;
@@ -174,30 +127,81 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
 }  // namespace
 
 // Density changes go with the Mach number squared over two: 5 % at 0.3.
+diagnostics::EffectFinding mach_number(double speed, const Sound& sound) {
+  const double mach = speed / sound.speed;
+  return {
+      .effect = "compressibility",
+      .number = mach,
+      .limit = 0.3,
+      .what = fmt::format("max speed {:.3g} m/s = {:.2g} of the speed of sound in {} ({:.4g} m/s)", speed,
+                          mach, sound.of, sound.speed),
+      .advice =
+          "density would change by more than 5 %: use a compressible solver; if the speed of sound "
+          "differs, set it in 'compressibility'",
+      .share = mach < 0.9 ? 1 / std::sqrt(1 - mach * mach) - 1 : 1};  // of pressures [Prandtl and Glauert]
+}
+
+// Where flow is stopped or driven faster than waves cross the domain the pressure rises as rho c du or rho L
+// du/dt, whatever the Mach number; the density follows by dp/(rho c^2). What the speed itself explains of that, 2 M^2 of a
+// body in a stream (pressures from 1 to -3 of rho u^2/2), is the compressibility's share. Linear acoustics leaves out what
+// goes with the change of density.
+diagnostics::EffectFinding change_of_density(bool is_compressible, double density, double range, double speed,
+                                             const Sound& sound) {
+  const double change = range / (density * sound.speed * sound.speed);
+  return {
+      .effect = is_compressible ? "small changes of density" : "waves of pressure",
+      .number = change,
+      .limit = 0.05,
+      .what = fmt::format("pressure range {:.3g} Pa: density change of {} = {:.2g}", range, sound.of, change),
+      .advice = is_compressible
+                    ? "'compressibility' holds for small changes of density only: use a compressible solver"
+                    : "the flow changes faster than pressure waves would allow: add 'compressibility'",
+      .left_out = !is_compressible,
+      .share = std::max(0., change - 2 * std::pow(speed / sound.speed, 2))};
+}
+
+// What the walls displace goes partly into compression, V dp / (rho c^2) = V dp / (gamma p) of a gas: of the volume of their
+// stroke it is what an incompressible fluid pushes through the openings instead.
+diagnostics::EffectFinding compliance(double density, double stroke, double pressure_volume,
+                                      const Sound& sound) {
+  const double share = pressure_volume / (density * sound.speed * sound.speed) / std::max(stroke, 1e-300);
+  return {.effect = "waves of pressure",
+          .number = share,
+          .limit = 0.1,
+          .what = fmt::format("compression of {} / volume displaced by the walls = {:.2g}", sound.of, share),
+          .advice =
+              "the compliance of the fluid may change frequencies and stability of the coupled motion: add "
+              "'compressibility'",
+          .share = share};
+}
+
+// A column of length L answers a motion of rate omega as tan(omega L/c) / (omega L/c): 3 % more than without waves at 0.3.
+diagnostics::EffectFinding wave_time(double rate, double size, const Sound& sound) {
+  const double phase = rate * size / sound.speed;
+  return {
+      .effect = "waves of pressure",
+      .number = phase,
+      .limit = 0.3,
+      .what = fmt::format("sound crosses {} in {:.2g} s = {:.2g} of 1/omega = {:.2g} s of the wall motion",
+                          sound.of, size / sound.speed, phase, 1 / rate),
+      .advice = "pressure waves return while the walls move: add 'compressibility'",
+      .share = phase < 1 ? std::tan(phase) / std::max(phase, 1e-300) - 1 : 1};
+}
+
 template <int D>
 std::optional<log::Finding> compressibility(const FluidView<D>& view) {
   const auto sound = sound_in(view);
   if (!sound) return {};
-  const double speed = largest_speed(view), mach = speed / sound->speed;
-  return diagnostics::finding_of(
-      {.effect = "compressibility",
-       .number = mach,
-       .limit = 0.3,
-       .what = fmt::format("max speed {:.3g} m/s = {:.2g} of the speed of sound in {} ({:.4g} m/s)", speed,
-                           mach, sound->of, sound->speed),
-       .advice =
-           "density would change by more than 5 %: use a compressible solver; if the speed of sound differs, "
-           "set it in 'compressibility'",
-       .share = mach < 0.9 ? 1 / std::sqrt(1 - mach * mach) - 1 : 1});  // of pressures [Prandtl and Glauert]
+  return diagnostics::finding_of(mach_number(largest_speed(view), *sound));
 }
 
-// Linear acoustics: what it leaves out goes with the change of density.
 template <int D>
 std::optional<log::Finding> changes_of_density(const FluidView<D>& view) {
   const auto sound = sound_in(view);
   const auto range = view.parameters().is_compressible() && sound ? pressure_range(view) : std::nullopt;
   if (!range) return {};
-  return diagnostics::finding_of(change_of_density(view, "small changes of density", *range, *sound));
+  return diagnostics::finding_of(
+      change_of_density(true, view.parameters().density, *range, largest_speed(view), *sound));
 }
 
 template <int D>

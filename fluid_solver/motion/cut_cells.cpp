@@ -76,13 +76,13 @@ OpenPart open_part(std::span<const LevelCorner> corners, const Level& level, dou
 namespace {
 
 // Shares as near as this to nothing or all are round-off.
-constexpr double least_share = 1e-10;
+constexpr double smallest_cut = 1e-10;
 // And levels, of the size of a cell: faces along a surface are closed.
 constexpr double level_round_off = 1e-10;
 // The middle of what is open of a cell is at least this share of the cell's size from the surface, times the open share.
 constexpr double least_depth = 0.01;
 
-double snapped(double share) { return share < least_share ? 0 : share > 1 - least_share ? 1 : share; }
+double snapped(double share) { return share < smallest_cut ? 0 : share > 1 - smallest_cut ? 1 : share; }
 
 /// Part of a face: a segment, or a triangle of a fan around its middle.
 template <int D>

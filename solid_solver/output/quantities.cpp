@@ -10,8 +10,8 @@
 #include "common/base/error.hpp"
 #include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/judge/dual_problem.hpp"
-#include "solid_solver/judge/local_quadratic.hpp"
+#include "solid_solver/diagnostics/dual_problem.hpp"
+#include "solid_solver/diagnostics/local_quadratic.hpp"
 #include "solid_solver/material/stress.hpp"
 #include "solid_solver/output/stress_report.hpp"
 

@@ -15,7 +15,7 @@
 #include "common/fv/table.hpp"
 #include "common/io/fields/field_writer.hpp"
 #include "common/mesh/mesh.hpp"
-#include "solid_solver/effects/effect_cards.hpp"
+#include "solid_solver/effects/evidence.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 #include "solid_solver/thermal/heat.hpp"
 #include "solid_solver/thermal/heat_errors.hpp"

@@ -38,7 +38,7 @@ RIGHT = [
     ("common/io/a.cpp", HEAD + '#include <hdf5.h>\n#include "common/mesh/mesh.hpp"\n'),
     ("fluid_solver/a.cpp", HEAD + '#include "fluid_solver/step/fluid.hpp"\n#include "common/fv/expression.hpp"\n'),
     ("common/base/a.cpp", HEAD + "#include <nanoflann.hpp>\n"),
-    ("coupler/judge/a.cpp", HEAD + '#include "coupler/judge/b.hpp"\n#include "coupler/mapping/links.hpp"\n'),
+    ("coupler/mapping/a.cpp", HEAD + '#include "coupler/mapping/b.hpp"\n#include "coupler/mapping/links.hpp"\n'),
     ("coupler/a.hpp", HEAD + "namespace couplet::fluid {\nclass A;\ntemplate <int D>\nstruct B;\n}\nnamespace couplet::coupler {\nint f(A&);\n}\n"),
     ("common/csv/a.hpp", HEAD + "namespace couplet::csv::detail {\nint f();\n}\n"),
     ("coupler/a.cpp", HEAD + "namespace couplet {\nint f();\n}\n"),

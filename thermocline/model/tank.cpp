@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "common/base/error.hpp"
+#include "common/io/archive.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/finding.hpp"
 #include "common/log/log.hpp"
@@ -265,7 +266,12 @@ void Tank::save(io::CheckpointWriter& file) const {
   file.write_common("flow-control", control_state_);
   for (std::size_t i = 0; i < observers_.size(); ++i)
     file.write_common("observer-" + std::to_string(i), observers_[i]->state());
+  io::Archive archive(file);
+  const_cast<Tank*>(this)->visit_seen(archive);  // writing changes nothing
 }
+
+/// What the run has seen for its findings.
+void Tank::visit_seen(io::Archive& archive) { archive.common("seen", peak_flow_, peak_advance_, bending_); }
 
 void Tank::load(io::CheckpointReader& file) {
   accepted_.restore([&](const std::string& name) { return file.read_common(name); });
@@ -273,6 +279,8 @@ void Tank::load(io::CheckpointReader& file) {
   control_->restore(control_state_);
   for (std::size_t i = 0; i < observers_.size(); ++i)
     observers_[i]->restore(file.read_common("observer-" + std::to_string(i)));
+  io::Archive archive(file);
+  visit_seen(archive);
 }
 
 void Tank::write_output(double time, int) {

@@ -11,6 +11,10 @@
 #include "thermocline/model/output.hpp"
 #include "thermocline/wall/wall_bending.hpp"
 
+namespace couplet::io {
+class Archive;
+}
+
 namespace couplet::thermocline {
 
 /// What bending, which the rings leave out, would have made of the wall; looked at every two hours.
@@ -19,11 +23,15 @@ struct BendingSeen {
          shell_z = 0;  ///< largest hoop stress, as rings and with bending, and where [Pa], [m]
   double axial = 0, axial_z = 0, axial_time = 0;  ///< largest bending stress, where and when [Pa], [m], [s]
   YieldShares share;                              ///< largest shares of the yield strength so far
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(rings, shell, shell_z, axial, axial_z, axial_time, share.rings, share.shell);
+  }
 };
 
 /// The tank as a participant: runs the elements that the YAML asks for. A tank is small, so every rank
 /// computes all of it; rank 0 writes.
-class Tank final : public coupling::Participant, public coupling::EstimatesError {
+class Tank final : public coupling::Participant {
  public:
   Tank(const TankParameters& parameters, const app::ParticipantContext& context);
 
@@ -37,14 +45,14 @@ class Tank final : public coupling::Participant, public coupling::EstimatesError
   void load(io::CheckpointReader& file) override;
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
-  std::vector<effects::EffectVerdict> audit() const override;
+  /// What the run so far says about effects of its scene.
+  std::vector<log::Finding> effects() const;
   std::vector<std::string> finish() override;
-  void collect_errors() override {}  // the last profile and the largest flow, which are known, are enough
   /// Upwind advection spreads a front as a diffusion v dz / 2 does, implicit steps as v^2 dt / 2: over the way w by
   /// s^2 = dz w and v dt w, which changes the profile by s^2 / 2 of its second derivative; w is what the largest flow
   /// can have gone since time 0, at most the height. The limited scheme is taken to spread by a cell. Over the
   /// profile's distance from its mean, sums over the height. Of a plant at least what of the storage the spreading leaves unused.
-  coupling::ErrorParts error_parts() const override;
+  coupling::ErrorParts error_parts() const;
 
   const TankModel& model() const { return accepted_; }
   const Speed& speed() const { return speed_; }
@@ -54,6 +62,7 @@ class Tank final : public coupling::Participant, public coupling::EstimatesError
  private:
   TankRecord record() const;
   void look_at_bending();
+  void visit_seen(io::Archive& archive);
   coupling::ErrorParts spread_profile() const;
   double unused_by_spreading(double finer = 1) const;  // with so many times the cells
   coupling::Exchange given() const;

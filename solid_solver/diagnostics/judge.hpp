@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "solid_solver/body/solid_fields.hpp"
-#include "solid_solver/effects/effect_cards.hpp"
-#include "solid_solver/judge/large_strain_estimate.hpp"
-#include "solid_solver/judge/strain_audit.hpp"
+#include "solid_solver/diagnostics/effects.hpp"
+#include "solid_solver/diagnostics/large_strain_estimate.hpp"
+#include "solid_solver/diagnostics/strain_audit.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
 #include "solid_solver/stability/buckling_estimate.hpp"
 #include "solid_solver/stability/equilibrium.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/judge/soft_motion.hpp"
+#include "solid_solver/diagnostics/soft_motion.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/judge/inner_variation.hpp"
+#include "solid_solver/diagnostics/inner_variation.hpp"
 
 namespace couplet::solid {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/judge/error_estimate.hpp"
+#include "solid_solver/diagnostics/error_estimate.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,9 +12,9 @@
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/judge/inner_variation.hpp"
-#include "solid_solver/judge/soft_motion.hpp"
-#include "solid_solver/judge/weighted_estimate.hpp"
+#include "solid_solver/diagnostics/inner_variation.hpp"
+#include "solid_solver/diagnostics/soft_motion.hpp"
+#include "solid_solver/diagnostics/weighted_estimate.hpp"
 
 namespace couplet::solid {
 

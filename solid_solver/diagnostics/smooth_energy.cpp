@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/judge/smooth_energy.hpp"
+#include "solid_solver/diagnostics/smooth_energy.hpp"
 
 #include <algorithm>
 #include <array>

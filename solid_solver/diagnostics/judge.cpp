@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/judge/judge.hpp"
+#include "solid_solver/diagnostics/judge.hpp"
 
 #include <fmt/format.h>
 

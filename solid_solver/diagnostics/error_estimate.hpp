@@ -9,8 +9,8 @@
 #include "common/time/velocity_errors.hpp"
 #include "solid_solver/body/solid_body.hpp"
 #include "solid_solver/body/solid_fields.hpp"
-#include "solid_solver/judge/judge.hpp"
-#include "solid_solver/judge/phase_drift.hpp"
+#include "solid_solver/diagnostics/judge.hpp"
+#include "solid_solver/diagnostics/phase_drift.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
 
 namespace couplet::solid {

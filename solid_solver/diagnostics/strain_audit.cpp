@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A solution judged by its own energy: work against strain energy, and one face gradient against another.
-#include "solid_solver/judge/strain_audit.hpp"
+#include "solid_solver/diagnostics/strain_audit.hpp"
 
 #include <fmt/format.h>
 
@@ -11,10 +11,10 @@
 #include "common/base/error.hpp"
 #include "common/elasticity/vector_at.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/judge/inner_variation.hpp"
-#include "solid_solver/judge/judge.hpp"
-#include "solid_solver/judge/recovered_strain.hpp"
-#include "solid_solver/judge/smooth_energy.hpp"
+#include "solid_solver/diagnostics/inner_variation.hpp"
+#include "solid_solver/diagnostics/judge.hpp"
+#include "solid_solver/diagnostics/recovered_strain.hpp"
+#include "solid_solver/diagnostics/smooth_energy.hpp"
 
 namespace couplet::solid {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/judge/large_strain_estimate.hpp"
+#include "solid_solver/diagnostics/large_strain_estimate.hpp"
 
 #include <fmt/format.h>
 

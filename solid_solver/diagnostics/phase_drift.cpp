@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/judge/phase_drift.hpp"
+#include "solid_solver/diagnostics/phase_drift.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/judge/local_quadratic.hpp"
+#include "solid_solver/diagnostics/local_quadratic.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/judge/recovered_strain.hpp"
+#include "solid_solver/diagnostics/recovered_strain.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

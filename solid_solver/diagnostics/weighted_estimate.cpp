@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/judge/weighted_estimate.hpp"
+#include "solid_solver/diagnostics/weighted_estimate.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include "common/base/error.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/judge/inner_variation.hpp"
+#include "solid_solver/diagnostics/inner_variation.hpp"
 #include "solid_solver/material/stress.hpp"
 #include "solid_solver/method/solution_method.hpp"
 
