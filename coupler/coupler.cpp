@@ -8,7 +8,7 @@
 #include "common/io/archive.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
-#include "coupler/exchange/introductions.hpp"
+#include "coupler/exchange/start_checks.hpp"
 
 namespace couplet::coupler {
 

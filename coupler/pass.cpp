@@ -5,12 +5,9 @@
 
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
-#include "coupler/exchange/foreign_fluid.hpp"
-#include "coupler/exchange/foreign_structure.hpp"
-#include "coupler/exchange/introductions.hpp"
-#include "coupler/exchange/role_checks.hpp"
-#include "coupler/mapping/compare_surfaces.hpp"
-#include "coupler/mapping/places.hpp"
+#include "coupler/exchange/foreign.hpp"
+#include "coupler/exchange/start_checks.hpp"
+#include "coupler/mapping/surface_checks.hpp"
 
 namespace couplet::coupler {
 

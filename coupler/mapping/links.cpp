@@ -11,7 +11,7 @@
 #include "common/coupling/within_step.hpp"
 #include "common/parallel/collective.hpp"
 #include "coupler/mapping/conjugate_map.hpp"
-#include "coupler/mapping/map_projection.hpp"
+#include "coupler/mapping/sparse_map.hpp"
 
 namespace couplet::coupler {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "coupler/parameters/schedule.hpp"
+#include "coupler/parameters/effect_cards.hpp"
 
 namespace couplet::coupler {
 namespace {

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "coupler/mapping/links.hpp"
-#include "coupler/output/balance.hpp"
+#include "coupler/output/mechanics.hpp"
 #include "tests/coupling/support/surfaces.hpp"
 
 namespace couplet::conjugate_test {

@@ -10,7 +10,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/numbers.hpp"
-#include "coupler/mapping/places.hpp"
+#include "coupler/mapping/surface_checks.hpp"
 
 namespace couplet::guards_test {
 using namespace coupling;

@@ -5,9 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "common/base/error.hpp"
-#include "coupler/exchange/role_checks.hpp"
-#include "coupler/mapping/places.hpp"
-#include "coupler/output/balance.hpp"
+#include "coupler/exchange/start_checks.hpp"
+#include "coupler/mapping/surface_checks.hpp"
 #include "coupler/output/mechanics.hpp"
 
 namespace couplet::links_test {

@@ -6,7 +6,7 @@
 #include <ctime>
 
 #include "common/base/error.hpp"
-#include "coupler/mapping/places.hpp"
+#include "coupler/mapping/surface_checks.hpp"
 #include "coupler/output/mechanics.hpp"
 
 namespace couplet::scale_test {

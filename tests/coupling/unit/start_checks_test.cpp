@@ -8,7 +8,7 @@
 #include "common/base/error.hpp"
 #include "common/coupling/roles.hpp"
 #include "common/log/finding.hpp"
-#include "coupler/mapping/compare_surfaces.hpp"
+#include "coupler/mapping/surface_checks.hpp"
 #include "tests/coupling/support/surfaces.hpp"
 
 namespace couplet::start_checks_test {

@@ -1,14 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/exchange/foreign_structure.hpp"
+#include "coupler/exchange/foreign.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
 #include "common/io/checkpoint.hpp"
-#include "coupler/exchange/foreign_names.hpp"
 
 namespace couplet::coupler {
+using Datum = coupling::Interface::Datum;
+
+std::vector<Datum>::iterator ForeignNames::find(const std::string& name) const {
+  return std::ranges::find(data, name, &Datum::name);
+}
+
+void ForeignNames::rename(Datum& datum, const std::string& name) const {
+  if (auto node = surface_of.extract(datum.name); !node.empty()) {
+    node.key() = name;
+    surface_of.insert(std::move(node));
+  }
+  datum.name = name;
+}
+
+void ForeignNames::put_beside(const std::string& datum, const std::string& name) const {
+  if (const auto surface = surface_of.find(datum); surface != surface_of.end())
+    surface_of[name] = surface->second;
+}
+
+void ForeignNames::refuse(const char* key, const std::string& wanted) const {
+  std::vector<std::string> all;
+  for (const Datum& d : data)
+    all.push_back(fmt::format("'{}' [{}] at {}", d.name, d.unit,
+                              d.place == coupling::Interface::Place::vertices ? "vertices" : "faces"));
+  throw Error("coupling.{}.{}: '{}' {} no {}. It {}: {}.", role, key, who, does, wanted, does,
+              all.empty() ? "nothing" : base::join(all));
+}
 
 using Datum = coupling::Interface::Datum;
 
@@ -112,6 +140,44 @@ coupling::Reply ForeignStructure::receive() {
     if (before_the_start) now_ = next_;
     if (derives_velocity_)
       reply.data["velocity"] = before_the_start ? std::vector<double>(next_.size()) : velocity();
+  }
+  return reply;
+}
+
+void ForeignFluid::adapt(coupling::Interface& own, coupling::Surfaces& surfaces) {
+  const ForeignNames takes{own.takes, surfaces.takes, "fluid", name(), "takes"},
+      gives{own.gives, surfaces.gives, "fluid", name(), "gives"};
+  const auto motion = takes.find(names_.displacement);
+  if (motion == own.takes.end() || motion->size(own.dim) != own.dim ||
+      (motion->unit != "m" && motion->unit != "1"))
+    takes.refuse("displacement", fmt::format("vector '{}' [m, or without a unit]", names_.displacement));
+  takes.rename(*motion, "displacement");
+  motion->unit = "m";
+  const auto force = gives.find(names_.load);
+  if (force == own.gives.end() || force->unit != "N" || force->size(own.dim) != own.dim)
+    gives.refuse("load", fmt::format("force '{}' [N]", names_.load));
+  gives.rename(*force, "pressure-force");
+  coupling::Interface::Datum viscous = *force;
+  viscous.name = "viscous-force";
+  own.gives.push_back(viscous);
+  gives.put_beside("pressure-force", "viscous-force");
+}
+
+void ForeignFluid::send(const coupling::Command& command) {
+  if (!command.data.contains("displacement")) return channel_->send(command);
+  coupling::Command own = command;
+  auto node = own.data.extract("displacement");
+  node.key() = names_.displacement;
+  own.data.insert(std::move(node));
+  channel_->send(own);
+}
+
+coupling::Reply ForeignFluid::receive() {
+  coupling::Reply reply = channel_->receive();
+  if (auto node = reply.data.extract(names_.load); !node.empty()) {
+    reply.data["viscous-force"] = std::vector<double>(node.mapped().size());
+    node.key() = "pressure-force";
+    reply.data.insert(std::move(node));
   }
   return reply;
 }
