@@ -7,7 +7,7 @@
 
 #include "common/coupling/error_parts.hpp"
 #include "common/coupling/participant.hpp"
-#include "common/time/velocity_errors.hpp"
+#include "common/time/step_errors.hpp"
 #include "plate_modal/model/build_model.hpp"
 #include "plate_modal/motion/contact.hpp"
 #include "plate_modal/motion/oscillators.hpp"

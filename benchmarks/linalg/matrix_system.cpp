@@ -10,6 +10,7 @@
 #include "common/linalg/petsc_environment.hpp"
 
 namespace couplet::benchmark {
+
 using namespace linalg;
 namespace {
 

@@ -22,6 +22,7 @@
 #include "solid_solver/solid.hpp"
 
 namespace couplet::benchmark {
+
 using namespace linalg;
 
 using namespace solid;

@@ -9,7 +9,7 @@
 #include <memory>
 #include <string>
 
-#include "common/app/case/problem_of_key.hpp"
+#include "common/app/case/check_files.hpp"
 #include "common/app/loop/simulation.hpp"
 #include "common/config/section.hpp"
 #include "common/coupling/mesh_motion.hpp"
@@ -17,7 +17,6 @@
 #include "common/diagnostics/diagnostics.hpp"
 #include "common/effects/card.hpp"
 #include "common/effects/choice.hpp"
-#include "common/effects/expected.hpp"
 
 namespace couplet::app {
 

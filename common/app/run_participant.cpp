@@ -18,7 +18,6 @@
 #include "common/log/log.hpp"
 #include "common/log/progress.hpp"
 #include "common/log/terminal.hpp"
-#include "common/log/timer.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::app {

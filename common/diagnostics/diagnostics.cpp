@@ -10,7 +10,7 @@
 #include <cmath>
 
 #include "common/io/archive.hpp"
-#include "common/log/timer.hpp"
+#include "common/log/progress.hpp"
 
 namespace couplet::diagnostics {
 namespace {

@@ -12,8 +12,8 @@
 #include "common/linalg/dot.hpp"
 #include "common/linalg/petsc_shell.hpp"
 #include "common/linalg/residual_projection.hpp"
-#include "common/log/life.hpp"
 #include "common/log/log.hpp"
+#include "common/log/progress.hpp"
 
 namespace couplet::linalg {
 namespace {

@@ -11,8 +11,8 @@
 #include "common/linalg/petsc_methods.hpp"
 #include "common/linalg/petsc_shell.hpp"
 #include "common/linalg/single_factors.hpp"
-#include "common/log/life.hpp"
 #include "common/log/log.hpp"
+#include "common/log/progress.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::linalg {

@@ -14,6 +14,7 @@ class Archive;
 }
 
 namespace couplet::coupler {
+
 /// Watches for two faults of participants that no residual shows by its cause: an answer that does not follow the input (a
 /// solver whose first guess meets its own tolerance), and a velocity that is not the rate of the displacement beside it.
 class DataGuard {

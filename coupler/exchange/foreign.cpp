@@ -10,6 +10,7 @@
 #include "common/io/checkpoint.hpp"
 
 namespace couplet::coupler {
+
 using Datum = coupling::Interface::Datum;
 
 std::vector<Datum>::iterator ForeignNames::find(const std::string& name) const {

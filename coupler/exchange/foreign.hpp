@@ -15,6 +15,7 @@ class CheckpointWriter;
 }  // namespace couplet::io
 
 namespace couplet::coupler {
+
 /// Data of a program that calls them otherwise than the coupler, as it announced them: of a role, in one direction.
 struct ForeignNames {
   std::vector<coupling::Interface::Datum>& data;

@@ -12,6 +12,7 @@
 #include "common/parallel/parcels.hpp"
 
 namespace couplet::coupler {
+
 /// The smallest box around some points.
 struct PointBox {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();

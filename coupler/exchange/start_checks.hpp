@@ -9,6 +9,7 @@
 #include "coupler/parameters/parameters.hpp"
 
 namespace couplet::coupler {
+
 /// Programs on preCICE's interface read their configuration themselves and introduce themselves by its digest and their schemes
 /// (docs/protocol.md, initialise). Throws Error where two read different ones, or where the case was made of one
 /// (coupling.exchange.digest) and they read another, or its scheme or order is no longer that of the configuration.

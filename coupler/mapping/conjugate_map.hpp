@@ -12,6 +12,7 @@
 #include "coupler/parameters/parameters.hpp"
 
 namespace couplet::coupler {
+
 /// One map between a structure and a surface that moves with it and gives its load, used both ways:
 ///   motion: B N A,   load: transpose of B N
 /// A: means of the motion over the structure's faces; N: from these to the surface's vertices; B: means over the

@@ -10,6 +10,7 @@
 #include "coupler/mapping/slopes.hpp"
 
 namespace couplet::coupler {
+
 /// Corners of a face, as positions in the surface's own list of vertices.
 std::span<const Index> corners(const coupling::Interface& surface, Index face);
 

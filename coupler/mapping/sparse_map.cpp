@@ -14,6 +14,7 @@
 #include "coupler/mapping/face_weights.hpp"
 
 namespace couplet::coupler {
+
 void SparseMap::push_row(std::span<const Index> sources, std::span<const double> weights) {
   assert(sources.size() == weights.size());
   source.insert(source.end(), sources.begin(), sources.end());

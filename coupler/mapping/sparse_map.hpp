@@ -10,6 +10,7 @@
 #include "coupler/exchange/transfer.hpp"
 
 namespace couplet::coupler {
+
 /// A linear map between two sets of places: target i is the sum of weight[k] times source[k] over
 /// offset[i] <= k < offset[i + 1]. The same for each component of a vector.
 struct SparseMap {

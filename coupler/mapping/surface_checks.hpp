@@ -11,6 +11,7 @@
 #include "coupler/parameters/schedule.hpp"
 
 namespace couplet::coupler {
+
 /// Throws SolveFailure on all ranks, naming datum, entry and place, if one of the values is not finite.
 /// Collective.
 void require_finite(MPI_Comm comm, const coupling::Exchange& data, const coupling::Interface& interface,

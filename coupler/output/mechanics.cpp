@@ -10,6 +10,7 @@
 #include "coupler/mapping/face_weights.hpp"
 
 namespace couplet::coupler {
+
 Balancing::Balancing(MPI_Comm comm, const Side& side)
     : comm_(comm),
       dim_(side.interface.dim),

@@ -9,6 +9,7 @@
 #include "coupler/mapping/links.hpp"
 
 namespace couplet::coupler {
+
 /// What the loads on one side of the interface add up to.
 struct Balance {
   Vec3 force = Vec3::Zero();   ///< [N]

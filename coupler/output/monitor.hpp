@@ -19,6 +19,7 @@
 #include "coupler/parameters/schedule.hpp"
 
 namespace couplet::coupler {
+
 /// The coupler's own output, by its rank 0: residuals.csv (a row a pass), participants.csv (a row a step:
 /// what each worked and waited, what it says of its step, the coupler's own work), balance.csv (forces, moments and work),
 /// amounts.csv (sums that go over), volume.csv (levels of closed fluids), watch.csv (integrals asked for), the console line of

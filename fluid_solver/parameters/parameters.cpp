@@ -14,6 +14,7 @@
 #include "fluid_solver/parameters/condition.hpp"
 
 namespace couplet::fluid {
+
 std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& parameters) {
   std::map<std::string, std::string> partner_of;
   for (const auto& [name, b] : parameters.boundaries)

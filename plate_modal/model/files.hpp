@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "common/app/case/problem_of_key.hpp"
+#include "common/app/case/check_files.hpp"
 #include "plate_modal/model/parameters.hpp"
 
 namespace couplet::plate {

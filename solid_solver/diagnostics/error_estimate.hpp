@@ -6,7 +6,6 @@
 
 #include "common/coupling/error_parts.hpp"
 #include "common/time/step_errors.hpp"
-#include "common/time/velocity_errors.hpp"
 #include "solid_solver/body/solid_body.hpp"
 #include "solid_solver/body/solid_fields.hpp"
 #include "solid_solver/diagnostics/judge.hpp"

@@ -9,7 +9,7 @@
 #include "common/base/error.hpp"
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
 #include "common/elasticity/symmetric/tied_matrix.hpp"
-#include "common/log/timer.hpp"
+#include "common/log/progress.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::solid {

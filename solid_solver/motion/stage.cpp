@@ -5,7 +5,7 @@
 
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/log/log.hpp"
-#include "common/log/timer.hpp"
+#include "common/log/progress.hpp"
 #include "solid_solver/large_strain/load_path.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
 #include "solid_solver/motion/history.hpp"

@@ -7,6 +7,7 @@
 #include "common/base/error.hpp"
 
 namespace couplet::thermocline {
+
 std::vector<ColumnLayer> ground_layers(const GroundParameters& p) {
   std::vector<ColumnLayer> layers;
   double depth = 0;

@@ -6,6 +6,7 @@
 #include "common/io/fields/part_points.hpp"
 
 namespace couplet::io {
+
 SurfaceMesh make_surface(const mesh::Mesh& body, std::span<const Vec3> places, const mesh::Patch& patch) {
   SurfaceMesh surface;
   mesh::Mesh& mesh = surface.mesh;

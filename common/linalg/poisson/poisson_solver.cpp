@@ -13,7 +13,7 @@
 #include "common/linalg/lanes/vector_passes.hpp"
 #include "common/linalg/multigrid/coloured_multigrid.hpp"
 #include "common/linalg/single_factors.hpp"
-#include "common/log/life.hpp"
+#include "common/log/progress.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::linalg {
