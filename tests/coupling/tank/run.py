@@ -8,6 +8,9 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import mpmd  # noqa: E402
+
 project, programs, mpirun = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3:]
 case = project / "configs/thermocline-solar-one-wall/case.yaml"
 file = case.parent / "compare.py"
@@ -23,11 +26,8 @@ with tempfile.TemporaryDirectory(prefix="couplet-tank-") as folder:
     found = {}
     for ranks in ((1, 1), (2, 2)):
         out = folder / f"coupled-{ranks[0]}"
-        command = [*mpirun]
-        for n, program in zip((1, *ranks), ("coupler", "thermocline", "solid_solver")):
-            command += [":"] * (program != "coupler") + ["-n", str(n), programs / program, case,
-                                                         f"--set=simulation.output.folder={out}"]
-        result = subprocess.run([str(c) for c in command], capture_output=True, text=True)
+        parts = [[programs / program, case, f"--set=simulation.output.folder={out}"] for program in ("coupler", "thermocline", "solid_solver")]
+        result = subprocess.run(mpmd(parts, (1, *ranks), mpirun), capture_output=True, text=True)
         if result.returncode:
             sys.exit(result.stdout + result.stderr)
         found[ranks], _ = module.compare(out, folder / "alone/tank")
