@@ -17,7 +17,6 @@ from made_up import MadeUp  # noqa: E402
 sizes = [8, 12, 20]
 limit = fits.limit_of(sizes, [1 + 3 * n**-1.7 for n in sizes])
 assert abs(limit.value - 1) < 1e-9 and abs(limit.order - 1.7) < 1e-9 and abs(limit.gci - 1.25 * 3 * 20**-1.7) < 1e-9
-assert abs(limit.size_for(limit.error(31)) - 31) < 1e-9
 assert fits.limit_of(sizes, [1, 2, 1.5]) is None, "values that alternate have no limit"
 assert fits.limit_of(sizes, [1, 1.1, 1.4]) is None, "changes that grow have no limit"
 assert fits.limit_of(sizes[:2], [1, 2]) is None and fits.limit_of(sizes, [1, 1, 1]) is None
