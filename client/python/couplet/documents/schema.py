@@ -6,7 +6,7 @@ import re
 
 from couplet.documents import units
 from couplet.plots.section import NUMBER, PLOT, mapping
-from couplet.study import dominance, pictures, quantities, study
+from couplet.study import interest, pictures, quantities, study
 
 EXPRESSION = ["number", "string", "object"]
 A_QUANTITY = f"^ *{units.NUMBER} *(?![eE][+-]?[0-9])[A-Za-zµ%/][A-Za-zµ0-9^/*· ()²³-]*$"
@@ -67,7 +67,7 @@ STUDY = {"description": "runs of this case for `couplet study` (docs/studies.md)
     mapping({**{name: {} for name in sorted(study.KEYS)}, "participant": {"type": "string"}, "alone": {"type": "boolean"}, "axes": named(AXIS), "set": CHANGES,
              "quantities": named({"type": "object", "propertyNames": {"enum": sorted(quantities.KEYS)}}), "clock": {"enum": list(pictures.CLOCKS)},
              "leave-out": {"type": "array", "items": {"type": "object"}}, "repeats": {"type": "integer", "minimum": 1}, "timeout": NUMBER, "title": {"type": "string"},
-             "text": {"type": "string"}, "optimise": OPTIMISE, "sources": named({"type": "object", "propertyNames": {"enum": sorted(dominance.KEYS)}})},
+             "text": {"type": "string"}, "optimise": OPTIMISE, "sources": named({"type": "object", "propertyNames": {"enum": sorted(interest.KEYS)}})},
             required=["axes", "quantities"])]}
 
 
