@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What tests that run programs share: claims that are reported one by one, the line that starts a job, and the last row of a table."""
 import os
+import subprocess
 import sys
 
 COUPLED = ("coupler", "fluid_solver", "solid_solver", "mesh_mover")
@@ -29,6 +30,14 @@ def require(claim, holds, detail=""):
     """A claim without which the rest is not worth a run."""
     if check(claim, holds, detail):
         end()
+
+
+def said(line, timeout=300, **more):
+    """What a program prints that has to end well."""
+    done = subprocess.run([str(word) for word in line], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=timeout, **more)
+    if done.returncode:
+        sys.exit(f"exit code {done.returncode} of {' '.join(map(str, line))[:500]}\n{done.stdout[-4000:]}")
+    return done.stdout
 
 
 def living(session):

@@ -7,7 +7,6 @@ compared as they are. Coarse meshes.
 Usage: ranks.py CASE CONFIGS BIN [--ranks 1,2,3]      CASE: flap, tube, fsi1"""
 import pathlib
 import shutil
-import subprocess
 import sys
 import tempfile
 
@@ -15,7 +14,7 @@ import h5py
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
-from checks import COUPLED, mpmd  # noqa: E402
+from checks import COUPLED, mpmd, said  # noqa: E402
 
 FLAP = {"n_side = 80": "n_side = 20", "n_side = 160": "n_side = 40", "n_tip = 8": "n_tip = 4", "n_tip = 16": "n_tip = 8",
         "growth = 1.12; ": "growth = 1.25; ", "wall_cells = 10": "wall_cells = 5"}
@@ -51,10 +50,7 @@ class Case:
         words = [f"--set={s}" for s in (*self.sets, f"simulation.end-time={steps * self.step}", "simulation.checkpoint.interval=0",
                                         f"simulation.output={{folder: {out}, interval: {STEPS // 2 * self.step}}}")]
         words += ["--restart", restart, "--restart-with-changes"] if restart else []
-        line = mpmd([[self.bin / program, self.file, *words] for program in COUPLED], 4 * [ranks])
-        result = subprocess.run(line, cwd=self.here, capture_output=True, text=True, timeout=900)
-        if result.returncode:
-            sys.exit(f"{out}: exit code {result.returncode}\n{result.stdout[-3000:]}\n{result.stderr[-2000:]}")
+        said(mpmd([[self.bin / program, self.file, *words] for program in COUPLED], 4 * [ranks]), 900, cwd=self.here)
         return self.here / out / "checkpoints" / f"step-{steps:08d}"
 
 

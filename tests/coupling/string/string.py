@@ -7,12 +7,11 @@ import math
 import os
 import pathlib
 import shutil
-import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
-from checks import mpmd  # noqa: E402
+from checks import mpmd, said  # noqa: E402
 
 os.environ["PATH"] = os.pathsep.join(sys.argv[1:3] + [os.environ["PATH"]])
 MU = 5 / (math.pi * math.tanh(0.1 * math.pi))
@@ -27,11 +26,7 @@ def run(folder, inverse, *sets):
     for file in ("case.yaml", "channel.geo"):
         shutil.copy(HERE / file, folder)
     words = [f"--set=participants.wall.surface-density={MU * inverse}", *(f"--set={s}" for s in sets), *(f"--accept={i}" for i in ACCEPTED)]
-    line = mpmd([program, "case.yaml", *words] for program in ("coupler", "fluid_solver", "toy_wall"))
-    done = subprocess.run(line, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=1200)
-    if done.returncode != 0:
-        print(done.stdout[-3000:])
-        raise SystemExit(f"exit code {done.returncode}")
+    said(mpmd([program, "case.yaml", *words] for program in ("coupler", "fluid_solver", "toy_wall")), 1200, cwd=folder)
     return table(folder, "coupler/residuals.csv"), table(folder, "wall/mode.csv")
 
 
