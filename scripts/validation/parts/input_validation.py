@@ -2,8 +2,6 @@
 """Crafted files and messages: refused or sound, within time and memory."""
 import re
 
-from validation.parts import robustness
-
 
 # -- data -------------------------------------------------------------------------------------------------------------
 def fuzz_files(job, name, test, count):
@@ -11,19 +9,7 @@ def fuzz_files(job, name, test, count):
     one = found[test]
     apart = f", {one['crashed_apart']} crashed in the rehearsal and were refused" if "crashed_apart" in one else ""
     return (f"{one['tried']} tried, {one['refused']} refused{apart}, 0 crashes, slowest {one['slowest']} s, {one['megabytes']} MB",
-            not one.get("failures") and int(one["tried"]) >= count)
-
-
-def sanitized_files(job):
-    """The same programs of the sanitizers' build, at full count."""
-    lines, good = [], True
-    for name, count in (("fuzz_hdf5", 2000), ("fuzz_messages", 5000)):
-        words, folder = robustness.sanitizer_test(job, name), job.scratch / f"asan-{name}"
-        result = robustness.watched(job, folder, [f"COUPLET_FUZZ_COUNT={count}", *words], 3 * 3600, cwd=job.scratch)
-        found = robustness.reports(folder)
-        lines.append(f"{name}: {count} a test, code {result.returncode}, {len(found)} kinds of reports" + (f": {found[0]}" if found else ""))
-        good = good and result.returncode == 0 and not found
-    return "; ".join(lines), good
+            one["passed"] and int(one["tried"]) >= count)
 
 
 # -- tables -----------------------------------------------------------------------------------------------------------
@@ -60,15 +46,6 @@ def files_and_runs(job):
 def check_files(job, what, least):
     n, wrong_ones = files_and_runs(job)[what]
     return f"{n} {what}, {wrong_ones} judged wrongly", n >= least and wrong_ones == 0
-
-
-def sanitized_tables(job):
-    """The same program of the sanitizers' build."""
-    words, folder = robustness.sanitizer_test(job, "fuzz_tables"), job.scratch / "asan-fuzz_tables"
-    result = robustness.watched(job, folder, ["COUPLET_FUZZ_COUNT=2000", *words], 3 * 3600, cwd=job.scratch)
-    found = robustness.reports(folder)
-    return (f"2000 files a test, code {result.returncode}, {len(found)} kinds of reports" + (f": {found[0]}" if found else ""),
-            result.returncode == 0 and not found)
 
 
 # -- gmsh -------------------------------------------------------------------------------------------------------------

@@ -100,19 +100,15 @@ def sanitized(job):
             + (f" (lost: {', '.join(lost[:4])})" if lost else "") + (f": {'; '.join(found[:3])}" if found else "")), not lost and passed > 200 and not found
 
 
-CORPORA = {"fuzz_meshes": 10000, "fuzz_checkpoints": 2000,
-           **{f"fuzz_yaml_{p}": 4000 for p in ("solid_solver", "fluid_solver", "mesh_mover", "thermocline", "coupler")}}
-
-
-def corpora(job):
-    """Whole fuzzers with the sanitizers on."""
+def corpora(job, **counts):
+    """Whole fuzzers with the sanitizers on, each at so many inputs."""
     failed = []
-    for name, count in CORPORA.items():
+    for name, count in counts.items():
         result = watched(job, job.scratch / name, [f"COUPLET_FUZZ_COUNT={count}", *sanitizer_test(job, name)], 3 * 3600, cwd=job.scratch)
         found = reports(job.scratch / name)
         if result.returncode != 0 or found:
             failed.append(" ".join([name, *found[:1]]))
-    return (f"{len(CORPORA) - len(failed)} of {len(CORPORA)} corpora clean, {sum(CORPORA.values())} inputs" + (f": not {', '.join(failed)}" if failed else ""),
+    return (f"{len(counts) - len(failed)} of {len(counts)} corpora clean, {sum(counts.values())} inputs" + (f": not {', '.join(failed)}" if failed else ""),
             not failed)
 
 

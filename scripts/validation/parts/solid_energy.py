@@ -132,7 +132,7 @@ SCALE = math.sqrt(210e9 * 0.01**3 / (12 * (1 - 0.3**2)) / (7800 * 0.01))
 
 
 def frequencies(job, case, name, *overrides):
-    folder, _ = job.solve(case, overrides)
+    folder = job.alone(case, overrides).folder
     with open(folder / name / "modes.csv", encoding="utf-8") as file:
         return [float(row["frequency [Hz]"]) for row in csv.DictReader(file)]
 

@@ -16,7 +16,7 @@ def method(gradient, tolerance="1e-9"):
 
 def probe(job, case, sets, column):
     """Last value of a column of probes.csv."""
-    folder, _ = job.solve(case, sets)
+    folder = job.alone(case, sets).folder
     return couplet.read_csv(folder / "solid" / "probes.csv")[column][-1]
 
 
@@ -29,7 +29,7 @@ PLATE = ((4, 6, 3), (8, 12, 6), (16, 24, 12), (32, 48, 24))
 
 def plate(job, gradient, mesh):
     sets = ("participants.solid.mesh-parameters={nr: %d, nt: %d, nz: %d}" % mesh, method(gradient))
-    folder, _ = job.solve("elliptic-plate", sets)
+    folder = job.alone("elliptic-plate", sets).folder
     return job.beside("configs/elliptic-plate/nine_points.py").errors(folder / "solid")
 
 
@@ -69,7 +69,7 @@ def thick_peak(job, damping, gradient, mesh, step, wanted, limit):
     """`wanted`: deflection [mm], its time [s] (none: not compared), stress [MPa]."""
     sets = ("participants.solid.damping={%s}" % damping, *thick_mesh(*mesh), "simulation.end-time=0.0116",
             f"simulation.time-step={step}", method(gradient, "1e-8"))
-    folder, _ = job.solve("thick-plate", sets, timeout=6 * 3600)
+    folder = job.alone("thick-plate", sets, timeout=6 * 3600).folder
     (t, w), (_, s) = peaks(folder / "solid")
     gaps = [abs(w / wanted[0] - 1), abs(s / wanted[2] - 1)] + ([abs(t / wanted[1] - 1)] if wanted[1] else [])
     return f"{w:.3f} mm at {t:.5f} s, {s:.2f} MPa", max(gaps) <= limit
@@ -92,7 +92,7 @@ def beam(job, scheme, dt, *more, gradient="thesis"):
     sets = [f"simulation.time-step={dt}", "simulation.output.interval=100",
             "participants.solid.solution-method={face-gradient: %s}" % gradient,
             f"participants.solid.time-scheme.type={scheme}", *more]
-    folder, _ = job.solve("vibrating-cantilever", sets)
+    folder = job.alone("vibrating-cantilever", sets).folder
     return folder / "solid"
 
 

@@ -261,7 +261,7 @@ def tell(folder):
     mode = call_here(bin_, "plot", folder / "plate", "--mode", "7", "--picture", folder / "mode.png")
     check("plot --mode", plate.returncode == 0 and mode.returncode == 0 and (folder / "mode.png").stat().st_size > 5000, plate.stderr + mode.stderr)
     wrong_field = call_here(bin_, "plot", folder / "a/out/fluid", "--field", "speed")
-    check("a field that is not there", wrong_field.returncode == 2 and "fields: pressure, velocity" in wrong_field.stderr, wrong_field.stderr)
+    check("a field that is not there", wrong_field.returncode == 2 and "there are: pressure, velocity" in wrong_field.stderr, wrong_field.stderr)
     check("plot", drawn.returncode == 0 and (folder / "a/out/fluid/forces.png").exists(), drawn.stderr)
 
 

@@ -5,7 +5,6 @@ compressed ones hold what those of the whole do.
 Usage: fields.py BIN CASES"""
 import pathlib
 import shutil
-import subprocess
 import sys
 import tempfile
 
@@ -13,7 +12,7 @@ import h5py
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
-from checks import require  # noqa: E402
+from checks import require, said  # noqa: E402
 
 BIN, CASES = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 
@@ -22,9 +21,7 @@ def run(here, name, out, output, ranks=1):
     words = ["mpirun", "--oversubscribe", "-n", str(ranks), str(BIN / f"{name}_solver"), f"{name}.yaml", f"--set=simulation.output={{folder: {out}, interval: 0.25, {output}}}",
              f"--set=participants.{name}.output.surfaces=[bottom]", "--set=simulation.time-step=0.25",
              "--set=simulation.error-estimate=false"]
-    result = subprocess.run(words, cwd=here, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=100)
-    if result.returncode:
-        sys.exit(f"{name}, {output}: exit code {result.returncode}\n{result.stdout[-3000:]}")
+    said(words, 100, cwd=here)
     return here / out / name
 
 

@@ -10,7 +10,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
-from checks import check, end  # noqa: E402
+from checks import check, end, mpmd  # noqa: E402
 
 project, build = map(pathlib.Path, sys.argv[1:3])
 mpirun, what = sys.argv[3:sys.argv.index("--")], sys.argv[-1]
@@ -25,12 +25,9 @@ def run(folder, body, coupler_ranks=1, fluid_ranks=1, sets=(), restart=None, cod
     for name in ("case.yaml", "cylinder.geo"):
         shutil.copy(here / name, folder)
     extra = [*(f"--set={s}" for s in sets), *(["--restart", restart] if restart else [])]
-    command = list(mpirun)
-    for n, program in ((coupler_ranks, "coupler"), (fluid_ranks, "fluid_solver"), (1, "mesh_mover")):
-        command += ["-n", str(n), build / "bin" / program, "case.yaml", *extra, ":"]
-    command += ["-n", "1", *body, *parameters]
-    result = subprocess.run(list(map(str, command)), cwd=folder, capture_output=True, text=True, timeout=300,
-                            env=environment)
+    parts = [[build / "bin" / program, "case.yaml", *extra] for program in ("coupler", "fluid_solver", "mesh_mover")]
+    line = mpmd([*parts, [*body, *parameters]], (coupler_ranks, fluid_ranks), mpirun)
+    result = subprocess.run(line, cwd=folder, capture_output=True, text=True, timeout=300, env=environment)
     if result.returncode != code:
         print(result.stdout[-3000:], result.stderr[-3000:])
         check(f"exit code {code}", False, f"it is {result.returncode}")
@@ -152,13 +149,11 @@ def fenicsx():
 
     def coupled(folder, solid, end, *options):
         words = ["--set", f"simulation.end-time={end}", "--set", "simulation.checkpoint.interval=0.02", *options]
-        command = list(mpirun)
-        for program in ("coupler", "fluid_solver", "mesh_mover"):
-            command += ["-n", "1", build / "bin" / program, "case.yaml", *words, ":"]
-        command += ["-n", "1", *(solid or [build / "bin/solid_solver", "case.yaml", *words])]
+        parts = [[build / "bin" / program, "case.yaml", *words] for program in ("coupler", "fluid_solver", "mesh_mover")]
+        line = mpmd([*parts, solid or [build / "bin/solid_solver", "case.yaml", *words]], mpirun=mpirun)
         for file in ("case.yaml", "fluid.geo", "solid.geo"):
             shutil.copy(flap / file, folder)
-        done = subprocess.run(list(map(str, command)), cwd=folder, capture_output=True, text=True, timeout=600, env=environment)
+        done = subprocess.run(line, cwd=folder, capture_output=True, text=True, timeout=600, env=environment)
         if done.returncode:
             print(done.stdout[-3000:], done.stderr[-3000:])
         check("exit code 0", done.returncode == 0, str(done.returncode))

@@ -16,7 +16,7 @@ import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
-from checks import check, end  # noqa: E402
+from checks import check, end, mpmd  # noqa: E402
 
 project, build = map(pathlib.Path, sys.argv[1:3])
 split = sys.argv.index("--")
@@ -41,10 +41,8 @@ def job(folder, body, *sets):
     """The job with `body` as its last program."""
     for name in ("case.yaml", "cylinder.geo"):
         shutil.copy(here / name, folder)
-    line = list(mpirun)
-    for program in ("coupler", "fluid_solver", "mesh_mover"):
-        line += ["-n", "1", build / "bin" / program, "case.yaml", *(f"--set={s}" for s in sets), ":"]
-    return subprocess.Popen(words(*line, "-n", "1", *body), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment,
+    parts = [[build / "bin" / program, "case.yaml", *(f"--set={s}" for s in sets)] for program in ("coupler", "fluid_solver", "mesh_mover")]
+    return subprocess.Popen(mpmd([*parts, body], mpirun=mpirun), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment,
                             start_new_session=True)
 
 

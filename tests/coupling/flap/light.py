@@ -15,7 +15,7 @@ import h5py
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
-from checks import require  # noqa: E402
+from checks import COUPLED, mpmd, require  # noqa: E402
 
 SOURCE, BIN = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
 FLUID_MESH = "mesh-parameters={n_side: 20, n_tip: 4, growth: 1.25, wall_cells: 5}"
@@ -26,13 +26,11 @@ CHANGE = re.compile(r"t = (\S+) s: scheme: implicit from here on: (.*)")
 
 
 def launch(here, name, density, viscosity, step, steps, *sets, ranks=1, restart=None):
-    words = ["mpirun", "--oversubscribe"]
-    for i, program in enumerate(("coupler", "fluid_solver", "solid_solver", "mesh_mover")):
-        words += [":"] * (i > 0) + ["-n", str(ranks if i in (1, 2) else 1), str(BIN / program), "case.yaml"]
-        words += [f"--set={s}" for s in (*SETS, f"simulation.output.folder={name}", f"simulation.time-step={step}", f"simulation.end-time={steps * step}",
-                                         f"participants.solid.material.density={density}", f"participants.fluid.viscosity={viscosity}", *sets)]
-        words += ["--restart", str(restart)] if restart else []
-    return subprocess.run(words, cwd=here, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=280)
+    words = [f"--set={s}" for s in (*SETS, f"simulation.output.folder={name}", f"simulation.time-step={step}", f"simulation.end-time={steps * step}",
+                                    f"participants.solid.material.density={density}", f"participants.fluid.viscosity={viscosity}", *sets)]
+    words += ["--restart", restart] if restart else []
+    line = mpmd([[BIN / program, "case.yaml", *words] for program in COUPLED], (1, ranks, ranks))
+    return subprocess.run(line, cwd=here, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=280)
 
 
 def state(folder):

@@ -10,7 +10,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
-from checks import check, end, last  # noqa: E402
+from checks import COUPLED, check, end, last, mpmd  # noqa: E402
 
 programs, case = pathlib.Path(sys.argv[1]), pathlib.Path(__file__).parent / "case.yaml"
 HEIGHT, LENGTH = 0.4, 1.0
@@ -19,10 +19,8 @@ HEIGHT, LENGTH = 0.4, 1.0
 def run(ranks, *settings):
     """Displacement of the bar's face [m] and volume of the fluid [m^3] at the end; all passes and halvings."""
     with tempfile.TemporaryDirectory() as folder:
-        words = ["mpirun", "--oversubscribe"]
-        for program, n in zip(("coupler", "fluid_solver", "solid_solver", "mesh_mover"), (1, *ranks)):
-            words += [":"] * (program != "coupler") + ["-n", str(n), programs / program, case, f"--set=simulation.output.folder={folder}", *settings]
-        done = subprocess.run([str(w) for w in words], capture_output=True, text=True, timeout=250)
+        line = mpmd([[programs / program, case, f"--set=simulation.output.folder={folder}", *settings] for program in COUPLED], (1, *ranks))
+        done = subprocess.run(line, capture_output=True, text=True, timeout=250)
         if done.returncode:
             print(done.stdout[-2000:], done.stderr[-1000:])
             check(f"ranks {ranks}: exit code 0", False, done.returncode)

@@ -348,7 +348,7 @@ def wrong():
         words = {name: [*programs["c++"], name, "precice-config.xml", 1] for name in ("Left", "Right")}
         imported(folder, configuration("serial-explicit"))
         case = folder / "case.yaml"
-        case.write_text(re.sub(", digest: [-a-z0-9]*", "", case.read_text()))
+        case.write_text(re.sub(r"\n *digest: .*", "", case.read_text()))
         done = launch(folder, words, sets=["coupling.scheme=implicit"])
         check("a case that is not that of the configuration is refused", done.returncode != 0 and "repeat a step of explicit coupling" in done.stderr, done.stderr[-300:])
         edited(folder, words)

@@ -13,7 +13,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
-from checks import check, end  # noqa: E402
+from checks import check, end, mpmd  # noqa: E402
 
 kind, project, programs, mpirun = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3]), sys.argv[4:]
 case, structure = {"plate": ("case.yaml", "plate_modal"), "modes": ("modes.yaml", "plate_modal"), "solid": ("solid.yaml", "solid_solver"),
@@ -28,10 +28,8 @@ def run(top, name, end, ranks=(1, 1, 1, 1), restart=None):
             'participants.fluid.boundaries.outlet.pressure="t<0.003?1000*sin(pi*t/0.003):0"']
     sets += [f"participants.{name}.mesh-parameters={{f: 0.5}}" for name in ("fluid", "mover", "reed")] if kind == "coarse-solid" else []
     sets += ["participants.reed.output.energies=true"] if structure == "solid_solver" else []
-    line = list(mpirun)
-    for n, program in zip(ranks, ("coupler", "fluid_solver", structure, "mesh_mover")):
-        line += [*([":"] if len(line) > len(mpirun) else []), "-n", str(n), str(programs / program), case, *(f"--set={word}" for word in sets),
-                 *(["--restart", restart] if restart else [])]
+    words = [case, *(f"--set={word}" for word in sets), *(["--restart", restart] if restart else [])]
+    line = mpmd([[programs / program, *words] for program in ("coupler", "fluid_solver", structure, "mesh_mover")], ranks, mpirun)
     done = subprocess.run(line, cwd=top, capture_output=True, text=True, timeout=280)
     said = done.stdout + done.stderr
     # 4: the run's own estimate finds so coarse a mesh not reliable.

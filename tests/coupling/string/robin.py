@@ -12,11 +12,9 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
-from checks import require  # noqa: E402
+from checks import mpmd, require  # noqa: E402
 
 os.environ["PATH"] = os.pathsep.join(sys.argv[1:3] + [os.environ["PATH"]])
-for name in ("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"):
-    os.environ.setdefault(name, "1")
 MU = 5 / (math.pi * math.tanh(0.1 * math.pi))
 HERE = pathlib.Path(__file__).resolve().parent
 CLOSED = "participants.fluid.boundaries.ends={type: no-slip}"
@@ -29,11 +27,9 @@ TOLD = ["coupling.order=structure-first", "participants.fluid.boundaries.wall.im
 def launch(inverse, sets, ranks, restart):
     sets = [f"participants.wall.surface-density={MU * inverse}", "simulation.end-time=0.008", "coupling.predictor.order=2",
             "coupling.acceleration.filter=1e-5", "coupling.acceleration.type=iqn-ils", "simulation.output.interval=0", *sets]
-    words = ["mpirun", "--oversubscribe"]
-    for i, program in enumerate(("coupler", "fluid_solver", "toy_wall")):
-        words += [":"] * (i > 0) + ["-n", str(ranks[i]), program, "case.yaml", *(f"--set={s}" for s in sets)]
-        words += ["--restart", restart] if restart else []
-    return subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=600)
+    words = [*(f"--set={s}" for s in sets), *(["--restart", restart] if restart else [])]
+    line = mpmd([[program, "case.yaml", *words] for program in ("coupler", "fluid_solver", "toy_wall")], ranks)
+    return subprocess.run(line, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=600)
 
 
 def run(name, inverse, *sets, ranks=(1, 1, 1), restart=None):

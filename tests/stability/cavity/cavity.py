@@ -4,18 +4,15 @@
 for a moving mesh, and for a balloon in a channel; without the key such a fluid is refused.
 Usage: cavity.py CONFIGS BIN"""
 import csv
-import os
 import pathlib
 import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
-from checks import require  # noqa: E402
+from checks import mpmd, require  # noqa: E402
 
 CONFIGS, BIN = map(pathlib.Path, sys.argv[1:3])
-for name in ("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"):
-    os.environ.setdefault(name, "1")
 CAVITY = [("coupler", ""), ("fluid_solver", ""), ("solid_solver", ""), ("mesh_mover", "")]
 BALLOON = [("coupler", ""), ("fluid_solver", "inside"), ("fluid_solver", "channel"), ("solid_solver", "")]
 SMALL = ["participants.fluid.mesh-parameters={n: 8}", "participants.mover.mesh-parameters={n: 8}",
@@ -23,13 +20,9 @@ SMALL = ["participants.fluid.mesh-parameters={n: 8}", "participants.mover.mesh-p
 
 
 def run(folder, case, programs, sets, ranks=(1, 1, 1, 1), restart=None):
-    command = ["mpirun", "--oversubscribe"]
-    for i, (program, participant) in enumerate(programs):
-        command += [":"] * (i > 0) + ["-n", ranks[i], BIN / program, CONFIGS / case / "case.yaml",
-                                      f"--set=simulation.output.folder={folder}", *(f"--set={s}" for s in sets)]
-        command += ["--participant", participant] if participant else []
-        command += ["--restart", restart] if restart else []
-    return subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=600)
+    words = [f"--set=simulation.output.folder={folder}", *(f"--set={s}" for s in sets), *(["--restart", restart] if restart else [])]
+    parts = [[BIN / program, CONFIGS / case / "case.yaml", *words, *(["--participant", participant] if participant else [])] for program, participant in programs]
+    return subprocess.run(mpmd(parts, ranks), capture_output=True, text=True, timeout=600)
 
 
 def done(*args, **more):

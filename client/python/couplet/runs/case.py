@@ -104,6 +104,11 @@ class Case:
         return section
 
     @property
+    def has_picture(self):
+        """Of its own: a section `plot` or a plot.py beside it."""
+        return "plot" in self.data or (self.file.parent / "plot.py").is_file()
+
+    @property
     def coupled(self):
         return bool(self.data.get("coupling")) and len(self.participants) > 1
 

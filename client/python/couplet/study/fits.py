@@ -235,14 +235,7 @@ def of_errors(sizes, errors, formal=2.0):
 class Limit:
     value: float        # extrapolated
     order: float        # observed
-    constant: float     # value(n) = limit + constant n^-order
     gci: float          # uncertainty of the finest value, absolute
-
-    def error(self, n):
-        return abs(self.constant) * n**-self.order
-
-    def size_for(self, error):
-        return (abs(self.constant) / error) ** (1 / self.order)
 
 
 def limit_of(sizes, values, lowest=0.2, highest=8):
@@ -259,9 +252,8 @@ def limit_of(sizes, values, lowest=0.2, highest=8):
     if mismatch(lowest) * mismatch(highest) > 0:
         return None
     order = brentq(mismatch, lowest, highest)
-    constant = (v2 - v3) / (n2**-order - n3**-order)
-    value = v3 - constant * n3**-order
-    return Limit(value, order, constant, SAFETY * abs(value - v3))
+    value = v3 - (v2 - v3) / (n2**-order - n3**-order) * n3**-order
+    return Limit(value, order, SAFETY * abs(value - v3))
 
 
 def slope(x, y):

@@ -37,6 +37,12 @@ def module(file):
     return found
 
 
+def function_of(folder, text):
+    """Of 'FILE.py: FUNCTION', the file beside a case."""
+    file, function = (part.strip() for part in text.split(":"))
+    return getattr(module(str(folder / file)), function)
+
+
 def seconds(value):
     return float(re.sub(r"\s*s$", "", str(value)))
 
@@ -92,8 +98,7 @@ class Quantity:
     def value(self, results):
         g, who = self.given, self.given.get("participant", self.participant)
         if "python" in g:
-            file, function = (part.strip() for part in g["python"].split(":"))
-            found = getattr(module(str(self.folder / file)), function)(results.folder / who)
+            found = function_of(self.folder, g["python"])(results.folder / who)
             return float(found[g["item"]] if "item" in g else found)
         if "field" in g:
             return self.norm(results.fields(who))

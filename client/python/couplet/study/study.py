@@ -91,14 +91,6 @@ class Study:
         self.all_runs(report, rows)
         return report.write(self.out)
 
-    def parts(self, name, say):
-        """What the error at the setting of `sources` is made of; lines to read, and {source: error}."""
-        from couplet.study.dominance import Dominance, sentences
-        quantity = next((q for q in self.quantities if q.name == (name or self.quantities[0].name)), None)
-        expect(quantity, f"--quantity {name}: there is no such quantity.")
-        found, value = Dominance(self, self.section.get("sources")).parts(quantity, say)
-        return [f"{quantity.name} = {value:.6g}", *sentences(found)], found
-
     def about(self, report, rows, quantity, against, others):
         name, safe = quantity.name, "".join(c if c.isalnum() else "-" for c in quantity.name)
         report.head(name)

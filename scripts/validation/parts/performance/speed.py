@@ -37,7 +37,7 @@ def extrema_of_cavity(job):
 
 
 def peak(job, n, name, *sets):
-    folder, _ = job.solve("taylor-green-3d", [f"participants.fluid.mesh-parameters.n={n}", ORDERS[name], *sets], timeout=48 * 3600)
+    folder = job.alone("taylor-green-3d", [f"participants.fluid.mesh-parameters.n={n}", ORDERS[name], *sets], timeout=48 * 3600).folder
     return job.beside("configs/taylor-green-3d/budget.py").budget(folder / "fluid")
 
 
