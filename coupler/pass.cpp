@@ -114,7 +114,8 @@ std::vector<coupling::Exchange> Pass::side_by_side(const std::vector<coupling::E
     try {
       answer(i, given[i], move_mesh);
     } catch (const SolveFailure& failure) {
-      failures += (failures.empty() ? "" : " ") + std::string(failure.what());
+      if (!failures.empty()) failures += ' ';
+      failures += failure.what();
       hopeless = hopeless || dynamic_cast<const SchemeFailure*>(&failure);
     }
   }

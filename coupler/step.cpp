@@ -94,7 +94,8 @@ FixedPointResult Coupler::iterate(const coupling::Step& step, Iterate guess, con
 
 /// The step of explicit coupling. What further passes return is shown to the diagnostics, and leaves no trace.
 FixedPointResult Coupler::pass_once(const coupling::Step& step, Iterate guess, const FixedPointMap& map) {
-  FixedPointResult result{.x = std::move(guess)};
+  FixedPointResult result;
+  result.x = std::move(guess);
   result.image = map(result.x);
   result.residual = worst(known_->unknown.measure(result.x, result.image));
   result.iterations = 1;

@@ -90,7 +90,8 @@ constexpr double noise = 1e-6;
 class ExplicitLag final : public CouplingDiagnostic {
  public:
   explicit ExplicitLag(const CouplingView& view) : view_(view) {}
-  void returned(GlobalIndex, const Iterate& x, const Iterate& image, const Iterate& again) override {
+  void returned(GlobalIndex step, const Iterate& x, const Iterate& image, const Iterate& again) override {
+    if (step == 1) return;         // of an impulse
     std::array<double, 3> sums{};  // (again - image).d, d.d, v.v
     for (std::size_t i = 0; i < image.rider.size(); ++i) {
       const double v = image.rider[i], d = v - x.rider[i];

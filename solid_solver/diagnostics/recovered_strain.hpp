@@ -14,7 +14,7 @@ namespace couplet::solid {
 /// the faces' pyramids:
 ///   sum_f V_f (e_f - e*(x_f)) : C : (e_f - e*(x_f)) / sum_f V_f e_f : C : e_f
 ///
-/// Beside the true error of the displacement (scripts/validate right-by-default): 0.8 to 2 times on plates, 0.6 to 4 on beams of hexahedra, for which the
+/// Beside the true error of the displacement (scripts/validate solid-accuracy): 0.8 to 2 times on plates, 0.6 to 4 on beams of hexahedra, for which the
 /// difference of two face gradients is 3 to 30 times it; 0.3 to 3 on tetrahedra that bend (that difference: 7 to 170), least where long cells
 /// make the whole body too stiff. One hexahedron across shows no slope: ten times, see StrainAudit::missed_by_mesh(). Added in two passes over the flux faces, see strain_audit.cpp.
 class RecoveredStrain {

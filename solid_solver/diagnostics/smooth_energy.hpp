@@ -16,7 +16,7 @@ namespace couplet::solid {
 /// differ says how wrong the operator's stiffness is for this displacement (recovered displacements: Naga and Zhang, SIAM J.
 /// Numer. Anal. 42 (2004) 1780).
 ///
-/// Beside the true error of the displacement (scripts/validate right-by-default): on triangles 0.3 to 1.2 of it on Cook's panel, a ring and
+/// Beside the true error of the displacement (scripts/validate solid-accuracy): on triangles 0.3 to 1.2 of it on Cook's panel, a ring and
 /// an orthotropic bar, where recovered strains see 0.02 to 1.1; far above it where structured triangles are
 /// sheared and their errors cancel. On other cells it knows less than those: 0.3 to 40 on tetrahedra that bend.
 class SmoothEnergy {

@@ -43,7 +43,6 @@ struct Constant final : Participant {
 struct Scene {
   double pressure = 3, viscous = 0, late = 0;
   int from = 1000, steps = 25;
-  bool takes_pressure = true;
 
   /// Findings of this id.
   std::vector<log::Finding> findings(const std::string& id) const {
@@ -56,7 +55,7 @@ struct Scene {
     fluid.interface = tests::flap(2, 1, -1), solid.interface = tests::flap(2, 1, 1);
     fluid.interface.takes = solid.interface.gives = motion;
     fluid.interface.gives = loads;
-    if (takes_pressure) solid.interface.takes = {loads.front()};
+    solid.interface.takes = {loads.front()};
     const std::size_t faces = fluid.interface.face_centres.size(), vertices = solid.interface.vertices.size();
     fluid.gives = {{"pressure-force", std::vector<double>(2 * faces, pressure)},
                    {"viscous-force", std::vector<double>(2 * faces, viscous)}};

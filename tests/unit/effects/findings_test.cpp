@@ -39,18 +39,18 @@ class Saying final : public Diagnostic {
   bool at_end_;
 };
 
-struct Run {
+struct Judged {
   EffectFinding now{
       .effect = "balance of the kinetic energy", .limit = 0.1, .left_out = false, .wrong_from = 0.5};
   EffectFinding mean{.effect = "waves of pressure", .number = NAN, .limit = 0.1};
   Diagnostics all{0, true};
   std::size_t before = log::findings().size();
-  Run() {
+  Judged() {
     spdlog::set_level(spdlog::level::off);
     all.add("now", std::make_shared<Saying>([this] { return now; }));
     all.add("mean", std::make_shared<Saying>([this] { return mean; }, true));
   }
-  Run(const Run&) = delete;
+  Judged(const Judged&) = delete;
   /// Findings told after a step with this number.
   std::size_t step(double number) {
     now.number = number;
@@ -62,7 +62,7 @@ struct Run {
 };
 
 TEST(Findings, are_told_once_and_again_when_they_turn_wrong) {
-  Run run;
+  Judged run;
   EXPECT_EQ(run.step(0.05), 0u);
   EXPECT_EQ(run.step(0.2), 1u);
   EXPECT_EQ(log::findings().back().id, "balance-of-the-kinetic-energy");
@@ -79,7 +79,7 @@ TEST(Findings, are_told_once_and_again_when_they_turn_wrong) {
 }
 
 TEST(Findings, of_means_over_the_run_count_at_its_end) {
-  Run run;
+  Judged run;
   run.mean.number = 0.42;
   EXPECT_EQ(run.step(0.01), 0u);
   run.mean.number = 3e-4;
@@ -88,7 +88,7 @@ TEST(Findings, of_means_over_the_run_count_at_its_end) {
 }
 
 TEST(Findings, make_the_models_part_of_the_error) {
-  Run run;
+  Judged run;
   run.now = {
       .effect = "inertia", .number = 0.001, .limit = 0.01, .what = "inertia / load = 0.001", .share = 0.02};
   run.mean = {.effect = "thermal strain",
@@ -103,7 +103,7 @@ TEST(Findings, make_the_models_part_of_the_error) {
 }
 
 TEST(Findings, and_their_severity_go_through_a_checkpoint) {
-  Run first;
+  Judged first;
   first.step(0.2);
   io::StateInMemory memory;
   io::CheckpointWriter out(memory);
@@ -113,7 +113,7 @@ TEST(Findings, and_their_severity_go_through_a_checkpoint) {
   first.step(0.05);
   const std::vector<std::string> unbroken = first.all.conclude(false);
 
-  Run second;
+  Judged second;
   io::CheckpointReader in(memory);
   io::Archive load(in);
   second.all.visit(load);
