@@ -8,7 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
-#include "common/elasticity/tied/tied_matrix.hpp"
+#include "common/elasticity/symmetric/tied_matrix.hpp"
 #include "common/log/timer.hpp"
 #include "common/parallel/collective.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/elasticity/symmetric/axisymmetric_faces.hpp"
+#include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/log/log.hpp"
 #include "common/log/timer.hpp"
 #include "solid_solver/large_strain/load_path.hpp"

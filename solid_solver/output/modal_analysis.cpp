@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "common/base/error.hpp"
-#include "common/elasticity/tied/tied_matrix.hpp"
+#include "common/elasticity/symmetric/tied_matrix.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/extent.hpp"
 #include "common/parallel/collective.hpp"

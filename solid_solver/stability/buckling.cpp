@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "common/elasticity/tied/tied_matrix.hpp"
+#include "common/elasticity/symmetric/tied_matrix.hpp"
 #include "common/mesh/extent.hpp"
 #include "common/modes/largest_ratios.hpp"
 #include "common/parallel/collective.hpp"

@@ -6,15 +6,9 @@
 #include <vector>
 
 #include "common/elasticity/elasticity.hpp"
-#include "common/elasticity/prestress/pressure_stiffness.hpp"
+#include "common/elasticity/symmetric/prestress.hpp"
 
 namespace couplet::elastic {
-
-/// What acts in a body before it moves on.
-struct Prestress {
-  std::vector<Tensor3> stress;       ///< per flux face [Pa], that of the trial functions: the kernel's own
-  std::vector<PlaceBlock> pressure;  ///< of a pressure that follows the surface
-};
 
 /// K_sigma of the symmetric gradient, without a matrix: v . K_sigma v = sum_f V_f sigma_f : G_f^T G_f, where three-cornered faces
 /// share with their edges (SharedEdges) those with the mean gradients and the mean stress there; and the stiffness of the pressure.

@@ -9,42 +9,39 @@
 
 namespace couplet::elastic {
 
+/// Where the volume strain is that of the cells it takes no part in the sharing, nor does the pressure that acts on it.
 template <int D>
-void SymmetricKernel<D>::spread_pressure(std::span<const double> pressure) {
-  std::vector<double> shared(shared_mine_.size());
-  if (rows_.volume_by_cells()) {
-    // It takes no part in the sharing of edges, nor does the pressure that acts on it.
-    for (std::size_t i = 0; i < shared.size(); ++i) shared[i] = pressure[shared_mine_[i]];
-  } else if (edges_) {
-    edges_->clear();
-    for (std::size_t i = 0; i < shared_mine_.size(); ++i)
-      for (const Index e : edges_->edges_of(i))
-        for (int a = 0; a < 3; ++a)
-          edges_->at(e)[a] += shared_[i / 4].part[i % 4] * pressure[shared_mine_[i]];
-    edges_->finish_means();
-    for (std::size_t i = 0; i < shared_mine_.size(); ++i) {
-      for (const Index e : edges_->edges_of(i)) shared[i] += edges_->at(e)[0] / 3;
-      shared[i] = (1 - SharedEdges::share) * pressure[shared_mine_[i]] + SharedEdges::share * shared[i];
+std::vector<double> SymmetricKernel<D>::shared_pressure(std::span<const double> pressure) {
+  std::vector<double> result(pressure.begin(), pressure.end());
+  if (!edges_ || rows_.volume_by_cells()) return result;
+  edges_->clear();
+  for (std::size_t i = 0; i < shared_mine_.size(); ++i)
+    for (const Index e : edges_->edges_of(i))
+      for (int a = 0; a < 3; ++a) edges_->at(e)[a] += shared_[i / 4].part[i % 4] * pressure[shared_mine_[i]];
+  edges_->finish_means();
+  for (std::size_t i = 0; i < shared_mine_.size(); ++i) {
+    double of_edges = 0;
+    for (const Index e : edges_->edges_of(i)) of_edges += edges_->at(e)[0] / 3;
+    double& here = result[shared_mine_[i]];
+    here = (1 - SharedEdges::share) * here + SharedEdges::share * of_edges;
+  }
+  return result;
+}
+
+template <int D>
+void SpaceKernel<D>::spread_pressure(std::span<const double> pressure) {
+  const mesh::Mesh& mesh = space_.mesh();
+  const std::vector<double> shared = shared_pressure(pressure);
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    if (mesh.owner[f] >= mesh.cells.n_owned()) continue;  // another rank's
+    const FaceRows face = face_rows(mesh, space_.rows(), f);
+    const double scale = shared[f] * face.volume;
+    for (const FaceRows::Row& row : face.all()) {
+      double* to = space_.force_at(row.place);
+      for (int a = 0; a < D; ++a) to[a] += scale * row.b[a];
+      if (face.is_ring) to[0] += scale * row.b[2];
     }
   }
-  const auto force = [&](Index node) { return space_.forces() + std::size_t(node) * stride; };
-  const auto point_force = [&](Index v) { return space_.point_forces() + std::size_t(v) * stride; };
-  const auto push = [&](Index f, double p) {
-    const SymmetricFace<D> face = symmetric_face<D>(mesh_, rows_, f);
-    const double scale = p * face.volume * face.inverse;
-    double* there = force(space_.node_across(f));
-    double* here = force(mesh_.owner[f]);
-    for (int a = 0; a < D; ++a) {
-      there[a] += scale * face.area[a];
-      here[a] -= scale * face.area[a];
-      for (int i = 0; i < D - 1; ++i) {
-        point_force(face.plus[i])[a] += scale * face.across[i][a];
-        point_force(face.minus[i])[a] -= scale * face.across[i][a];
-      }
-    }
-  };
-  for (const Index f : mine_) push(f, pressure[f]);
-  for (std::size_t i = 0; i < shared_mine_.size(); ++i) push(shared_mine_[i], shared[i]);
 }
 
 template <int D>
@@ -112,8 +109,8 @@ std::vector<Wrench> SpaceKernel<D>::holding_forces(std::span<const double> unkno
 
 template class SpaceKernel<2>;
 template class SpaceKernel<3>;
-template void SymmetricKernel<2>::spread_pressure(std::span<const double>);
-template void SymmetricKernel<3>::spread_pressure(std::span<const double>);
+template std::vector<double> SymmetricKernel<2>::shared_pressure(std::span<const double>);
+template std::vector<double> SymmetricKernel<3>::shared_pressure(std::span<const double>);
 
 // What holds a body at its patches: the forces that the trial functions leave where displacements are known.
 

@@ -62,7 +62,7 @@ class SymmetricKernel final : public SpaceKernel<D> {
   void forces_of_stress();
   std::span<double> sum_volumes();
   void find_pressures();
-  void spread_pressure(std::span<const double> pressure) override;
+  std::vector<double> shared_pressure(std::span<const double> pressure) override;
 
   const mesh::Mesh& mesh_;
   const mesh::Geometry& geometry_;

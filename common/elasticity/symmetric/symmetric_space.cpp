@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "common/base/processor_clones.hpp"
-#include "common/elasticity/symmetric/axisymmetric_faces.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/parallel/collective.hpp"
 

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
-#include "common/elasticity/tied/tied_matrix.hpp"
+#include "common/elasticity/symmetric/tied_matrix.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/output/spectrum.hpp"
 #include "tests/verification/solid/linear_field.hpp"

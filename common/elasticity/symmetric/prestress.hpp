@@ -14,6 +14,12 @@ struct PlaceBlock {
   Tensor3 block;
 };
 
+/// What acts in a body before it moves on.
+struct Prestress {
+  std::vector<Tensor3> stress;       ///< per flux face [Pa], that of the trial functions: the kernel's own
+  std::vector<PlaceBlock> pressure;  ///< of a pressure that follows the surface
+};
+
 /// What a pressure that follows the surface adds to the stiffness of an undeformed body: on the triangles (in the plane: lines)
 /// between a face's node and its edges the force on each corner is -p a / 3 (1/2) with the area vector a, hence
 ///   K_rs = p / 6 [e_s]x,   e_s the side opposite to corner s;   in the plane K_rs = p / 2 da/du_s.

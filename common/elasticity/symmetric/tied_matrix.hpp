@@ -6,25 +6,15 @@
 #include <vector>
 
 #include "common/elasticity/elasticity.hpp"
-#include "common/elasticity/prestress/stress_stiffness.hpp"
-#include "common/elasticity/tied/tied_unknowns.hpp"
+#include "common/elasticity/symmetric/symmetric_matrix.hpp"
 #include "common/linalg/matrix.hpp"
 #include "common/linalg/symmetric_factors.hpp"
 
 namespace couplet::elastic {
 
-/// stiffness K + mass M + stress K_sigma of the symmetric gradient.
-struct TiedParts {
-  double stiffness = 1;
-  double mass = 0;                       ///< [1/s^2]
-  std::span<const double> density{};     ///< of the owned cells [kg/m^3]; for `mass`
-  double stress = 0;                     ///< of K_sigma, see StressStiffness
-  const Prestress* prestress = nullptr;  ///< for `stress`
-};
-
-/// A symmetric operator with the rows of ElasticOperator, held with the vertices as unknowns of their own: exact where
-/// SymmetricKernel is (edges' shares, volume strain of cells, springs), and with factors that are cheap: on 2161
-/// tetrahedra 2.7e6 entries where the rows of the nodes alone have 1.6e7.
+/// A symmetric operator with the rows of ElasticOperator, held with the vertices as unknowns of their own, which multipliers
+/// tie to the means of their nodes: exact where SymmetricKernel is (edges' shares, volume strain of cells, springs), and
+/// with factors that are cheap: on 2161 tetrahedra 2.7e6 entries where the rows of the nodes alone have 1.6e7.
 class TiedMatrix {
  public:
   /// Periodic meshes have vertices on several ranks at once: not those.
@@ -44,11 +34,16 @@ class TiedMatrix {
   GlobalIndex n_rows() const { return n_rows_; }
 
  private:
+  void number_all();
+  void add_ties(Assembly& assembly) const;
   linalg::SparseMatrix assemble(const TiedParts& parts);
 
   const mesh::Mesh& mesh_;
   const ElasticOperator& rows_;
-  TiedUnknowns unknowns_;
+  std::size_t n_nodes_;        // unknown, of this rank; in the order of ElasticOperator
+  std::vector<Index> points_;  // owned ones that are not known, in the order of their numbers
+  Numbering number_;           // rank by rank: nodes, points, a multiplier for each of these
+  GlobalIndex first_multiplier_ = 0;
   double tie_ = 0;
   linalg::SparseMatrix matrix_;
   GlobalIndex n_ties_ = 0, n_rows_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/elasticity/prestress/pressure_stiffness.hpp"
+#include "common/elasticity/symmetric/prestress.hpp"
 
 #include <Eigen/Geometry>
 #include <array>
