@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "common/elasticity/finite/discrete_gradient.hpp"
+#include "common/elasticity/finite/finite_strain.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/laws/laws.hpp"

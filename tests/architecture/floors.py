@@ -13,7 +13,7 @@ FLOORS = {
     "thermocline": ["base", "material", "weather", "plant", "bed", "wall", "economics", "model", "judge", "."],
     "mesh_mover": [".", "barrier"],
     "plate_modal": ["model", "motion", "."],
-    "common/elasticity": [".", "thesis", "symmetric", "prestress", "finite", "solve"],
+    "common/elasticity": [".", "thesis", "symmetric", "finite", "solve"],
     "common/mesh": [".", "order", "distributed", "msh", "inp", "gmsh"],
     "common/app": ["watch", "loop", "case", ".", "mesh_tool"],
     "common/io": [".", "fields", "probes", "cut"],

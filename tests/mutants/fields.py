@@ -36,7 +36,7 @@ FILES = {
     ],
     "loads": [
         *_of("fluid_solver", "loads turning_walls cavity rotating_frame"),
-        *_of("common/elasticity", "symmetric_forces follower_pressure finite_pressures"),
+        *_of("common/elasticity", "space_kernel follower_pressure"),
         *_of("plate_modal", "pressure_load contact"),
         *_of("solid_solver", "thermal_strain solid_forces boundaries body_fields interface_data solid_interface"),
         *_of("coupler", "volume_level"), *_of("thermocline", "mechanics wall_bending"),

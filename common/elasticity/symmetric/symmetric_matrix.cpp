@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/elasticity/elastic_nodes.hpp"
-#include "common/elasticity/symmetric/shared_faces.hpp"
+#include "common/elasticity/symmetric/shared_edges.hpp"
 #include "common/elasticity/symmetric/symmetric_space.hpp"
 #include "common/fv/nodes.hpp"
 #include "common/parallel/collective.hpp"
