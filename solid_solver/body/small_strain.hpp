@@ -6,14 +6,14 @@
 
 #include "solid_solver/method/equilibrium.hpp"
 #include "solid_solver/parameters/parameters.hpp"
-#include "solid_solver/thermal/effect.hpp"
+#include "solid_solver/thermal/thermal_strain.hpp"
 
 namespace couplet::solid {
 
 /// A(u) = K u in the reference configuration, with the face gradient that was chosen.
 class SmallStrain final : public Equilibrium {
  public:
-  using Effects = std::vector<std::unique_ptr<SolidEffect>>;
+  using Effects = std::vector<std::unique_ptr<ThermalStrain>>;
   /// All by reference.
   SmallStrain(const mesh::Mesh& mesh, const elastic::ElasticKernel& kernel,
               const elastic::ElasticOperator& rows, const Effects& effects, const SolidParameters& parameters)

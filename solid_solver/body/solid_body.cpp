@@ -73,7 +73,9 @@ SolidBody::SolidBody(mesh::LoadedMesh body, SolidParameters parameters)
   if (parameters_.contact) make_seat();
   if (!parameters_.body_force.empty())
     body_force_ = fv::make_expressions(parameters_.body_force, mesh_.dim, "body-force");
-  effects_ = make_effects(mesh_, elastic_, parameters_);
+  if (parameters_.heat || parameters_.temperature ||
+      (parameters_.interface_data && parameters_.interface_data->temperature))
+    effects_.push_back(std::make_unique<ThermalStrain>(mesh_, elastic_, parameters_));
 }
 
 void SolidBody::check_supports() const {
