@@ -16,7 +16,7 @@ FILES = {
     "face loops": [
         *_of("fluid_solver", "rates face_flux predictor projection pressure boundary turbulence viscous_solver placement immersed "
                              "projection_bodies yielding_walls"),
-        *_of("solid_solver", "heat heat_boundaries cell_gradient stress finite_strain updated_lagrangian orthotropic mixed_form"),
+        *_of("solid_solver", "heat heat_boundaries solid_fields stress finite_strain updated_lagrangian orthotropic mixed_form"),
         *_of("common/elasticity", "face_terms symmetric_faces symmetric_kernel symmetric_space elastic_faces elastic_kernel_corrected "
                                   "elastic_kernel_thesis shared_edges finite_edges finite_kernel anisotropic joined_vertices "
                                   "elastic_corrections vertex_constraints"),
@@ -38,12 +38,12 @@ FILES = {
         *_of("fluid_solver", "loads turning_walls cavity rotating_frame"),
         *_of("common/elasticity", "space_kernel follower_pressure"),
         *_of("plate_modal", "pressure_load contact"),
-        *_of("solid_solver", "thermal_strain solid_forces boundaries body_fields interface_data solid_interface"),
+        *_of("solid_solver", "thermal_strain solid_forces boundaries solid_body interface_data solid_interface"),
         *_of("coupler", "volume_level"), *_of("thermocline", "mechanics wall_bending"),
     ],
     "scheme constants": [
         *_of("common/time", "time_scheme step_errors velocity_errors amplification"),
-        *_of("fluid_solver", "step_size"), *_of("solid_solver", "stage stage_end"),
+        *_of("fluid_solver", "step_size"), *_of("solid_solver", "stage"),
         *_of("plate_modal", "oscillators kirchhoff plate_model"),
         *_of("coupler", "relaxation accelerator quasi_newton secants growing_qr lag_estimate"),
         *_of("thermocline", "closures flow pressure_loss properties"),
