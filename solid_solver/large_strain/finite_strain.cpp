@@ -102,7 +102,7 @@ FiniteStrain::FiniteStrain(const mesh::Mesh& mesh, const elastic::ElasticOperato
   if (follows_path) path_.emplace(mesh, geometry, parameters.load_stepping);
 }
 
-std::string FiniteStrain::name() const {
+std::string FiniteStrain::name(const SolidSystem&) const {
   return fmt::format("Newton's method at large strain{}, symmetric face gradient",
                      by_ == TangentSolver::By::factors ? " (factors of the tangent)" : "");
 }
@@ -303,7 +303,7 @@ double FiniteStrain::judge_rounding(const Load& load, double scale, double left)
 
 // What the body answers in a given state: forces, energy, softness; the last solve in words.
 
-linalg::SolveStatistics FiniteStrain::solve(const Load& load, std::span<double> u) {
+linalg::SolveStatistics FiniteStrain::find(const Load& load, SolidSystem&, std::span<double> u) {
   if (path_) return follow_path(load, u);
   if (load.is_conserving) kernel_->set_start(load.accepted, load.accepted_known);
   const bool is_static = load.mass_factor == 0 && !load.pressing;  // whose path has corners

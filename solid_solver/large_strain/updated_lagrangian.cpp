@@ -60,7 +60,7 @@ UpdatedLagrangian::UpdatedLagrangian(const mesh::Mesh& mesh, const elastic::Elas
 
 UpdatedLagrangian::~UpdatedLagrangian() = default;
 
-std::string UpdatedLagrangian::name() const {
+std::string UpdatedLagrangian::name(const SolidSystem&) const {
   return segregated_name(method_) + " at large strain, updated Lagrangian, least-squares face gradient";
 }
 
@@ -175,7 +175,8 @@ void UpdatedLagrangian::follow_known(const EquilibriumLoad& load, std::span<doub
   for (std::size_t i = 0; i < u.size(); ++i) u[i] += du[i];
 }
 
-linalg::SolveStatistics UpdatedLagrangian::solve(const EquilibriumLoad& load, std::span<double> u) {
+linalg::SolveStatistics UpdatedLagrangian::find(const EquilibriumLoad& load, SolidSystem&,
+                                                std::span<double> u) {
   const auto start = std::chrono::steady_clock::now();
   ScalarSystems& systems = frame().systems(load.mass_factor, load.inertia);
   linalg::SolveStatistics statistics;

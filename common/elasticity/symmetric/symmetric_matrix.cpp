@@ -127,7 +127,7 @@ void Assembly::add(const FaceTermList& terms, const GradientStiffness& stiffness
   }
 }
 
-void Assembly::add_faces(const TiedParts& parts, double own) {
+void Assembly::add_faces(const EnergyParts& parts, double own) {
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
     if (mesh_.owner[f] >= mesh_.cells.n_owned()) continue;  // its owner's rank adds it
     const FaceRows face = face_rows(mesh_, rows_, f);
@@ -143,7 +143,7 @@ void Assembly::add_faces(const TiedParts& parts, double own) {
   }
 }
 
-void Assembly::add_edges(const TiedParts& parts) {
+void Assembly::add_edges(const EnergyParts& parts) {
   const SharedFaces shared = shared_faces(mesh_, rows_);
   if (!parallel::any(mesh_.comm, shared.n_mine > 0)) return;
   SharedEdges edges(mesh_, rows_, shared.faces, shared.volume);
@@ -160,7 +160,7 @@ void Assembly::add_edges(const TiedParts& parts) {
   }
 }
 
-void Assembly::add_volumes(const TiedParts& parts) {
+void Assembly::add_volumes(const EnergyParts& parts) {
   if (!rows_.volume_by_cells() || parts.stiffness == 0) return;
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f)
     add_volume_terms(f, terms_.of_face(f), Tensor3::Identity());

@@ -27,7 +27,7 @@ linalg::SparseMatrix symmetric_matrix(const mesh::Mesh& mesh, const ElasticOpera
 using GradientStiffness = Eigen::Matrix<double, 9, 9>;
 
 /// stiffness K + mass M + stress K_sigma of the symmetric gradient.
-struct TiedParts {
+struct EnergyParts {
   double stiffness = 1;
   double mass = 0;                       ///< [1/s^2]
   std::span<const double> density{};     ///< of the owned cells [kg/m^3]; for `mass`
@@ -49,11 +49,11 @@ class Assembly {
   void add(const FaceTermList& terms, const GradientStiffness& stiffness);
   /// Faces of owned cells with what `parts` say of stiffness and stress; of three-cornered ones in space that share with
   /// edges `own` of it.
-  void add_faces(const TiedParts& parts, double own);
+  void add_faces(const EnergyParts& parts, double own);
   /// The same of the edges. Collective.
-  void add_edges(const TiedParts& parts);
+  void add_edges(const EnergyParts& parts);
   /// The bulk modulus of cells, on the mean of their faces' volume strains.
-  void add_volumes(const TiedParts& parts);
+  void add_volumes(const EnergyParts& parts);
   /// V_P theta_P of the owned cells beside a face changes by V_fP cofactors b . u.
   void add_volume_terms(Index f, const FaceTermList& terms, const Tensor3& cofactors);
   /// modulus(cell) g g^T of what was added so.

@@ -13,7 +13,7 @@ bool TiedMatrix::suits(const mesh::Mesh& mesh) {
   return !parallel::any(mesh.comm, !mesh.neighbour_shift.empty());
 }
 
-TiedMatrix::TiedMatrix(const mesh::Mesh& mesh, const ElasticOperator& rows, const TiedParts& parts)
+TiedMatrix::TiedMatrix(const mesh::Mesh& mesh, const ElasticOperator& rows, const EnergyParts& parts)
     : mesh_(mesh),
       rows_(rows),
       n_nodes_(std::size_t(mesh.cells.n_owned()) + rows.unknown_faces().size()),
@@ -66,7 +66,7 @@ void TiedMatrix::add_ties(Assembly& assembly) const {
   }
 }
 
-linalg::SparseMatrix TiedMatrix::assemble(const TiedParts& parts) {
+linalg::SparseMatrix TiedMatrix::assemble(const EnergyParts& parts) {
   number_all();
   Assembly assembly(mesh_, rows_, number_);
   assembly.add_faces(parts, 1 - SharedEdges::share);

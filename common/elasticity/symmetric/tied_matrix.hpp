@@ -20,7 +20,7 @@ class TiedMatrix {
   /// Periodic meshes have vertices on several ranks at once: not those.
   static bool suits(const mesh::Mesh& mesh);
   /// Mesh and rows by reference. Collective.
-  TiedMatrix(const mesh::Mesh& mesh, const ElasticOperator& rows, const TiedParts& parts);
+  TiedMatrix(const mesh::Mesh& mesh, const ElasticOperator& rows, const EnergyParts& parts);
 
   /// y = A x on the rows of ElasticOperator. Collective.
   void apply(std::span<const double> x, std::span<double> y);
@@ -36,7 +36,7 @@ class TiedMatrix {
  private:
   void number_all();
   void add_ties(Assembly& assembly) const;
-  linalg::SparseMatrix assemble(const TiedParts& parts);
+  linalg::SparseMatrix assemble(const EnergyParts& parts);
 
   const mesh::Mesh& mesh_;
   const ElasticOperator& rows_;
