@@ -31,28 +31,27 @@ struct SymmetricFace {
 template <int D>
 SymmetricFace<D> symmetric_face(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f);
 
-/// The same gradient as a sum over the places that it is made of, G = sum_i u_i b_i^T.
+/// The rows of a face: its gradient as a sum over nodes and points, G = sum_i u_i b_i^T.
 struct FaceRows {
   struct Row {
-    Index place;  ///< a local node (cells, then boundary faces); from n_node_places() on a local point
-    Vec3 b;       ///< [1/m]; of a ring d/dr, d/dz, and the hoop strain by the radial displacement
+    Index place;  ///< local node (cells, then boundary faces), or n_node_places() + local point
+    Vec3 b;       ///< [1/m]; for a ring d/dr, d/dz, and the factor from radial displacement to hoop strain
   };
-  std::array<Row, 6> row;  ///< of the owner, of the node across, of the points
+  std::array<Row, 6> row;  ///< the owner, the node across, then the points
   int n;
-  double volume;         ///< of which the energy counts [m^3]; that of a ring is 2 pi r_m A
-  bool is_ring = false;  ///< of a body of revolution
-  bool has_shear =
-      true;  ///< false: a ring at a plane of symmetry or at the axis, with the diagonal of G alone
+  double volume;          ///< weight of the face in the energy [m^3]; 2 pi r_m A for a ring
+  bool is_ring = false;   ///< of a body of revolution
+  bool has_shear = true;  ///< false at a symmetry plane or the axis of a ring: only the diagonal of G counts
   std::span<const Row> all() const { return {row.data(), std::size_t(n)}; }
 };
 
-/// The number of local nodes, by which places of points begin.
+/// Number of local nodes: the place of point v is n_node_places() + v.
 inline Index n_node_places(const mesh::Mesh& mesh) { return mesh.cells.n_local() + mesh.boundary.n_local(); }
 
-/// Of a face in the plane or in space.
+/// Rows of a two- or three-dimensional face.
 FaceRows symmetric_rows(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f);
 
-/// Of a face of a body of revolution, x being the radius r and y the axis. Over the quadrilateral of the two nodes P, Q
+/// Rows of a face of a body of revolution, x being the radius r and y the axis. Over the quadrilateral of the two nodes P, Q
 /// beside the face and its vertices, with values that are linear along its sides, Gauss's theorem says
 ///   integral of r du/dz = sum of sides (int r u n_z),   integral of (r du/dr + u) = sum of sides (int r u n_r),
 /// and with u_m, the value at the centroid r_m of the quadrilateral, of area A,
@@ -65,7 +64,7 @@ inline FaceRows face_rows(const mesh::Mesh& mesh, const ElasticOperator& rows, I
   return is_axisymmetric(rows) ? ring_rows(mesh, rows, f) : symmetric_rows(mesh, rows, f);
 }
 
-/// 2 pi r of a place: by it the numbers of a plane scene, which are those of a unit of depth, become those of the ring [m].
+/// 2 pi r [m]. Quantities of a two-dimensional scene are per unit depth; this factor makes them those of the whole ring.
 double circumference(double radius);
 
 /// Shares with which the points around a face, in their order, take what acts on it evenly: they add up to 1

@@ -26,53 +26,53 @@ linalg::SparseMatrix symmetric_matrix(const mesh::Mesh& mesh, const ElasticOpera
 /// dP/dF or C, entry (3 k + a, 3 m + c): what the derivative c of component m does to the stress (k, a) [Pa].
 using GradientStiffness = Eigen::Matrix<double, 9, 9>;
 
-/// stiffness K + mass M + stress K_sigma of the symmetric gradient.
+/// Weights of the parts of an assembled operator, stiffness K + mass M + stress K_sigma.
 struct EnergyParts {
   double stiffness = 1;
   double mass = 0;                       ///< [1/s^2]
-  std::span<const double> density{};     ///< of the owned cells [kg/m^3]; for `mass`
-  double stress = 0;                     ///< of K_sigma, see StressStiffness
+  std::span<const double> density{};     ///< per owned cell [kg/m^3]; for `mass`
+  double stress = 0;                     ///< weight of K_sigma, see StressStiffness
   const Prestress* prestress = nullptr;  ///< for `stress`
 };
 
-/// Blocks between unknowns, added up pair by pair and made a matrix. A face of a tetrahedron couples some sixty nodes, and
-/// each pair of nodes shares many faces: summed up here there is a fiftieth of the entries for PETSc to sort (a tenth of
-/// the time on 1000 tetrahedra).
+/// Adds up blocks between unknowns, pair by pair, and makes a matrix of them. A face of a tetrahedron couples some sixty
+/// nodes, and each pair of nodes shares many faces: summed up here there is a fiftieth of the entries for PETSc to sort (a
+/// tenth of the time on 1000 tetrahedra).
 class Assembly {
  public:
-  /// All by reference. Numbers below 2^32.
+  /// Keeps all arguments by reference. Numbers are below 2^32.
   Assembly(const mesh::Mesh& mesh, const ElasticOperator& rows, const Numbering& number);
 
   FaceTerms& terms() { return terms_; }
   void add(GlobalIndex i, GlobalIndex j, const Tensor3& block);
-  /// sum_ij T_i^T [b_i . stiffness . b_j] T_j of gradients, `stiffness` times the volume [N m].
+  /// Adds sum_ij T_i^T [b_i . stiffness . b_j] T_j for one gradient; `stiffness` includes the volume [N m].
   void add(const FaceTermList& terms, const GradientStiffness& stiffness);
-  /// Faces of owned cells with what `parts` say of stiffness and stress; of three-cornered ones in space that share with
-  /// edges `own` of it.
+  /// Adds stiffness and stress of the faces of owned cells; `own` is the share that triangles of a three-dimensional mesh
+  /// keep for themselves (the rest goes to their edges, see SharedEdges).
   void add_faces(const EnergyParts& parts, double own);
-  /// The same of the edges. Collective.
+  /// Adds the share of the edges. Collective.
   void add_edges(const EnergyParts& parts);
-  /// The bulk modulus of cells, on the mean of their faces' volume strains.
+  /// Adds the bulk modulus that acts on the volume strain of cells.
   void add_volumes(const EnergyParts& parts);
-  /// V_P theta_P of the owned cells beside a face changes by V_fP cofactors b . u.
+  /// Tells that V_P theta_P of the owned cells beside a face changes by V_fP cofactors b . u.
   void add_volume_terms(Index f, const FaceTermList& terms, const Tensor3& cofactors);
-  /// modulus(cell) g g^T of what was added so.
+  /// Adds modulus(cell) g g^T for the terms collected by add_volume_terms().
   template <class Modulus>
   void finish_volumes(const Modulus& modulus) {
     for (auto& [cell, terms] : volume_of_) add_squares(terms, modulus(cell));
     volume_of_.clear();
   }
-  /// The rows of supports, and their springs on the mean displacement of a face.
+  /// Adds the rows of supports, and their springs on the mean displacement of a face.
   void add_supports();
-  /// The mass of the trial functions times `factor` [1/s^2].
+  /// Adds the mass of the trial functions times `factor` [1/s^2].
   void add_mass(double factor, std::span<const double> density);
-  /// On the diagonals of nodes, one value an unknown node; empty: none.
+  /// Adds one value per unknown node to the diagonal; empty means none.
   void add_diagonals(std::span<const double> of_nodes);
-  /// Blocks between places times `factor`.
+  /// Adds blocks between places times `factor`.
   void add_places(double factor, std::span<const PlaceBlock> blocks);
-  /// Of |diagonal blocks|, their first entry. Collective.
+  /// Mean of |first entry| of the diagonal blocks. Collective.
   double mean_diagonal() const;
-  /// `n_blocks`: of this rank. Collective.
+  /// `n_blocks`: number of block rows of this rank. Collective.
   linalg::SparseMatrix matrix(std::size_t n_blocks) const;
 
  private:
