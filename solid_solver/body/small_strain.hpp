@@ -19,8 +19,10 @@ class SmallStrain final : public Equilibrium {
               const elastic::ElasticOperator& rows, const Effects& effects, const SolidParameters& parameters)
       : mesh_(mesh), kernel_(kernel), rows_(rows), effects_(effects), parameters_(parameters) {}
 
-  EquilibriumMeans means() const override { return {true, true, true}; }
-  bool takes_pressure() const override { return false; }
+  EquilibriumMeans means() const override {
+    return {
+        .recovers_stress = true, .has_products = true, .compares_gradients = true, .takes_pressure = false};
+  }
   std::string name(const SolidSystem& system) const override { return system.method->name(); }
   void prepare(const SolidProblem& problem, SolidSystem& system) const override;
   void set_pressure(std::vector<double>) override {}

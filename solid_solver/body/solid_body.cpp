@@ -165,7 +165,7 @@ std::vector<double> SolidBody::scaled(std::vector<double> values) const {
 }
 
 void SolidBody::add_scaled_loads(double t, std::span<double> forces) const {
-  const bool with_pressure = !equilibrium_->takes_pressure();
+  const bool with_pressure = !equilibrium_->means().takes_pressure;
   if (load_factor_ == 1) return boundaries_.add_forces(t, forces, with_pressure);
   std::vector<double> whole(forces.size(), 0);
   boundaries_.add_forces(t, whole, with_pressure);

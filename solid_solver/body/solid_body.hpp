@@ -69,7 +69,7 @@ class SolidBody final {
   void set_load_factor(double factor) { load_factor_ = factor; }
   /// It knows the pressures at time t that follow the surface. Collective.
   void place_pressures(double t) const {
-    if (equilibrium_->takes_pressure()) equilibrium_->set_pressure(scaled(boundaries_.pressures(t)));
+    if (equilibrium_->means().takes_pressure) equilibrium_->set_pressure(scaled(boundaries_.pressures(t)));
   }
   /// It knows the thermal strains at time t that it takes itself: large strain. Collective.
   void place_expansion(double t) const;

@@ -37,7 +37,7 @@ class FiniteStrain final : public LargeStrain {
   FiniteStrain(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
                const SolidParameters& parameters);
 
-  bool has_tangent() const override { return !meets_seat_; }  // nothing but its own
+  EquilibriumMeans means() const override { return {.has_tangent = !meets_seat_}; }  // nothing but its own
   std::string name(const SolidSystem& system) const override;
   void prepare(const SolidProblem& problem, SolidSystem& system) const override;
   /// Of the local cells; dynamic analyses.

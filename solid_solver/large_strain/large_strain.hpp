@@ -18,8 +18,6 @@ class LargeStrain : public Equilibrium {
   LargeStrain(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows)
       : mesh_(mesh), geometry_(rows.geometry()), rows_(rows) {}
 
-  void prepare(const SolidProblem&, SolidSystem&) const override {}
-  std::vector<double> force_of_known(std::span<const double>) const override { return {}; }
   /// Relative already.
   double share_left(double residual, double) const override { return residual; }
   void to_strain(std::span<Tensor3> gradients) const override;

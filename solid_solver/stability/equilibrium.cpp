@@ -11,7 +11,8 @@
 namespace couplet::solid {
 
 void EquilibriumWatch::see(const SolidBody& body, const SolidStepper& stepper, const SolidFields& fields) {
-  if (body.is_dynamic() || !body.equilibrium().has_tangent() || !body.rigid().empty() || is_told_) return;
+  if (body.is_dynamic() || !body.equilibrium().means().has_tangent || !body.rigid().empty() || is_told_)
+    return;
   const SolidState& now = stepper.trial();
   SoftMotion found = body.equilibrium().lowest_stiffness(
       stepper.last_solve().unknowns, now.known,

@@ -17,8 +17,8 @@ FILES = {
         *_of("fluid_solver", "rates face_flux predictor projection pressure boundary turbulence viscous_solver placement immersed "
                              "projection_bodies yielding_walls"),
         *_of("solid_solver", "heat heat_boundaries solid_fields stress finite_strain updated_lagrangian orthotropic mixed_form"),
-        *_of("common/elasticity", "face_terms symmetric_faces symmetric_kernel symmetric_space elasticity elastic_kernel_corrected "
-                                  "elastic_kernel_thesis shared_edges finite_edges finite_kernel anisotropic joined_vertices "
+        *_of("common/elasticity", "face_terms symmetric_faces symmetric_kernel symmetric_space elasticity least_squares_kernel "
+                                  "shared_edges finite_edges finite_kernel anisotropic joined_vertices "
                                   "elastic_corrections vertex_constraints"),
         *_of("common/fv", "conduction face_gradient point_gradient vertex_interpolation vertex_weights prescribed_motion"),
         *_of("mesh_mover", "laplacian pseudo_solid rotations affine curved_slide mover"),

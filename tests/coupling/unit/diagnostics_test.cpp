@@ -86,8 +86,6 @@ TEST(LostLoad, forces_that_nobody_takes_are_compared_with_those_taken) {
   EXPECT_DOUBLE_EQ(lost[0].number, 0.1);
   EXPECT_DOUBLE_EQ(lost[0].share, 0.1 / 1.1);
   EXPECT_TRUE((Scene{.viscous = 0.03, .steps = 1}.findings("viscous-coupling-load").empty()));
-  EXPECT_TRUE(
-      (Scene{.viscous = 0.3, .steps = 1, .takes_pressure = false}.findings("viscous-coupling-load").empty()));
 }
 
 TEST(StructureAtRest, ten_steps_of_load_without_motion_are_flagged_once) {

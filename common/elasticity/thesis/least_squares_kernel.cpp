@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// ElasticKernel with the corrected face gradient. Passes: gradients of the cells; vertices of open boundaries
-// and from them the gradients of the boundary nodes; all vertices; faces, which find the middles of their
-// edges.
+// ElasticKernel with the published least-squares face gradient, and with its corrections. Passes of the published one:
+// vertices, faces. Of the corrected one: gradients of the cells; vertices of open boundaries and from them the gradients
+// of the boundary nodes; all vertices; faces, which find the middles of their edges.
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "common/base/processor_clones.hpp"
 #include "common/elasticity/elastic_nodes.hpp"
@@ -14,12 +15,12 @@
 #include "common/parallel/collective.hpp"
 
 namespace couplet::elastic {
-namespace corrected {
+namespace least_squares {
 
-template <int D>
-class CorrectedKernel final : public ElasticKernel::Implementation {
+template <int D, bool Corrected>
+class LeastSquaresKernel final : public ElasticKernel::Implementation {
  public:
-  CorrectedKernel(const mesh::Mesh& mesh, const ElasticOperator& rows);
+  LeastSquaresKernel(const mesh::Mesh& mesh, const ElasticOperator& rows);
 
   void apply(std::span<const double> unknowns, std::span<const double> known,
              std::span<double> result) override;
@@ -31,11 +32,12 @@ class CorrectedKernel final : public ElasticKernel::Implementation {
   [[gnu::always_inline]] inline void find_cell_gradients();
   [[gnu::always_inline]] inline void find_boundary_gradients();
   [[gnu::always_inline]] inline void find_vertices(std::span<const Index> points);
+  [[gnu::always_inline]] inline void find_plain_vertices();
   [[gnu::always_inline]] inline void collect_forces(std::span<const double> known, std::span<double> result);
 
  private:
   void prepare(std::span<const double> unknowns, std::span<const double> known);
-  void plain_vertices();
+  void find_gradients(std::span<const double> known);
   void mirror_vertex_gradients();
   double* cell(Index node) { return records_.data() + std::size_t(node) * record<D>; }
   double* vertex(Index point) { return points_.data() + std::size_t(point) * record<D>; }
@@ -52,9 +54,9 @@ class CorrectedKernel final : public ElasticKernel::Implementation {
   ElasticNodes<D> nodes_;
   ElasticRows boundary_;
   ElasticVertices vertices_;
-  CellGradients gradients_;
+  std::optional<CellGradients> gradients_;       // here and below what only the corrections need
   std::vector<Index> open_points_, open_faces_;  // of traction faces; faces include the ghosts
-  std::vector<Index> plain_points_;              // whose value takes nothing from the gradients
+  std::vector<Index> plain_points_;  // whose value takes nothing from the gradients; all without corrections
   std::vector<MirrorVertex> mirrors_;
   FaceLames lame_;
   std::vector<CorrectedFace> faces_;
@@ -64,23 +66,24 @@ class CorrectedKernel final : public ElasticKernel::Implementation {
   std::vector<double> records_, points_;
 };
 
-template <int D>
-CorrectedKernel<D>::CorrectedKernel(const mesh::Mesh& mesh, const ElasticOperator& rows)
+template <int D, bool Corrected>
+LeastSquaresKernel<D, Corrected>::LeastSquaresKernel(const mesh::Mesh& mesh, const ElasticOperator& rows)
     : mesh_(mesh),
       geometry_(rows.geometry()),
       rows_(rows),
       nodes_(mesh, rows),
       boundary_(mesh, rows),
       vertices_(mesh, rows),
-      gradients_(mesh, rows),
-      plain_points_(plain_points(mesh, rows, vertices_.free)),
-      mirrors_(mirror_vertices(mesh, rows, vertices_.free)),
+      plain_points_(Corrected ? plain_points(mesh, rows, vertices_.free) : vertices_.free),
       lame_(mesh, rows),
       records_(record_space<D>(mesh.cells.n_local() + mesh.boundary.n_local()), 0.0),
       points_(record_space<D>(mesh.points.n_local()), 0.0) {
   const mesh::Geometry& geometry = rows.geometry();
   faces_.reserve(n_faces_with_force(mesh));
   for (Index f = 0; f < n_faces_with_force(mesh); ++f) faces_.push_back(make_face(mesh, geometry, f));
+  if (!Corrected) return;
+  gradients_.emplace(mesh, rows);
+  mirrors_ = mirror_vertices(mesh, rows, vertices_.free);
   if constexpr (D == 3) {
     const std::vector<std::uint32_t> kinds = edge_kinds(mesh, rows);
     for (std::size_t f = 0; f < kinds.size(); ++f) faces_[f].edges = kinds[f];
@@ -104,9 +107,9 @@ CorrectedKernel<D>::CorrectedKernel(const mesh::Mesh& mesh, const ElasticOperato
 // Passes over cells and vertices: their values and gradients.
 
 /// Gradient rows and q of a node at `place`.
-template <int D>
+template <int D, bool Corrected>
 template <class Take>
-inline void CorrectedKernel<D>::set_record(Index node, const Vec3& place, const Take& row) {
+inline void LeastSquaresKernel<D, Corrected>::set_record(Index node, const Vec3& place, const Take& row) {
   Lane<D> q = load<D>(nodes_[node]);
   Rows<D> gradient;
   for (int i = 0; i < D; ++i) {
@@ -116,11 +119,11 @@ inline void CorrectedKernel<D>::set_record(Index node, const Vec3& place, const 
   store_record<D>(cell(node), q, gradient);
 }
 
-template <int D>
-inline void CorrectedKernel<D>::find_cell_gradients() {
-  const Index* offset = gradients_.offset.data();
-  const Index* node = gradients_.node.data();
-  const float* weight = gradients_.weight.data();
+template <int D, bool Corrected>
+inline void LeastSquaresKernel<D, Corrected>::find_cell_gradients() {
+  const Index* offset = gradients_->offset.data();
+  const Index* node = gradients_->node.data();
+  const float* weight = gradients_->weight.data();
   const Vec3* centre = geometry_.cell_centre.data();
   const Index n_cells = mesh_.cells.n_local();
   const Vec3* outside = geometry_.face_centre.data() + mesh_.n_interior;
@@ -132,7 +135,7 @@ inline void CorrectedKernel<D>::find_cell_gradients() {
       const Vec3& there = node[i] < n_cells ? centre[node[i]] : outside[node[i] - n_cells];
       for (int a = 0; a < D; ++a) sum.row[a] += (there[a] - centre[c][a]) * difference;
     }
-    const auto& m = gradients_.inverse[c];
+    const auto& m = gradients_->inverse[c];
     Rows<D> g;
     if constexpr (D == 2) {
       g.row[0] = m[0] * sum.row[0] + m[1] * sum.row[1];
@@ -145,7 +148,7 @@ inline void CorrectedKernel<D>::find_cell_gradients() {
     set_record(
         c, centre[c], [&](int a) __attribute__((always_inline)) { return g.row[a]; });
   }
-  for (const auto& mirror : gradients_.mirrors) {
+  for (const auto& mirror : gradients_->mirrors) {
     double* here = cell(mirror.cell);
     const Lane<D> u = load<D>(nodes_[mirror.cell]);
     double normal = 0, reach = 0;
@@ -161,8 +164,8 @@ inline void CorrectedKernel<D>::find_cell_gradients() {
   }
 }
 
-template <int D>
-inline void CorrectedKernel<D>::find_vertices(std::span<const Index> points) {
+template <int D, bool Corrected>
+inline void LeastSquaresKernel<D, Corrected>::find_vertices(std::span<const Index> points) {
   for (const Index v : points) {
     const auto index = rows_.vertices().nodes(v);
     const auto weight = rows_.vertices().weights(v);
@@ -181,8 +184,8 @@ inline void CorrectedKernel<D>::find_vertices(std::span<const Index> points) {
 }
 
 // u = sum w u_i, exact for linear fields.
-template <int D>
-void CorrectedKernel<D>::plain_vertices() {
+template <int D, bool Corrected>
+inline void LeastSquaresKernel<D, Corrected>::find_plain_vertices() {
   for (const Index v : plain_points_) {
     const auto index = rows_.vertices().nodes(v);
     const auto weight = rows_.vertices().weights(v);
@@ -194,8 +197,8 @@ void CorrectedKernel<D>::plain_vertices() {
 
 // On a symmetry plane: the mean of the gradient and its mirror image, G - NG -
 // GN + 2 NGN with N = n n^T.
-template <int D>
-void CorrectedKernel<D>::mirror_vertex_gradients() {
+template <int D, bool Corrected>
+void LeastSquaresKernel<D, Corrected>::mirror_vertex_gradients() {
   for (const MirrorVertex& mirror : mirrors_) {
     double* here = vertex(mirror.point);
     for (const Vec3& normal : mirror.normals) {
@@ -212,10 +215,14 @@ void CorrectedKernel<D>::mirror_vertex_gradients() {
 }
 
 // The middle value lies L^2/8 u'' below the trapezoid, the mean L^2/12 u''.
-template <int D>
-inline Surface<D> CorrectedKernel<D>::around(Index f) {
+template <int D, bool Corrected>
+inline Surface<D> LeastSquaresKernel<D, Corrected>::around(Index f) {
   const CorrectedFace& face = faces_[f];
   const auto corners = mesh_.face_points[f];
+  if constexpr (D == 3 && !Corrected)
+    return plain_surface(
+        face, corners,
+        geometry_.points.data(), [&](Index v) __attribute__((always_inline)) { return load<3>(vertex(v)); });
   const auto value = [&](int e, const Lane<D>& edge) __attribute__((always_inline)) {
     const double* first = vertex(corners[e]);
     if constexpr (D == 2) {
@@ -232,13 +239,13 @@ inline Surface<D> CorrectedKernel<D>::around(Index f) {
   return surface<D>(face, corners, geometry_.points.data(), value);
 }
 
-template <int D>
-inline Lane<D> CorrectedKernel<D>::inner(Index f, const Rows<D>& grad) {
+template <int D, bool Corrected>
+inline Lane<D> LeastSquaresKernel<D, Corrected>::inner(Index f, const Rows<D>& grad) {
   const CorrectedFace& face = faces_[f];
   const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
-  const Vec3 &from = geometry_.cell_centre[p], &to = geometry_.cell_centre[n];
+  const Vec3 &from = geometry_.cell_centre[p], to = geometry_.cell_centre[n] + mesh_.shift(f);
   Lane<D> along = load<D>(nodes_[n]) - load<D>(nodes_[p]);
-  if (face.curved != 0) {
+  if (Corrected && face.curved != 0) {
     const double *here = cell(p), *there = cell(n);
     const Vec3& centre = geometry_.face_centre[f];
     for (int i = 0; i < D; ++i)
@@ -247,25 +254,26 @@ inline Lane<D> CorrectedKernel<D>::inner(Index f, const Rows<D>& grad) {
   return normal_derivative<D>(face, to - from, along, grad);
 }
 
-// On the boundary d . grad u = 2 (u_B - u_P) - d . G_P.
-template <int D>
-inline Lane<D> CorrectedKernel<D>::outer(Index f, const Rows<D>& grad) {
+// On the boundary d . grad u = 2 (u_B - u_P) - d . G_P; without corrections u_B - u_P.
+template <int D, bool Corrected>
+inline Lane<D> LeastSquaresKernel<D, Corrected>::outer(Index f, const Rows<D>& grad) {
   const Index p = mesh_.owner[f];
   const Vec3 d = geometry_.face_centre[f] - geometry_.cell_centre[p];
   const Lane<D> across = load<D>(nodes_.of_face(f)) - load<D>(nodes_[p]);
+  if (!Corrected) return normal_derivative<D>(faces_[f], d, across, grad);
   return normal_derivative<D>(faces_[f], d, 2 * across - contract<D>(d, cell(p) + D), grad);
 }
 
 // The mirrored difference is central already.
-template <int D>
-inline Lane<D> CorrectedKernel<D>::at_symmetry(Index f, const Rows<D>& grad) {
+template <int D, bool Corrected>
+inline Lane<D> LeastSquaresKernel<D, Corrected>::at_symmetry(Index f, const Rows<D>& grad) {
   const Index p = mesh_.owner[f];
   const Vec3 d = geometry_.face_centre[f] - geometry_.cell_centre[p];
   return normal_derivative<D>(faces_[f], d, -load<D>(nodes_[p]), grad);
 }
 
-template <int D>
-inline void CorrectedKernel<D>::find_boundary_gradients() {
+template <int D, bool Corrected>
+inline void LeastSquaresKernel<D, Corrected>::find_boundary_gradients() {
   for (const Index f : open_faces_) {
     if (f >= mesh_.n_flux_faces()) break;
     const CorrectedFace& face = faces_[f];
@@ -287,8 +295,9 @@ inline void CorrectedKernel<D>::find_boundary_gradients() {
   }
 }
 
-template <int D>
-inline void CorrectedKernel<D>::collect_forces(std::span<const double> known, std::span<double> result) {
+template <int D, bool Corrected>
+inline void LeastSquaresKernel<D, Corrected>::collect_forces(std::span<const double> known,
+                                                             std::span<double> result) {
   nodes_.clear_forces();
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     const Surface<D> here = around(f);
@@ -313,31 +322,55 @@ namespace {
 
 // The loops for several generations of processors; the right one is picked when the program starts. Halo
 // exchanges stand between them.
-COUPLET_PROCESSOR_CLONES void cells_pass(CorrectedKernel<3>& kernel) { kernel.find_cell_gradients(); }
-COUPLET_PROCESSOR_CLONES void boundary_pass(CorrectedKernel<3>& kernel) { kernel.find_boundary_gradients(); }
-COUPLET_PROCESSOR_CLONES void vertices_pass(CorrectedKernel<3>& kernel, std::span<const Index> points) {
+template <int D>
+using Corrected = LeastSquaresKernel<D, true>;
+template <int D>
+using Published = LeastSquaresKernel<D, false>;
+using Fields = std::span<const double>;
+
+COUPLET_PROCESSOR_CLONES void cells_pass(Corrected<3>& kernel) { kernel.find_cell_gradients(); }
+COUPLET_PROCESSOR_CLONES void cells_pass(Corrected<2>& kernel) { kernel.find_cell_gradients(); }
+COUPLET_PROCESSOR_CLONES void boundary_pass(Corrected<3>& kernel) { kernel.find_boundary_gradients(); }
+COUPLET_PROCESSOR_CLONES void boundary_pass(Corrected<2>& kernel) { kernel.find_boundary_gradients(); }
+COUPLET_PROCESSOR_CLONES void vertices_pass(Corrected<3>& kernel, std::span<const Index> points) {
   kernel.find_vertices(points);
 }
-COUPLET_PROCESSOR_CLONES void faces_pass(CorrectedKernel<3>& kernel, std::span<const double> known,
-                                         std::span<double> result) {
+COUPLET_PROCESSOR_CLONES void vertices_pass(Corrected<2>& kernel, std::span<const Index> points) {
+  kernel.find_vertices(points);
+}
+COUPLET_PROCESSOR_CLONES void plain_pass(Corrected<3>& kernel) { kernel.find_plain_vertices(); }
+COUPLET_PROCESSOR_CLONES void plain_pass(Corrected<2>& kernel) { kernel.find_plain_vertices(); }
+COUPLET_PROCESSOR_CLONES void plain_pass(Published<3>& kernel) { kernel.find_plain_vertices(); }
+COUPLET_PROCESSOR_CLONES void plain_pass(Published<2>& kernel) { kernel.find_plain_vertices(); }
+COUPLET_PROCESSOR_CLONES void faces_pass(Corrected<3>& kernel, Fields known, std::span<double> result) {
   kernel.collect_forces(known, result);
 }
-COUPLET_PROCESSOR_CLONES void cells_pass(CorrectedKernel<2>& kernel) { kernel.find_cell_gradients(); }
-COUPLET_PROCESSOR_CLONES void boundary_pass(CorrectedKernel<2>& kernel) { kernel.find_boundary_gradients(); }
-COUPLET_PROCESSOR_CLONES void vertices_pass(CorrectedKernel<2>& kernel, std::span<const Index> points) {
-  kernel.find_vertices(points);
+COUPLET_PROCESSOR_CLONES void faces_pass(Corrected<2>& kernel, Fields known, std::span<double> result) {
+  kernel.collect_forces(known, result);
 }
-COUPLET_PROCESSOR_CLONES void faces_pass(CorrectedKernel<2>& kernel, std::span<const double> known,
-                                         std::span<double> result) {
+COUPLET_PROCESSOR_CLONES void faces_pass(Published<3>& kernel, Fields known, std::span<double> result) {
+  kernel.collect_forces(known, result);
+}
+COUPLET_PROCESSOR_CLONES void faces_pass(Published<2>& kernel, Fields known, std::span<double> result) {
   kernel.collect_forces(known, result);
 }
 
 }  // namespace
 
 /// All that stands before the faces: node records, vertices.
-template <int D>
-void CorrectedKernel<D>::prepare(std::span<const double> unknowns, std::span<const double> known) {
+template <int D, bool Corrected>
+void LeastSquaresKernel<D, Corrected>::prepare(std::span<const double> unknowns,
+                                               std::span<const double> known) {
   nodes_.fill(unknowns, known);
+  if constexpr (Corrected) find_gradients(known);
+  plain_pass(*this);
+  vertices_.constrain<D>(points_, record<D>, known);
+  mirror_vertex_gradients();
+}
+
+/// Gradients of cells and boundary nodes, and the vertices by them.
+template <int D, bool Corrected>
+void LeastSquaresKernel<D, Corrected>::find_gradients(std::span<const double> known) {
   cells_pass(*this);
   const std::span<double> all(records_);
   const std::size_t n_cells = mesh_.cells.n_local();
@@ -349,27 +382,26 @@ void CorrectedKernel<D>::prepare(std::span<const double> unknowns, std::span<con
                [&](int a) { return row_of<D>(owner, a); });
   }
   vertices_pass(*this, open_points_);
-  plain_vertices();
+  plain_pass(*this);
   vertices_.constrain<D>(points_, record<D>, known);
   boundary_pass(*this);
   mesh_.boundary.update_ghosts(
       all.subspan(n_cells * record<D>, std::size_t(mesh_.boundary.n_local()) * record<D>), record<D>);
   vertices_pass(*this, vertices_.free);
-  plain_vertices();
-  vertices_.constrain<D>(points_, record<D>, known);
-  mirror_vertex_gradients();
 }
 
-template <int D>
-void CorrectedKernel<D>::apply(std::span<const double> unknowns, std::span<const double> known,
-                               std::span<double> result) {
+template <int D, bool Corrected>
+void LeastSquaresKernel<D, Corrected>::apply(std::span<const double> unknowns, std::span<const double> known,
+                                             std::span<double> result) {
   prepare(unknowns, known);
   faces_pass(*this, known, result);
 }
 
-template <int D>
-void CorrectedKernel<D>::face_gradients(std::span<const double> unknowns, std::span<const double> known,
-                                        const ElasticKernel::TakeGradient& take, Index first, Index end) {
+template <int D, bool Corrected>
+void LeastSquaresKernel<D, Corrected>::face_gradients(std::span<const double> unknowns,
+                                                      std::span<const double> known,
+                                                      const ElasticKernel::TakeGradient& take, Index first,
+                                                      Index end) {
   prepare(unknowns, known);
   for (Index f = first; f < end; ++f) {
     const Surface<D> here = around(f);
@@ -389,19 +421,25 @@ void CorrectedKernel<D>::face_gradients(std::span<const double> unknowns, std::s
   }
 }
 
-template <int D>
-void CorrectedKernel<D>::point_values(std::span<const double> unknowns, std::span<const double> known,
-                                      std::span<double> points) {
+template <int D, bool Corrected>
+void LeastSquaresKernel<D, Corrected>::point_values(std::span<const double> unknowns,
+                                                    std::span<const double> known, std::span<double> points) {
   prepare(unknowns, known);
   vertices_.visit([&](Index v) { std::copy_n(vertex(v), D, points.data() + std::size_t(v) * D); });
 }
 
-}  // namespace corrected
+}  // namespace least_squares
+
+std::unique_ptr<ElasticKernel::Implementation> make_thesis_kernel(const mesh::Mesh& mesh,
+                                                                  const ElasticOperator& rows) {
+  if (mesh.dim == 2) return std::make_unique<least_squares::LeastSquaresKernel<2, false>>(mesh, rows);
+  return std::make_unique<least_squares::LeastSquaresKernel<3, false>>(mesh, rows);
+}
 
 std::unique_ptr<ElasticKernel::Implementation> make_corrected_kernel(const mesh::Mesh& mesh,
                                                                      const ElasticOperator& rows) {
-  if (mesh.dim == 2) return std::make_unique<corrected::CorrectedKernel<2>>(mesh, rows);
-  return std::make_unique<corrected::CorrectedKernel<3>>(mesh, rows);
+  if (mesh.dim == 2) return std::make_unique<least_squares::LeastSquaresKernel<2, true>>(mesh, rows);
+  return std::make_unique<least_squares::LeastSquaresKernel<3, true>>(mesh, rows);
 }
 
 }  // namespace couplet::elastic
