@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/motion/gap_pockets.hpp"
+#include "fluid_solver/motion/gaps.hpp"
 
 #include <algorithm>
 #include <cmath>

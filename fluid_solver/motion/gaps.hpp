@@ -7,11 +7,34 @@
 #include <string>
 #include <vector>
 
-#include "fluid_solver/motion/gap_pockets.hpp"
 #include "fluid_solver/motion/obstacles.hpp"
 #include "fluid_solver/parameters/parameters.hpp"
 
 namespace couplet::fluid {
+
+/// Parts that closed gaps shut off: those of the fluid that no free cells join to an outlet. What inlets let into
+/// such a part has nowhere to go; through the small conductance that blocked faces keep it would be pressed all
+/// the same, so it is refused.
+template <int D>
+class GapPockets {
+ public:
+  GapPockets(const mesh::Mesh& mesh, const FluidParameters& parameters);
+  /// To be called when other cells are blocked than before. `gap`: per local cell, below 0: free. Collective.
+  void find(const std::vector<int>& gap);
+  /// Throws SchemeFailure, naming the inlets and a place, if the velocities `w` of the boundary faces let a pocket
+  /// have more in than out, which a `compressible` fluid can take up, or if they lead into blocked cells. Collective.
+  void check(const Placement<D>& at, const Vectors<D>& w, double time, bool compressible) const;
+
+  /// Why a flow may have diverged: a pocket whose walls move; empty: there is none. Collective.
+  std::string cause(const Placement<D>& at) const;
+
+ private:
+  const mesh::Mesh& mesh_;
+  std::vector<const mesh::Patch*> open_,
+      given_;                  // given pressure; given velocity but of walls. The same on all ranks
+  std::vector<double> label_;  // per local cell: least cell id of its part, plus 1; 0: blocked
+  std::vector<double> shut_;   // labels of the parts without an outlet, and 0, ascending
+};
 
 /// Gaps that nearly close, a valve on its seat: cells between two walls that are nearer to each other than the
 /// given opening are blocked. They move with the mesh like a body, nothing passes them: the free cells beside
@@ -24,6 +47,7 @@ template <int D>
 class Gaps final : public Obstacles<D> {
  public:
   using Changed = typename Obstacles<D>::Changed;
+  using Obstacles<D>::is_closed;
 
   /// Throws Error if a gap names what is no patch, or if its seat is elsewhere. `points`: at rest. Collective.
   Gaps(const mesh::Mesh& mesh, const FluidParameters& parameters, std::span<const Vec3> points);
@@ -57,7 +81,6 @@ class Gaps final : public Obstacles<D> {
  private:
   using Obstacles<D>::mesh_;
   using Obstacles<D>::around_;
-  using Obstacles<D>::is_closed;
   struct Wall {
     std::vector<const mesh::Patch*> patches;
     std::vector<double> corners(const mesh::Mesh& mesh, std::span<const Vec3> points, const Vec3& low,

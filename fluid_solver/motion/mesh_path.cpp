@@ -17,8 +17,10 @@ constexpr double most_torn = 1e-8;
 /// Whoever moved the points: a cell turned over has no flow.
 template <int D>
 void refuse_inverted(const mesh::Mesh& mesh, const Placement<D>& at, double time) {
+  bool inverted = false;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) inverted |= !(at.volume[c] > 0);
+  if (!parallel::any(mesh.comm, inverted)) return;
   const LargestCell worst = find_largest(mesh, at, [&](Index c) { return -at.volume[c]; });
-  if (worst.value < 0) return;
   throw SolveFailure(
       "The mesh motion from t = {:.6g} s inverts a cell near ({:.6g}, {:.6g}, {:.6g}) m (volume {:.3e} m^3).",
       time, worst.place.x(), worst.place.y(), worst.place.z(), -worst.value);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/pressure/absorbing.hpp"
-
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "common/parallel/collective.hpp"
+#include "fluid_solver/pressure/term.hpp"
 #include "fluid_solver/pressure/wave_rule.hpp"
 
 namespace couplet::fluid {
@@ -26,7 +27,43 @@ double mesh_extent(const mesh::Mesh& mesh, std::span<const Vec3> points) {
   return size;
 }
 
-}  // namespace
+/// Boundaries that let pressure waves out: with v the speed outward at a face beyond what is given there, at t^{n+1/2}
+///   outlet: p_b = p_given + rho c (v - mean v),  v = phi/S
+///   inlet:  rho c v = p_b - mean p_b,            v = (w - given).n
+/// the means over the patch and over some time, so that what is given holds in the end. Implicit: v at t^{n+1/2} is
+/// middle_weights() of v at t^{n+1} and before, which scales the conductance of the face by 1/(1 + a c dt g/S).
+template <int D>
+class AbsorbingBoundaries final : public Term<D> {
+ public:
+  AbsorbingBoundaries(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction);
+
+  void prepare(const State<D>& from) override;
+  double version() const override { return weight_[0] * step_.dt; }
+  void add_to_diagonal(Diagonal& diagonal) override;
+  void foresee(const State<D>& from, Projected<D>& projected) override;
+  /// Subtracts at faces of given pressure what their answer takes away.
+  void before(Projected<D>& projected, RightSide& side) override;
+  void after(Projected<D>& projected) override;
+  /// Sets state.openings.
+  void commit(const Projected<D>& projected, State<D>& state) const override;
+  void start(State<D>& state) const override;
+  using Term<D>::start;
+
+ private:
+  using Term<D>::scene_;
+  using Term<D>::mesh_;
+  using Term<D>::step_;
+  using Term<D>::prediction_;
+  double share(Index b) const;
+  double past(Index b) const;
+  void means_of(const std::vector<double>& v, const std::vector<double>& p, const Placement<D>& at,
+                std::vector<double>& means) const;
+
+  double mean_time_;                       // [s]
+  std::array<double, 3> weight_{};         // of v at t^{n+1}, t^n, t^{n-1}
+  const OpeningsState* before_ = nullptr;  // of level n
+  std::vector<double> mean_;               // at t^{n+1/2}, per patch
+};
 
 template <int D>
 AbsorbingBoundaries<D>::AbsorbingBoundaries(const Scene<D>& scene, const Step<D>& step,
@@ -182,7 +219,17 @@ void AbsorbingBoundaries<D>::start(State<D>& s) const {
   means_of(s.openings.now, s.pressure[0] ? s.pressure[0]->boundary : rest, *s.placement, s.openings.mean);
 }
 
-template class AbsorbingBoundaries<2>;
-template class AbsorbingBoundaries<3>;
+}  // namespace
+
+template <int D>
+std::unique_ptr<Term<D>> make_absorbing_boundaries(const Scene<D>& scene, const Step<D>& step,
+                                                   const Prediction<D>& prediction) {
+  return std::make_unique<AbsorbingBoundaries<D>>(scene, step, prediction);
+}
+
+template std::unique_ptr<Term<2>> make_absorbing_boundaries<2>(const Scene<2>&, const Step<2>&,
+                                                               const Prediction<2>&);
+template std::unique_ptr<Term<3>> make_absorbing_boundaries<3>(const Scene<3>&, const Step<3>&,
+                                                               const Prediction<3>&);
 
 }  // namespace couplet::fluid

@@ -9,10 +9,6 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/pressure/absorbing.hpp"
-#include "fluid_solver/pressure/compression.hpp"
-#include "fluid_solver/pressure/upstream_volume.hpp"
-#include "fluid_solver/pressure/yielding_walls.hpp"
 
 namespace couplet::fluid {
 namespace {
@@ -40,14 +36,14 @@ template <int D>
 std::vector<std::unique_ptr<Term<D>>> make_terms(const Scene<D>& scene, const Step<D>& step,
                                                  const Prediction<D>& prediction) {
   std::vector<std::unique_ptr<Term<D>>> terms;
-  const auto add = [&]<class T>(std::type_identity<T>) {
-    terms.push_back(std::make_unique<T>(scene, step, prediction));
+  const auto add = [&](bool wanted, const auto& make) {
+    if (wanted) terms.push_back(make(scene, step, prediction));
   };
-  if (scene.boundary.yields()) add(std::type_identity<YieldingWalls<D>>());
-  if (!scene.is_compressible()) return terms;
-  if (!scene.boundary.absorbing_patches().empty()) add(std::type_identity<AbsorbingBoundaries<D>>());
-  add(std::type_identity<Compression<D>>());
-  if (!scene.boundary.upstream_patches().empty()) add(std::type_identity<UpstreamVolume<D>>());
+  add(scene.boundary.yields(), make_yielding_walls<D>);
+  const bool compressible = scene.is_compressible();
+  add(compressible && !scene.boundary.absorbing_patches().empty(), make_absorbing_boundaries<D>);
+  add(compressible, make_compression<D>);
+  add(compressible && !scene.boundary.upstream_patches().empty(), make_upstream_volume<D>);
   return terms;
 }
 
@@ -101,6 +97,7 @@ void PressureProjection<D>::start(const Placement<D>& at) {
   set_obliqueness(at);
   equation_.set(scene_.around(step_));
   assembled_ = step_.to;
+  versions_.assign(terms_.size(), 0.0);
 }
 
 template <int D>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "common/io/checkpoint.hpp"
@@ -29,7 +30,7 @@ class Term {
 
   /// In this step the term gives the pressure of a closed domain a level.
   virtual bool sets_level() const { return false; }
-  /// Changes where the entries of the matrix do, on a mesh that rests.
+  /// Changes where the entries of the matrix do, on a mesh that rests. 0 is that of a matrix without terms.
   virtual double version() const { return 0; }
   virtual void add_to_diagonal(Diagonal&) {}
   /// Entries beside those of the mesh; nullptr if there are none. add_to_diagonal() sets their values.
@@ -63,5 +64,24 @@ class Term {
   const Step<D>& step_;
   const Prediction<D>& prediction_;
 };
+
+// The terms, each in the file of its name.
+
+/// Walls of known mass (Robin condition). Collective.
+template <int D>
+std::unique_ptr<Term<D>> make_yielding_walls(const Scene<D>& scene, const Step<D>& step,
+                                             const Prediction<D>& prediction);
+/// Openings that let pressure waves out. Collective.
+template <int D>
+std::unique_ptr<Term<D>> make_absorbing_boundaries(const Scene<D>& scene, const Step<D>& step,
+                                                   const Prediction<D>& prediction);
+/// Weak compressibility.
+template <int D>
+std::unique_ptr<Term<D>> make_compression(const Scene<D>& scene, const Step<D>& step,
+                                          const Prediction<D>& prediction);
+/// A volume behind the inlets.
+template <int D>
+std::unique_ptr<Term<D>> make_upstream_volume(const Scene<D>& scene, const Step<D>& step,
+                                              const Prediction<D>& prediction);
 
 }  // namespace couplet::fluid

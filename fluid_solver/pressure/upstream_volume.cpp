@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/pressure/upstream_volume.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/pressure/compression.hpp"
+#include "fluid_solver/pressure/term.hpp"
+#include "fluid_solver/pressure/wave_rule.hpp"
 
 namespace couplet::fluid {
 namespace {
@@ -16,7 +16,46 @@ constexpr double response_tolerance = 1e-10;
 // Share of the faces' conductance. Cells that follow the volume's pressure up to this share do not determine it.
 constexpr double least_answer = 1e-9;
 
-}  // namespace
+/// A volume V_0 at rest behind the inlets, at one pressure: dp/dt = rho c^2 (q - q_out)/V_0, q what the inlets' velocity
+/// prescribes, q_out what enters the mesh. Its pressure is that of their faces. By the same rule in time as the cells, in
+/// one step with them: the answer y of the cells to its pressure, A y = G with the conductance G of its faces, gives the
+/// flux before p is solved for, since A p = b + G p_0 makes G.p = y.(b + G p_0) for the symmetric matrix A.
+template <int D>
+class UpstreamVolume final : public Term<D> {
+ public:
+  UpstreamVolume(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction);
+
+  void prepare(const State<D>& from) override;
+  double version() const override { return 1; }
+  /// Solves for y.
+  void respond(PressureEquation<D>& equation) override;
+  /// No pressure at its faces as long as it is not known.
+  void foresee(const State<D>& from, Projected<D>& projected) override;
+  /// Its pressure, onto its faces and into b, which lacks them.
+  void before(Projected<D>& projected, RightSide& side) override;
+  void complete(PressureLevel<D>& level) const override;
+  /// At the pressure of its faces.
+  void start(const Placement<D>& at, PressureLevel<D>& level) const override;
+  using Term<D>::start;
+  /// y is where the next one is looked for: of the accepted level.
+  void accept() override { accepted_ = response_; }
+  void save(io::CheckpointWriter& file) const override {
+    file.write(mesh::Entries::cells, "upstream-response", accepted_);
+  }
+  void load(io::CheckpointReader& file) override;
+
+ private:
+  using Term<D>::scene_;
+  using Term<D>::mesh_;
+  using Term<D>::step_;
+  double begin() const;
+
+  bool trapezoidal_;
+  double stiffness_;  // rho c^2/V_0 [Pa/m^3]
+  double rate_ = 0, past_ = 0, pressure_ = 0;
+  std::vector<double> response_, accepted_;  // y per local cell
+  double faces_ = 0, answer_ = 0;            // sum G, y.G [m]
+};
 
 template <int D>
 UpstreamVolume<D>::UpstreamVolume(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction)
@@ -129,7 +168,17 @@ void UpstreamVolume<D>::load(io::CheckpointReader& file) {
   accepted_ = response_;
 }
 
-template class UpstreamVolume<2>;
-template class UpstreamVolume<3>;
+}  // namespace
+
+template <int D>
+std::unique_ptr<Term<D>> make_upstream_volume(const Scene<D>& scene, const Step<D>& step,
+                                              const Prediction<D>& prediction) {
+  return std::make_unique<UpstreamVolume<D>>(scene, step, prediction);
+}
+
+template std::unique_ptr<Term<2>> make_upstream_volume<2>(const Scene<2>&, const Step<2>&,
+                                                          const Prediction<2>&);
+template std::unique_ptr<Term<3>> make_upstream_volume<3>(const Scene<3>&, const Step<3>&,
+                                                          const Prediction<3>&);
 
 }  // namespace couplet::fluid

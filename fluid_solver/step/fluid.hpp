@@ -10,7 +10,7 @@
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/motion/mesh_path.hpp"
 #include "fluid_solver/step/fractional_step.hpp"
-#include "fluid_solver/step/sub_step_size.hpp"
+#include "fluid_solver/step/step_size.hpp"
 
 namespace couplet::fluid {
 
