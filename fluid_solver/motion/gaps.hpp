@@ -25,7 +25,7 @@ class GapPockets {
   /// have more in than out, which a `compressible` fluid can take up, or if they lead into blocked cells. Collective.
   void check(const Placement<D>& at, const Vectors<D>& w, double time, bool compressible) const;
 
-  /// Why a flow may have diverged: a pocket whose walls move; empty: there is none. Collective.
+  /// Why a flow may have diverged: a pocket whose walls move; empty if there is none. Collective.
   std::string cause(const Placement<D>& at) const;
 
  private:

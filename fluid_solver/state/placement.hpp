@@ -45,7 +45,7 @@ struct Placement {
   Vec<D> offset(Index f) const {
     return skew[f] + (0.5 - weight[f]) / conductance[f] * (area[f] - oblique_of(f));
   }
-  /// Placements that are translations of each other share it; null: nothing is known.
+  /// Placements that are translations of each other share it; nullptr if nothing is known.
   std::shared_ptr<const char> shape{};
   /// k of a face [m^2], whether or not there is the array.
   Vec<D> oblique_of(Index face) const { return oblique.empty() ? Vec<D>(Vec<D>::Zero()) : oblique[face]; }
