@@ -85,8 +85,8 @@ struct State : History<D> {
 
   OpeningsState openings;  ///< empty without absorbing boundaries
 
-  std::shared_ptr<const std::vector<char>>
-      blocked;  ///< per local cell, in a closed gap; nullptr if there is none
+  /// Per local cell, in a closed gap; nullptr if there is none.
+  std::shared_ptr<const std::vector<char>> blocked;
 
   std::vector<double> eddy;  ///< eddy viscosity at t^n per local cell [m^2/s]; empty without a model
 
