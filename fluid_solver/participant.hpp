@@ -80,7 +80,7 @@ class FluidParticipant final : public coupling::Participant {
 
   const mesh::Mesh mesh_;
   std::unique_ptr<Fluid<D>> fluid_;
-  std::unique_ptr<coupling::InterfaceMap> interface_;   // null: no interface patch
+  std::unique_ptr<coupling::InterfaceMap> interface_;   // nullptr without an interface patch
   coupling::Interface description_;                     // of what this rank has of it
   mesh::Csr interface_vertices_;                        // per interface face: entries of interface_->points()
   std::vector<double> interface_area_;                  // per interface face, at rest [m^2]

@@ -36,7 +36,7 @@ void turn_search(double gamma, std::span<const double> r, std::span<double> s);
 
 /// Share of an eddy viscosity in the matrix: theta dt nu_t at interior faces, nu_t the mean of two cells.
 struct EddyShare {
-  const std::vector<double>* eddy = nullptr;  ///< nu_t per local cell [m^2/s]; null: none
+  const std::vector<double>* eddy = nullptr;  ///< nu_t per local cell [m^2/s]; nullptr if there is none
   double factor = 0;                          ///< theta dt [s]
   double at(Index p, Index n) const { return eddy ? 0.5 * factor * ((*eddy)[p] + (*eddy)[n]) : 0; }
 };

@@ -44,8 +44,8 @@ struct CutCells {
   std::vector<double> faces;       ///< open share, per flux face
   std::vector<double> cells;       ///< open share, per local cell
   std::vector<double> open_depth;  ///< mean level of the open part, per local cell [m]; 0: there is none
-  std::vector<double>
-      extent;       ///< largest difference of the level from that at the centre, per local cell [m]
+  /// Largest difference of the level from that at the centre, per local cell [m].
+  std::vector<double> extent;
   Vectors<D> wall;  ///< surface in the cell, out of the open part, per local cell [m^2]
 };
 

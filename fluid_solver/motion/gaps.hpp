@@ -25,7 +25,7 @@ class GapPockets {
   /// have more in than out, which a `compressible` fluid can take up, or if they lead into blocked cells. Collective.
   void check(const Placement<D>& at, const Vectors<D>& w, double time, bool compressible) const;
 
-  /// Why a flow may have diverged: a pocket whose walls move; empty: there is none. Collective.
+  /// Why a flow may have diverged: a pocket whose walls move; empty if there is none. Collective.
   std::string cause(const Placement<D>& at) const;
 
  private:
@@ -47,6 +47,7 @@ template <int D>
 class Gaps final : public Obstacles<D> {
  public:
   using Changed = typename Obstacles<D>::Changed;
+  using Obstacles<D>::is_closed;
 
   /// Throws Error if a gap names what is no patch, or if its seat is elsewhere. `points`: at rest. Collective.
   Gaps(const mesh::Mesh& mesh, const FluidParameters& parameters, std::span<const Vec3> points);
@@ -80,7 +81,6 @@ class Gaps final : public Obstacles<D> {
  private:
   using Obstacles<D>::mesh_;
   using Obstacles<D>::around_;
-  using Obstacles<D>::is_closed;
   struct Wall {
     std::vector<const mesh::Patch*> patches;
     std::vector<double> corners(const mesh::Mesh& mesh, std::span<const Vec3> points, const Vec3& low,

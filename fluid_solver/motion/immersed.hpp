@@ -23,6 +23,7 @@ template <int D>
 class ImmersedBodies final : public Obstacles<D> {
  public:
   using Changed = typename Obstacles<D>::Changed;
+  using Obstacles<D>::is_closed;
 
   /// `parameters`: with the same kind of surface for all bodies.
   ImmersedBodies(const mesh::Mesh& mesh, const FluidParameters& parameters);
@@ -64,7 +65,6 @@ class ImmersedBodies final : public Obstacles<D> {
  private:
   using Obstacles<D>::mesh_;
   using Obstacles<D>::around_;
-  using Obstacles<D>::is_closed;
   using Sums = std::vector<double>;  // of each body: pressure, then friction
   Index other(Index f) const { return f < mesh_.n_interior ? mesh_.neighbour[f] : mesh_.owner[f]; }
   bool blocked(Index f) const { return is_solid(mesh_.owner[f]) || is_solid(other(f)); }

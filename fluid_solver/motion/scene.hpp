@@ -21,7 +21,7 @@ struct Scene {
   const FluidParameters& parameters;
   Properties fluid;
   bool oblique = false;                      ///< the non-orthogonal parts are needed
-  std::optional<RotatingFrame<D>> frame{};   ///< empty: none
+  std::optional<RotatingFrame<D>> frame{};   ///< empty if there is none
   std::unique_ptr<FourthOrder<D>> fourth{};  ///< nullptr: second order everywhere
   /// Each step marks their cells.
   std::unique_ptr<Obstacles<D>> obstacles = std::make_unique<Obstacles<D>>(mesh);

@@ -15,7 +15,7 @@ class RunningStatistics {
   RunningStatistics(std::size_t cells, std::size_t faces);
   /// Statistics before the first state: NaN everywhere.
   static RunningStatistics nothing_yet(std::size_t cells, std::size_t faces);
-  /// `state` and `pressure` (null: none) held for dt [s].
+  /// `state` and `pressure` (nullptr if there is none) held for dt [s].
   void add(const State<D>& state, const PressureLevel<D>* pressure, double dt);
   double duration() const { return duration_; }  ///< [s]
 

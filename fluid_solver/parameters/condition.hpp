@@ -27,8 +27,7 @@ enum class BoundaryType {
 };
 enum class InletProfile { uniform, parabolic };
 
-/// Velocities in a file, see GridTable: columns u, v (and w) over some of x, y,
-/// z, t.
+/// Velocities in a file, see GridTable: columns u, v (and w) over some of x, y, z, t.
 struct VelocityTableParameters {
   std::string file;
   fv::GridTable::Outside outside = fv::GridTable::Outside::error;
@@ -45,8 +44,7 @@ enum class Impedance { given, structure };
 /// Motion of Robin faces on the two sides of a thin body.
 enum class Sides { automatic, together, apart };
 
-/// The keys of all conditions; what a condition does not read stays as it is
-/// here.
+/// The keys of all conditions; what a condition does not read stays as it is here.
 struct BoundaryParameters {
   BoundaryType type = BoundaryType::no_slip;
   std::vector<config::ExpressionText> velocity;      // [m/s], inlet and moving wall
@@ -67,21 +65,16 @@ struct BoundaryParameters {
   bool foresees() const { return surface_density || impedance == Impedance::structure; }
 };
 
-/// Numbers that a condition gives to the equations at each of its faces:
-/// with w the velocity and p_b the pressure that are given, L the slip length,
-/// g the conductance and S the area of a face, t = S/(S + L g), n its normal, P
-/// its cell,
-///   flux            phi = w.S                            ; of a given
-///   pressure: phi^p - (dt/rho) g (p_b - p_P) pressure row    nothing, p_b from
-///   the wall's motion  ; of a given pressure: g, and g p_b on the right side
-///   viscous row     beta g [t I + (1 - t) n n], and the same of w on the right
-///   side; of a given pressure: nothing value at b      u_b = u_P + [t I + (1 -
-///   t) n n] (w - u_P)                      ; of a given pressure: u_P load p_b
-///   S + mu g (u_P - u_b)
+/// Numbers that a condition gives to the equations at each of its faces: with w the velocity and p_b the pressure that
+/// are given, L the slip length, g the conductance and S the area of a face, t = S/(S + L g), n its normal, P its cell,
+///   flux            phi = w.S                            ; of a given pressure: phi^p - (dt/rho) g (p_b - p_P)
+///   pressure row    nothing, p_b from the wall's motion  ; of a given pressure: g, and g p_b on the right side
+///   viscous row     beta g [t I + (1 - t) n n], and the same of w on the right side; of a given pressure: nothing
+///   value at b      u_b = u_P + [t I + (1 - t) n n] (w - u_P)                      ; of a given pressure: u_P
+///   load            p_b S + mu g (u_P - u_b)
 struct FaceRow {
   double pressure = 0;     ///< 1: the pressure is given, w is not
-  double slip_length = 0;  ///< L [m], mu du/dn = mu (w - u_b)/L along the wall;
-                           ///< infinity: no friction
+  double slip_length = 0;  ///< L [m], mu du/dn = mu (w - u_b)/L along the wall; infinity: no friction
   double inflow = 1;       ///< share of u_b that comes in with a flux into the domain
 };
 inline constexpr double no_friction = std::numeric_limits<double>::infinity();
@@ -98,16 +91,13 @@ enum class GivenBy {
 };
 enum class Passage { none, in, out };
 
-/// A boundary condition: its keys, and what it gives to flux, pressure row,
-/// viscous row, boundary value and load at each of its faces, as numbers. The
-/// loops over faces read these from flat arrays and never ask for a type. A new
-/// condition touches conditions.cpp and its name in BoundaryType.
+/// A boundary condition: its keys, and what it gives to flux, pressure row, viscous row, boundary value and load at each of its faces,
+/// as numbers. The loops over faces read these from flat arrays and never ask for a type. A new condition touches conditions.cpp and its
+/// name in BoundaryType.
 struct Condition {
   std::string name;   ///< in the YAML
-  std::string about;  ///< its part of the documentation of `type`; empty: told
-                      ///< beside another
-  void (*declare)(config::Section&,
-                  BoundaryParameters&) = nullptr;  ///< its keys; null: none
+  std::string about;  ///< its part of the documentation of `type`; empty if another tells it
+  void (*declare)(config::Section&, BoundaryParameters&) = nullptr;  ///< its keys; nullptr if it has none
   FaceRow (*row)(const BoundaryParameters&) = [](const BoundaryParameters&) { return FaceRow(); };
   GivenBy velocity = GivenBy::rest;
   Passage passage = Passage::none;  ///< of the fluid, as expected

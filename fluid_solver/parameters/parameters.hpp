@@ -49,8 +49,8 @@ struct BodyParameters {
 struct GapParameters {
   std::vector<std::string> between;
   double opening = 0;  // [m]
-  std::optional<config::ExpressionText>
-      height;                     // of the seat, the second wall, along `direction` [m]; absent: not stated
+  /// Height of the seat, the second wall, along `direction` [m]; absent if it is not stated.
+  std::optional<config::ExpressionText> height;
   std::vector<double> direction;  // from the seat to the other wall; empty: z, in 2-D y
 };
 
@@ -113,8 +113,8 @@ struct FluidParameters {
   std::optional<double> time_step;  // [s]; empty: by the stability limit
   double safety_factor = 0.8;
   ViscousTreatment viscous = ViscousTreatment::automatic;
-  std::optional<double>
-      implicit_stretch;  // largest implicit sub-step over the explicit limit; empty: no such bound
+  /// Largest implicit sub-step over the explicit limit; empty without such a bound.
+  std::optional<double> implicit_stretch;
   double pressure_tolerance = 1e-6;
   std::vector<config::ExpressionText> initial_velocity;    // [m/s]; empty: at rest
   std::optional<config::ExpressionText> initial_pressure;  // [Pa]

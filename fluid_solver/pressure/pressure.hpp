@@ -31,7 +31,7 @@ template <int D>
 class PressureEquation {
  public:
   /// `fixed`: the mesh rests; nothing is kept for a second set(). `couplings`: their places stay, set() takes their
-  /// values; null: none. They must outlive the equation.
+  /// values; nullptr if there are none. They must outlive the equation.
   PressureEquation(const mesh::Mesh& mesh, const Boundary<D>& boundary, bool fixed,
                    const Couplings* couplings = nullptr);
   /// `regular`: what is added gives a closed domain a level. Collective.
@@ -66,7 +66,7 @@ class PressureEquation {
                                         std::span<double> p, double relative, double absolute);
   const mesh::Mesh& mesh_;
   const Boundary<D>& boundary_;
-  const Couplings* couplings_;  // null: none
+  const Couplings* couplings_;  // nullptr if there are none
   bool fixed_, regular_ = false;
   bool pinned_ = true;  // where the pressure is known up to a constant, one cell's is zero
   bool direct_;         // small 2-D meshes: kept Cholesky factors

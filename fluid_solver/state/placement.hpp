@@ -28,15 +28,15 @@ template <int D>
 struct Placement {
   std::vector<double> volume;  ///< V [m^3], per local cell
   Vectors<D> area;             ///< S [m^2], out of the owner
-  std::vector<double>
-      conductance;     ///< g = |S|^2 / (S.d) [m], over-relaxed; d from owner to neighbour (or face) centre
-  Vectors<D> oblique;  ///< k = S - g d [m^2], tangential; empty on orthogonal meshes
+  /// g = |S|^2 / (S.d) [m], over-relaxed; d from owner to neighbour (or face) centre.
+  std::vector<double> conductance;
+  Vectors<D> oblique;          ///< k = S - g d [m^2], tangential; empty on orthogonal meshes
   std::vector<double> weight;  ///< of the owner in the linear interpolation to the face, per interior face
   Vectors<D> centre;           ///< per local cell [m]
   std::vector<Vec3> boundary_centre;  ///< per owned boundary face [m]
   double obliqueness = 0;             ///< largest |k|/|S| on this rank
-  Vectors<D>
-      skew;  ///< from where the weights lead to the face's centre, per interior face [m]; empty: nowhere
+  /// From where the weights lead to the face's centre, per interior face [m]; empty if the mesh is not skewed.
+  Vectors<D> skew;
   /// Per local cell, with `skew`: B that makes the Gauss gradient G of values at the weights' places exact
   /// for linear fields: G B of vectors (du_i/dx_j), B^T G of scalars.
   std::vector<Tensor<D>> gradient_cure;
@@ -45,7 +45,7 @@ struct Placement {
   Vec<D> offset(Index f) const {
     return skew[f] + (0.5 - weight[f]) / conductance[f] * (area[f] - oblique_of(f));
   }
-  /// Placements that are translations of each other share it; null: nothing is known.
+  /// Placements that are translations of each other share it; nullptr if nothing is known.
   std::shared_ptr<const char> shape{};
   /// k of a face [m^2], whether or not there is the array.
   Vec<D> oblique_of(Index face) const { return oblique.empty() ? Vec<D>(Vec<D>::Zero()) : oblique[face]; }

@@ -51,7 +51,8 @@ struct History {
   double dt_old = 0;      ///< size of the last step [s]; 0: no history, the next step is an Euler step
   bool implicit = false;  ///< viscous term of the history (Rates::viscous is there)
   Start start = Start::flowing;
-  std::array<std::shared_ptr<const PressureLevel<D>>, 3> pressure;  ///< latest first; null: not there yet
+  std::array<std::shared_ptr<const PressureLevel<D>>, 3>
+      pressure;  ///< latest first; nullptr before it is there
 };
 
 /// Kinetic energy and what of it no work explains, see EnergyGuard.
@@ -82,11 +83,12 @@ struct State : History<D> {
   /// delta^n per interior face [m^3/s] (incremental: what is left of delta^0).
   std::vector<double> memory, memory_old;
 
-  OpeningsState openings;  ///< empty: no absorbing boundaries
+  OpeningsState openings;  ///< empty without absorbing boundaries
 
-  std::shared_ptr<const std::vector<char>> blocked;  ///< per local cell, in a closed gap; null: none
+  /// Per local cell, in a closed gap; nullptr if there is none.
+  std::shared_ptr<const std::vector<char>> blocked;
 
-  std::vector<double> eddy;  ///< eddy viscosity at t^n per local cell [m^2/s]; empty: no model
+  std::vector<double> eddy;  ///< eddy viscosity at t^n per local cell [m^2/s]; empty without a model
 
   Vectors<D> u_old, u_boundary_old;  ///< at t^{n-1}
   Rates<D> rates_old;                ///< at t^{n-1}

@@ -15,7 +15,7 @@ struct SubStep {
   std::shared_ptr<const Placement<D>> to;  ///< of the points at t^{n+1}
   std::vector<double> swept;               ///< dV_f per flux face [m^3]; empty if the mesh is at rest
   std::vector<Vec3> points;                ///< at t^{n+1}; empty if the mesh is at rest
-  Vectors<D> rate{};                       ///< mean of R over the step; empty: by Adams-Bashforth
+  Vectors<D> rate{};                       ///< mean of R over the step; empty with Adams-Bashforth
   Vectors<D> shear{};                      ///< with `rate`: mean viscous force on the boundary faces [N]
   bool yields = false;                     ///< walls of known mass answer to the pressure (Robin condition)
 };
@@ -38,7 +38,7 @@ template <int D>
 struct Prediction {
   Vectors<D> w;             ///< given velocities at t^{n+1} per boundary face, as far as they are known [m/s]
   Vectors<D> u;             ///< u^p per local cell [m/s]
-  Vectors<D> force;         ///< f at t^{n+1/2} per local cell [m/s^2]; empty: none
+  Vectors<D> force;         ///< f at t^{n+1/2} per local cell [m/s^2]; empty if there is none
   Vectors<D> viscous_flux;  ///< of momentum on what is outside, per boundary face [N]
   double weight = 0;        ///< of t^{n+1} in it; 0 with an explicit predictor
   Rates<D> rates;           ///< R^n
@@ -51,8 +51,8 @@ struct Projected {
   std::vector<double> p, boundary;  ///< per local cell, per boundary face [Pa]
   std::vector<double> phi;  ///< phi^p per flux face, the last pressure's part still to be added [m^3/s]
   Vectors<D> w;             ///< given velocities at t^{n+1}, answers of walls and openings included [m/s]
-  Vectors<D>
-      gradient;  ///< of p in the non-orthogonal part, per local cell [Pa/m]; empty on orthogonal meshes
+  /// Of p in the non-orthogonal part, per local cell [Pa/m]; empty on orthogonal meshes.
+  Vectors<D> gradient;
 };
 
 }  // namespace couplet::fluid

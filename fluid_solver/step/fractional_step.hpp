@@ -34,7 +34,7 @@ class FractionalStep {
 
   /// Fourth order along the lines of a mesh at rest, from now on (`auto`: if they are half of it); gives the placement to use. Collective.
   std::shared_ptr<const Placement<D>> raise_order(std::shared_ptr<const Placement<D>> at);
-  /// Null: second order everywhere.
+  /// nullptr if the order is second everywhere.
   const FourthOrder<D>* fourth() const { return scene_.fourth.get(); }
 
   /// `by`: how the step sees the level it starts from; `w`: given velocity per boundary face at t^{n+1}, as
@@ -60,7 +60,7 @@ class FractionalStep {
 
   /// state.blocked, of a level that no step made: the first, or one from a checkpoint. Collective.
   void mark_level(State<D>& state);
-  /// Null: none.
+  /// nullptr if there are none.
   const Gaps<D>* gaps() const { return gaps_; }
   /// The result of the last project() as a level of history. Collective.
   std::shared_ptr<PressureLevel<D>> pressure_level() const { return projection_.pressure_level(); }
@@ -71,9 +71,9 @@ class FractionalStep {
   const Vectors<D>& viscous_force() const { return loads_.viscous; }
   /// state.eddy, if there is a turbulence model. Collective.
   void set_eddy_viscosity(State<D>& state);
-  /// Null: none.
+  /// nullptr if there are none.
   const ImmersedBodies<D>* bodies() const { return bodies_; }
-  /// Null: none.
+  /// nullptr if the frame rests.
   const RotatingFrame<D>* frame() const { return scene_.frame ? &*scene_.frame : nullptr; }
   /// The masses of such walls have changed: the pressure matrix is made anew when it is needed next.
   void forget_walls() { projection_.forget_matrix(); }
@@ -89,7 +89,7 @@ class FractionalStep {
   double size() const { return step_.dt; }
   /// Placement at the end of the step.
   const Placement<D>& to() const { return *step_.to; }
-  /// At the end; empty: the mesh rests.
+  /// Points at the end; empty if the mesh rests.
   const std::vector<Vec3>& points() const { return step_.points; }
   /// Largest speed of the accepted steps [m/s].
   double largest_speed() const { return speed_scale_; }
@@ -124,7 +124,7 @@ class FractionalStep {
   Loads<D> loads_;
   EnergyGuard<D> energy_guard_;
   Vectors<D> u_;                             // u^{n+1} with level_
-  std::shared_ptr<PressureLevel<D>> level_;  // of level n+1; null: not made since the last project()
+  std::shared_ptr<PressureLevel<D>> level_;  // of level n+1; nullptr after project()
   Judgement judgement_;                      // of level_
   std::uint64_t states_ = 0;                 // numbered so far
   double speed_scale_ = 0;                   // largest of the accepted steps [m/s]
