@@ -5,14 +5,12 @@ import shutil
 import statistics
 
 from couplet.runs import launch
-from validation.parts.fast_and_large import step
 
 EMPTY = """#include <mpi.h>
 int main(int argc, char** argv) { MPI_Init(&argc, &argv); MPI_Finalize(); return 0; }
 """
 TURNS = 15
-# Of the modules that common/linalg/lazy and common/mesh/gmsh open where they are needed.
-HEAVY = re.compile(r"calling init: \S*/(lib(?:couplet_petsc|petsc|slepc|scotch|ptscotch|openblas|gmsh)[^/\s]*)")
+HEAVY = re.compile(r"(lib(?:petsc|slepc|openblas|gmsh)\S*) => ")
 
 
 def solid(job):
@@ -53,17 +51,7 @@ def beside_empty(job):
             f"judgement of the answer {middle[4]:.3f}, files {middle[5]:.3f}"), more <= 0.04
 
 
-def heavy_libraries(job, program, folder):
-    result = job.done(["env", "LD_DEBUG=files", job.build / "bin" / program, "case.yaml"], cwd=folder)
-    return sorted(set(HEAVY.findall(result.stderr)))
-
-
-def small_jobs(job):
-    """On one rank, from meshes that are there."""
-    folders = {"solid, 1000 cells": ("solid_solver", solid(job)), "fluid 2-D, 16384 cells": ("fluid_solver", step.scene(job, (128, 2), 10)),
-               "fluid 3-D, 32768 cells": ("fluid_solver", step.scene(job, (32, 3), 20))}
-    found = {}
-    for name, (program, folder) in folders.items():
-        job.run([job.build / "bin" / program, "case.yaml"], cwd=folder)  # makes the mesh where it is not there
-        found[name] = heavy_libraries(job, program, folder)
-    return "; ".join(f"{name}: {', '.join(names) or 'none'}" for name, names in found.items()), not any(found.values())
+def linked(job, *programs):
+    """Libraries that take long to open, of programs that do not solve."""
+    found = {p: sorted(set(HEAVY.findall(job.done(["ldd", job.build / "bin" / p]).stdout))) for p in programs}
+    return "; ".join(f"{p}: {', '.join(names) or 'none'}" for p, names in found.items()), not any(found.values())
