@@ -17,7 +17,6 @@ FLOORS = {
     "common/mesh": [".", "order", "distributed", "msh", "inp", "gmsh"],
     "common/app": ["watch", "loop", "case", ".", "mesh_tool"],
     "common/io": [".", "fields", "probes", "cut"],
-    "common/linalg": ["lazy", "lanes", ".", "multigrid", "poisson"],
 }
 
 # Functions of a class above, written where their subject is.
