@@ -13,7 +13,7 @@ namespace couplet::mesh {
 /// Undirected graph of `n` nodes from its edges (first[i], second[i]): per node its neighbours, ascending.
 Csr make_graph(Index n, std::span<const Index> first, std::span<const Index> second);
 
-/// A part 0 .. parts - 1 for every node, by PT-Scotch through PETSc. Serial: to be called on one rank. The
+/// A part 0 .. parts - 1 for every node, by Scotch. Serial: to be called on one rank. The
 /// same in every run and in every call.
 std::vector<int> partition(const Csr& graph, int parts);
 

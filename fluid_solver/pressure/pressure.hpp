@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/io/checkpoint.hpp"
-#include "common/linalg/poisson/cell_solver.hpp"
+#include "common/linalg/cell_solver.hpp"
 #include "fluid_solver/boundary/boundary.hpp"
 #include "fluid_solver/state/placement.hpp"
 
@@ -47,7 +47,7 @@ class PressureEquation {
   void load(io::CheckpointReader& file);
   /// A new preconditioner at the next solve.
   void refresh() {
-    if (solver_) solver_->refresh();
+    if (solver_) solver_->solver().refresh();
   }
   /// `b`: per owned cell, made compatible here when the domain is closed; `p`: per local cell, guess on
   /// entry, mean zero in a closed domain (at its convective outlets, if there are any), ghosts current on

@@ -265,7 +265,6 @@ modes::ModalModel modes_of_file(const Parameters& p, const std::filesystem::path
 
 Built build_model(const Parameters& p, const PlateContext& context, const mesh::RawMesh* raw) {
   Built built;
-  const modes::SlepcEnvironment slepc;
   mesh::on_root(context.comm, [&] {
     if (p.modes_file) {
       built.model = modes_of_file(p, context.case_folder / *p.modes_file);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/linalg/matrix.hpp"
-#include "common/modes/lowest_modes.hpp"
+#include "common/modes/pencil.hpp"
 #include "plate_modal/model/kirchhoff.hpp"
 
 namespace couplet::plate {

@@ -12,8 +12,7 @@
 
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
-#include "common/modes/lowest_quotient.hpp"
-#include "common/modes/negative_curvature.hpp"
+#include "common/modes/pencil.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/large_strain/finite_strain.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
@@ -200,10 +199,12 @@ SoftMotion FiniteStrain::lowest_stiffness(std::span<const double> unknowns, std:
   TangentSolver& solver = solver_for(0, {});
   solver.forget_factors();
   solver.follow(true);
-  const modes::QuotientOperators of{
-      .a = [&](std::span<const double> x, std::span<double> y) { kernel_->apply_tangent(x, {}, 0, y); },
-      .b = elastic,
-      .precondition = [&](std::span<const double> r, std::span<double> z) { solver.precondition(r, z); }};
+  const modes::Pencil of{
+      .comm = mesh_.comm,
+      .n = unknowns.size(),
+      .k = [&](std::span<const double> x, std::span<double> y) { kernel_->apply_tangent(x, {}, 0, y); },
+      .m = elastic,
+      .solve = [&](std::span<const double> r, std::span<double> z) { solver.precondition(r, z); }};
   std::vector<double> force = std::move(start), smooth(force.size());  // which soft motions answer to
   solver.precondition(force, smooth);
   if (parallel::any(mesh_.comm, kernel_->has_pressure()) && !is_symmetric(force, smooth)) {
@@ -214,9 +215,9 @@ SoftMotion FiniteStrain::lowest_stiffness(std::span<const double> unknowns, std:
   double least = 1;
   for (int look = 0; look < 2; ++look) {
     modes::Curvature found =
-        modes::look_for_negative_curvature(mesh_.comm, of.a, of.precondition, force, looked_for, most_looks);
+        modes::look_for_negative_curvature(mesh_.comm, of.k, of.solve, force, looked_for, most_looks);
     if (!found.is_negative) elastic(found.x, force);
-    softest = modes::lowest_quotient(mesh_.comm, of, std::move(found.x), found.is_negative ? most_refined : 1,
+    softest = modes::lowest_quotient(of, found.x, found.is_negative ? most_refined : 1,
                                      [](const std::vector<double>&) { return false; });
     least = softest.value;
     if (found.is_negative || least > nearly_lost) break;

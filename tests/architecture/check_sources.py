@@ -21,7 +21,7 @@ ALLOWED = {
     "csv": ["base"],
     "parallel": ["base"],
     "linalg": ["parallel", "log", "base"],
-    "mesh": ["linalg", "parallel", "config", "csv", "log", "base"],
+    "mesh": ["parallel", "config", "csv", "log", "base"],
     "fv": ["mesh", "linalg", "parallel", "config", "csv", "log", "base"],
     "elasticity": ["fv", "mesh", "linalg", "parallel", "config", "csv", "log", "base"],
     "time": ["config", "base"],
@@ -36,7 +36,7 @@ ALLOWED = {
 NOT_FOR = {"coupler": ["mesh", "fv"]}
 # Third-party headers by pattern, and the folders that may include them.
 THIRD_PARTY = {
-    r"petsc|slepc": ["common/linalg", "common/parallel", "common/mesh", "common/modes"],
+    r"petsc|slepc": ["common/linalg", "common/modes"],
     r"hdf5|H5": ["common/io"],
     r"yaml-cpp/": ["common/config"],
     r"CLI/": ["common/app"],

@@ -13,7 +13,6 @@
 #include "common/csv/cells.hpp"
 #include "common/io/cut/cut_mesh.hpp"
 #include "common/io/cut/load_mesh.hpp"
-#include "common/linalg/petsc_environment.hpp"
 #include "common/mesh/distributed/box_block.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
 #include "common/parallel/collective.hpp"
@@ -60,7 +59,6 @@ void box(MPI_Comm comm, const Words& words) {
 
 /// Opens a mesh as the programs do and tells what it took.
 void open(MPI_Comm comm, const Words& words) {
-  const auto petsc = linalg::petsc_environment(comm);
   const double start = MPI_Wtime(), before = peak_memory();
   const mesh::LoadedMesh loaded = io::load_mesh(comm, words.file, words.dimension, {}, {}, {}, words.solid);
   const double seconds = parallel::max(comm, MPI_Wtime() - start), after = peak_memory();

@@ -8,7 +8,7 @@
 
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/elasticity/solve/rigid_coarse_space.hpp"
-#include "common/linalg/multigrid/component_multigrid.hpp"
+#include "common/linalg/component_multigrid.hpp"
 
 namespace couplet::elastic {
 

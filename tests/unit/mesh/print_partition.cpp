@@ -6,14 +6,12 @@
 #include <cstdio>
 #include <vector>
 
-#include "common/linalg/petsc_environment.hpp"
 #include "common/mesh/partition.hpp"
 
 int main(int argc, char** argv) {
   using couplet::Index;
   MPI_Init(&argc, &argv);
   {
-    const couplet::linalg::PetscEnvironment petsc(MPI_COMM_WORLD);
     constexpr Index n = 40;
     std::vector<Index> first, second;
     const auto at = [](Index i, Index j, Index k) { return i + n * (j + n * k); };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/linalg/multigrid/component_multigrid.hpp"
+#include "common/linalg/component_multigrid.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -161,15 +161,15 @@ void AggregationMultigrid<Number>::smooth_backward(Level& level) {
 }
 
 template <class Number>
-void AggregationMultigrid<Number>::cycle(std::size_t first) {
+void AggregationMultigrid<Number>::cycle() {
   const std::size_t last = levels_.size() - 1;
-  for (std::size_t l = first; l < last; ++l) {
+  for (std::size_t l = 0; l < last; ++l) {
     smooth_forward(levels_[l]);
     levels_[l].update_ghosts();
     restrict_residual(levels_[l], levels_[l + 1].b);
   }
   solve_coarsest(levels_[last]);
-  for (std::size_t l = last; l-- > first;) {
+  for (std::size_t l = last; l-- > 0;) {
     Level &fine = levels_[l], &coarse = levels_[l + 1];
     for (Index i = 0; i < fine.a.size(); ++i)
       for (Index k = fine.p_offset[i]; k < fine.p_offset[i + 1]; ++k)
@@ -193,7 +193,7 @@ void AggregationMultigrid<Number>::apply(std::span<const double> b, std::span<do
       set(value, c, static_cast<float>(scale * b[std::size_t(i) * components + c]));
     finest.b[i] = value;
   }
-  cycle(0);
+  cycle();
   for (Index i = 0; i < finest.a.size(); ++i)
     for (int c = 0; c < components; ++c) x[std::size_t(i) * components + c] = largest * get(finest.x[i], c);
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "common/linalg/multigrid/component_multigrid.hpp"
+#include "common/linalg/component_multigrid.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::linalg {

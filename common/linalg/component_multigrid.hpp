@@ -55,6 +55,7 @@ class AggregationMultigrid {
   void apply(std::span<const double> b, std::span<double> x, int components);
   int n_levels() const { return static_cast<int>(levels_.size()); }
 
+ private:
   struct Level {
     Rows a;
     const parallel::IndexMap* map = nullptr;      // of x; none: no ghosts
@@ -65,18 +66,9 @@ class AggregationMultigrid {
     std::vector<Lanes> p_value;
     std::vector<Lanes> x, b;  // x: of ghosts, too
     void update_ghosts();
-    /// All but x, b and the map: of levels that are smoothed elsewhere.
-    void forget_matrix() {
-      a = {}, middle = {}, p_offset = {}, p_index = {};
-      inverse_diagonal = {}, p_value = {};
-    }
   };
-  /// x = V(b) of a level and those below it: for what smooths the finest one by itself. Collective.
-  void cycle(std::size_t first);
-  Level& level(std::size_t l) { return levels_[l]; }
-
- private:
   struct GhostRows;
+  void cycle();
   static void prolong(Level& fine, const std::vector<Index>& of, const std::vector<std::uint8_t>& is_strong);
   GhostRows rows_of_ghosts(const Level& fine, Index n_coarse) const;
   static Rows galerkin(const Level& fine, Index n_coarse, const GhostRows& ghosts);
