@@ -10,7 +10,7 @@ FLOORS = {
                      "output", "."],
     "fluid_solver": ["conditions", "parameters", "state", "lines", "boundary", "turbulence", "motion", "pressure", "momentum", "step", "judge", "output", "."],
     "coupler": ["parameters", "exchange", "mapping", "acceleration", "judge", "output", "."],
-    "thermocline": ["base", "material", "weather", "plant", "bed", "wall", "economics", "model", "judge", "."],
+    "thermocline": ["material", "weather", "plant", "bed", "wall", "model", "judge", "."],
     "mesh_mover": [".", "barrier"],
     "plate_modal": ["model", "motion", "."],
     "common/elasticity": [".", "thesis", "symmetric", "axisymmetric", "prestress", "tied", "finite", "solve"],

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <functional>
+#include "thermocline/bed/bed_parameters.hpp"
 
-#include "thermocline/bed/grain_kernels.hpp"
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+#include "common/base/error.hpp"
+#include "thermocline/bed/grains.hpp"
 #include "thermocline/bed/packed_bed.hpp"
 
 namespace couplet::thermocline {
@@ -89,6 +94,35 @@ void declare_start(config::Section& section, BedParameters& p) {
 }
 
 }  // namespace
+
+BedGrid::BedGrid(const std::vector<BedLayer>& layers, int cells) {
+  if (cells < int(layers.size()))
+    throw Error("bed: {} cells are not enough for {} layers; each layer needs at least one.", cells,
+                layers.size());
+  for (const BedLayer& l : layers) height += l.height;
+  // Faces of the layers at the nearest face of the uniform grid, each layer with a cell at least.
+  std::vector<int> ends;
+  double below = 0;
+  const int n_layers = int(layers.size());
+  for (int l = 0; l < n_layers; ++l) {
+    below += layers[l].height;
+    const int least = (ends.empty() ? 0 : ends.back()) + 1, most = cells - (n_layers - 1 - l);
+    ends.push_back(l + 1 == n_layers ? cells
+                                     : std::clamp(int(std::lround(below / height * cells)), least, most));
+  }
+  z.resize(cells), dz.resize(cells), layer.resize(cells);
+  double bottom = 0;
+  for (int l = 0, first = 0; l < n_layers; first = ends[l++]) {
+    const int count = ends[l] - first;
+    runs.push_back({first, count, layers[l]});
+    for (int i = 0; i < count; ++i) {
+      dz[first + i] = layers[l].height / count;
+      z[first + i] = bottom + (i + 0.5) * dz[first + i];
+      layer[first + i] = l;
+    }
+    bottom += layers[l].height;
+  }
+}
 
 void declare(config::Section& section, BedParameters& p) {
   section.value("cells", p.cells)

@@ -6,34 +6,13 @@
 #include <span>
 #include <vector>
 
-#include "thermocline/base/tridiagonal.hpp"
-#include "thermocline/bed/bed_grid.hpp"
+#include "thermocline/bed/bed_parameters.hpp"
 #include "thermocline/bed/closures.hpp"
-#include "thermocline/bed/grain_kernels.hpp"
 #include "thermocline/bed/grains.hpp"
-#include "thermocline/material/phase_change.hpp"
+#include "thermocline/material/numerics.hpp"
+#include "thermocline/material/properties.hpp"
 
 namespace couplet::thermocline {
-
-/// How the front is carried.
-enum class Advection {
-  upwind,    ///< explicit, first order, as the thesis: its numerical diffusion is G c dz (1 - Courant)/2
-  tvd,       ///< explicit, van Leer's limiter, second order in space and time, bounded
-  implicit,  ///< first-order upwind at the new time: any step, stays bounded
-};
-
-struct BedParameters {
-  int cells = 500;
-  std::vector<BedLayer> layers;  ///< from the bottom up
-  int shells = 5;                ///< in a grain
-  Advection advection = Advection::upwind;
-  double courant = 0.5;           ///< step over the advective limit; at most 0.5 for tvd, 1 for upwind
-  bool conducting_inlet = false;  ///< heat conduction through the inlet face too
-  bool mix_inversions = false;    ///< cold fluid above hot is mixed
-  ClosureParameters closures;
-  double initial_temperature = 293.15;                 ///< [K]
-  std::vector<double> profile_z, profile_temperature;  ///< or a profile, piecewise linear
-};
 
 /// Fluid and filler of the tank (5.7, 5.8), one-dimensional in z. One step of the fluid:
 ///   rho eps c dT/dt = d/dz(k_eff dT/dz) - G c dT/dz - h_v (T - T_surface) + source
@@ -182,6 +161,28 @@ struct Inversion {
 };
 Inversion inversion_of(const PackedBed& bed);
 
-void declare(config::Section& section, BedParameters& parameters);
+/// Pump or fan that drives the flow through the bed.
+struct PumpParameters {
+  double efficiency = 0.7;  ///< of pump or fan with its motor
+};
+
+/// Ergun 1952, on the superficial mass flux G = rho u: rho dp/dz [Pa kg/m^4]
+///   150 mu G (1 - eps)^2/(eps^3 d^2) + 1.75 G^2 (1 - eps)/(eps^3 d)
+double ergun(const BedLayer& layer, double viscosity, double flux);
+
+struct PressureLoss {
+  double inlet = 0, outlet = 0;  ///< absolute for a gas; of a liquid above the outlet [Pa]
+  double loss() const { return inlet - outlet; }
+};
+/// Across the bed at fluid temperatures `temperature`, a value a cell [K]. For an ideal gas, whose pressure
+/// is that of the fluid where it leaves, p dp/dz = R T (...) is integrated exactly in each cell:
+///   p_in^2 = p_out^2 + 2 R T dz (...)
+PressureLoss pressure_loss(const BedGrid& grid, const Fluid& fluid, std::span<const double> temperature,
+                           double mass_flow, double area);
+
+/// Power that the pump (at the bed's cold end) takes [W]: m dp/(rho eta) for a liquid, isentropic compression
+/// m c T ((p_in/p_out)^(R/c) - 1)/eta for a gas.
+double pump_power(const PressureLoss& loss, const Fluid& fluid, double cold_end, double mass_flow,
+                  double efficiency);
 
 }  // namespace couplet::thermocline

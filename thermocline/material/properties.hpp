@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "common/config/section.hpp"
-#include "thermocline/base/celsius.hpp"
-#include "thermocline/base/table.hpp"
+#include "thermocline/material/numerics.hpp"
 
 /// Materials of thesis table 5.1 with its misprints mended, the insulation and foundation materials of a
 /// tank, and materials of the user's own. Temperatures in K, everything in SI.
@@ -129,5 +128,31 @@ struct InsulatorParameters {
 };
 void declare(config::Section& section, InsulatorParameters& parameters);
 Insulator make_insulator(const InsulatorParameters& parameters);
+
+/// Heat of a grain's material over temperature, per volume of the material, with a range in which it melts:
+///   h(T) = rho c T + rho L clamp((T - T_low)/width, 0, 1)
+struct PhaseChange {
+  PhaseChange(const Filler& filler, const Melting& melting)
+      : solid(filler.volumetric()),
+        latent(filler.density * melting.latent_heat),
+        low(melting.temperature - melting.width / 2),
+        high(melting.temperature + melting.width / 2) {}
+
+  double solid, latent, low, high;  // [J/(m^3 K)], [J/m^3], [K]
+
+  /// Counted from T_low, so that no digits are lost [J/m^3].
+  double heat(double t) const {
+    const double sensible = solid * (t - low);
+    if (t <= low) return sensible;
+    return t >= high ? sensible + latent : sensible + latent * (t - low) / (high - low);
+  }
+  double temperature(double heat) const {
+    if (heat <= 0) return low + heat / solid;
+    const double full = solid * (high - low) + latent;
+    return heat >= full ? low + (heat - latent) / solid : low + (high - low) * heat / full;
+  }
+  /// Apparent capacity dh/dT [J/(m^3 K)].
+  double capacity(double t) const { return t > low && t < high ? solid + latent / (high - low) : solid; }
+};
 
 }  // namespace couplet::thermocline

@@ -28,11 +28,11 @@ TankSetup::TankSetup(const TankParameters& p)
   pressure = inner_pressure(*rings, grid, fluid, filler, p.ullage ? p.ullage->gas.gauge_pressure : 0);
 }
 
-TankModel::TankModel(std::shared_ptr<const TankSetup> setup, const AmbientSource& ambient)
+TankModel::TankModel(std::shared_ptr<const TankSetup> setup, const Weather& weather)
     : setup_(std::move(setup)),
       bed_(setup_->parameters.bed, setup_->fluid, setup_->filler, setup_->parameters.diameter) {
   const TankParameters& p = setup_->parameters;
-  const Ambient air = ambient.at(0);
+  const Ambient air = weather.at(0);
   const int n = bed_.grid().size();
   bed_.prepare(1, 0);
   reference_ = bed_.bottom();
@@ -73,7 +73,7 @@ TankModel::TankModel(std::shared_ptr<const TankSetup> setup, const AmbientSource
     }
   }
   if (p.ground) {
-    deep_temperature_ = p.ground->deep_temperature.value_or(ambient.mean_temperature());
+    deep_temperature_ = p.ground->deep_temperature.value_or(weather.mean_temperature());
     ground_.emplace(ground_layers(*p.ground), bed_.area());
     ground_->set_steady(bed_.bottom(), deep_temperature_);
   }
@@ -94,7 +94,7 @@ double TankModel::energy(double t) const {
   return sum;
 }
 
-void TankModel::advance(double t, double dt, FlowControl& control, const AmbientSource& ambient,
+void TankModel::advance(double t, double dt, FlowControl& control, const Weather& weather,
                         std::vector<BedStep>& steps, Speed& speed) {
   const double own = setup_->parameters.exchange_step, end = t + dt;
   const double longest = own > 0 ? std::min(own, dt) : dt;
@@ -102,7 +102,7 @@ void TankModel::advance(double t, double dt, FlowControl& control, const Ambient
   while (end - t > tiny) {
     const double rest = end - t, wanted = std::min(longest, stable_exchange());
     const double h =
-        exchange(t, rest / std::ceil(rest / wanted * (1 - 1e-9)), control, ambient, steps, speed);
+        exchange(t, rest / std::ceil(rest / wanted * (1 - 1e-9)), control, weather, steps, speed);
     t = end - (t + h) <= tiny ? end : t + h;
   }
   update_stress();

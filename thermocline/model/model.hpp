@@ -8,11 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "thermocline/base/interfaces.hpp"
 #include "thermocline/model/parameters.hpp"
-#include "thermocline/wall/column.hpp"
+#include "thermocline/wall/layers.hpp"
 #include "thermocline/wall/mechanics.hpp"
-#include "thermocline/wall/wall_interface.hpp"
 
 namespace couplet::thermocline {
 
@@ -56,11 +54,11 @@ struct Ledger {
 /// steps of their own and hold their fluxes meanwhile. A value: copies are snapshots.
 class TankModel {
  public:
-  TankModel(std::shared_ptr<const TankSetup> setup, const AmbientSource& ambient);
+  TankModel(std::shared_ptr<const TankSetup> setup, const Weather& weather);
 
   /// From t to t + dt. Appends the steps of the bed.
-  void advance(double t, double dt, FlowControl& control, const AmbientSource& ambient,
-               std::vector<BedStep>& steps, Speed& speed);
+  void advance(double t, double dt, FlowControl& control, const Weather& weather, std::vector<BedStep>& steps,
+               Speed& speed);
 
   const TankSetup& setup() const { return *setup_; }
   const PackedBed& bed() const { return bed_; }
@@ -106,7 +104,7 @@ class TankModel {
   struct Held {                         // a flux held until a time
     double until = 0, in = 0, out = 0;  // [s], [W]
   };
-  double exchange(double t, double longest, FlowControl& control, const AmbientSource& ambient,
+  double exchange(double t, double longest, FlowControl& control, const Weather& weather,
                   std::vector<BedStep>& steps, Speed& speed);
   double stable_exchange() const;
   double cell_capacity(int cell) const;
@@ -114,7 +112,7 @@ class TankModel {
   void step_ground(double t, double h);
   void step_ullage(double h, const Ambient& air);
   void step_shell(double h);
-  void step_bed(double t, double end, FlowControl& control, const AmbientSource& ambient,
+  void step_bed(double t, double end, FlowControl& control, const Weather& weather,
                 std::vector<BedStep>& steps, Speed& speed);
   void update_pressure();
   void update_stress();

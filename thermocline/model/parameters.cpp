@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "common/base/text.hpp"
-#include "thermocline/model/plausible.hpp"
 #include "thermocline/model/questions.hpp"
 
 namespace couplet::thermocline {

@@ -9,7 +9,7 @@
 #include "common/coupling/participant.hpp"
 #include "thermocline/model/model.hpp"
 #include "thermocline/model/output.hpp"
-#include "thermocline/wall/wall_bending.hpp"
+#include "thermocline/wall/mechanics.hpp"
 
 namespace couplet::thermocline {
 

@@ -8,6 +8,30 @@
 #include "common/base/error.hpp"
 
 namespace couplet::thermocline {
+namespace {
+
+/// Symmetric, positive definite, two diagonals on each side: L D L^T without pivots.
+struct Pentadiagonal {
+  std::vector<double> diagonal, next, second;  // a_ii, a_i,i+1, a_i,i+2
+  explicit Pentadiagonal(std::size_t n) : diagonal(n, 0.0), next(n, 0.0), second(n, 0.0) {}
+
+  void solve(std::vector<double>& x) {
+    const std::size_t n = diagonal.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const double d = diagonal[i], b = next[i] / d, c = second[i] / d;
+      if (i + 1 < n) diagonal[i + 1] -= b * next[i], next[i + 1] -= b * second[i], x[i + 1] -= b * x[i];
+      if (i + 2 < n) diagonal[i + 2] -= c * second[i], x[i + 2] -= c * x[i];
+      next[i] = b, second[i] = c;
+    }
+    for (std::size_t i = n; i-- > 0;) {
+      x[i] /= diagonal[i];
+      if (i + 1 < n) x[i] -= next[i] * x[i + 1];
+      if (i + 2 < n) x[i] -= second[i] * x[i + 2];
+    }
+  }
+};
+
+}  // namespace
 
 double rankine_active(const Filler& filler) {
   const double s = std::sin(filler.friction_angle);
@@ -136,6 +160,143 @@ void wall_stress(const Rings& rings, const Steel& steel, const InnerPressure& pr
     out.equivalent[i] = std::sqrt(0.5 * ((t - z) * (t - z) + (z - r) * (z - r) + (r - t) * (r - t)));
     out.yield[i] = steel.yield_strength(temperature[i]);
   }
+}
+
+ContactMechanics::ContactMechanics(const Rings& rings, const Steel& steel, const Filler& filler,
+                                   const InnerPressure& p, std::span<const double> wall,
+                                   std::span<const double> grains)
+    : rings_(&rings),
+      steel_(&steel),
+      expansion_(filler.expansion),
+      active_ratio_(rankine_active(filler)),
+      grains_(grains.begin(), grains.end()),
+      given_wall_(wall.begin(), wall.end()) {
+  for (auto* v : {&fluid_, &active_, &passive_}) v->resize(rings.size());
+  load(p);
+  lateral_ = active_;
+  strain_.assign(rings.in_bed, 0.0), slip_.assign(rings.in_bed, 0.0);
+  contact_.assign(rings.in_bed, Contact::active);
+  total_.resize(rings.size()), hoop_.resize(rings.size());
+  finish();
+}
+
+void ContactMechanics::load(const InnerPressure& p) {
+  for (std::size_t i = 0; i < fluid_.size(); ++i) {
+    fluid_[i] = p.fluid[i];
+    active_[i] = active_ratio_ * p.vertical[i];
+    passive_[i] = p.vertical[i] / active_ratio_;
+  }
+}
+
+void ContactMechanics::finish() {
+  for (int i = 0; i < rings_->size(); ++i) {
+    total_[i] = fluid_[i] + lateral_[i];
+    hoop_[i] = total_[i] * rings_->diameter / (2 * rings_->thickness[i]);
+  }
+}
+
+void ContactMechanics::update(std::span<const double> radial, std::span<const double> wall,
+                              std::span<const double> grains) {
+  const double radius = rings_->diameter / 2;
+  for (int i = 0; i < rings_->in_bed; ++i) {
+    const double stiffness = steel_->youngs_modulus(wall[i]) * rings_->thickness[i] / radius;
+    const double free = steel_->thermal_strain(wall[i]);
+    const double strain =
+        radial.empty() ? total_[i] / stiffness + free
+                       : std::log1p(radial[i] / radius) + free - steel_->thermal_strain(given_wall_[i]);
+    if (!begun_) strain_[i] = strain;
+    strain_[i] += expansion_ * (grains[i] - grains_[i]);
+    grains_[i] = grains[i];
+    const double wanted = lateral_[i] + stiffness * (strain_[i] - strain);
+    lateral_[i] = std::clamp(wanted, active_[i], passive_[i]);
+    contact_[i] = wanted <= active_[i]    ? Contact::active
+                  : wanted >= passive_[i] ? Contact::passive
+                                          : Contact::rigid;
+    // Where the bound cuts the pressure, the filler ends where the wall will be under the bound.
+    strain_[i] -= (wanted - lateral_[i]) / stiffness;
+    slip_[i] += std::max(0.0, wanted - passive_[i]) / stiffness;
+  }
+  given_wall_.assign(wall.begin(), wall.end());
+  begun_ = begun_ || !radial.empty();
+  finish();
+}
+
+std::vector<double> ContactMechanics::state() const {
+  std::vector<double> all{double(begun_)};
+  for (const auto* v : {&strain_, &slip_, &grains_, &lateral_, &given_wall_})
+    all.insert(all.end(), v->begin(), v->end());
+  for (const Contact c : contact_) all.push_back(double(c));
+  return all;
+}
+
+void ContactMechanics::restore(std::span<const double> state) {
+  if (state.size() != 1 + 3 * strain_.size() + grains_.size() + lateral_.size() + given_wall_.size())
+    throw Error("external-wall: the checkpoint has another number of rings; run with the same cells.");
+  const double* from = state.data();
+  begun_ = *from++ != 0;
+  for (auto* v : {&strain_, &slip_, &grains_, &lateral_, &given_wall_})
+    for (double& value : *v) value = *from++;
+  for (Contact& c : contact_) c = Contact(int(*from++));
+  finish();
+}
+
+WallBending wall_bending(const Rings& rings, const Steel& steel, std::span<const double> hoop,
+                         std::span<const double> temperature) {
+  const std::size_t n = rings.z.size();
+  const double a = rings.diameter / 2, nu = steel.poissons_ratio;
+  std::vector<double> modulus(n), free(n), w(n), support(n), stiffness(n);
+  Pentadiagonal matrix(n);
+  const double start = steel.thermal_strain(temperature[0]);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double e = rings.thickness[i];
+    modulus[i] = steel.youngs_modulus(temperature[i]);
+    free[i] = steel.thermal_strain(temperature[i]) - start;
+    support[i] = modulus[i] * e / (a * a) * rings.dz[i];
+    stiffness[i] = modulus[i] * e * e * e / (12 * (1 - nu * nu));
+    matrix.diagonal[i] = support[i];
+    w[i] = support[i] * a * (hoop[i] / modulus[i] + free[i]);
+  }
+  // The least of 1/2 sum D (w'')^2 dz + 1/2 sum E e/a^2 (w - w_m)^2 dz; w'' at inner rings by three values.
+  struct Curvature {
+    double before, here, after;
+  };
+  std::vector<Curvature> curvature(n, {0, 0, 0});
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const double below = rings.z[i] - rings.z[i - 1], above = rings.z[i + 1] - rings.z[i],
+                 both = below + above;
+    const Curvature c{2 / (below * both), -2 / (below * above), 2 / (above * both)};
+    const double s = stiffness[i] * 0.5 * both;
+    curvature[i] = c;
+    matrix.diagonal[i - 1] += s * c.before * c.before, matrix.diagonal[i] += s * c.here * c.here;
+    matrix.diagonal[i + 1] += s * c.after * c.after;
+    matrix.next[i - 1] += s * c.before * c.here, matrix.next[i] += s * c.here * c.after;
+    matrix.second[i - 1] += s * c.before * c.after;
+  }
+  matrix.solve(w);
+  WallBending result{std::vector<double>(n), std::vector<double>(n, 0.0)};
+  for (std::size_t i = 0; i < n; ++i) {
+    result.hoop[i] = modulus[i] * (w[i] / a - free[i]);
+    if (i == 0 || i + 1 == n) continue;
+    const Curvature& c = curvature[i];
+    const double bent = c.before * w[i - 1] + c.here * w[i] + c.after * w[i + 1];
+    // Outwards curved (w'' > 0) the outer face is pressed.
+    result.axial[i] = -6 * stiffness[i] * bent / (rings.thickness[i] * rings.thickness[i]);
+  }
+  return result;
+}
+
+YieldShares yield_shares(const WallStress& stress, const WallBending& bent, double poissons_ratio) {
+  YieldShares shares;
+  for (std::size_t i = 0; i < stress.hoop.size(); ++i) {
+    shares.rings = std::max(shares.rings, stress.equivalent[i] / stress.yield[i]);
+    for (const double face : {-1.0, 1.0}) {
+      const double added = face * bent.axial[i], r = stress.radial[i];
+      const double t = bent.hoop[i] + poissons_ratio * added, z = stress.axial[i] + added;
+      const double equivalent = std::sqrt(0.5 * ((t - z) * (t - z) + (z - r) * (z - r) + (r - t) * (r - t)));
+      shares.shell = std::max(shares.shell, equivalent / stress.yield[i]);
+    }
+  }
+  return shares;
 }
 
 }  // namespace couplet::thermocline

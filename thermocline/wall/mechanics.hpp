@@ -73,4 +73,66 @@ double rankine_active(const Filler& filler);
 void wall_stress(const Rings& rings, const Steel& steel, const InnerPressure& pressure, double roof_pressure,
                  std::span<const double> hoop, std::span<const double> temperature, WallStress& out);
 
+/// The filler against a wall whose radius somebody else computes. Its radial strain e_w was computed at t^n
+/// under the pressure and the temperatures given then; at t^{n+1} under the same pressure it will be e_w' =
+/// e_w + change of the integral of alpha dT. The filler's pressure follows by relaxation with the stiffness
+/// of the ring, E e/R (pressure per strain):
+///   p_s := clamp(p_s + E e/R (e_s - e_w'), K_a p_v, p_v/K_a)
+/// and e_s follows the wall outside the rigid range, as in FillerMechanics. A membrane would answer exactly
+/// so; what bending spreads along z is corrected in the next step. The membrane is the stiffest answer a wall
+/// can give, so the iteration contracts for any shape of the load.
+class ContactMechanics {
+ public:
+  ContactMechanics(const Rings& rings, const Steel& steel, const Filler& filler,
+                   const InnerPressure& pressure, std::span<const double> wall,
+                   std::span<const double> grains);
+
+  /// `radial`: the wall's displacement [m] at each ring under what was given last; empty: a membrane's.
+  /// `wall`, `grains`: temperatures at the end of the step, those that are given next.
+  void update(std::span<const double> radial, std::span<const double> wall, std::span<const double> grains);
+  /// Another weight of fluid and grains from the next update on.
+  void load(const InnerPressure& pressure);
+  std::span<const double> pressure() const { return total_; }   ///< p_f + p_s [Pa]
+  std::span<const double> hoop() const { return hoop_; }        ///< of the membrane under it [Pa]
+  std::span<const double> lateral() const { return lateral_; }  ///< p_s [Pa]
+  const std::vector<Contact>& contact() const { return contact_; }
+  /// What passive yielding has taken from the filler's diameter so far, relative [1].
+  std::span<const double> slip() const { return slip_; }
+
+  std::vector<double> state() const;
+  void restore(std::span<const double> state);
+
+ private:
+  void finish();
+
+  const Rings* rings_;
+  const Steel* steel_;
+  double expansion_, active_ratio_;
+  bool begun_ = false;  // has seen a displacement: strains are the wall's own from then on
+  std::vector<double> fluid_, active_, passive_;  // p_f; K_a p_v; p_v/K_a [Pa]
+  std::vector<double> strain_, slip_, grains_, lateral_, total_, hoop_;
+  std::vector<double> given_wall_;  // temperatures under which the wall was last computed [K]
+  std::vector<Contact> contact_;
+};
+
+/// What bending makes of the rings' stresses: the wall as a thin axisymmetric shell [timoshenko1959, chapter
+/// 15]
+///   d2/dz2 (D d2w/dz2) + E e/a^2 (w - w_m) = 0,   D = E e^3/(12 (1 - nu^2)),
+/// w_m the radial displacement that each ring has by itself (its stress and its thermal expansion), ends
+/// free. The displacement is rounded off over 1/beta, beta^4 = 3 (1 - nu^2)/(a^2 e^2), and bends the wall: a
+/// step of dT in temperature makes an axial stress of 0.293 E alpha dT at both faces (nu = 0.3).
+struct WallBending {
+  std::vector<double> hoop;   ///< E (w/a - thermal strain), mean over the thickness [Pa]
+  std::vector<double> axial;  ///< at the outer face, 6 M/e^2; opposite at the inner [Pa]
+};
+WallBending wall_bending(const Rings& rings, const Steel& steel, std::span<const double> hoop,
+                         std::span<const double> temperature);
+
+/// Largest share of its yield strength that the equivalent stress of a ring has: without bending, and at the worse of both
+/// faces with it, where bending adds -+6 M/e^2 along z and nu times that along the circumference [1].
+struct YieldShares {
+  double rings = 0, shell = 0;
+};
+YieldShares yield_shares(const WallStress& stress, const WallBending& bent, double poissons_ratio);
+
 }  // namespace couplet::thermocline

@@ -6,8 +6,7 @@
 #include <numeric>
 
 #include "common/base/error.hpp"
-#include "thermocline/base/celsius.hpp"
-#include "thermocline/base/clock.hpp"
+#include "thermocline/material/numerics.hpp"
 
 namespace couplet::thermocline {
 namespace {

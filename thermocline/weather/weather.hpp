@@ -8,10 +8,19 @@
 #include <vector>
 
 #include "common/config/section.hpp"
-#include "thermocline/base/interfaces.hpp"
 #include "thermocline/weather/made_days.hpp"
 
 namespace couplet::thermocline {
+
+/// The weather at one instant.
+struct Ambient {
+  double dni = 0;               ///< direct normal irradiance [W/m^2]
+  double temperature = 293.15;  ///< of the air [K]
+  double wind = 0;              ///< [m/s]
+  double humidity = 0.5;        ///< relative [1]
+  double pressure = 101325;     ///< of the air [Pa]
+  double sun_height = 0;        ///< sine of the sun's height above the horizon [1]; 0 where it is not known
+};
 
 /// Which days of the weather are lived through: from the day `from`, where t = 0 at 00:00, to the end of the
 /// day `to`, then `from` again. Days of the year, 0 for 01-01; `from` may lie after `to` (a winter). Without
@@ -25,14 +34,16 @@ struct WeatherPeriod {
 /// period begins again. The irradiance is a straight line within each hour, of the hour's mean and a slope
 /// limited so that no value leaves the range of the neighbouring hours (monotonised central differences
 /// [vanleer1977]): the energy of every hour is that of the file.
-class Weather final : public AmbientSource {
+class Weather {
  public:
   /// The simulation's clock is `shift_hours` ahead of the file's. Throws Error if a day of the period is not
   /// in the record.
   Weather(const WeatherHours& record, const WeatherPeriod& period, int shift_hours = 0);
 
-  Ambient at(double t) const override;
-  double mean_temperature() const override { return mean_temperature_; }  ///< of the whole record [K]
+  Ambient at(double t) const;
+  double mean_temperature() const {
+    return mean_temperature_;
+  }  ///< air of the whole record, which deep soil has [K]
   /// Direct normal irradiation between two times [J/m^2].
   double irradiation(double from, double to) const;
   /// It is known where the sun stands.

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "thermocline/base/celsius.hpp"
+#include "thermocline/material/numerics.hpp"
 
 namespace couplet::thermocline {
 namespace {

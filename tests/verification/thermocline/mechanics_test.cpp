@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "thermocline/wall/mechanics.hpp"
-#include "thermocline/wall/wall_bending.hpp"
 
 namespace couplet::thermocline::mechanics_test {
 namespace {
