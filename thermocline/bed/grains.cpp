@@ -53,27 +53,12 @@ template <int N>
   }
 }
 
-/// Calls f with the number of shells as a constant where that unrolls the loops over them; 0: as many as the grain says.
-template <typename F>
+/// Calls f with the number of shells as a constant where it is one of N, which unrolls the loops over them; otherwise
+/// with 0: as many as the grain has.
+template <int... N, typename F>
 [[gnu::always_inline]] inline void with_shells(int n, F&& f) {
-  switch (n) {
-    case 1:
-      return f(std::integral_constant<int, 1>{});
-    case 2:
-      return f(std::integral_constant<int, 2>{});
-    case 3:
-      return f(std::integral_constant<int, 3>{});
-    case 4:
-      return f(std::integral_constant<int, 4>{});
-    case 5:
-      return f(std::integral_constant<int, 5>{});
-    case 6:
-      return f(std::integral_constant<int, 6>{});
-    case 8:
-      return f(std::integral_constant<int, 8>{});
-    default:
-      return f(std::integral_constant<int, 0>{});
-  }
+  const bool known = ((n == N && (f(std::integral_constant<int, N>{}), true)) || ...);
+  if (!known) f(std::integral_constant<int, 0>{});
 }
 
 }  // namespace
@@ -128,7 +113,7 @@ GrainElimination::GrainElimination(const Grains& grains, double tau)
 [[gnu::target_clones("avx2", "default")]] void gather_grains(const GrainElimination& e, const GrainCells& c,
                                                              const double* shells, const double* extra,
                                                              double* fluid, double* sums) {
-  with_shells(
+  with_shells<1, 2, 3, 4, 5, 6, 8>(
       e.n, [&](auto n) __attribute__((always_inline)) { gather<n()>(e, c, shells, extra, fluid, sums); });
 }
 
@@ -142,7 +127,7 @@ GrainElimination::GrainElimination(const Grains& grains, double tau)
 [[gnu::target_clones("avx2", "default")]] void scatter_grains(const GrainElimination& e, const GrainCells& c,
                                                               const double* shells, const double* fluid,
                                                               double* to, double* sums) {
-  with_shells(
+  with_shells<1, 2, 3, 4, 5, 6, 8>(
       e.n, [&](auto n) __attribute__((always_inline)) { scatter<n()>(e, c, shells, fluid, to, sums); });
 }
 
@@ -158,22 +143,6 @@ GrainElimination::GrainElimination(const Grains& grains, double tau)
     rows.rate[i] = rate, rows.share[i] = share, rows.beta[i] = beta, rows.heat[i] = heat;
     rows.diagonal[i] = rate + own * heat;  // g (1 - beta), in a form that does not cancel for large g
   }
-}
-
-[[gnu::target_clones("avx2", "default")]] void conduction_rows(int n, const double* conductivity,
-                                                               const double* dz, double* lower,
-                                                               double* diagonal, double* upper) {
-  // Resistance of two half cells; infinite in a bed that does not conduct.
-#pragma GCC ivdep
-  for (int i = 0; i + 1 < n; ++i)
-    upper[i] = -1 / (dz[i] / (2 * conductivity[i]) + dz[i + 1] / (2 * conductivity[i + 1]));
-  upper[n - 1] = lower[0] = 0;
-  for (int i = 0; i + 1 < n; ++i) lower[i + 1] = upper[i];
-  // Each diagonal takes the face below and then the one above.
-  if (n > 1) diagonal[0] -= upper[0];
-#pragma GCC ivdep
-  for (int i = 1; i + 1 < n; ++i) diagonal[i] = diagonal[i] - lower[i] - upper[i];
-  if (n > 1) diagonal[n - 1] -= lower[n - 1];
 }
 
 }  // namespace couplet::thermocline

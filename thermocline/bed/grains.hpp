@@ -80,8 +80,4 @@ struct ExchangeRows {
 /// Fluid against the eliminated grains, in layers with grains.
 void exchange_rows(const ExchangeLayer& layer, const ExchangeInput& in, const ExchangeRows& rows);
 
-/// Conduction between cells: lower and upper are set, the diagonal is added to.
-void conduction_rows(int n, const double* conductivity, const double* dz, double* lower, double* diagonal,
-                     double* upper);
-
 }  // namespace couplet::thermocline

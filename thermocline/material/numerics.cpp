@@ -91,6 +91,14 @@ void Ramps::means(const double* from, const double* to, double* value, std::size
   for (std::size_t s = 0; s < at_.size(); ++s) add_mean(at_[s], bend_[s], from, to, value, n);
 }
 
+[[gnu::target_clones("avx2", "default")]] void conduction_rows(std::size_t n, const double* half_resistance,
+                                                               double* lower, double* upper) {
+#pragma GCC ivdep
+  for (std::size_t i = 0; i + 1 < n; ++i) upper[i] = -1 / (half_resistance[i] + half_resistance[i + 1]);
+  upper[n - 1] = lower[0] = 0;
+  for (std::size_t i = 0; i + 1 < n; ++i) lower[i + 1] = upper[i];
+}
+
 void Tridiagonal::factorise(const double* a, const double* b, const double* c) {
   const int m = n_ / 2, last = n_ - 1;
   const Rows rows{n_, a, b, c, low_.data(), up_.data(), inverse_.data()};

@@ -75,7 +75,7 @@ double TankModel::exchange(double t, double h, FlowControl& control, const Weath
     const Stopwatch watch(speed, Element::ullage);
     step_ullage(h, air);
   }
-  // What the shell took in the step before: the wall sees the bed at the end of each step, so that both have
+  // Heat that the shell took in the step before: the wall sees the bed at the end of each step, so that both have
   // the same time when the filler meets the wall; the bed, far heavier, pays one step later.
   for (std::size_t i = 0; i < source_.size(); ++i) source_[i] = -owed_[i] / h;
   source_.back() -= from_liquid_;

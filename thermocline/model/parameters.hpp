@@ -46,7 +46,7 @@ struct TankOutput {
   double monitor_interval = 0;  ///< [s]; 0: each step
 };
 
-/// What `participants.<name>` holds; each optional member is an effect.
+/// Keys of `participants.<name>`; each optional member is an effect.
 struct TankParameters {
   double diameter = 0;  ///< inner [m]
   double exchange_step =

@@ -13,7 +13,7 @@
 
 namespace couplet::thermocline {
 
-/// What bending, which the rings leave out, would have made of the wall; looked at every two hours.
+/// Stresses of the wall with the bending that the rings leave out, sampled every two hours.
 struct BendingSeen {
   double rings = 0, shell = 0,
          shell_z = 0;  ///< largest hoop stress, as rings and with bending, and where [Pa], [m]
@@ -48,11 +48,12 @@ class Tank final : public coupling::Participant, public coupling::EstimatesError
 
   const TankModel& model() const { return accepted_; }
   const Speed& speed() const { return speed_; }
-  const FlowControl& control() const { return *control_; }
   void add_observer(std::unique_ptr<TankObserver> observer) { observers_.push_back(std::move(observer)); }
 
  private:
   TankRecord record() const;
+  /// Reports each sentence as a finding of this tank.
+  void report(const char* id, const std::vector<std::string>& sentences) const;
   void look_at_bending();
   coupling::ErrorParts spread_profile() const;
   double unused_by_spreading(double finer = 1) const;  // with so many times the cells
@@ -74,7 +75,7 @@ class Tank final : public coupling::Participant, public coupling::EstimatesError
   BendingSeen bending_;                     // of this run; only where the wall is of rings
   std::unique_ptr<TankOutputFiles> files_;  // on rank 0
   std::optional<WallInterface> wall_;
-  // Of the last accepted step, for its record.
+  // Last accepted step, for its record.
   std::vector<double> filler_;
   double stored_ = 0, side_ = 0, roof_ = 0, ground_ = 0;
 };

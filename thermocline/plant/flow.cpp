@@ -13,6 +13,7 @@
 #include "common/base/units.hpp"
 #include "common/csv/csv_reader.hpp"
 #include "thermocline/material/numerics.hpp"
+#include "thermocline/material/properties.hpp"
 
 namespace couplet::thermocline {
 namespace {
@@ -24,19 +25,11 @@ void declare_row(config::Section& s, ScheduleRow& r) {
       .plausible(1e-6, 1e5)
       .required()
       .doc("upward (discharge) above 0, downward (charge) below 0");
-  s.value("inlet-temperature", r.inlet_temperature)
-      .unit("K")
-      .plausible(70, 5000)
+  as_temperature(s.value("inlet-temperature", r.inlet_temperature))
       .positive()
       .doc("temperature of the inflow");
-  s.value("stop-above", r.stop_above)
-      .unit("K")
-      .plausible(70, 5000)
-      .doc("the flow stops when the outlet is hotter");
-  s.value("stop-below", r.stop_below)
-      .unit("K")
-      .plausible(70, 5000)
-      .doc("the flow stops when the outlet is colder");
+  as_temperature(s.value("stop-above", r.stop_above)).doc("the flow stops when the outlet is hotter");
+  as_temperature(s.value("stop-below", r.stop_below)).doc("the flow stops when the outlet is colder");
   s.check(
       [&r] {
         return r.mass_flow == 0 || r.inlet_temperature > 0
@@ -242,8 +235,8 @@ std::vector<std::string> Schedule::doubts() const {
       limits +=
           fmt::format("{} below {:g} degC", limits.empty() ? "" : " and", celsius(*rows_[i].stop_below));
     sentences.push_back(fmt::format(
-        "flow.rows[{}] never ran: it stops{}, and the outlet (the {} of the tank) was beyond that whenever "
-        "it started",
+        "flow.rows[{}] never ran: it stops{}, and the outlet (the {} of the tank) was beyond that "
+        "whenever it started",
         i, limits, rows_[i].mass_flow > 0 ? "top" : "bottom"));
   }
   return sentences;

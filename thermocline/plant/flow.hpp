@@ -16,7 +16,7 @@
 
 namespace couplet::thermocline {
 
-/// What is pumped through the tank.
+/// Flow through the tank.
 struct Flow {
   double mass_flow = 0;               ///< [kg/s]; > 0 upward: discharge, cold at the bottom; < 0: charge
   double inlet_temperature = 293.15;  ///< of what enters, at the bottom or at the top [K]
@@ -68,7 +68,7 @@ struct FlowParameters {
   PlantParameters plant;
 };
 void declare(config::Section& section, FlowParameters& parameters);
-/// What is wrong with the rows of a schedule; empty: nothing.
+/// Returns why the rows of a schedule are not valid, or nothing.
 std::string problem_of_rows(const FlowParameters& parameters);
 /// `specific_heat` of the fluid [J/(kg K)].
 std::unique_ptr<FlowControl> make_flow_control(const FlowParameters& parameters, double specific_heat);
@@ -120,8 +120,6 @@ class PlantControl final : public FlowControl {
   void restore(std::span<const double> state) override {
     mode_ = PlantMode(base::SavedNumbers(state, "mode of the plant").count(2));
   }
-
-  const Plant& plant() const { return plant_; }
 
  private:
   Plant plant_;

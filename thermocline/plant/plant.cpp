@@ -11,6 +11,7 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "thermocline/material/numerics.hpp"
+#include "thermocline/material/properties.hpp"
 #include "thermocline/weather/weather_file.hpp"
 
 namespace couplet::thermocline {
@@ -24,7 +25,7 @@ int number_of_weekday(const std::string& name) {
   return int(std::find(weekday_names.begin(), weekday_names.end(), name) - weekday_names.begin());
 }
 
-/// Of `weekdays`, `weekend` or one day; 0 for what is none of them.
+/// Bits of `weekdays`, `weekend` or one day; 0 for any other name.
 unsigned bits_of(const std::string& name) {
   if (name == "weekdays") return working_days;
   if (name == "weekend") return weekend;
@@ -66,30 +67,25 @@ std::string problem_of_weekday(const PlantParameters& p) {
 
 /// When charging and discharging start and stop.
 void declare_control(config::Section& s, PlantParameters& p) {
-  s.value("cut-off", p.cut_off)
-      .unit("K difference")
-      .plausible(0.1, 500)
+  as_difference(s.value("cut-off", p.cut_off))
       .positive()
       .doc(
-          "charging stops when the inflow of the solar field (or the tank outlet, see cut-off-at) is this "
-          "much too warm, discharging when the inflow of the power block is this much too cold");
+          "charging stops when the inflow of the solar field (or the tank outlet, see cut-off-at) is "
+          "this much too warm, discharging when the inflow of the power block is this much too cold");
   s.choice("cut-off-at", p.cut_off_at,
            {{"mixed", PlantParameters::CutOffAt::mixed},
             {"outlet", PlantParameters::CutOffAt::outlet},
             {"field", PlantParameters::CutOffAt::field},
             {"block", PlantParameters::CutOffAt::block}})
       .doc(
-          "mixed: the cut-off applies to the inflow of field or block, where the tank's flow has been mixed "
-          "with that of the other; outlet: to the tank outlet; field: mixed for charging, outlet for "
-          "discharging; block: the other way round");
-  s.value("restart", p.restart)
-      .unit("K difference")
-      .plausible(0.1, 500)
+          "mixed: the cut-off applies to the inflow of field or block, where the tank's flow has been "
+          "mixed with that of the other; outlet: to the tank outlet; field: mixed for charging, outlet "
+          "for discharging; block: the other way round");
+  as_difference(s.value("restart", p.restart))
       .positive()
       .doc(
-          "charging starts only if the bottom of the tank is at most this much too warm, discharging only if "
-          "its top is at "
-          "most this much too cold");
+          "charging starts only if the bottom of the tank is at most this much too warm, discharging "
+          "only if its top is at most this much too cold");
 }
 
 void check_plant(config::Section& s, const PlantParameters& p) {
@@ -109,8 +105,7 @@ void check_plant(config::Section& s, const PlantParameters& p) {
   s.check(
       [&p] {
         return p.cut_off < p.hot - p.cold ? ""
-                                          : "must be smaller than the difference between 'hot' and "
-                                            "'cold'.";
+                                          : "must be smaller than the difference between 'hot' and 'cold'.";
       },
       "cut-off");
 }
@@ -131,10 +126,7 @@ std::string problem_of_day(const std::vector<double>& values, bool share) {
                        values.size());
   for (const double v : values)
     if (share && !(v >= 0 && v <= 1))
-      return fmt::format(
-          "{:g} is not a valid share of the load; expected 0 "
-          "to 1",
-          v);
+      return fmt::format("{:g} is not a valid share of the load; expected 0 to 1", v);
   return "";
 }
 
@@ -227,14 +219,10 @@ void declare(config::Section& s, PlantParameters& p) {
       .range(0.01, 1)
       .required()
       .doc("heat collected per direct radiation");
-  s.value("hot", p.hot)
-      .unit("K")
-      .plausible(70, 5000)
+  as_temperature(s.value("hot", p.hot))
       .required()
       .doc("outlet temperature of the solar field and, by design, of the charged tank");
-  s.value("cold", p.cold)
-      .unit("K")
-      .plausible(70, 5000)
+  as_temperature(s.value("cold", p.cold))
       .required()
       .doc("outlet temperature of the power block and, by design, of the discharged tank");
   declare_control(s, p);

@@ -16,7 +16,7 @@ struct CalendarRule {
 };
 void declare(config::Section& section, CalendarRule& rule);
 
-/// What the calendar has to know of the run.
+/// First day of the run and period of its weather.
 struct CalendarStart {
   std::string weekday;  ///< of the first day; needed where a rule names weekdays
   int day = 0;          ///< first day of the weather, 0 for 01-01
@@ -27,10 +27,10 @@ struct CalendarStart {
 std::string problem_of_day(const std::vector<double>& values, bool share);
 /// The value of the hour in which t lies [s].
 double at_hour(const std::vector<double>& values, double t);
-/// Whether this is the name of a weekday.
+/// Returns true for the name of a weekday.
 bool is_weekday(const std::string& name);
 
-/// Of several rules that hold, the first one that gives a load (a tariff) counts. Seasons follow the date of the
+/// The first rule that holds and gives a load (a tariff) counts. Seasons follow the date of the
 /// weather, which may go round; weekdays go on evenly, a year of 365 days after the other.
 class Calendar {
  public:
@@ -65,7 +65,7 @@ struct PlantParameters {
   double hot = 0, cold = 0;       ///< design temperatures [K]
   double cut_off = 15;            ///< dT_CO [K]
   double restart = 10;            ///< dT_R [K]
-  /// What the cut-off looks at: the mixed temperature at the field's or the block's inlet (what the thesis's
+  /// Temperature that the cut-off uses: the mixed temperature at the field's or the block's inlet (what the thesis's
   /// text says), or what leaves the tank (what its tables follow); or one of them for charging and the other for
   /// discharging: field: mixed and outlet; block: outlet and mixed.
   enum class CutOffAt { mixed, outlet, field, block } cut_off_at = CutOffAt::mixed;
@@ -79,7 +79,7 @@ void declare(config::Section& section, PlantParameters& parameters);
 
 enum class PlantMode { standby, charge, discharge };
 
-/// What flows in the plant during one step.
+/// Flows in the plant during one step.
 struct PlantFlows {
   PlantMode mode = PlantMode::standby;
   double field_heat = 0;   ///< Q_SF: what the sun offers, mean over the step [W]
@@ -113,7 +113,6 @@ class Plant {
   double load(double t) const;
   double tariff(double t) const;
   double load_until(double t) const;
-  const Calendar& calendar() const { return calendar_; }
   const PlantParameters& parameters() const { return p_; }
   double specific_heat() const { return c_; }
 

@@ -9,11 +9,12 @@
 #include "common/base/error.hpp"
 #include "common/base/saved_numbers.hpp"
 #include "thermocline/material/numerics.hpp"
+#include "thermocline/material/properties.hpp"
 
 namespace couplet::thermocline {
 namespace {
 
-/// Lowest height at which the profile, a broken line through the cell centres, reaches a temperature that
+/// Lowest height at which the profile, a broken line through the cell centers, reaches a temperature that
 /// lies between those of the lowest and the highest cell.
 double height_of(std::span<const double> z, std::span<const double> temperature, double wanted) {
   std::size_t i = 1;
@@ -46,9 +47,8 @@ void StressHistory::see(double time, std::span<const double> z, std::span<const 
                         std::span<const double> yield) {
   const std::size_t n = z.size();
   if (z_.size() != n) {
+    resize(n);
     z_.assign(z.begin(), z.end());
-    for (auto* sums : {&sum_lowest_, &sum_highest_, &highest_, &highest_at_}) sums->assign(n, 0);
-    day_begun_ = false;
   }
   if (!day_begun_) {
     day_lowest_.assign(n, std::numeric_limits<double>::infinity());
@@ -63,6 +63,14 @@ void StressHistory::see(double time, std::span<const double> z, std::span<const 
     day_highest_[i] = share;
     day_highest_at_[i] = time;
   }
+}
+
+void StressHistory::resize(std::size_t rings) {
+  rings_ = int(rings);
+  for (auto* values : {&z_, &day_lowest_, &day_highest_, &day_highest_at_, &sum_lowest_, &sum_highest_,
+                       &highest_, &highest_at_})
+    values->assign(rings, 0);
+  day_begun_ = false;
 }
 
 void StressHistory::end_day(bool counts) {
@@ -100,29 +108,6 @@ std::vector<double> StressHistory::mean(const std::vector<double>& sum) const {
   return result;
 }
 
-std::vector<double> StressHistory::state() const {
-  std::vector<double> all{double(z_.size()), double(days_), double(day_begun_)};
-  for (const auto* part : {&z_, &day_lowest_, &day_highest_, &day_highest_at_, &sum_lowest_, &sum_highest_,
-                           &highest_, &highest_at_}) {
-    all.insert(all.end(), part->begin(), part->end());
-    all.resize(all.size() + z_.size() - part->size());  // the day's are empty before the first look
-  }
-  return all;
-}
-
-void StressHistory::restore(std::span<const double>& state) {
-  base::SavedNumbers saved(state, "sums of stresses");
-  const std::size_t n = saved.count(double(state.size()));
-  days_ = static_cast<int>(saved.count(1e9));
-  day_begun_ = saved.real() != 0;
-  for (auto* part : {&z_, &day_lowest_, &day_highest_, &day_highest_at_, &sum_lowest_, &sum_highest_,
-                     &highest_, &highest_at_}) {
-    const std::span<const double> values = saved.next(n);
-    part->assign(values.begin(), values.end());
-  }
-  state = saved.rest();
-}
-
 void declare(config::Section& s, ReportParameters& p) {
   s.value("run-in", p.run_in)
       .unit("day")
@@ -134,20 +119,16 @@ void declare(config::Section& s, ReportParameters& p) {
       .plausible(1, 1e4)
       .not_negative()
       .doc("on this day after the start, hourly profiles are written; absent: none");
-  s.value("thickness-margin", p.thickness_margin)
-      .unit("K difference")
-      .plausible(0.1, 500)
+  as_difference(s.value("thickness-margin", p.thickness_margin))
       .positive()
       .doc(
           "the thermocline is the region between the cold temperature plus this margin and the hot "
           "temperature minus it");
-  s.value("outlet-margin", p.outlet_margin)
-      .unit("K difference")
-      .plausible(0.1, 500)
+  as_difference(s.value("outlet-margin", p.outlet_margin))
       .positive()
       .doc("counts the time in which the tank's outlet is within this difference of its design temperature");
-  s.optional_section<EconomicsParameters>(
-      "economics", p.economics, [](config::Section& q, EconomicsParameters& e) { declare(q, e); },
+  declare_section(
+      s, "economics", p.economics,
       "prices, in any currency: the summary then includes capital and levelised cost of electricity");
   s.value("dead-state", p.dead_state)
       .unit("K")
@@ -240,15 +221,17 @@ void DayReport::record(const TankRecord& record) {
     charged += heat;
     charging_time += step.dt;
   }
-  // What the flow brought less what the bed gained went through the walls, evenly over the step (5.25-5.27).
+  // The heat that the flow brought and the bed did not gain went through the walls, evenly over the step (5.25-5.27).
   day_[Sums::stored] += charged - (brought - record.stored) * charging_time / record.dt;
   day_[Sums::losses] += record.losses();
   add_thickness(record);
   if (!record.equivalent_stress.empty())
     stress_.see(record.time, record.wall_z, record.equivalent_stress, record.yield_strength);
   if (series_)
-    write_series(record, moved, day_[Sums::field] - field, day_[Sums::asked] - asked,
-                 day_[Sums::taken] - taken);
+    series_->row({record, weather_.at(record.time),
+                  weather_.irradiation(record.time - record.dt, record.time) / record.dt, moved,
+                  day_[Sums::field] - field, day_[Sums::asked] - asked, day_[Sums::taken] - taken,
+                  last_thickness_});
   if (profiles_) write_profiles(record);
   last_time_ = record.time;
   // A hair's breadth before midnight is midnight.
@@ -310,45 +293,25 @@ std::vector<ReportLine> DayReport::lines() const {
   return all;
 }
 
-std::vector<double> DayReport::state() const {
-  std::vector<double> all{double(days_seen_), double(days_counted_), storable_,
-                          bed_height_,        last_thickness_,       largest_pump_};
-  all.insert(all.end(), day_.sum.begin(), day_.sum.end());
-  all.insert(all.end(), results_.sum.begin(), results_.sum.end());
-  const std::vector<double> stress = stress_.state();
-  all.insert(all.end(), stress.begin(), stress.end());
-  return all;
-}
+std::vector<double> DayReport::state() const { return numbers_of(*this); }
 
 void DayReport::restore(std::span<const double> state) {
-  constexpr std::size_t scalars = 6;
-  const std::size_t sums = scalars + 2 * Sums::n_items;
-  if (state.size() < sums + 1 ||
-      double(state.size()) != double(sums) + StressHistory::state_size(state[sums]))
-    throw Error("report: the checkpoint is from another version of this program; its sums are incompatible.");
+  // Behind the scalars and both sums: the number of rings, two more scalars and eight values per ring.
+  constexpr std::size_t fixed = 6 + 2 * Sums::n_items + 3;
+  if (state.size() >= fixed) stress_.resize((state.size() - fixed) / 8);
   constexpr double most_days = 1e6;
-  for (const double days : {state[0], state[1]})
-    if (!(days >= 0 && days <= most_days)) throw Error("report: the checkpoint's day counts are damaged.");
-  days_seen_ = static_cast<int>(state[0]);
-  days_counted_ = static_cast<int>(state[1]);
+  for (std::size_t i = 0; i < 2 && i < state.size(); ++i)
+    if (!(state[i] >= 0 && state[i] <= most_days))
+      throw Error("report: the checkpoint's day counts are damaged.");
+  set_numbers(state, "report", *this);
   int counted = 0;
   for (int day = 0; day < days_seen_; ++day) counted += this->counts(day);
   if (counted != days_counted_)
     throw Error(
-        "report.run-in: the run to be continued has completed {} days and counted {} of them; with a run-in "
-        "of {:g} days it would be {}. Days already counted cannot be removed: keep the run-in, or start a "
-        "new run.",
+        "report.run-in: the run to be continued has completed {} days and counted {} of them; with a "
+        "run-in of {:g} days it would be {}. Days already counted cannot be removed: keep the run-in, or "
+        "start a new run.",
         days_seen_, days_counted_, p_.run_in, counted);
-  storable_ = state[2];
-  bed_height_ = state[3];
-  last_thickness_ = state[4];
-  largest_pump_ = state[5];
-  state = state.subspan(scalars);
-  for (ReportSums* sums : {&day_, &results_}) {
-    std::copy_n(state.begin(), sums->sum.size(), sums->sum.begin());
-    state = state.subspan(sums->sum.size());
-  }
-  stress_.restore(state);
 }
 
 }  // namespace couplet::thermocline

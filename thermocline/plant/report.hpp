@@ -18,6 +18,37 @@
 
 namespace couplet::thermocline {
 
+/// A column of an output file: its heading with the unit, and its value in the view of a row.
+template <class View>
+struct Quantity {
+  const char* heading;
+  double (*value)(const View&);
+};
+
+/// A CSV file with a quantity per column. On restart it goes on from `restart_time`.
+template <class View>
+class QuantityFile {
+ public:
+  QuantityFile(const std::filesystem::path& file, const std::vector<Quantity<View>>& quantities,
+               double restart_time)
+      : quantities_(quantities), series_(file, headings(quantities), restart_time) {}
+  void row(const View& view) {
+    row_.clear();
+    for (const Quantity<View>& quantity : quantities_) row_.push_back(quantity.value(view));
+    series_.row(row_);
+  }
+
+ private:
+  static std::vector<std::string> headings(const std::vector<Quantity<View>>& quantities) {
+    std::vector<std::string> all;
+    for (const Quantity<View>& quantity : quantities) all.emplace_back(quantity.heading);
+    return all;
+  }
+  std::vector<Quantity<View>> quantities_;
+  io::Series series_;
+  std::vector<double> row_;
+};
+
 /// One accepted step of the simulation: the steps of the bed in it, and where things stand at its end.
 /// Profiles are views into the tank, bottom to top, valid during the call; what was not asked for is empty.
 struct TankRecord {
@@ -25,11 +56,11 @@ struct TankRecord {
   double dt = 0;    ///< [s]
   std::span<const BedStep> steps;
   // The bed, one value a cell.
-  std::span<const double> z, dz;               ///< centres and heights [m]
+  std::span<const double> z, dz;               ///< centers and heights [m]
   std::span<const double> fluid_temperature;   ///< [K]
   std::span<const double> filler_temperature;  ///< mean of the particles [K]
   // The shell, one value a ring (more than cells of the bed if the wall goes on around the ullage).
-  std::span<const double> wall_z;             ///< centres [m]
+  std::span<const double> wall_z;             ///< centers [m]
   std::span<const double> wall_temperature;   ///< [K]
   std::span<const double> hoop_stress;        ///< [Pa]
   std::span<const double> equivalent_stress;  ///< von Mises [Pa]
@@ -83,11 +114,13 @@ class StressHistory {
   std::vector<double> mean_highest() const { return mean(sum_highest_); }
   std::span<const double> highest() const { return highest_; }
 
-  std::vector<double> state() const;
-  /// How many numbers state() gives of so many rings, its first one.
-  static double state_size(double rings) { return 3 + 8 * rings; }
-  /// Takes what state() gave from the front of `state` and leaves the rest.
-  void restore(std::span<const double>& state);
+  /// Starts again with so many rings.
+  void resize(std::size_t rings);
+  template <class Self, class F>
+  static void visit(Self& self, F&& f) {
+    f(self.rings_, self.days_, self.day_begun_, self.z_, self.day_lowest_, self.day_highest_,
+      self.day_highest_at_, self.sum_lowest_, self.sum_highest_, self.highest_, self.highest_at_);
+  }
 
  private:
   std::vector<double> mean(const std::vector<double>& sum) const;
@@ -95,7 +128,7 @@ class StressHistory {
   std::vector<double> z_, day_lowest_, day_highest_, day_highest_at_;
   std::vector<double> sum_lowest_, sum_highest_, highest_, highest_at_;
   bool day_begun_ = false;
-  int days_ = 0;
+  int days_ = 0, rings_ = 0;
 };
 
 /// Prices, in a currency of one's own.
@@ -113,7 +146,7 @@ struct EconomicsParameters {
 };
 void declare(config::Section& section, EconomicsParameters& parameters);
 
-/// What there is to pay for.
+/// Parts of tank and plant that cost something.
 struct Inventory {
   double field_area = 0, block_power = 0;   ///< [m^2], electric [W]
   double steel = 0, filler = 0, fluid = 0;  ///< [kg]
@@ -201,10 +234,15 @@ class DayReport final : public TankObserver {
   void record(const TankRecord& record) override;
   void finish() override;
   std::vector<std::string> doubts() const override;
+  template <class Self, class F>
+  static void visit(Self& self, F&& f) {
+    f(self.days_seen_, self.days_counted_, self.storable_, self.bed_height_, self.last_thickness_,
+      self.largest_pump_, self.day_.sum, self.results_.sum, self.stress_);
+  }
   std::vector<double> state() const override;
   void restore(std::span<const double> state) override;
 
-  /// What the plant consists of, for its costs.
+  /// Sets the parts of tank and plant, for their costs.
   void take_stock(const Inventory& inventory) { inventory_ = inventory; }
 
   const ReportSums& results() const { return results_; }
@@ -216,14 +254,26 @@ class DayReport final : public TankObserver {
   double add_step(const BedStep& step);
   void add_thickness(const TankRecord& record);
   void end_day(double time);
-  /// Whether this day, from 0, is behind the run-in.
+  /// Returns true if this day, from 0, is after the run-in.
   bool counts(int day) const;
+  /// A step as plant.csv shows it: means over it and states at its end.
+  struct StepRow {
+    const TankRecord& record;
+    Ambient air;
+    double dni, moved, field, asked, taken;  ///< [W/m^2]; of the flow [kg], heat of the step [J]
+    double thickness;                        ///< of the thermocline [m]
+  };
+  /// A cell of the bed and the ring beside it, at the end of a step.
+  struct Place {
+    const TankRecord& record;
+    std::size_t i;
+    bool has_ring() const { return i < record.wall_z.size(); }
+  };
   void write_profiles(const TankRecord& record);
   std::vector<ReportLine> lines_of(const ReportSums& sums, double days) const;
   void write_day(double time);
   void add_money(std::vector<ReportLine>& lines) const;
   bool whole_years() const;
-  void write_series(const TankRecord& record, double moved, double field, double asked, double taken);
 
   ReportParameters p_;
   Plant plant_;
@@ -235,12 +285,14 @@ class DayReport final : public TankObserver {
   int days_seen_ = 0, days_counted_ = 0;
   double storable_ = 0, bed_height_ = 0, last_thickness_ = 0, last_time_ = 0;
   double largest_pump_ = 0;  // of the run [W]
-  std::unique_ptr<io::Series> days_, series_, profiles_;
+  std::unique_ptr<io::Series> days_;
+  std::optional<QuantityFile<StepRow>> series_;
+  std::optional<QuantityFile<Place>> profiles_;
 };
 
 /// Thickness of the thermocline [m], equation 5.30 of [thesis]: the height between the critical temperatures
 /// `cold` and `hot`; where one of them has left the bed, extrapolated with the mean gradient of the part that
-/// is still there (both: with that of the whole bed). `z` centres of the cells, upward, `height` of the bed
+/// is still there (both: with that of the whole bed). `z` centers of the cells, upward, `height` of the bed
 /// [m], `temperature` a value a cell, `bottom` and `top` the temperatures there, all in the same unit.
 /// Nothing if the bed is hot or cold all through.
 std::optional<double> thermocline_thickness(std::span<const double> z, double height,

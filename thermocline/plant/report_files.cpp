@@ -29,17 +29,37 @@ DayReport::DayReport(const ReportParameters& parameters, const Plant& plant, con
   for (const ReportLine& line : lines_of({}, 1))
     columns.push_back(fmt::format("{} [{}]", line.quantity, line.unit));
   days_ = std::make_unique<io::Series>(folder_ / "days.csv", columns, restart_time);
-  series_ = std::make_unique<io::Series>(
+  series_.emplace(
       folder_ / "plant.csv",
-      std::vector<std::string>{"time [s]", "solar field [W]", "power block [W]", "demand [W]",
-                               "tank flow [kg/s]", "top [degC]", "bottom [degC]", "thermocline thickness [m]",
-                               "losses [W]", "irradiance [W/m^2]", "air [degC]", "wind [m/s]"},
+      std::vector<Quantity<StepRow>>{
+          {"time [s]", [](const StepRow& v) { return v.record.time; }},
+          {"solar field [W]", [](const StepRow& v) { return v.field / v.record.dt; }},
+          {"power block [W]", [](const StepRow& v) { return v.taken / v.record.dt; }},
+          {"demand [W]", [](const StepRow& v) { return v.asked / v.record.dt; }},
+          {"tank flow [kg/s]", [](const StepRow& v) { return v.moved / v.record.dt; }},
+          {"top [degC]", [](const StepRow& v) { return celsius(v.record.fluid_temperature.back()); }},
+          {"bottom [degC]", [](const StepRow& v) { return celsius(v.record.fluid_temperature.front()); }},
+          {"thermocline thickness [m]", [](const StepRow& v) { return v.thickness; }},
+          {"losses [W]", [](const StepRow& v) { return v.record.losses() / v.record.dt; }},
+          {"irradiance [W/m^2]", [](const StepRow& v) { return v.dni; }},
+          {"air [degC]", [](const StepRow& v) { return celsius(v.air.temperature); }},
+          {"wind [m/s]", [](const StepRow& v) { return v.air.wind; }}},
       restart_time);
+  constexpr static double none = std::numeric_limits<double>::quiet_NaN();
   if (p_.profile_day)
-    profiles_ = std::make_unique<io::Series>(
+    profiles_.emplace(
         folder_ / "profiles.csv",
-        std::vector<std::string>{"time [s]", "z [m]", "fluid [degC]", "filler [degC]", "wall [degC]",
-                                 "share of yield strength [-]"},
+        std::vector<Quantity<Place>>{
+            {"time [s]", [](const Place& v) { return v.record.time; }},
+            {"z [m]", [](const Place& v) { return v.record.z[v.i]; }},
+            {"fluid [degC]", [](const Place& v) { return celsius(v.record.fluid_temperature[v.i]); }},
+            {"filler [degC]", [](const Place& v) { return celsius(v.record.filler_temperature[v.i]); }},
+            {"wall [degC]",
+             [](const Place& v) { return v.has_ring() ? celsius(v.record.wall_temperature[v.i]) : none; }},
+            {"share of yield strength [-]",
+             [](const Place& v) {
+               return v.has_ring() ? v.record.equivalent_stress[v.i] / v.record.yield_strength[v.i] : none;
+             }}},
         restart_time);
 }
 
@@ -48,25 +68,7 @@ void DayReport::write_profiles(const TankRecord& record) {
   const double before = std::floor((record.time - record.dt - begin) / seconds_an_hour + clock_rounding);
   const double now = std::floor((record.time - begin) / seconds_an_hour + clock_rounding);
   if (now == before || now < 0 || now > 24) return;
-  for (std::size_t i = 0; i < record.z.size(); ++i) {
-    const bool wall = i < record.wall_z.size();
-    const double none = std::numeric_limits<double>::quiet_NaN();
-    profiles_->row(std::array{record.time, record.z[i], celsius(record.fluid_temperature[i]),
-                              celsius(record.filler_temperature[i]),
-                              wall ? celsius(record.wall_temperature[i]) : none,
-                              wall ? record.equivalent_stress[i] / record.yield_strength[i] : none});
-  }
-}
-
-/// A row of plant.csv; `field`, `asked`, `taken`: heat over the step [J].
-void DayReport::write_series(const TankRecord& record, double moved, double field, double asked,
-                             double taken) {
-  const Ambient air = weather_.at(record.time);
-  const double dni = weather_.irradiation(record.time - record.dt, record.time) / record.dt;
-  series_->row(std::array{record.time, field / record.dt, taken / record.dt, asked / record.dt,
-                          moved / record.dt, celsius(record.fluid_temperature.back()),
-                          celsius(record.fluid_temperature.front()), last_thickness_,
-                          record.losses() / record.dt, dni, celsius(air.temperature), air.wind});
+  for (std::size_t i = 0; i < record.z.size(); ++i) profiles_->row({record, i});
 }
 
 void DayReport::write_day(double time) {
@@ -188,16 +190,16 @@ std::vector<std::string> DayReport::doubts() const {
   if (const double sold = results_[Sums::electricity] / megawatt_hour;
       days > 0 && p_.economics && !(sold > 0))
     sentences.push_back(fmt::format(
-        "report: the levelised cost is infinite: net electricity (power block minus pump and fan) = {:.3g} "
-        "MWh{}",
+        "report: the levelised cost is infinite: net electricity (power block minus pump and fan) = "
+        "{:.3g} MWh{}",
         sold,
         sold < 0 ? "; they consume more than it produces" : ", no hour of the counted days produced any"));
   if (days <= 0 || whole_years() || !(p_.economics || !plant_.parameters().tariff.empty())) return sentences;
   const double period = weather_.period_length() / seconds_a_day;
   if (period < 0.98 * year && days > period)
     sentences.push_back(fmt::format(
-        "report: the weather's {:.0f} days repeated {:.3g} times: the electricity and its cost or revenue "
-        "are those of 365 such days, not of a year",
+        "report: the weather's {:.0f} days repeated {:.3g} times: the electricity and its cost or "
+        "revenue are those of 365 such days, not of a year",
         period, days / period));
   else if (days < 0.98 * year)
     sentences.push_back(fmt::format(
@@ -206,8 +208,8 @@ std::vector<std::string> DayReport::doubts() const {
         days));
   else
     sentences.push_back(fmt::format(
-        "report: the {:.4g} counted days are not a whole number of years: some days of the year have more "
-        "weight than others in the electricity and its cost or revenue",
+        "report: the {:.4g} counted days are not a whole number of years: some days of the year have "
+        "more weight than others in the electricity and its cost or revenue",
         days));
   return sentences;
 }

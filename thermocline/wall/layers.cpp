@@ -49,7 +49,7 @@ Column::Column(const std::vector<ColumnLayer>& layers, double area) : area_(area
       capacity_.push_back(layers[l].material.density * layers[l].material.specific_heat * dx);
     }
   }
-  for (auto* v : {&temperature_, &k_, &a_, &b_, &c_, &r_}) v->assign(x_.size(), 0.0);
+  for (auto* v : {&temperature_, &k_, &resistance_, &a_, &b_, &c_, &r_}) v->assign(x_.size(), 0.0);
   matrix_.resize(int(x_.size()));
 }
 
@@ -79,11 +79,9 @@ void Column::fill(double dt, const Film& outer) {
   const int n = int(x_.size()), last = n - 1;
   for (int i = 0; i < n; ++i) k_[i] = conductivity_[layer_[i]](temperature_[i]);
   for (int i = 0; i < n; ++i) b_[i] = capacity_[i] / dt, r_[i] = b_[i] * temperature_[i];
-  for (int i = 0; i < last; ++i) {
-    const double g = 1 / (dx_[i] / (2 * k_[i]) + dx_[i + 1] / (2 * k_[i + 1]));
-    c_[i] = a_[i + 1] = -g;
-    b_[i] += g, b_[i + 1] += g;
-  }
+  for (int i = 0; i < n; ++i) resistance_[i] = dx_[i] / (2 * k_[i]);
+  conduction_rows(n, resistance_.data(), a_.data(), c_.data());
+  for (int i = 0; i < n; ++i) b_[i] = b_[i] - a_[i] - c_[i];
   const double out = in_series(outer.coefficient, 2 * k_[last] / dx_[last]);
   b_[last] += out, r_[last] += out * outer.reference;
 }
@@ -228,16 +226,13 @@ double Insulation::outer_surface(const Film& outside) const {
 }
 
 void declare(config::Section& section, InsulationParameters& p) {
-  section.section(
-      "material", [&p](config::Section& s) { declare(s, p.material); }, "of the blanket");
-  section.value("thickness", p.thickness)
-      .unit("m")
-      .plausible(1e-4, 30)
+  declare_section(section, "material", p.material, "of the blanket");
+  as_thickness(section.value("thickness", p.thickness))
       .positive()
       .required()
       .doc("thickness on the side, and on the roof above an ullage");
   section.value("cells", p.cells).range(1, 200).doc("number of cells through the thickness");
-  section.value("step", p.step).unit("s").plausible(0.1, 1e5).positive().doc("time step of the insulation");
+  as_step(section.value("step", p.step)).positive().doc("time step of the insulation");
   section.value("cover-emissivity", p.outside.emissivity).range(0, 1).doc("emissivity of the metal cover");
   section.value("solar-absorptance", p.outside.solar_absorptance)
       .range(0, 1)

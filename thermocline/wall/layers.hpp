@@ -28,10 +28,10 @@ class Column {
     double inner = 0, outer = 0;  ///< entered through the inner side, left through the outer side [J]
   };
   Heat step(double dt, const Film& inner, const Film& outer);
-  /// The same with a given heat flow into the inner side [W].
+  /// Steps with a given heat flow into the inner side [W].
   Heat step(double dt, double inner_power, const Film& outer);
 
-  /// What a heat flow into the inner surface will meet over a step of dt: it enters as coefficient (T_surface
+  /// Response to a heat flow into the inner surface over a step of dt: it enters as coefficient (T_surface
   /// - reference) [W/m^2] of the surface's temperature at the end of the step. Changes nothing.
   Film inner_response(double dt, const Film& outer);
 
@@ -39,12 +39,12 @@ class Column {
   void set_steady(double inner, double outer);
   void set_uniform(double temperature) { temperature_.assign(temperature_.size(), temperature); }
   double energy(double reference) const;  ///< [J]
-  /// Of the inner and outer half cell [W/(m^2 K)].
+  /// Conductance of the inner and the outer half cell [W/(m^2 K)].
   double inner_conductance() const;
   double outer_conductance() const;
   double inner_capacity() const { return capacity_.front(); }  ///< of the inner cell [J/(m^2 K)]
   double inner_temperature() const { return temperature_.front(); }
-  /// Of the outer surface against the film that the last step used [K].
+  /// Temperature of the outer surface against the film that the last step used [K].
   double outer_surface(const Film& outer) const;
   double area() const { return area_; }
 
@@ -61,7 +61,7 @@ class Column {
   std::vector<Table> conductivity_;  // of each layer
   std::vector<int> layer_;
   std::vector<double> x_, dx_, capacity_, temperature_;
-  std::vector<double> k_, a_, b_, c_, r_;
+  std::vector<double> k_, resistance_, a_, b_, c_, r_;
   Tridiagonal matrix_;
 };
 

@@ -59,36 +59,41 @@ InnerPressure inner_pressure(const Rings& rings, const BedGrid& bed, const Fluid
   return p;
 }
 
-FillerMechanics::FillerMechanics(const Rings& rings, const Steel& steel, const Filler& filler,
-                                 const InnerPressure& p, std::span<const double> wall,
-                                 std::span<const double> grains)
+FillerOnWall::FillerOnWall(const Rings& rings, const Steel& steel, const Filler& filler,
+                           const InnerPressure& p, std::span<const double> grains)
     : rings_(&rings),
       steel_(&steel),
       expansion_(filler.expansion),
       active_ratio_(rankine_active(filler)),
       grains_(grains.begin(), grains.end()) {
-  const int n = rings.size();
-  for (int i = 0; i < n; ++i) per_pressure_.push_back(rings.diameter / (2 * rings.thickness[i]));
-  for (auto* v : {&fluid_, &active_, &passive_}) v->resize(n);
+  for (auto* v : {&fluid_, &active_, &passive_, &hoop_, &lateral_}) v->assign(rings.size(), 0.0);
+  strain_.assign(rings.in_bed, 0.0), slip_.assign(rings.in_bed, 0.0);
+  contact_.assign(rings.in_bed, Contact::active);
   load(p);
-  strain_.assign(rings.in_bed, -1e3);  // far inside: the first update finds every ring active
-  hoop_.resize(n), lateral_.assign(n, 0.0), contact_.assign(rings.in_bed, Contact::active);
-  slip_.assign(rings.in_bed, 0.0);
-  update(wall, grains);
 }
 
-void FillerMechanics::load(const InnerPressure& p) {
+void FillerOnWall::load(const InnerPressure& p) {
   for (std::size_t i = 0; i < fluid_.size(); ++i) {
     fluid_[i] = p.fluid[i];
-    active_[i] = p.fluid[i] + active_ratio_ * p.vertical[i];
-    passive_[i] = p.fluid[i] + p.vertical[i] / active_ratio_;
+    active_[i] = active_ratio_ * p.vertical[i];
+    passive_[i] = p.vertical[i] / active_ratio_;
   }
+}
+
+FillerMechanics::FillerMechanics(const Rings& rings, const Steel& steel, const Filler& filler,
+                                 const InnerPressure& p, std::span<const double> wall,
+                                 std::span<const double> grains)
+    : FillerOnWall(rings, steel, filler, p, grains) {
+  for (int i = 0; i < rings.size(); ++i) per_pressure_.push_back(rings.diameter / (2 * rings.thickness[i]));
+  strain_.assign(rings.in_bed, -1e3);  // far inside: the first update finds every ring active
+  update(wall, grains);
 }
 
 void FillerMechanics::update(std::span<const double> wall, std::span<const double> grains) {
   for (int i = 0; i < rings_->in_bed; ++i) {
     const double e = steel_->youngs_modulus(wall[i]), free = steel_->thermal_strain(wall[i]);
-    const double lowest = active_[i] * per_pressure_[i], highest = passive_[i] * per_pressure_[i];
+    const double lowest = (fluid_[i] + active_[i]) * per_pressure_[i],
+                 highest = (fluid_[i] + passive_[i]) * per_pressure_[i];
     // (5.18) as D exp(alpha dT): printed as D (1 + alpha dT), which a cycle would leave smaller.
     strain_[i] += expansion_ * (grains[i] - grains_[i]);
     grains_[i] = grains[i];
@@ -108,35 +113,12 @@ void FillerMechanics::update(std::span<const double> wall, std::span<const doubl
     }
     lateral_[i] = hoop_[i] / per_pressure_[i] - fluid_[i];
   }
-  for (int i = rings_->in_bed; i < rings_->size(); ++i) hoop_[i] = active_[i] * per_pressure_[i];
+  for (int i = rings_->in_bed; i < rings_->size(); ++i)
+    hoop_[i] = (fluid_[i] + active_[i]) * per_pressure_[i];
 }
 
 int FillerMechanics::ever_passive() const {
   return int(std::count_if(slip_.begin(), slip_.end(), [](double s) { return s > 0; }));
-}
-
-std::vector<double> FillerMechanics::state() const {
-  std::vector<double> all(strain_);
-  all.insert(all.end(), grains_.begin(), grains_.end());
-  all.insert(all.end(), hoop_.begin(), hoop_.end());
-  all.insert(all.end(), lateral_.begin(), lateral_.end());
-  for (const Contact c : contact_) all.push_back(double(c));
-  all.insert(all.end(), slip_.begin(), slip_.end());
-  return all;
-}
-
-void FillerMechanics::restore(std::span<const double> state) {
-  const std::size_t bed = strain_.size(), grains = grains_.size(), all = hoop_.size();
-  if (state.size() != 3 * bed + grains + 2 * all)
-    throw Error("filler-mechanics: the checkpoint has another number of rings; run with the same cells.");
-  const double* from = state.data();
-  const auto take = [&](auto& to, std::size_t n) {
-    for (std::size_t i = 0; i < n; ++i) to[i] = from[i];
-    from += n;
-  };
-  take(strain_, bed), take(grains_, grains), take(hoop_, all), take(lateral_, all);
-  for (std::size_t i = 0; i < bed; ++i) contact_[i] = Contact(int(*from++));
-  take(slip_, bed);
 }
 
 std::vector<double> active_hoop(const Rings& rings, const Filler& filler, const InnerPressure& p) {
@@ -165,27 +147,11 @@ void wall_stress(const Rings& rings, const Steel& steel, const InnerPressure& pr
 ContactMechanics::ContactMechanics(const Rings& rings, const Steel& steel, const Filler& filler,
                                    const InnerPressure& p, std::span<const double> wall,
                                    std::span<const double> grains)
-    : rings_(&rings),
-      steel_(&steel),
-      expansion_(filler.expansion),
-      active_ratio_(rankine_active(filler)),
-      grains_(grains.begin(), grains.end()),
+    : FillerOnWall(rings, steel, filler, p, grains),
+      total_(rings.size()),
       given_wall_(wall.begin(), wall.end()) {
-  for (auto* v : {&fluid_, &active_, &passive_}) v->resize(rings.size());
-  load(p);
   lateral_ = active_;
-  strain_.assign(rings.in_bed, 0.0), slip_.assign(rings.in_bed, 0.0);
-  contact_.assign(rings.in_bed, Contact::active);
-  total_.resize(rings.size()), hoop_.resize(rings.size());
   finish();
-}
-
-void ContactMechanics::load(const InnerPressure& p) {
-  for (std::size_t i = 0; i < fluid_.size(); ++i) {
-    fluid_[i] = p.fluid[i];
-    active_[i] = active_ratio_ * p.vertical[i];
-    passive_[i] = p.vertical[i] / active_ratio_;
-  }
 }
 
 void ContactMechanics::finish() {
@@ -218,25 +184,6 @@ void ContactMechanics::update(std::span<const double> radial, std::span<const do
   }
   given_wall_.assign(wall.begin(), wall.end());
   begun_ = begun_ || !radial.empty();
-  finish();
-}
-
-std::vector<double> ContactMechanics::state() const {
-  std::vector<double> all{double(begun_)};
-  for (const auto* v : {&strain_, &slip_, &grains_, &lateral_, &given_wall_})
-    all.insert(all.end(), v->begin(), v->end());
-  for (const Contact c : contact_) all.push_back(double(c));
-  return all;
-}
-
-void ContactMechanics::restore(std::span<const double> state) {
-  if (state.size() != 1 + 3 * strain_.size() + grains_.size() + lateral_.size() + given_wall_.size())
-    throw Error("external-wall: the checkpoint has another number of rings; run with the same cells.");
-  const double* from = state.data();
-  begun_ = *from++ != 0;
-  for (auto* v : {&strain_, &slip_, &grains_, &lateral_, &given_wall_})
-    for (double& value : *v) value = *from++;
-  for (Contact& c : contact_) c = Contact(int(*from++));
   finish();
 }
 

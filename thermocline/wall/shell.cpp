@@ -10,16 +10,6 @@
 namespace couplet::thermocline {
 namespace {
 
-/// Half a ring's resistance from its conductivity, and the conductance between rings as lower and upper rows.
-[[gnu::target_clones("avx2", "default")]] void conduct(std::size_t n, const double* bare, double* resistance,
-                                                       double* a, double* c) {
-#pragma GCC ivdep
-  for (std::size_t i = 0; i < n; ++i) resistance[i] = bare[i] / resistance[i];
-#pragma GCC ivdep
-  for (std::size_t i = 0; i + 1 < n; ++i) c[i] = -1 / (resistance[i] + resistance[i + 1]);
-  for (std::size_t i = 0; i + 1 < n; ++i) a[i + 1] = c[i];
-}
-
 struct Row {
   const double *mass, *specific_heat, *a, *c, *temperature, *lost;
 };
@@ -97,7 +87,8 @@ void Shell::step(double dt, std::span<const double> fluid, std::span<const doubl
   const double around = std::numbers::pi * rings.diameter;
   specific_heat_of_.values(temperature_.data(), specific_heat_.data(), n);
   conductivity_of_.values(temperature_.data(), resistance_.data(), n);
-  conduct(n, bare_.data(), resistance_.data(), a_.data(), c_.data());
+  for (int i = 0; i < n; ++i) resistance_[i] = bare_[i] / resistance_[i];
+  conduction_rows(n, resistance_.data(), a_.data(), c_.data());
   for (int i = 0; i < rings.in_bed; ++i) coupling_[i] = film[i] * around * rings.dz[i];
   // Twice, so that the specific heat is its mean over the step: what is stored is then exactly what came in.
   for (int pass = 0; pass < 2; ++pass) {
@@ -132,9 +123,7 @@ void declare(config::Section& s, ExternalWallParameters& p) {
   s.value("angle", p.angle)
       .unit("rad")
       .range(1e-6, 3)
-      .doc(
-          "angle of the wedge that the other program "
-          "computes");
+      .doc("angle of the wedge that the other program computes");
 }
 
 WallInterface::WallInterface(const ExternalWallParameters& p, const Rings& rings)
@@ -201,18 +190,12 @@ std::vector<double> WallInterface::radial(std::span<const double> displacement) 
 }
 
 void declare(config::Section& section, ShellParameters& p) {
-  section.section(
-      "material", [&p](config::Section& s) { declare(s, p.material); }, "metal of the shell");
+  declare_section(section, "material", p.material, "metal of the shell");
   section.list<Plate>(
       "plates", p.plates,
       [](config::Section& s, Plate& l) {
-        s.value("height", l.height).unit("m").plausible(0.01, 100).positive().required().doc("height");
-        s.value("thickness", l.thickness)
-            .unit("m")
-            .plausible(1e-4, 30)
-            .positive()
-            .required()
-            .doc("thickness");
+        as_length(s.value("height", l.height)).positive().required().doc("height");
+        as_thickness(s.value("thickness", l.thickness)).positive().required().doc("thickness");
       },
       "from the bottom up; the last one continues to the top");
   section.value("roof-pressure", p.roof_pressure)

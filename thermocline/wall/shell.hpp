@@ -46,7 +46,8 @@ class Shell {
   /// [W].
   void step(double dt, std::span<const double> fluid, std::span<const double> film,
             std::span<const double> lost, std::vector<double>& from_bed);
-  std::span<const double> temperature() const { return temperature_; }
+  std::vector<double>& temperature() { return temperature_; }
+  const std::vector<double>& temperature() const { return temperature_; }
   void set_temperature(std::span<const double> temperature);
   /// Heat content above a temperature [J]: the heat that came in less what went out, exact over steps.
   double energy(double reference) const;

@@ -151,7 +151,7 @@ Ullage::Heat Ullage::step(double dt, double liquid, double wall, double roof_cel
   heat.into_roof = roof_conductance * (roof_ - roof_cell);
   heat.from_wall =
       side * (wall - gas_) + x[2][0] * fourth(liquid) + x[2][1] * fourth(roof_) + x[2][2] * fourth(wall);
-  // Of the liquid: what closes the balance, equal to its own films and radiation to the solver's tolerance.
+  // The heat of the liquid closes the balance. It equals that of its own films and radiation to the solver's tolerance.
   heat.from_liquid = heat.into_roof + store * (gas_ - before) - heat.from_wall;
   return heat;
 }

@@ -28,7 +28,7 @@ double hot_plate_up_nusselt(double rayleigh);
 /// Swinbank 1963: 0.0552 T^1.5 [K].
 double sky_temperature(double air);
 
-/// What a surface loses: q = coefficient (T - reference) [W/m^2], convection and radiation together, linear
+/// Heat loss of a surface: q = coefficient (T - reference) [W/m^2], convection and radiation together, linear
 /// about the surface temperature it was made for.
 struct Film {
   double coefficient = 0, reference = 0;
@@ -80,8 +80,10 @@ class Ullage {
   void set_gas(double temperature) { gas_ = temperature, roof_ = temperature; }
   double energy(double reference) const { return capacity_ * (gas_ - reference); }  ///< [J]
   double roof_surface() const { return roof_; }
-  std::array<double, 2> state() const { return {gas_, roof_}; }
-  void restore(double gas, double roof) { gas_ = gas, roof_ = roof; }
+  template <class Self, class F>
+  static void visit(Self& self, F&& f) {
+    f(self.gas_, self.roof_);
+  }
 
  private:
   UllageParameters parameters_;

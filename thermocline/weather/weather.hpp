@@ -32,7 +32,7 @@ struct WeatherPeriod {
 
 /// Hourly weather as functions of time. States are straight lines between the hourly moments, also where the
 /// period begins again. The irradiance is a straight line within each hour, of the hour's mean and a slope
-/// limited so that no value leaves the range of the neighbouring hours (monotonised central differences
+/// limited so that no value leaves the range of the neighboring hours (monotonized central differences
 /// [vanleer1977]): the energy of every hour is that of the file.
 class Weather {
  public:
@@ -49,11 +49,11 @@ class Weather {
   /// It is known where the sun stands.
   bool has_site() const { return hours_.site.has_value(); }
   const std::string& source() const { return hours_.source; }
-  /// What was mended in the record, with file:line.
+  /// Gaps that were filled in the record, with file:line.
   const std::vector<std::string>& warnings() const { return hours_.warnings; }
   /// Why it may not be what was meant.
   const std::vector<std::string>& doubts() const { return hours_.doubts; }
-  /// Of the day in which t lies, as MM-DD.
+  /// Date of the day in which t lies, as MM-DD.
   std::string date(double t) const;
 
   int first_day() const { return first_day_; }                                ///< of the year, 0 for 01-01
@@ -81,7 +81,7 @@ struct SiteParameters {
 };
 void declare(config::Section& section, SiteParameters& site);
 
-/// What the section `weather` of the YAML says.
+/// Keys of the section `ambient`.
 struct WeatherParameters {
   WeatherKind kind = WeatherKind::constant;
   std::string file;
@@ -99,7 +99,7 @@ void declare(config::Section& section, WeatherParameters& parameters);
 std::unique_ptr<Weather> make_weather(const WeatherParameters& parameters,
                                       const std::filesystem::path& case_folder);
 
-/// The same record with each hour's irradiance replaced by the mean over that hour of all days of its month
+/// Returns the record with each hour's irradiance replaced by the mean over that hour of all days of its month
 /// (of the record), as tables of average days give it. The energy of every month stays.
 WeatherHours with_mean_days(WeatherHours record);
 
