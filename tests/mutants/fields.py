@@ -22,7 +22,7 @@ FILES = {
                                   "elastic_corrections vertex_constraints"),
         *_of("common/fv", "conduction face_gradient point_gradient vertex_interpolation vertex_weights prescribed_motion"),
         *_of("mesh_mover", "laplacian pseudo_solid rotations affine curved_slide mover"),
-        *_of("thermocline", "bed_step bed_rows packed_bed tridiagonal melting_step grain_kernels grains column insulation shell ullage"),
+        *_of("thermocline", "bed_step packed_bed numerics grains layers shell surroundings"),
     ],
     "maps": [
         *_of("coupler", "map_local map_projection mapping sparse_map transfer search cavity_wall links conjugate_map "
@@ -32,21 +32,21 @@ FILES = {
     ],
     "ledgers": [
         *_of("solid_solver", "ledger"), *_of("coupler", "mechanics balance watch_integrals"), *_of("fluid_solver", "energy_guard"),
-        *_of("plate_modal", "audit"), *_of("thermocline", "tank day_report"),
+        *_of("plate_modal", "audit"), *_of("thermocline", "tank report"),
     ],
     "loads": [
         *_of("fluid_solver", "loads turning_walls cavity rotating_frame"),
         *_of("common/elasticity", "space_kernel follower_pressure"),
         *_of("plate_modal", "pressure_load contact"),
         *_of("solid_solver", "thermal_strain solid_forces boundaries solid_body interface_data solid_interface"),
-        *_of("coupler", "volume_level"), *_of("thermocline", "mechanics wall_bending"),
+        *_of("coupler", "volume_level"), *_of("thermocline", "mechanics"),
     ],
     "scheme constants": [
         *_of("common/time", "time_scheme step_errors velocity_errors amplification"),
         *_of("fluid_solver", "step_size"), *_of("solid_solver", "stage"),
         *_of("plate_modal", "oscillators kirchhoff plate_model"),
         *_of("coupler", "relaxation accelerator quasi_newton secants growing_qr lag_estimate"),
-        *_of("thermocline", "closures flow pressure_loss properties"),
+        *_of("thermocline", "closures flow properties"),
     ],
 }
 

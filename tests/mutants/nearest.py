@@ -66,15 +66,13 @@ FILE = {
     "plate_modal/model/midsurface": "verification_plate_guards",
     "plate_modal/motion/oscillators": "verification_plate_contact verification_plate_dynamics",
     "plate_modal/motion/pressure_load": "verification_plate_resolution",
-    "thermocline/wall/mechanics": "stability_thermocline",
-    "thermocline/wall/wall_bending": "verification_thermocline_mechanics stability_thermocline",
+    "thermocline/wall/mechanics": "verification_thermocline_mechanics stability_thermocline",
     "thermocline/bed/bed_step": "verification_thermocline_bed",
     "thermocline/bed/grains": "verification_thermocline_grains",
-    "thermocline/bed/grain_kernels": "verification_thermocline_grains",
-    "thermocline/economics/day_report": "unit_thermocline_plant",
+    "thermocline/plant/report": "unit_thermocline_plant",
     "thermocline/bed/closures": "verification_thermocline_grains verification_thermocline_bed",
     "thermocline/material/properties": "verification_thermocline_conduction",
-    "thermocline/wall/column": "verification_thermocline_conduction",
+    "thermocline/wall/layers": "verification_thermocline_conduction",
     "thermocline/model/tank": "verification_thermocline_tank",
 }
 

@@ -9,7 +9,7 @@
 #include "common/coupling/participant.hpp"
 #include "thermocline/model/model.hpp"
 #include "thermocline/model/output.hpp"
-#include "thermocline/wall/wall_bending.hpp"
+#include "thermocline/wall/mechanics.hpp"
 
 namespace couplet::io {
 class Archive;
@@ -17,7 +17,7 @@ class Archive;
 
 namespace couplet::thermocline {
 
-/// What bending, which the rings leave out, would have made of the wall; looked at every two hours.
+/// Stresses of the wall with the bending that the rings leave out, sampled every two hours.
 struct BendingSeen {
   double rings = 0, shell = 0,
          shell_z = 0;  ///< largest hoop stress, as rings and with bending, and where [Pa], [m]
@@ -56,11 +56,12 @@ class Tank final : public coupling::Participant {
 
   const TankModel& model() const { return accepted_; }
   const Speed& speed() const { return speed_; }
-  const FlowControl& control() const { return *control_; }
   void add_observer(std::unique_ptr<TankObserver> observer) { observers_.push_back(std::move(observer)); }
 
  private:
   TankRecord record() const;
+  /// Reports each sentence as a finding of this tank.
+  void report(const char* id, const std::vector<std::string>& sentences) const;
   void look_at_bending();
   void visit_seen(io::Archive& archive);
   coupling::ErrorParts spread_profile() const;
@@ -83,7 +84,7 @@ class Tank final : public coupling::Participant {
   BendingSeen bending_;                     // of this run; only where the wall is of rings
   std::unique_ptr<TankOutputFiles> files_;  // on rank 0
   std::optional<WallInterface> wall_;
-  // Of the last accepted step, for its record.
+  // Last accepted step, for its record.
   std::vector<double> filler_;
   double stored_ = 0, side_ = 0, roof_ = 0, ground_ = 0;
 };

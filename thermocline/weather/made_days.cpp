@@ -6,8 +6,7 @@
 #include <numbers>
 
 #include "common/base/error.hpp"
-#include "thermocline/base/celsius.hpp"
-#include "thermocline/base/clock.hpp"
+#include "thermocline/material/numerics.hpp"
 
 namespace couplet::thermocline {
 namespace {
@@ -21,7 +20,7 @@ double declination(int day) { return 23.45 * degree * std::sin(2 * pi * (285 + d
 struct Correction {
   double r0, r1, rk;
 };
-/// Of the constants for the climate [hottel1976, table 2].
+/// Corrections of the constants for the climate [hottel1976, table 2].
 Correction climate(double latitude, double declination) {
   constexpr double tropic = 23.45 * degree, subarctic = 60 * degree;
   if (std::abs(latitude) <= tropic) return {0.95, 0.98, 1.02};
@@ -98,8 +97,8 @@ std::string problem_of(const SmoothDays& d, std::string& key) {
   const double highest = *std::max_element(d.daily_sums.begin(), d.daily_sums.end());
   if (highest > 0 && highest < least)
     return fmt::format(
-        "the largest daily sum is {:g} J/m^2: too small. A number without a unit is in J/m^2; write '{:g} "
-        "kWh/m^2' if that is intended",
+        "the largest daily sum is {:g} J/m^2: too small. A number without a unit is in J/m^2; write "
+        "'{:g} kWh/m^2' if that is intended",
         highest, highest);
   for (const double sum : d.daily_sums)
     if (sum < 0 || sum > 24 * 1412 * seconds_an_hour)
@@ -136,16 +135,16 @@ WeatherHours with_smooth_days(WeatherHours record, const SmoothDays& d) {
     const double sunny = day_length(d.latitude, day), length = of_month(d.length, month) * sunny;
     if (length > 24 * (1 + 1e-9))
       throw Error(
-          "smooth days: day-length {:g} makes a day of {:.1f} h on {}, where the sun is up for {:.1f} h at "
-          "latitude {:g} deg: it would shine at midnight.",
+          "smooth days: day-length {:g} makes a day of {:.1f} h on {}, where the sun is up for {:.1f} h "
+          "at latitude {:g} deg: it would shine at midnight.",
           of_month(d.length, month), length, date_of_day(day), sunny, d.latitude);
     const std::vector<double> mean = form(length, of_month(d.n, month), of_month(d.p, month));
     double total = 0;
     for (const double m : mean) total += m * seconds_an_hour;
     if (sum > 0 && total <= 0)
       throw Error(
-          "smooth days: on {} the sun does not rise at latitude {:g} deg, but daily-sums gives that month "
-          "{:g} J/m^2 per day.",
+          "smooth days: on {} the sun does not rise at latitude {:g} deg, but daily-sums gives that "
+          "month {:g} J/m^2 per day.",
           date_of_day(day), d.latitude, sum);
     for (std::size_t h = 0; h < hours_a_day; ++h) {
       const double dni = sum > 0 ? sum / total * mean[h] : 0;

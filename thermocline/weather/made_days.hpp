@@ -19,7 +19,7 @@ struct ClearSky {
   double humidity = 0.5;    ///< relative
 };
 
-/// Of the sun above the horizon at solar time `hour` (12 is noon) of `day` (0 for 01-01); negative at night.
+/// Sine of the height of the sun at solar time `hour` (12 is noon) of `day` (0 for 01-01); negative at night.
 /// Latitude in degrees [duffie2013, equation 1.6.5].
 double sine_of_sun_height(double latitude, int day, double hour);
 
@@ -44,7 +44,7 @@ struct SmoothDays {
   std::vector<double> length{1};   ///< of the day over the astronomical one
 };
 
-/// What is wrong with it: a sentence, or empty. Names the key that it is about in `key`.
+/// Returns why the days are not valid, or nothing. Sets `key` to the key that is wrong.
 std::string problem_of(const SmoothDays& days, std::string& key);
 
 /// Hours of sunshine between sunrise and sunset of a flat horizon [duffie2013, equation 1.6.11]; 0 in polar

@@ -6,8 +6,7 @@
 #include <numeric>
 
 #include "common/base/error.hpp"
-#include "thermocline/base/celsius.hpp"
-#include "thermocline/base/clock.hpp"
+#include "thermocline/material/numerics.hpp"
 
 namespace couplet::thermocline {
 namespace {
@@ -73,8 +72,8 @@ std::vector<std::string> doubts_about_sun(const WeatherHours& record) {
   const double ahead = site.solar_ahead / hour;
   if (std::abs(ahead) > farthest_clock)
     all.push_back(fmt::format(
-        "{}: the solar time of its longitude is {:.1f} h {} its time zone: is the sign of longitude or time "
-        "zone wrong?",
+        "{}: the solar time of its longitude is {:.1f} h {} its time zone: is the sign of longitude or "
+        "time zone wrong?",
         record.source, std::abs(ahead), ahead > 0 ? "ahead of" : "behind"));
   double total = 0, dark = 0;
   for (std::size_t h = 0; h < record.dni.size(); ++h) {
@@ -90,8 +89,8 @@ std::vector<std::string> doubts_about_sun(const WeatherHours& record) {
   }
   if (dark > most_in_the_dark * total)
     all.push_back(fmt::format(
-        "{}: {:.0f} % of the irradiation is in hours with the sun below the horizon at latitude {:g} deg: "
-        "latitude, longitude and time zone do not match this record",
+        "{}: {:.0f} % of the irradiation is in hours with the sun below the horizon at latitude {:g} "
+        "deg: latitude, longitude and time zone do not match this record",
         record.source, 100 * dark / total, site.latitude));
   return all;
 }

@@ -143,8 +143,8 @@ WeatherHours HourCollector::finish() {
   if (lines_.empty()) throw Error("{}: this weather file contains no hours.", file_);
   if (first_hour_ % hours_a_day != 0)
     throw Error(
-        "{}: the first record is hour {} of the year, but whole days are needed: it must be the first hour "
-        "of a day, a multiple of {}.",
+        "{}: the first record is hour {} of the year, but whole days are needed: it must be the first "
+        "hour of a day, a multiple of {}.",
         place(lines_.front()), first_hour_, hours_a_day);
   if (lines_.size() % hours_a_day != 0)
     throw Error("{}: the file ends after {} of the 24 hours of its last day. Whole days are needed.",
@@ -211,9 +211,9 @@ class Preamble {
   for (const char* end : {".gz", ".csv", ".CSV", ".epw", ".EPW"})
     if (name.ends_with(end)) name.resize(name.size() - std::string_view(end).size());
   throw Error(
-      "{0}:1: this is not the CSV of a thermocline, which has the columns hour, dni_W_m2, T_degC, wind_m_s, "
-      "rh_pct and p_Pa. Files of EnergyPlus (EPW), SAM, NSRDB, TMY3 or PVGIS and other tables must be converted: "
-      "couplet weather '{0}' -o '{1}'",
+      "{0}:1: this is not the CSV of a thermocline, which has the columns hour, dni_W_m2, T_degC, "
+      "wind_m_s, rh_pct and p_Pa. Files of EnergyPlus (EPW), SAM, NSRDB, TMY3 or PVGIS and other tables "
+      "must be converted: couplet weather '{0}' -o '{1}'",
       file.string(), (file.parent_path() / (name + "_weather.csv")).string());
 }
 

@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "thermocline/base/celsius.hpp"
+#include "thermocline/material/numerics.hpp"
+#include "thermocline/material/properties.hpp"
 
 namespace couplet::thermocline {
 namespace {
@@ -32,9 +33,9 @@ void declare_file(config::Section& s, WeatherParameters& p) {
   s.value("file", p.file)
       .required()
       .doc(
-          "hourly weather: a CSV, plain or compressed, with the columns hour (of the year, from 0), dni_W_m2 "
-          "(mean of the hour), T_degC, wind_m_s, rh_pct, p_Pa; 'couplet weather FILE' makes it of EPW, SAM, "
-          "NSRDB, TMY3, PVGIS and other tables");
+          "hourly weather: a CSV, plain or compressed, with the columns hour (of the year, from 0), "
+          "dni_W_m2 (mean of the hour), T_degC, wind_m_s, rh_pct, p_Pa; 'couplet weather FILE' makes it "
+          "of EPW, SAM, NSRDB, TMY3, PVGIS and other tables");
   s.value("shift", p.shift_hours)
       .range(-12, 12)
       .doc("whole hours by which the simulation's clock is ahead of the file's");
@@ -44,9 +45,8 @@ void declare_file(config::Section& s, WeatherParameters& p) {
       .doc(
           "monthly-mean: each hour has the mean irradiance of that hour in its month, as in tables of "
           "average days");
-  s.optional_section<SiteParameters>(
-      "site", p.site, [](config::Section& q, SiteParameters& site) { declare(q, site); },
-      "for files without a location, to determine the sun's height (solar-absorptance)");
+  declare_section(s, "site", p.site,
+                  "for files without a location, to determine the sun's height (solar-absorptance)");
   declare_period(s, p);
 }
 
@@ -129,8 +129,8 @@ WeatherHours record_of(const WeatherParameters& p, const std::filesystem::path& 
       if (record.site && (std::abs(given.latitude - record.site->latitude) > close ||
                           std::abs(given.solar_ahead - record.site->solar_ahead) > close_time))
         record.doubts.push_back(fmt::format(
-            "{}: 'site' (latitude {:g} deg, solar time {:+.2f} h against the clock) replaces the file's own "
-            "(latitude {:g} deg, {:+.2f} h)",
+            "{}: 'site' (latitude {:g} deg, solar time {:+.2f} h against the clock) replaces the file's "
+            "own (latitude {:g} deg, {:+.2f} h)",
             record.source, given.latitude, given.solar_ahead / hour, record.site->latitude,
             record.site->solar_ahead / hour));
       record.site = given;

@@ -69,10 +69,10 @@ EFFECTS = [
     Own("mesh_mover", "mesh motion by a barrier", ("method=barrier",), ("mesh_mover/barrier/barrier_motion.cpp",)),
     Own("plate_modal", "contact with a seat", ("contact={height: -1 cm}",), ("plate_modal/motion/contact.cpp",)),
     Own("plate_modal", "pressures of the case", ("load={upper-pressure: 1}",), ("plate_modal/motion/pressure_load.cpp",)),
-    Own("thermocline", "shell", SHELL, ("thermocline/wall/shell.cpp",)),
+    Own("thermocline", "shell", SHELL, ("thermocline/wall/shell.cpp",), names="Shell::"),
     Own("thermocline", "filler mechanics", (*SHELL, "filler-mechanics={}"), ("thermocline/wall/mechanics.cpp",), SHELL, "FillerMechanics"),
-    Own("thermocline", "insulation", (*SHELL, "insulation={thickness: 0.3 m}"), ("thermocline/wall/insulation.cpp",), SHELL),
-    Own("thermocline", "ground", ("ground={layers: [{material: soil, thickness: 5 m}]}",), ("thermocline/wall/column.cpp",)),
+    Own("thermocline", "insulation", (*SHELL, "insulation={thickness: 0.3 m}"), ("thermocline/wall/layers.cpp",), SHELL, "Insulation"),
+    Own("thermocline", "ground", ("ground={layers: [{material: soil, thickness: 5 m}]}",), ("thermocline/wall/layers.cpp",), names="Column"),
 ]
 
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "thermocline/bed/closures.hpp"
 #include "thermocline/material/properties.hpp"
 
 namespace couplet::thermocline {
@@ -33,5 +34,26 @@ struct BedGrid {
   double height = 0;
   int size() const { return int(z.size()); }
 };
+
+/// How the front is carried.
+enum class Advection {
+  upwind,    ///< explicit, first order, as the thesis: its numerical diffusion is G c dz (1 - Courant)/2
+  tvd,       ///< explicit, van Leer's limiter, second order in space and time, bounded
+  implicit,  ///< first-order upwind at the new time: any step, stays bounded
+};
+
+struct BedParameters {
+  int cells = 500;
+  std::vector<BedLayer> layers;  ///< from the bottom up
+  int shells = 5;                ///< in a grain
+  Advection advection = Advection::upwind;
+  double courant = 0.5;           ///< step over the advective limit; at most 0.5 for tvd, 1 for upwind
+  bool conducting_inlet = false;  ///< heat conduction through the inlet face too
+  bool mix_inversions = false;    ///< cold fluid above hot is mixed
+  ClosureParameters closures;
+  double initial_temperature = 293.15;                 ///< [K]
+  std::vector<double> profile_z, profile_temperature;  ///< or a profile, piecewise linear
+};
+void declare(config::Section& section, BedParameters& parameters);
 
 }  // namespace couplet::thermocline

@@ -1,22 +1,112 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "thermocline/economics/day_report.hpp"
+#include "thermocline/plant/report.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "common/base/error.hpp"
-#include "thermocline/base/celsius.hpp"
-#include "thermocline/base/clock.hpp"
-#include "thermocline/bed/thickness.hpp"
+#include "common/base/saved_numbers.hpp"
+#include "thermocline/material/numerics.hpp"
+#include "thermocline/material/properties.hpp"
 
 namespace couplet::thermocline {
 namespace {
+
+/// Lowest height at which the profile, a broken line through the cell centers, reaches a temperature that
+/// lies between those of the lowest and the highest cell.
+double height_of(std::span<const double> z, std::span<const double> temperature, double wanted) {
+  std::size_t i = 1;
+  while (i + 1 < z.size() && temperature[i] < wanted) ++i;
+  const double step = temperature[i] - temperature[i - 1];
+  const double share = step > 0 ? (wanted - temperature[i - 1]) / step : 0;
+  return z[i - 1] + share * (z[i] - z[i - 1]);
+}
 
 using Sums = ReportSums;
 
 double share(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
 
 }  // namespace
+
+std::optional<double> thermocline_thickness(std::span<const double> z, double height,
+                                            std::span<const double> temperature, double cold, double hot) {
+  const double bottom = temperature.front(), top = temperature.back();
+  if (bottom >= hot || top <= cold) return std::nullopt;
+  const double step = hot - cold;
+  const bool cold_left = bottom > cold, hot_left = top < hot;
+  if (cold_left && hot_left)
+    return top > bottom ? std::optional(height * step / (top - bottom)) : std::nullopt;
+  if (cold_left) return height_of(z, temperature, hot) * step / (hot - bottom);
+  if (hot_left) return (height - height_of(z, temperature, cold)) * step / (top - cold);
+  return height_of(z, temperature, hot) - height_of(z, temperature, cold);
+}
+
+void StressHistory::see(double time, std::span<const double> z, std::span<const double> equivalent,
+                        std::span<const double> yield) {
+  const std::size_t n = z.size();
+  if (z_.size() != n) {
+    resize(n);
+    z_.assign(z.begin(), z.end());
+  }
+  if (!day_begun_) {
+    day_lowest_.assign(n, std::numeric_limits<double>::infinity());
+    day_highest_.assign(n, 0);
+    day_highest_at_.assign(n, time);
+    day_begun_ = true;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const double share = equivalent[i] / yield[i];
+    day_lowest_[i] = std::min(day_lowest_[i], share);
+    if (share <= day_highest_[i]) continue;
+    day_highest_[i] = share;
+    day_highest_at_[i] = time;
+  }
+}
+
+void StressHistory::resize(std::size_t rings) {
+  rings_ = int(rings);
+  for (auto* values : {&z_, &day_lowest_, &day_highest_, &day_highest_at_, &sum_lowest_, &sum_highest_,
+                       &highest_, &highest_at_})
+    values->assign(rings, 0);
+  day_begun_ = false;
+}
+
+void StressHistory::end_day(bool counts) {
+  const bool begun = day_begun_;
+  day_begun_ = false;
+  if (!counts || !begun) return;
+  ++days_;
+  for (std::size_t i = 0; i < z_.size(); ++i) {
+    sum_lowest_[i] += day_lowest_[i];
+    sum_highest_[i] += day_highest_[i];
+    if (day_highest_[i] <= highest_[i]) continue;
+    highest_[i] = day_highest_[i];
+    highest_at_[i] = day_highest_at_[i];
+  }
+}
+
+StressHistory::Factor StressHistory::static_factor() const {
+  const auto i = std::size_t(std::max_element(highest_.begin(), highest_.end()) - highest_.begin());
+  return {1 / highest_[i], z_[i], highest_at_[i]};
+}
+
+StressHistory::Factor StressHistory::dynamic_factor() const {
+  Factor least{std::numeric_limits<double>::infinity(), 0, 0};
+  for (std::size_t i = 0; i < z_.size(); ++i) {
+    const double low = sum_lowest_[i] / days_, high = sum_highest_[i] / days_;
+    const double factor = (1 - low) / (high - low);
+    if (high > low && factor < least.value) least = {factor, z_[i], 0};
+  }
+  return least;
+}
+
+std::vector<double> StressHistory::mean(const std::vector<double>& sum) const {
+  std::vector<double> result = sum;
+  for (double& value : result) value /= days_;
+  return result;
+}
 
 void declare(config::Section& s, ReportParameters& p) {
   s.value("run-in", p.run_in)
@@ -29,20 +119,16 @@ void declare(config::Section& s, ReportParameters& p) {
       .plausible(1, 1e4)
       .not_negative()
       .doc("on this day after the start, hourly profiles are written; absent: none");
-  s.value("thickness-margin", p.thickness_margin)
-      .unit("K difference")
-      .plausible(0.1, 500)
+  as_difference(s.value("thickness-margin", p.thickness_margin))
       .positive()
       .doc(
           "the thermocline is the region between the cold temperature plus this margin and the hot "
           "temperature minus it");
-  s.value("outlet-margin", p.outlet_margin)
-      .unit("K difference")
-      .plausible(0.1, 500)
+  as_difference(s.value("outlet-margin", p.outlet_margin))
       .positive()
       .doc("counts the time in which the tank's outlet is within this difference of its design temperature");
-  s.optional_section<EconomicsParameters>(
-      "economics", p.economics, [](config::Section& q, EconomicsParameters& e) { declare(q, e); },
+  declare_section(
+      s, "economics", p.economics,
       "prices, in any currency: the summary then includes capital and levelised cost of electricity");
   s.value("dead-state", p.dead_state)
       .unit("K")
@@ -135,15 +221,17 @@ void DayReport::record(const TankRecord& record) {
     charged += heat;
     charging_time += step.dt;
   }
-  // What the flow brought less what the bed gained went through the walls, evenly over the step (5.25-5.27).
+  // The heat that the flow brought and the bed did not gain went through the walls, evenly over the step (5.25-5.27).
   day_[Sums::stored] += charged - (brought - record.stored) * charging_time / record.dt;
   day_[Sums::losses] += record.losses();
   add_thickness(record);
   if (!record.equivalent_stress.empty())
     stress_.see(record.time, record.wall_z, record.equivalent_stress, record.yield_strength);
   if (series_)
-    write_series(record, moved, day_[Sums::field] - field, day_[Sums::asked] - asked,
-                 day_[Sums::taken] - taken);
+    series_->row({record, weather_.at(record.time),
+                  weather_.irradiation(record.time - record.dt, record.time) / record.dt, moved,
+                  day_[Sums::field] - field, day_[Sums::asked] - asked, day_[Sums::taken] - taken,
+                  last_thickness_});
   if (profiles_) write_profiles(record);
   last_time_ = record.time;
   // A hair's breadth before midnight is midnight.
@@ -205,45 +293,25 @@ std::vector<ReportLine> DayReport::lines() const {
   return all;
 }
 
-std::vector<double> DayReport::state() const {
-  std::vector<double> all{double(days_seen_), double(days_counted_), storable_,
-                          bed_height_,        last_thickness_,       largest_pump_};
-  all.insert(all.end(), day_.sum.begin(), day_.sum.end());
-  all.insert(all.end(), results_.sum.begin(), results_.sum.end());
-  const std::vector<double> stress = stress_.state();
-  all.insert(all.end(), stress.begin(), stress.end());
-  return all;
-}
+std::vector<double> DayReport::state() const { return numbers_of(*this); }
 
 void DayReport::restore(std::span<const double> state) {
-  constexpr std::size_t scalars = 6;
-  const std::size_t sums = scalars + 2 * Sums::n_items;
-  if (state.size() < sums + 1 ||
-      double(state.size()) != double(sums) + StressHistory::state_size(state[sums]))
-    throw Error("report: the checkpoint is from another version of this program; its sums are incompatible.");
+  // Behind the scalars and both sums: the number of rings, two more scalars and eight values per ring.
+  constexpr std::size_t fixed = 6 + 2 * Sums::n_items + 3;
+  if (state.size() >= fixed) stress_.resize((state.size() - fixed) / 8);
   constexpr double most_days = 1e6;
-  for (const double days : {state[0], state[1]})
-    if (!(days >= 0 && days <= most_days)) throw Error("report: the checkpoint's day counts are damaged.");
-  days_seen_ = static_cast<int>(state[0]);
-  days_counted_ = static_cast<int>(state[1]);
+  for (std::size_t i = 0; i < 2 && i < state.size(); ++i)
+    if (!(state[i] >= 0 && state[i] <= most_days))
+      throw Error("report: the checkpoint's day counts are damaged.");
+  set_numbers(state, "report", *this);
   int counted = 0;
   for (int day = 0; day < days_seen_; ++day) counted += this->counts(day);
   if (counted != days_counted_)
     throw Error(
-        "report.run-in: the run to be continued has completed {} days and counted {} of them; with a run-in "
-        "of {:g} days it would be {}. Days already counted cannot be removed: keep the run-in, or start a "
-        "new run.",
+        "report.run-in: the run to be continued has completed {} days and counted {} of them; with a "
+        "run-in of {:g} days it would be {}. Days already counted cannot be removed: keep the run-in, or "
+        "start a new run.",
         days_seen_, days_counted_, p_.run_in, counted);
-  storable_ = state[2];
-  bed_height_ = state[3];
-  last_thickness_ = state[4];
-  largest_pump_ = state[5];
-  state = state.subspan(scalars);
-  for (ReportSums* sums : {&day_, &results_}) {
-    std::copy_n(state.begin(), sums->sum.size(), sums->sum.begin());
-    state = state.subspan(sums->sum.size());
-  }
-  stress_.restore(state);
 }
 
 }  // namespace couplet::thermocline
