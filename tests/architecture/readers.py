@@ -44,9 +44,6 @@ READERS = {
     "common/mesh/gmsh/gmsh.cpp": "what gmsh has printed",
     "common/mesh/gmsh/mesh_geo.cpp": "a .msh that gmsh has just written",
     "common/mesh/msh/msh_cursor.cpp": "the one reader of .msh",
-    "common/mesh/msh/msh_window.cpp": "a .msh too large to be held, through a window; it defers to the reader of .msh in all doubt",
-    "common/mesh/msh/msh_window.hpp": "a .msh too large to be held, through a window; it defers to the reader of .msh in all doubt",
-    "common/mesh/msh/read_msh.cpp": "the one reader of .msh",
     "common/parallel/mpi_start.cpp": "settings of MPI and of the machine",
 }
 

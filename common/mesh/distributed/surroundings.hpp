@@ -12,8 +12,9 @@ struct LocalCells {
   std::vector<int> owner;  ///< rank that owns each
 };
 
-/// The cells of the blocks to the ranks that own them (`part`, of each cell of the block), in ascending order. Collective.
-CellList send_to_owners(MPI_Comm comm, const MeshBlock& block, std::span<const int> part);
+/// Sends the cells of the blocks, which are gone then, to the ranks that own them (`part`, of each cell of the block), in ascending
+/// order. Collective.
+CellList send_to_owners(MPI_Comm comm, MeshBlock& block, std::span<const int> part);
 
 /// Own cell `cell` and the rank of the one beyond its periodic face.
 struct CellAcross {
