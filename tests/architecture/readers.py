@@ -37,7 +37,6 @@ READERS = {
     "common/csv/cells.cpp": "the one reader of text data: numbers",
     "common/log/terminal.cpp": "/proc: whose terminal it is under mpirun",
     "common/io/checkpoint_set.cpp": "set.txt, whose digest is checked; bytes of files for their digest",
-    "common/io/rehearse.cpp": "/proc/self/statm, /dev/null",
     "common/mesh/gmsh/child_process.cpp": "/dev/null for gmsh",
     "common/mesh/gmsh/mesh_cache.cpp": "bytes of a cached mesh for their digest",
     "common/mesh/gmsh/geo_script.cpp": "the one reader of .geo",

@@ -4,7 +4,6 @@
 
 #include "common/base/error.hpp"
 #include "common/io/cut/cut_mesh_format.hpp"
-#include "common/io/rehearse.hpp"
 #include "common/mesh/cell_shapes.hpp"
 #include "common/mesh/on_root.hpp"
 
@@ -144,32 +143,11 @@ class CutMeshBlock {
   mesh::MeshBlock block_;
 };
 
-CutMeshFacts facts_in(const std::filesystem::path& file) {
-  const hdf5::Reader in = open_cut_mesh(file);
-  CutMeshFacts facts;
-  facts.dim = whole_number(in, cut::dimension_name, 3) == 2 ? 2 : 3;
-  facts.cells = GlobalIndex(in.rows(cut::kind_table, 1));
-  for (int a = 0; a < 3; ++a) facts.size[a] = in.number("/", fmt::format("size-{}", "xyz"[a]));
-  facts.shortest_edge = in.number("/", cut::edge_name);
-  facts.patches = names_of(in, "patch");
-  return facts;
-}
-
-/// What HDF5 does with the file, tried elsewhere: the first and last of very many blocks.
-void rehearse_cut_mesh(const std::filesystem::path& file) {
-  rehearse(file, cut_mesh, [&] {
-    const GlobalIndex cells = std::max<GlobalIndex>(1, facts_in(file).cells);
-    const int blocks = static_cast<int>(std::min<GlobalIndex>(cells, 1000000));
-    for (const int block : {0, blocks - 1}) CutMeshBlock(file, block, blocks).read();
-  });
-}
-
 }  // namespace
 
 bool is_cut_mesh(const std::filesystem::path& file) { return file.extension() == ".h5"; }
 
 mesh::MeshBlock read_cut_mesh(MPI_Comm comm, const std::filesystem::path& file) {
-  mesh::on_root(comm, [&] { rehearse_cut_mesh(file); });
   mesh::MeshBlock block;
   std::vector<CutMeshBlock::Digest> digests;
   mesh::on_all(comm, [&] {
@@ -188,9 +166,14 @@ mesh::MeshBlock read_cut_mesh(MPI_Comm comm, const std::filesystem::path& file) 
 }
 
 CutMeshFacts read_cut_mesh_facts(const std::filesystem::path& file) {
+  const hdf5::Reader in = open_cut_mesh(file);
   CutMeshFacts facts;
-  rehearse(file, cut_mesh, [&] { facts_in(file); });
-  return facts_in(file);
+  facts.dim = whole_number(in, cut::dimension_name, 3) == 2 ? 2 : 3;
+  facts.cells = GlobalIndex(in.rows(cut::kind_table, 1));
+  for (int a = 0; a < 3; ++a) facts.size[a] = in.number("/", fmt::format("size-{}", "xyz"[a]));
+  facts.shortest_edge = in.number("/", cut::edge_name);
+  facts.patches = names_of(in, "patch");
+  return facts;
 }
 
 }  // namespace couplet::io
