@@ -46,7 +46,7 @@ void check(int failed) {
 
 /// Rows of the graph that this rank has, into `parts` parts. Scotch's own calls take the arrays as they are, without const.
 std::vector<int> apply_ptscotch(MPI_Comm comm, GlobalIndex n_all, std::span<const Index> offset,
-                                const auto& neighbours, int parts) {
+                                std::span<const GlobalIndex> neighbours, int parts) {
   // With several threads Scotch 7 gives another partition each time, and a restart would not be bit for bit.
   setenv("SCOTCH_PTHREAD_NUMBER", "1", 1);
   // Scotch goes on in its row of random numbers: a second mesh of a process would be shared out in another way.
@@ -87,23 +87,18 @@ std::vector<int> apply_ptscotch(MPI_Comm comm, GlobalIndex n_all, std::span<cons
 
 }  // namespace
 
-std::vector<int> partition(const Csr& graph, int parts) {
-  if (parts == 1) return std::vector<int>(graph.size(), 0);
-  return apply_ptscotch(MPI_COMM_SELF, graph.size(), graph.offset, graph.index, parts);
-}
-
 std::vector<int> partition(MPI_Comm comm, std::span<const Index> offset,
-                           std::span<const GlobalIndex> neighbours) {
-  const int parts = parallel::comm_size(comm);
+                           std::span<const GlobalIndex> neighbours, int parts) {
   const auto n = static_cast<Index>(offset.size()) - 1;
-  if (parts == 1) return std::vector<int>(n, 0);
   const GlobalIndex n_all = parallel::sum(comm, GlobalIndex(n));
   if (n_all > std::numeric_limits<SCOTCH_Num>::max())
     throw Error(
         "The mesh has {} cells, more than this build of Scotch can number ({}). Build with a Scotch of 64-bit "
         "integers.",
         n_all, std::numeric_limits<SCOTCH_Num>::max());
-  return apply_ptscotch(comm, n_all, offset, neighbours, parts);
+  if (parallel::max(comm, GlobalIndex(n)) < n_all)
+    return apply_ptscotch(comm, n_all, offset, neighbours, parts);
+  return n == 0 ? std::vector<int>() : apply_ptscotch(MPI_COMM_SELF, n_all, offset, neighbours, parts);
 }
 
 namespace {

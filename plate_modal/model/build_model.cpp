@@ -10,7 +10,7 @@
 #include "common/base/text.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
-#include "common/mesh/msh/msh_entities.hpp"
+#include "common/mesh/msh/read_msh.hpp"
 #include "common/mesh/on_root.hpp"
 #include "common/mesh/quality.hpp"
 #include "common/modes/facing.hpp"

@@ -47,8 +47,6 @@ MUTANTS = [
            "unit_coupling", "*more_steps_than_an_int*"),
     Mutant("a flipped bit in a checkpoint", "common/io/checkpoint_set.cpp",
            "if (size == entry->size && digest_of_file(file) == entry->digest)", "if (size == entry->size)", "unit_app"),
-    Mutant("geometry files that run commands", "common/mesh/gmsh/geo_check.cpp", "if (!attribute && !geo_words::takes_a_number(w))",
-           "if (false && !attribute)", "unit_mesh_files", "*Geo*"),
     Mutant("a filler that never yields passively", "thermocline/wall/mechanics.cpp", "} else if (held >= highest) {",
            "} else if (held >= 1e9 * highest) {", "stability_thermocline"),
     Mutant("a trapezoidal thermal shock that swings", "solid_solver/thermal/heat_swing.cpp", "if (turns_ < patience) return;",

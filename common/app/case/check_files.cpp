@@ -73,7 +73,6 @@ class FileCheck {
       if (std::find(script.constants.begin(), script.constants.end(), name) == script.constants.end())
         report("mesh-parameters." + name, fmt::format("the .geo defines no such name with DefineConstant. {}",
                                                       base::did_you_mean(name, script.constants, "names")));
-    if (!script.danger.empty()) report("mesh", script.refusal());
     const auto dimension = config::text_of(document_, section_ + ".dimension");
     if (dimension != "2" && dimension != "3") return;
     if (const auto& patches = script.groups[*dimension == "2" ? 1 : 2]) check_patches(*patches);

@@ -42,8 +42,9 @@ double peak_memory() {
 void cut(MPI_Comm comm, const Words& words) {
   if (parallel::comm_size(comm) > 1)
     throw Error("A mesh is cut by one process, which reads it as a whole. Start mesh_tool without mpirun.");
-  const mesh::MeshBlock block =
+  mesh::MeshBlock block =
       mesh::block_of(comm, mesh::read_mesh(words.file, words.dimension, words.parameters));
+  mesh::drop_unused_points(comm, block);
   io::write_cut_mesh(comm, block, words.output);
   std::printf("%s: %lld cells, patches %s\n", words.output.c_str(),
               static_cast<long long>(block.cells.size()), base::join(block.patches).c_str());

@@ -60,8 +60,7 @@ def sanitizer_test(job, name):
 
 
 def reports(folder):
-    """First lines of what the sanitizers wrote to a folder. A file without a byte is left by a process that may write none: the rehearsal
-    of a foreign file, of which only the outcome counts (common/io/rehearse.cpp)."""
+    """First lines of what the sanitizers wrote to a folder."""
     found = [next((line for line in f.read_text(errors="replace").splitlines() if "ERROR: AddressSanitizer" in line or "runtime error:" in line), f.name)
              for f in folder.glob("report*") if f.stat().st_size]
     return sorted(set(found))
