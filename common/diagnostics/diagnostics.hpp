@@ -30,6 +30,8 @@ class Diagnostics {
   /// except for what has been found already. Gives the lines for the end of the log.
   std::vector<std::string> conclude(bool failed);
 
+  /// The worst of each finding so far, notes included.
+  const std::vector<log::Finding>& findings() const { return worst_; }
   /// Parts of the error, the model's included, once the run is concluded.
   const coupling::ErrorParts& errors() const { return errors_; }
   /// Where the run came nearest to the limits of its maps.

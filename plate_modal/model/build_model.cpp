@@ -263,6 +263,16 @@ modes::ModalModel modes_of_file(const Parameters& p, const std::filesystem::path
                  "'modes.cavity: true'. ");
 }
 
+std::vector<app::ProblemOfKey> problems_of_files(const Parameters& p, const std::filesystem::path& folder) {
+  if (!p.modes_file) return {};
+  try {
+    (void)modes_of_file(p, folder / *p.modes_file);
+  } catch (const Error& error) {
+    return {{"modes.file", error.what()}};
+  }
+  return {};
+}
+
 Built build_model(const Parameters& p, const PlateContext& context, const mesh::RawMesh* raw) {
   Built built;
   mesh::on_root(context.comm, [&] {

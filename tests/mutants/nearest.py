@@ -61,7 +61,7 @@ FILE = {
     "coupler/output/balance": "coupling_exchange coupling_piston",
     "coupler/output/mechanics": "coupling_exchange coupling_piston",
     "plate_modal/motion/contact": "verification_plate_contact stability_plate_contact",
-    "plate_modal/audit": "verification_plate_guards verification_plate_dynamics",
+    "plate_modal/diagnostics": "verification_plate_guards verification_plate_resolution",
     "plate_modal/model/kirchhoff": "verification_plate_patch verification_plate_statics",
     "plate_modal/model/midsurface": "verification_plate_guards",
     "plate_modal/motion/oscillators": "verification_plate_contact verification_plate_dynamics",

@@ -216,39 +216,6 @@ TEST(EffectCards, coupling_cards_answer_without_participants) {
   EXPECT_THROW(schedule_of(CouplingParameters{}), std::bad_optional_access);
 }
 
-TEST(EffectCards, plate_verdicts_turn_at_their_thresholds) {
-  const auto sound = [](const char* effect, const plate::PlateEvidence& e) {
-    const auto v = verdict_on(effect, plate::plate_effect_cards(), plate::PlateScene{}, e);
-    EXPECT_TRUE(v.has_value()) << effect;
-    return v && v->sound();
-  };
-  EXPECT_TRUE(sound("large rotation", {.displacement_over_size = 0.249}));
-  EXPECT_FALSE(sound("large rotation", {.displacement_over_size = 0.251}));
-  EXPECT_TRUE(sound("stretch of the mid-surface", {.displacement_over_thickness = 0.49}));
-  EXPECT_FALSE(sound("stretch of the mid-surface", {.displacement_over_thickness = 0.51}));
-  EXPECT_FALSE(sound("load between the faces or steps", {.load_lost = true}));
-  EXPECT_FALSE(sound("load that moves no mode", {.load_on_modes = 1e-15}));
-  EXPECT_TRUE(sound("shear and rotary inertia", {.thickness_over_wave = 0.099}));
-  EXPECT_FALSE(sound("shear and rotary inertia", {.thickness_over_wave = 0.101}));
-  EXPECT_TRUE(sound("balance of the energies", {.energy_mismatch = 0.0099}));
-  EXPECT_FALSE(sound("balance of the energies", {.energy_mismatch = 0.0101}));
-  plate::PlateScene loaded;
-  loaded.parameters.load.emplace();
-  loaded.parameters.contact.emplace();
-  for (const auto& [effect, number] :
-       {std::pair{"step that resolves the modes", &plate::StepEvidence::coarse_share},
-        std::pair{"step near a resonance", &plate::StepEvidence::resonance_error},
-        std::pair{"step that resolves the load", &plate::StepEvidence::load_apart},
-        std::pair{"step that resolves the contact", &plate::StepEvidence::contact_share}})
-    for (const double value : {0.099, 0.101}) {
-      plate::PlateEvidence e;
-      e.step.*number = value;
-      const auto v = verdict_on(effect, plate::plate_effect_cards(), loaded, e);
-      EXPECT_TRUE(v.has_value() && v->sound() == (value < 0.1) && !v->left_out) << effect;
-    }
-  EXPECT_THAT(audit(plate::plate_effect_cards(), plate::PlateScene{}, plate::PlateEvidence{}), IsEmpty());
-}
-
 TEST(EffectCards, tank_verdicts_turn_at_their_thresholds) {
   thermocline::ElementParameters tank;
   tank.type = thermocline::ElementParameters::Type::tank;
