@@ -81,57 +81,14 @@ class Bookkeeping {
   double processor_since_ = 0;
 };
 
-/// What a participant says of effects, errors and its place by itself.
-class OwnOpinion final : public diagnostics::Diagnostic {
- public:
-  OwnOpinion(const coupling::Participant& participant, bool with_errors)
-      : participant_(participant),
-        errors_(with_errors ? dynamic_cast<const coupling::EstimatesError*>(&participant) : nullptr),
-        place_(dynamic_cast<const effects::KnowsItsPlace*>(&participant)) {}
-  void look(diagnostics::Report& report) override { say(report, false); }
-  void conclude(diagnostics::Report& report) override {
-    say(report, true);
-    if (errors_) report.errors = errors_->error_parts();
-  }
-
- private:
-  void say(diagnostics::Report& report, bool at_end) const {
-    const std::vector<effects::EffectVerdict> verdicts = participant_.audit();
-    for (const effects::EffectVerdict& v : verdicts)
-      if (!v.cumulative || at_end)
-        if (auto finding = diagnostics::finding_of({.effect = v.effect.c_str(),
-                                                    .number = v.number,
-                                                    .limit = v.threshold,
-                                                    .what = v.sentence,
-                                                    .advice = v.recommendation,
-                                                    .left_out = v.left_out,
-                                                    .wrong_from = v.wrong_from,
-                                                    .share = v.share,
-                                                    .saves = v.saves}))
-          report.findings.push_back(std::move(*finding));
-    report.position = effects::coordinates_of(verdicts);
-    if (place_) effects::keep_nearest(report.position, place_->position());
-  }
-
-  const coupling::Participant& participant_;
-  const coupling::EstimatesError* errors_;
-  const effects::KnowsItsPlace* place_;
-};
-
 /// A participant with its diagnostics: they see each step that it accepts, and their memory is saved with its state.
 class Observed final : public coupling::Participant {
  public:
   Observed(coupling::Participant& inner, diagnostics::Diagnostics& diagnostics, const Diagnose& diagnose)
-      : inner_(inner), diagnostics_(diagnostics), diagnose_(diagnose) {
-    auto* estimates = dynamic_cast<coupling::EstimatesError*>(&inner);
-    if (estimates && diagnostics.with_errors()) estimates->collect_errors();
-  }
+      : inner_(inner), diagnostics_(diagnostics), diagnose_(diagnose) {}
   coupling::Interface initialise() override {
     coupling::Interface interface = inner_.initialise();
-    if (diagnose_)
-      diagnose_(inner_, diagnostics_);
-    else
-      diagnostics_.add("participant", std::make_shared<OwnOpinion>(inner_, diagnostics_.with_errors()));
+    if (diagnose_) diagnose_(inner_, diagnostics_);
     return interface;
   }
   double suggest_dt() override { return inner_.suggest_dt(); }

@@ -9,7 +9,7 @@
 
 namespace couplet::app {
 
-/// Adds the diagnostics of an initialised participant; empty: it judges itself.
+/// Adds the diagnostics of an initialized participant; empty if it has none.
 using Diagnose = std::function<void(coupling::Participant&, diagnostics::Diagnostics&)>;
 
 /// The participant alone, from start to end. Returns the exit code.

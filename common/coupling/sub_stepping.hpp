@@ -33,7 +33,6 @@ class SubStepping final : public Participant {
   void load(io::CheckpointReader& file) override;
   void write_output(double time, int number) override { inner_.write_output(time, number); }
   void write_monitors(double time) override { inner_.write_monitors(time); }
-  std::vector<effects::EffectVerdict> audit() const override { return inner_.audit(); }
   std::vector<std::string> finish() override { return inner_.finish(); }
 
  private:

@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "common/effects/verdict.hpp"
-
 namespace couplet::effects {
 
 /// Where a run stands on a map of the atlas (docs/stability.md), in the terms of its axis.
@@ -23,17 +21,6 @@ struct Coordinate {
     numbers(quantity, value, limit, map, floor);
   }
 };
-
-/// A participant that knows where it stands.
-class KnowsItsPlace {
- public:
-  virtual ~KnowsItsPlace() = default;
-  /// Of the accepted state and its step. Collective; changes nothing.
-  virtual std::vector<Coordinate> position() const = 0;
-};
-
-/// Of verdicts whose number is the axis of a map.
-std::vector<Coordinate> coordinates_of(const std::vector<EffectVerdict>& verdicts);
 
 /// The one of each quantity that is nearer to its limit.
 void keep_nearest(std::vector<Coordinate>& kept, const std::vector<Coordinate>& seen);

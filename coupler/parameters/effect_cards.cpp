@@ -56,7 +56,7 @@ const std::array cards{
                  [](const P& p) {
                    return when(p.fluid.has_value() || p.exchange.has_value(), "what the structure takes");
                  },
-                 "a force per interface face", "fluid forces not taken over those taken, 0.02"},
+                 "a force per interface face", "fluid forces not taken over those taken, 0.02", true},
     CouplingCard{"relaxation by Aitken", "`acceleration.type: aitken`",
                  [](const P& p) {
                    return when(iterates(p) && p.acceleration.type == AccelerationType::aitken,

@@ -30,12 +30,12 @@ const std::array cards{
     FluidCard{
         "eddy viscosity in two dimensions", "`turbulence` in two dimensions, where it models no turbulence",
         [](const S& s) { return when(s.parameters.turbulence && s.parameters.dimension == 2, "turbulence"); },
-        "as a turbulence model", "max eddy viscosity over the molecular, 0.01"},
+        "as a turbulence model", "max eddy viscosity over the molecular, 0.01", true},
     FluidCard{"resolved walls", "`turbulence`",
               [](const S& s) { return when(s.parameters.turbulence.has_value(), "turbulence"); }, "",
-              "with a turbulence model: max y+, 2"},
+              "with a turbulence model: max y+, 2", true},
     FluidCard{"balance of the kinetic energy", "always", [](const S&) { return std::string("always"); },
-              "a loop over the boundary", "kinetic energy without work, of the total, 0.1"},
+              "a loop over the boundary", "kinetic energy without work, of the total, 0.1", true},
     FluidCard{"compressibility", "not available here", [](const S&) { return std::string(); }, "",
               "max speed over the speed of sound (`compressibility`, or by density and viscosity), 0.3"},
     FluidCard{
@@ -46,7 +46,7 @@ const std::array cards{
         "0.1, and travel time of sound across the fluid over 1/omega of the wall motion, 0.3"},
     FluidCard{"small changes of density", "`compressibility`",
               [](const S& s) { return when(s.parameters.is_compressible(), "compressibility"); }, "",
-              "with `compressibility`: density change by the pressure range, 0.05"},
+              "with `compressibility`: density change by the pressure range, 0.05", true},
     FluidCard{
         "mesh motion", "a mesh mover in `coupling.mesh`, or `motion`",
         [](const S& s) { return when(s.moving_mesh, s.parameters.motion ? "motion" : "coupling.mesh"); },
@@ -87,14 +87,14 @@ const std::array cards{
     FluidCard{"gaps that close", "`gaps`",
               [](const S& s) { return when(!s.parameters.gaps.empty(), "gaps"); },
               "a flag per cell; the distance of the two walls where they are close",
-              "share of the cells that they block, 0.5"},
+              "share of the cells that they block, 0.5", true},
     FluidCard{"walls that move along themselves", "`type: moving-wall`",
               [](const S& s) {
                 for (const auto& [name, b] : s.parameters.boundaries)
                   if (is_moving_wall(b)) return "boundaries." + name;
                 return std::string();
               },
-              "", "on a mesh at rest: flow through them over speed times area, 0.1"},
+              "", "on a mesh at rest: flow through them over speed times area, 0.1", true},
     FluidCard{"body force", "`body-force`",
               [](const S& s) { return when(!s.parameters.body_force.empty(), "body-force"); },
               "a force per cell"},

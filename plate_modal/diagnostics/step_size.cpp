@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "common/io/archive.hpp"
-#include "common/time/velocity_errors.hpp"
+#include "common/time/step_errors.hpp"
 #include "plate_modal/diagnostics/motion.hpp"
 #include "plate_modal/diagnostics/view.hpp"
 

@@ -20,7 +20,7 @@ const std::array cards{
          "a temperature per shell of the grains of each cell", "Biot number of the grains, 20"},
     Card{"implicit advection", "`bed.advection: implicit`",
          [](const P& p) { return when(p, p.tank.bed.advection == Advection::implicit, "bed.advection"); }, "",
-         "smearing of a front by the step, over the bed's height, 0.05"},
+         "smearing of a front by the step, over the bed's height, 0.05", true},
     Card{"mixing of inverted fluid", "`bed.mix-inversions`",
          [](const P& p) { return when(p, p.tank.bed.mix_inversions, "bed.mix-inversions"); }, "",
          "largest inversion over the run's range of temperatures, 0.05"},
@@ -29,7 +29,7 @@ const std::array cards{
          "Ergun's equation in each bed step",
          "power of a pump or fan over the heat transported by the largest flow, 0.02"},
     Card{"work of pump or fan", "`pump`", [](const P& p) { return when(p, p.tank.pump.has_value(), "pump"); },
-         "", "power of pump or fan over the heat transported by the largest flow, 0.1"},
+         "", "power of pump or fan over the heat transported by the largest flow, 0.1", true},
     Card{"melting capsules", "`bed.layers[].melting`",
          [](const P& p) {
            const auto& layers = p.tank.bed.layers;

@@ -24,15 +24,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// The verdict on one effect, or nothing.
-template <class Cards, class Scene, class Evidence>
-std::optional<EffectVerdict> verdict_on(const std::string& effect, Cards cards, const Scene& scene,
-                                        const Evidence& evidence) {
-  for (const EffectVerdict& v : audit(cards, scene, evidence))
-    if (v.effect == effect) return v;
-  return {};
-}
-
 /// The finding with this id, or nothing.
 std::optional<log::Finding> with_id(const std::string& id, const std::vector<log::Finding>& findings) {
   for (const log::Finding& f : findings)
