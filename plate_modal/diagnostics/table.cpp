@@ -14,27 +14,27 @@ Make balance_of_energies, step_size, prescribed_pressures, impact_on_seat, plate
 
 namespace {
 
-struct Row {
+struct TableRow {
   const char* name;
   Make* make;
   bool estimates = false;  ///< an error: not where estimates are switched off
 };
 
 // "step-size" adds each step to the motion, which others read; "prescribed-pressures" adds its part to the mesh error.
-constexpr std::array table{Row{"balance-of-energies", balance_of_energies},
-                           Row{"step-size", step_size},
-                           Row{"impact-on-seat", impact_on_seat},
-                           Row{"plate-theory", plate_theory},
-                           Row{"truncated-modes", truncated_modes},
-                           Row{"mesh-of-modes", mesh_of_modes},
-                           Row{"prescribed-pressures", prescribed_pressures},
-                           Row{"step-error", step_error, true}};
+constexpr std::array table_rows{TableRow{"balance-of-energies", balance_of_energies},
+                                TableRow{"step-size", step_size},
+                                TableRow{"impact-on-seat", impact_on_seat},
+                                TableRow{"plate-theory", plate_theory},
+                                TableRow{"truncated-modes", truncated_modes},
+                                TableRow{"mesh-of-modes", mesh_of_modes},
+                                TableRow{"prescribed-pressures", prescribed_pressures},
+                                TableRow{"step-error", step_error, true}};
 
 }  // namespace
 
 void add_diagnostics(const PlateView& view, diagnostics::Diagnostics& all) {
   const auto motion = view.is_dynamic() ? std::make_shared<Motion>(view.share.omega()) : nullptr;
-  for (const Row& row : table)
+  for (const TableRow& row : table_rows)
     if (auto one = row.estimates && !all.with_errors() ? nullptr : row.make(view, motion))
       all.add(row.name, std::move(one));
 }
