@@ -203,10 +203,10 @@ class Formats(unittest.TestCase):
         self.assertEqual(self.convert(gzip.compress(epw().encode()), "a.epw.gz").T_degC[0], 1.5)
         self.refuse(gzip.compress(epw().encode())[:200], "a.epw.gz: this file is damaged or truncated", "a.epw.gz")
         with contextlib.redirect_stdout(io.StringIO()):
-            self.assertEqual(dispatch("weather", [str(self.folder / "a.epw.gz"), "-o", str(self.folder / "b.csv.gz")], "couplet weather"), 2)
+            self.assertEqual(dispatch("weather", [str(self.folder / "a.epw.gz"), "-o", str(self.folder / "b.csv.gz")]), 2)
             (self.folder / "a.epw").write_text(epw())
-            self.assertEqual(dispatch("weather", [str(self.folder / "a.epw"), "-o", str(self.folder / "b.csv.gz")], "couplet weather"), 0)
-            self.assertEqual(dispatch("weather", [str(self.folder / "a.epw")], "couplet weather"), 0)
+            self.assertEqual(dispatch("weather", [str(self.folder / "a.epw"), "-o", str(self.folder / "b.csv.gz")]), 0)
+            self.assertEqual(dispatch("weather", [str(self.folder / "a.epw")]), 0)
         self.assertEqual(gzip.decompress((self.folder / "b.csv.gz").read_bytes()), (self.folder / "a_weather.csv").read_bytes())
         self.refuse(nsrdb(), "out.csv is the file that is read", "out.csv")
 
