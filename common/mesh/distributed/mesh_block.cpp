@@ -20,10 +20,14 @@ void MeshBlock::push_element(int patch, std::span<const GlobalIndex> points_of_e
 
 MeshBlock block_of(MPI_Comm comm, const RawMesh& raw, int holders) {
   const int ranks = parallel::comm_size(comm), rank = parallel::comm_rank(comm);
-  std::array<GlobalIndex, 4> counts{raw.dim, GlobalIndex(raw.points.size()),
+  std::array<GlobalIndex, 7> counts{raw.dim,
+                                    GlobalIndex(raw.points.size()),
                                     GlobalIndex(raw.cell_type.size()),
-                                    GlobalIndex(raw.boundary_patch.size())};
-  MPI_Bcast(counts.data(), 4, MPI_INT64_T, 0, comm);
+                                    GlobalIndex(raw.boundary_patch.size()),
+                                    GlobalIndex(raw.periodic.size()),
+                                    GlobalIndex(raw.materials.size()),
+                                    raw.find_wide_points ? 1 : 0};
+  MPI_Bcast(counts.data(), int(counts.size()), MPI_INT64_T, 0, comm);
   MeshBlock block;
   block.dim = static_cast<int>(counts[0]);
   block.point_shares = {counts[1], ranks, holders};
@@ -31,7 +35,11 @@ MeshBlock block_of(MPI_Comm comm, const RawMesh& raw, int holders) {
   block.zones = raw.zones, block.patches = raw.patches;
   broadcast(comm, block.zones), broadcast(comm, block.patches);
   block.periodic = raw.periodic, block.materials = raw.materials;
-  block.find_wide_points = raw.find_wide_points;
+  block.periodic.resize(std::size_t(counts[4])), block.materials.resize(std::size_t(counts[5]));
+  for (auto& [side, other] : block.periodic)
+    parallel::broadcast(comm, side), parallel::broadcast(comm, other);
+  for (auto& material : block.materials) broadcast(comm, material);
+  block.find_wide_points = counts[6] != 0;
   if (rank >= holders) return block;
   block.points.assign(raw.points.begin() + block.point_shares.first(rank),
                       raw.points.begin() + block.point_shares.first(rank + 1));
