@@ -1,37 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// A coupled run from its start to its end; coupler/step.cpp has the step.
 #include "coupler/coupler.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "common/base/error.hpp"
-#include "common/base/text.hpp"
+#include "common/io/archive.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
-#include "coupler/exchange/foreign_fluid.hpp"
-#include "coupler/exchange/foreign_structure.hpp"
-#include "coupler/exchange/introductions.hpp"
-#include "coupler/exchange/role_checks.hpp"
-#include "coupler/judge/places.hpp"
-#include "coupler/judge/surfaces.hpp"
+#include "coupler/exchange/start_checks.hpp"
 
 namespace couplet::coupler {
-namespace {
-
-/// Columns of balance.csv speak of roles where there are such.
-std::vector<std::string> labels_of(const CouplingParameters& p, const std::vector<Partner>& partners) {
-  std::vector<std::string> labels;
-  for (const Partner& partner : partners) {
-    const std::string& name = partner.name();
-    labels.push_back(!p.exchange && p.fluid && name == p.fluid->participant           ? "fluid"
-                     : !p.exchange && p.structure && name == p.structure->participant ? "structure"
-                                                                                      : name);
-  }
-  return labels;
-}
-
-}  // namespace
 
 Coupler::Coupler(MPI_Comm comm, const CouplingParameters& parameters,
                  const app::SimulationParameters& simulation,
@@ -39,27 +18,12 @@ Coupler::Coupler(MPI_Comm comm, const CouplingParameters& parameters,
     : comm_(comm),
       parameters_(parameters),
       simulation_(simulation),
-      schedule_(schedule_of(parameters)),
       folders_(std::move(folders)),
       loop_(comm, simulation, parameters.scheme.first, folders_.checkpoints),
+      pass_(comm, parameters, std::move(channels)),
       scheme_(parameters.scheme),
-      oscillation_guard_(comm) {
-  if (schedule_.iterates) accelerator_ = make_accelerator(parameters.acceleration, comm);
-  for (const std::string& name : schedule_.everyone()) {
-    const auto found = std::ranges::find_if(channels, [&](const auto& c) { return c && c->name() == name; });
-    if (found == channels.end()) throw Error("The coupler has no channel to '{}'.", name);
-    Partner& partner = partners_.emplace_back();
-    partner.channel = std::move(*found);
-    partner.sub_steps = schedule_.sub_steps_of(name);
-    if (const auto& structure = parameters.structure;
-        structure && structure->participant == name && structure->foreign())
-      partner.channel = std::make_unique<ForeignStructure>(std::move(partner.channel), *structure);
-    if (const auto& fluid = parameters.fluid; fluid && fluid->participant == name && fluid->foreign())
-      partner.channel = std::make_unique<ForeignFluid>(std::move(partner.channel), *fluid);
-  }
-  for (const std::string& name : schedule_.group) group_.push_back(index_of(name));
-  given_.resize(partners_.size());
-  taken_.resize(partners_.size());
+      diagnostics_(parallel::comm_rank(comm), simulation.error_estimate) {
+  start_acceleration();
 }
 
 namespace {
@@ -87,120 +51,186 @@ Coupler::Coupler(const CouplingParameters& parameters, const app::SimulationPara
     : Coupler{MPI_COMM_SELF, with_roles(parameters, channels), simulation, list(std::move(channels)),
               std::move(folders)} {}
 
-std::size_t Coupler::index_of(const std::string& name) const {
-  for (std::size_t i = 0; i < partners_.size(); ++i)
-    if (partners_[i].channel && partners_[i].name() == name) return i;
-  throw Error("'{}' is not a participant of this coupling.", name);
-}
-
-std::vector<Partner*> Coupler::everyone() {
-  std::vector<Partner*> all;
-  for (Partner& p : partners_) all.push_back(&p);
-  return all;
-}
+Coupler::Known::Known(MPI_Comm comm, const Coupler& c)
+    : unknown(comm, c.pass_.sides(), c.pass_.links(), c.pass_.group(), c.pass_.schedule().side_by_side),
+      record(comm, c.parameters_, c.pass_),
+      view{comm, c.parameters_, c.pass_, unknown, record, c.scheme_, c.last_, c.history_, c.last_dt_} {}
 
 void Coupler::initialise() {
   enter_(app::Phase::initialise, {});
-  std::vector<coupling::Interface> interfaces = initialise_all(everyone());
-  check_introductions(parameters_, partners_);
-  for (std::size_t i = 0; i < partners_.size(); ++i)
-    if (auto* foreign = dynamic_cast<ForeignFluid*>(partners_[i].channel.get()))
-      foreign->adapt(interfaces[i], partners_[i].surfaces);
-  for (std::size_t i = 0; i < partners_.size(); ++i)
-    if (auto* foreign = dynamic_cast<ForeignStructure*>(partners_[i].channel.get()))
-      foreign->adapt(interfaces[i], partners_[i].surfaces, interfaces);
-  for (std::size_t i = 0; i < partners_.size(); ++i)
-    sides_.emplace_back(comm_, partners_[i].name(), std::move(interfaces[i])).surfaces =
-        std::move(partners_[i].surfaces);
-  check_roles(parameters_, sides_);
-  links_.emplace(comm_, sides_, parameters_.mapping);
-  for (const std::string& note : links_->notes()) log::info("{}", note);
-  check_foreseen(sides_, *links_, schedule_, group_);
-  check_places(comm_, sides_, *links_, parameters_.mapping);
-  compare_surfaces(comm_, sides_, *links_, schedule_);
-  still_guard_.emplace(comm_, sides_);
-  data_guard_.emplace(comm_, sides_);
-  unknown_.emplace(comm_, sides_, *links_, group_, schedule_.side_by_side);
-  audit_.emplace(comm_, sides_, *links_);
-  if (simulation_.error_estimate && schedule_.iterates) errors_.emplace();
-  mechanics_.emplace(comm_, sides_, *links_, labels_of(parameters_, partners_));
-  exchange_initial_values();
-  volume_level_.emplace(comm_, sides_, *links_, schedule_, group_);
-  if (volume_level_->empty()) volume_level_.reset();
-  if (!parameters_.watch.empty()) watched_.emplace(comm_, sides_, parameters_.watch);
-  // Sub-steps see a line through what was given; the level of closed fluids answers by itself.
-  if (simulation_.error_estimate && !schedule_.iterates && schedule_.sub_steps.empty() && !volume_level_)
-    lag_.emplace(comm_, *unknown_);
-  if (lag_ && !lag_->possible()) lag_.reset();
-}
-
-void Coupler::give_back(std::vector<coupling::Exchange> given) {
-  for (std::size_t i = 0; i < given.size(); ++i) partners_[i].channel->reuse(std::move(given[i]));
-}
-
-void Coupler::accept(double time, int output) {
-  enter_(app::Phase::accept, {});
-  ask_all(everyone(), {coupling::Op::accept_step, {}, {}, time, output, ""});
-  enter_(app::Phase::accept, time);
-  // Scales are found after the first step, and hold from then on.
-  if (!unknown_->scaled() && unknown_->complete(given_)) {
-    unknown_->scale(given_);
-    last_.image = unknown_->gather(given_);
-    history_ = {};
-    // What it has learnt was in other scales.
-    start_acceleration();
-  }
-  if (unknown_->has_within()) last_.image = unknown_->ends(std::move(last_.image));
-  if (errors_ && history_.now.unknown.size() == last_.image.unknown.size())
-    errors_->accepted(last_.residual, worst(unknown_->measure(history_.now, last_.image)), last_dt_);
-  if (lag_ && !history_.now.rider.empty()) lag_->accepted(last_.x, last_.image, last_dt_);
-  history_.accepted(last_.image, last_dt_, schedule_.predictor);
-  if (volume_level_) {
-    volume_level_->accept(given_);
-    monitor_->volume(time, *volume_level_);
-  }
-  const std::vector<SideBalance> balances = mechanics_->accepted(given_, taken_);
-  if (!balances.empty()) monitor_->balance(time, balances);
-  if (parameters_.exchange) monitor_->amounts(time, links_->amounts(given_));
-  if (watched_) monitor_->watched(time, watched_->columns(), watched_->row(given_, taken_));
-  if (output >= 0 && interface_output_) interface_output_->write(time, output, given_, taken_);
-  watch(time, balances);
-  if (scheme_.accepted(time)) start_acceleration();
+  pass_.initialise(parameters_);
+  known_.emplace(comm_, *this);
+  pass_.exchange_initial_values();
+  std::vector<coupling::Exchange> given = pass_.given();
+  if (known_->unknown.complete(given) || known_->unknown.start_at_rest(given))
+    history_.now = known_->unknown.gather(given);
+  pass_.set_given(std::move(given));
+  known_->diagnostics = coupling_diagnostics(known_->view, diagnostics_);
+  pass_.on_answer([this](std::size_t i, const coupling::Exchange& taken, const coupling::Exchange& answer) {
+    for (const auto& d : known_->diagnostics) d->answered(i, taken, answer);
+  });
 }
 
 std::string Coupler::run() {
   initialise();
-  const std::string stateless = without_state(simulation_.checkpoint_interval, partners_);
+  const std::string stateless = without_state(simulation_.checkpoint_interval, pass_.partners());
   double restart_time = std::numeric_limits<double>::quiet_NaN();
   if (!folders_.restart.empty()) {
     load();
     restart_time = app::read_run_state(folders_.restart).time;
   }
-  std::vector<std::string> names;
-  for (const Partner& p : partners_) names.push_back(p.name());
-  monitor_.emplace(comm_, folders_.output, names, mechanics_->labels(), mechanics_->dim(),
-                   simulation_.end_time, restart_time);
-  if (parameters_.interface_output)
-    interface_output_.emplace(comm_, folders_.output / "interface", sides_, restart_time);
-  monitor_->start(partners_);
+  known_->record.open(folders_.output, simulation_.end_time, restart_time);
+  const auto write = [&](double time, int output) {
+    pass_.ask_all({coupling::Op::write_output, {}, {}, time, output, ""});
+  };
   app::StepActions actions;
   actions.attempt = [&](const coupling::Step& step) { return attempt(step); };
   actions.accept = [&](double time, int output) { accept(time, output); };
-  actions.write_start = [&](int output) {
-    ask_all(everyone(), {coupling::Op::write_output, {}, {}, 0, output, ""});
-  };
-  actions.write_stop = [&](double time, int output) {
-    ask_all(everyone(), {coupling::Op::write_output, {}, {}, time, output, ""});
-  };
+  actions.write_start = [&](int output) { write(0, output); };
+  actions.write_stop = write;
   actions.save = [&](const std::filesystem::path& folder) { save(folder); };
   actions.stateless = stateless;
   actions.report = [&](const coupling::Step& step, double time) {
-    monitor_->step(step, time, last_, partners_);
+    known_->record.monitor().step(step, time, last_, pass_.partners());
   };
-  actions.advised_dt = [&] { return advised_dt(everyone()); };
+  actions.advised_dt = [&] { return advised_dt(pass_.everyone()); };
   std::string problem = loop_.run(actions);
   finalise(problem);
   return problem;
+}
+
+std::optional<app::StepFailure> Coupler::attempt(const coupling::Step& step) {
+  for (const auto& d : known_->diagnostics)
+    if (std::string reason = d->stop(); !reason.empty()) return app::StepFailure(std::move(reason), false);
+  const long before = iterations_;
+  auto failure = attempt_once(step);
+  // Only what the iteration itself may have failed at is tried again: no scheme mends a first pass.
+  if (!failure || !failure->halving_helps || iterations_ - before < 2 || !scheme_.failed()) return failure;
+  auto learnt = std::move(accelerator_);
+  start_acceleration();
+  if (attempt_once(step)) {
+    scheme_.withdraw();
+    accelerator_ = std::move(learnt);
+    return failure;
+  }
+  SchemeChoice::tell(step.time, "the semi-implicit step failed: " + failure->reason);
+  return {};
+}
+
+std::optional<app::StepFailure> Coupler::attempt_once(const coupling::Step& step) {
+  enter_(app::Phase::begin_step, step.time);
+  for (Partner* p : pass_.everyone()) p->seconds = 0;
+  for (const auto& d : known_->diagnostics) d->begin_step();
+  scheme_.start_step();
+  try {
+    solve(step);
+  } catch (const SchemeFailure& failure) {
+    return app::StepFailure(failure.what(), false);
+  } catch (const SolveFailure& failure) {
+    return cause_of(failure.what());
+  }
+  return {};
+}
+
+/// What the coupling itself does comes before what a participant reports.
+app::StepFailure Coupler::cause_of(const std::string& reported) const {
+  // Without the advice that goes with it: a smaller step or another mesh would not help.
+  const std::string met = reported.substr(0, reported.find(". Try ") + 1);
+  std::string remarks;
+  for (const auto& d : known_->diagnostics) {
+    if (const auto cause = d->suspects())
+      return {cause->reason + " Thereupon " + (met.empty() ? reported : met), cause->halving_helps};
+    remarks += d->remark();
+  }
+  return app::StepFailure(reported + remarks);
+}
+
+void Coupler::start_acceleration() {
+  if (pass_.schedule().iterates) accelerator_ = make_accelerator(parameters_.acceleration, comm_);
+}
+
+/// `problem`: why the run stopped before its end; then its error is not judged.
+void Coupler::finalise(const std::string& problem) {
+  enter_(app::Phase::finalise, {});
+  Monitor& monitor = known_->record.monitor();
+  log::info("{}", monitor.summary(loop_.halvings()));
+  if (const std::string waiting = monitor.waiting(pass_.partners(), pass_.schedule()); !waiting.empty())
+    log::info("{}", waiting);
+  for (const std::string& line : diagnostics_.conclude(!problem.empty())) log::info("{}", line);
+  std::vector<coupling::NamedErrors> parts = finalise_all(pass_.everyone(), problem);
+  if (simulation_.error_estimate && problem.empty()) {
+    if (const coupling::ErrorParts& mine = diagnostics_.errors(); mine.known() || !mine.omittable.empty())
+      parts.push_back({"coupling", mine});
+    errors_ = coupling::largest(parts);
+    for (const std::string& sentence : coupling::error_sentences(parts)) log::info("{}", sentence);
+    if (const auto finding = coupling::worthless(parts)) log::finding(parallel::comm_rank(comm_), *finding);
+  }
+  if (const std::string where = effects::position_sentence(position()); !where.empty())
+    log::info("{}", where);
+}
+
+std::vector<effects::Coordinate> Coupler::position() const {
+  if (!pass_.schedule().iterates) return diagnostics_.position();
+  if (!(steps() > 0)) return {};
+  return {{"passes per step", double(iterations()) / double(steps()),
+           double(parameters_.convergence.max_iterations), "strong-robin"}};
+}
+
+// Checkpoints: what the coupler keeps over a restart.
+namespace {
+
+void write(io::CheckpointWriter& file, const std::string& name, const Iterate& x, const IterateOrder& order) {
+  file.write(order.unknown, name, x.unknown);
+  file.write(order.rider, name + "-rider", x.rider);
+}
+
+/// As much as the coupling has unknowns and values that ride along, or nothing.
+Iterate read(io::CheckpointReader& file, const std::string& name, const IterateOrder& order) {
+  return {file.read_or_none(order.unknown, name, 1), file.read_or_none(order.rider, name + "-rider", 1)};
+}
+
+}  // namespace
+
+void Coupler::save(const std::filesystem::path& folder) {
+  enter_(app::Phase::save, {});
+  pass_.ask_all({coupling::Op::save, {}, {}, 0, -1, folder.string()});
+  io::CheckpointWriter file(comm_, folder / "coupler.h5");
+  const IterateOrder order = known_->unknown.order(false);
+  write(file, "now", history_.now, order);
+  write(file, "old", history_.old, order);
+  write(file, "older", history_.older, order);
+  io::Archive archive(file);
+  archive.common("history", history_.old_dt, history_.older_dt, iterations_);
+  file.write_common("weights", known_->unknown.weights());
+  file.write_common("scheme", scheme_.state());
+  known_->record.save(file);
+  if (accelerator_) accelerator_->save(file, known_->unknown.order(true));
+  pass_.save(file);
+  diagnostics_.visit(archive);
+  file.close();
+}
+
+void Coupler::load() {
+  enter_(app::Phase::load, {});
+  io::CheckpointReader file(comm_, folders_.restart / "coupler.h5");
+  const IterateOrder order = known_->unknown.order(false);
+  history_.now = read(file, "now", order);
+  history_.old = read(file, "old", order);
+  history_.older = read(file, "older", order);
+  io::Archive archive(file);
+  archive.common("history", history_.old_dt, history_.older_dt, iterations_);
+  known_->unknown.restore_weights(file.read_common("weights"));
+  std::array<double, 2> scheme{};
+  file.read_common("scheme", scheme);
+  scheme_.restore(scheme);
+  known_->record.load(file);
+  if (accelerator_) accelerator_->load(file, known_->unknown.order(true));
+  pass_.load(file);
+  diagnostics_.visit(archive);
+  const app::RunState state = app::read_run_state(folders_.restart);
+  loop_.restart(state, folders_.restart);
+  pass_.ask_all({coupling::Op::load, {}, {}, state.time, -1, folders_.restart.string()});
+  log::info("continues from {} at t = {:g} s", folders_.restart.string(), state.time);
 }
 
 }  // namespace couplet::coupler

@@ -12,24 +12,15 @@
 
 #include "common/app/loop/step_loop.hpp"
 #include "common/app/watch/watch.hpp"
+#include "common/diagnostics/diagnostics.hpp"
 #include "coupler/acceleration/accelerator.hpp"
 #include "coupler/acceleration/fixed_point.hpp"
 #include "coupler/acceleration/unknown.hpp"
-#include "coupler/acceleration/volume_level.hpp"
-#include "coupler/exchange/partners.hpp"
-#include "coupler/judge/audit.hpp"
-#include "coupler/judge/data_guard.hpp"
-#include "coupler/judge/error_estimate.hpp"
-#include "coupler/judge/guards.hpp"
-#include "coupler/judge/lag_estimate.hpp"
-#include "coupler/judge/mechanics.hpp"
-#include "coupler/judge/scheme_choice.hpp"
-#include "coupler/judge/still_guard.hpp"
-#include "coupler/output/interface_output.hpp"
-#include "coupler/output/monitor.hpp"
-#include "coupler/output/watch_integrals.hpp"
+#include "coupler/diagnostics/view.hpp"
+#include "coupler/output/record.hpp"
 #include "coupler/parameters/parameters.hpp"
-#include "coupler/parameters/schedule.hpp"
+#include "coupler/pass.hpp"
+#include "coupler/scheme_choice.hpp"
 
 namespace couplet::coupler {
 
@@ -44,9 +35,9 @@ struct CouplerChannels {
   std::unique_ptr<coupling::Channel> fluid, structure, mesh;  ///< mesh may be empty
 };
 
-/// Drives any number of participants from start to end: Links say who gives what to whom, the Schedule in
-/// which order and how often, the Accelerator how the next guess follows. All its ranks do the same with
-/// their own parts of the interfaces.
+/// Drives any number of participants from start to end. A step is a fixed point x = H(x), where H is one Pass through the
+/// participants and x what they exchange (Unknown): predict, pass, accelerate until it converges, accept. All ranks of the
+/// coupler do the same with their own parts of the interfaces.
 class Coupler {
  public:
   /// `channels`: to everyone of the schedule, in any order.
@@ -67,91 +58,52 @@ class Coupler {
   int halvings() const { return loop_.halvings(); }
   long iterations() const { return iterations_; }
   /// The budget of the whole job, once it has ended well.
-  const coupling::ErrorParts& errors() const { return found_; }
+  const coupling::ErrorParts& errors() const { return errors_; }
   /// Where the job stands on the maps of the coupling.
   std::vector<effects::Coordinate> position() const;
-  /// What each has given in the last pass, in the order of the schedule's everyone().
-  const std::vector<coupling::Exchange>& given() const { return given_; }
-  const coupling::Exchange& given_by(const std::string& name) const { return given_[index_of(name)]; }
+  const coupling::Exchange& given_by(const std::string& name) const {
+    return pass_.given()[pass_.index_of(name)];
+  }
 
  private:
-  std::size_t index_of(const std::string& name) const;
-  std::vector<Partner*> everyone();
+  /// What is made of the interfaces once they are known.
+  struct Known {
+    Known(MPI_Comm comm, const Coupler& coupler);
+    Unknown unknown;
+    Record record;
+    CouplingView view;
+    CouplingDiagnostics diagnostics;
+  };
+
   void initialise();
-  /// Values before the first step: from those that gave any, to those, and as the first guess.
-  void exchange_initial_values();
-  void load();
-  void save(const std::filesystem::path& folder);
-  parallel::GlobalOrder order_of_wall(std::size_t i) const;
   std::optional<app::StepFailure> attempt(const coupling::Step& step);
   std::optional<app::StepFailure> attempt_once(const coupling::Step& step);
-  void map_changed();
-  /// Forgets what was learnt of other passes than those that follow.
-  void start_acceleration();
-  /// Why a step failed: what the coupling itself does comes before what a participant reports.
-  app::StepFailure cause_of(const std::string& reported) const;
   void solve(const coupling::Step& step);
-  /// One pass from x, the explicit scheme's step.
-  void pass_once(const coupling::Step& step, const FixedPointMap& map);
-  /// Where values within the step are asked for: the first pass, whose times they are iterated on at from then on.
-  std::optional<Iterate> look_within(const FixedPointMap& map);
-  /// What comes back in a step half as long, of some steps of explicit coupling before they begin.
-  void look_at_lag(coupling::Step step);
-  /// One pass through the group from what is known to what all give.
-  std::vector<coupling::Exchange> pass(std::vector<coupling::Exchange> known, bool first);
-  void ask(std::size_t i, const std::vector<coupling::Exchange>& known, bool move_mesh);
-  void guess_motion(const std::vector<coupling::Exchange>& known, bool first);
-  void answer(std::size_t i, coupling::Exchange& given, bool move_mesh);
-  /// To the channels, for the next replies.
-  void give_back(std::vector<coupling::Exchange> given);
-  void hold_volume(std::size_t i, std::vector<coupling::Exchange>& known);
+  FixedPointResult iterate(const coupling::Step& step, Iterate guess, const FixedPointMap& map);
+  FixedPointResult pass_once(const coupling::Step& step, Iterate guess, const FixedPointMap& map);
   void accept(double time, int output);
-  /// A step that `at-max-iterations: accept` takes as it is: the first one, and each that is ten times worse, is a finding.
-  void report_unconverged(double time);
-  void watch(double time, const std::vector<SideBalance>& balances);
+  /// Forgets what was learnt from other passes than those that follow.
+  void start_acceleration();
+  app::StepFailure cause_of(const std::string& reported) const;
+  void save(const std::filesystem::path& folder);
+  void load();
   void finalise(const std::string& problem);
-  void tell_work() const;
-  void tell_errors(std::vector<coupling::NamedErrors> participants);
 
   MPI_Comm comm_;
   CouplingParameters parameters_;
   app::SimulationParameters simulation_;
-  Schedule schedule_;
   CouplerFolders folders_;
-  std::vector<Partner> partners_;   // in the order of the schedule's everyone()
-  std::vector<std::size_t> group_;  // of these
-  std::vector<Side> sides_;
-  std::optional<Links> links_;
-  std::optional<Unknown> unknown_;
-  std::optional<VolumeLevel> volume_level_;  // none: no closed fluid asks for it
-  std::optional<Mechanics> mechanics_;
-  std::optional<Monitor> monitor_;
-  std::optional<InterfaceOutput> interface_output_;  // none: not asked for
-  std::optional<WatchIntegrals> watched_;            // the same
   app::StepLoop loop_;
-  std::unique_ptr<Accelerator> accelerator_;  // none: one pass a step
-  History history_;                           // of accepted steps; empty before all has been given
+  Pass pass_;
   SchemeChoice scheme_;
-  FixedPointResult last_;                          // of the step just solved
-  std::vector<coupling::Exchange> given_, taken_;  // by each in its last pass
-  coupling::Exchange guess_;                       // of the motion, that the mover has been given
-  IterationGuard iteration_guard_;
-  OscillationGuard oscillation_guard_;
-  WorkGuard work_guard_;
-  std::optional<StillGuard> still_guard_;
-  std::optional<DataGuard> data_guard_;
-  std::optional<CouplingAudit> audit_;
-  std::optional<CouplingErrorEstimate> errors_;  // none: not wanted, or nothing is iterated
-  std::optional<LagEstimate> lag_;               // none: not wanted, not explicit, or it could not tell
-  std::optional<LagEstimate::Look> half_;        // of the step under way; none: it is not looked at
-  coupling::ErrorParts found_;                   // of all participants, at the end
-  std::string diverged_;                         // empty: no guard has fired
-  double worst_accepted_ = 0;                    // relative residual of a step that was accepted unconverged
-  bool warned_ = false;
-  bool answered_anew_ = false;  // somebody in the last pass
+  std::unique_ptr<Accelerator> accelerator_;  // nullptr: one pass per step
+  History history_;                           // of accepted steps; empty before all has been given
+  FixedPointResult last_;                     // of the step just solved
   double last_dt_ = 0;
   long iterations_ = 0;
-  int passes_ = 0;  // of the step under way
+  diagnostics::Diagnostics diagnostics_;
+  std::optional<Known> known_;
+  coupling::ErrorParts errors_;
   std::function<void(app::Phase, std::optional<double>)> enter_ = [](app::Phase, std::optional<double>) {};
 };
 

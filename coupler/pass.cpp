@@ -1,47 +1,74 @@
 // SPDX-License-Identifier: Apache-2.0
-// One pass through the group.
+#include "coupler/pass.hpp"
+
+#include <algorithm>
+
 #include "common/base/error.hpp"
-#include "coupler/coupler.hpp"
-#include "coupler/judge/places.hpp"
+#include "common/log/log.hpp"
+#include "coupler/exchange/foreign.hpp"
+#include "coupler/exchange/start_checks.hpp"
+#include "coupler/mapping/surface_checks.hpp"
 
 namespace couplet::coupler {
 
-void Coupler::ask(std::size_t i, const std::vector<coupling::Exchange>& known, bool move_mesh) {
-  // The moved one blocks until the mesh has been moved: the mover's command goes out first.
-  const bool with_mover = move_mesh && schedule_.mover && partners_[i].name() == *schedule_.moved;
-  if (with_mover) partners_.front().send({coupling::Op::solve, {}, guess_, 0, -1, ""});
-  coupling::Command command{coupling::Op::solve, {}, links_->input(i, known), 0, -1, ""};
-  partners_[i].send(command);
-  taken_[i] = std::move(command.data);
+Pass::Pass(MPI_Comm comm, const CouplingParameters& parameters,
+           std::vector<std::unique_ptr<coupling::Channel>> channels)
+    : comm_(comm), schedule_(schedule_of(parameters)) {
+  for (const std::string& name : schedule_.everyone()) {
+    const auto found = std::ranges::find_if(channels, [&](const auto& c) { return c && c->name() == name; });
+    if (found == channels.end()) throw Error("The coupler has no channel to '{}'.", name);
+    Partner& partner = partners_.emplace_back();
+    partner.channel = std::move(*found);
+    partner.sub_steps = schedule_.sub_steps_of(name);
+    if (const auto& structure = parameters.structure;
+        structure && structure->participant == name && structure->foreign())
+      partner.channel = std::make_unique<ForeignStructure>(std::move(partner.channel), *structure);
+    if (const auto& fluid = parameters.fluid; fluid && fluid->participant == name && fluid->foreign())
+      partner.channel = std::make_unique<ForeignFluid>(std::move(partner.channel), *fluid);
+  }
+  for (const std::string& name : schedule_.group) group_.push_back(index_of(name));
+  given_.resize(partners_.size());
+  taken_.resize(partners_.size());
 }
 
-void Coupler::answer(std::size_t i, coupling::Exchange& given, bool move_mesh) {
-  const bool with_mover = move_mesh && schedule_.mover && partners_[i].name() == *schedule_.moved;
-  // A failed motion makes the moved one fail too; the mover knows the reason. Both replies are always taken.
-  std::optional<SolveFailure> mover_failed;
-  if (with_mover) {
-    try {
-      partners_.front().receive();
-    } catch (const SolveFailure& failure) {
-      mover_failed = failure;
-    }
-  }
-  try {
-    coupling::Reply reply = partners_[i].receive();
-    partners_[i].channel->reuse(std::exchange(given, std::move(reply.data)));
-    answered_anew_ = answered_anew_ || reply.anew;
-  } catch (const SolveFailure&) {
-    if (!mover_failed) throw;
-  }
-  if (mover_failed) throw SolveFailure(*mover_failed);
-  require_finite(comm_, given, sides_[i].interface, sides_[i].interface.gives, partners_[i].name());
-  data_guard_->answered(i, taken_[i], given);
+std::size_t Pass::index_of(const std::string& name) const {
+  for (std::size_t i = 0; i < partners_.size(); ++i)
+    if (partners_[i].channel && partners_[i].name() == name) return i;
+  throw Error("'{}' is not a participant of this coupling.", name);
 }
 
-void Coupler::exchange_initial_values() {
+std::vector<Partner*> Pass::everyone() {
+  std::vector<Partner*> all;
+  for (Partner& p : partners_) all.push_back(&p);
+  return all;
+}
+
+void Pass::ask_all(const coupling::Command& command) { coupler::ask_all(everyone(), command); }
+
+void Pass::initialise(const CouplingParameters& parameters) {
+  std::vector<coupling::Interface> interfaces = initialise_all(everyone());
+  check_introductions(parameters, partners_);
+  for (std::size_t i = 0; i < partners_.size(); ++i)
+    if (auto* foreign = dynamic_cast<ForeignFluid*>(partners_[i].channel.get()))
+      foreign->adapt(interfaces[i], partners_[i].surfaces);
+  for (std::size_t i = 0; i < partners_.size(); ++i)
+    if (auto* foreign = dynamic_cast<ForeignStructure*>(partners_[i].channel.get()))
+      foreign->adapt(interfaces[i], partners_[i].surfaces, interfaces);
+  for (std::size_t i = 0; i < partners_.size(); ++i)
+    sides_.emplace_back(comm_, partners_[i].name(), std::move(interfaces[i])).surfaces =
+        std::move(partners_[i].surfaces);
+  check_roles(parameters, sides_);
+  links_.emplace(comm_, sides_, parameters.mapping);
+  for (const std::string& note : links_->notes()) log::info("{}", note);
+  check_foreseen(sides_, *links_, schedule_, group_);
+  check_places(comm_, sides_, *links_, parameters.mapping);
+  compare_surfaces(comm_, sides_, *links_, schedule_);
+}
+
+void Pass::exchange_initial_values() {
   for (std::size_t i = 0; i < partners_.size(); ++i) {
     given_[i] = std::move(partners_[i].initial);
-    require_finite(comm_, given_[i], sides_[i].interface, sides_[i].interface.gives, partners_[i].name());
+    require_finite_answer(i, given_[i]);
   }
   const std::vector<coupling::Exchange> initial = given_;
   for (std::size_t i = 0; i < partners_.size(); ++i) {
@@ -49,40 +76,36 @@ void Coupler::exchange_initial_values() {
     partners_[i].send({coupling::Op::start, {}, links_->input(i, initial), 0, -1, ""});
     partners_[i].receive();
   }
-  if (unknown_->complete(given_) || unknown_->start_at_rest(given_)) history_.now = unknown_->gather(given_);
+  volume_level_.emplace(comm_, sides_, *links_, schedule_, group_);
+  if (volume_level_->empty()) volume_level_.reset();
 }
 
-/// After `i` has answered, where fluids are closed.
-void Coupler::hold_volume(std::size_t i, std::vector<coupling::Exchange>& known) {
-  volume_level_->loaded(i, taken_[i], known[i]);
-  if (i != volume_level_->structures().back()) return;
-  volume_level_->find(known, [&] {
-    for (const std::size_t structure : volume_level_->structures()) {
-      ask(structure, known, false);
-      answer(structure, known[structure], false);
-    }
-  });
+void Pass::require_finite_answer(std::size_t i, const coupling::Exchange& given) const {
+  require_finite(comm_, given, sides_[i].interface, sides_[i].interface.gives, partners_[i].name());
 }
 
-/// What the mover gets: the motion that is known before anybody has answered in this pass.
-void Coupler::guess_motion(const std::vector<coupling::Exchange>& known, bool first) {
-  if (first || !schedule_.mesh_on_guess) guess_ = links_->input(0, known);
+void Pass::give_back(std::vector<coupling::Exchange> given) {
+  for (std::size_t i = 0; i < given.size(); ++i) partners_[i].channel->reuse(std::move(given[i]));
 }
 
-std::vector<coupling::Exchange> Coupler::pass(std::vector<coupling::Exchange> known, bool first) {
-  const bool move_mesh = schedule_.mover && (first || scheme_.now() != coupling::Scheme::semi_implicit);
-  if (move_mesh) guess_motion(known, first);
-  ++iterations_;
-  ++passes_;
+std::vector<coupling::Exchange> Pass::operator()(std::vector<coupling::Exchange> known, bool first,
+                                                 coupling::Scheme scheme) {
+  const bool move_mesh = schedule_.mover && (first || scheme != coupling::Scheme::semi_implicit);
+  // The mover gets the motion that is known before anybody has answered in this pass.
+  if (move_mesh && (first || !schedule_.mesh_on_guess)) guess_ = links_->input(0, known);
   answered_anew_ = false;
-  if (!schedule_.side_by_side) {
-    for (const std::size_t i : group_) {
-      ask(i, known, move_mesh);
-      answer(i, known[i], move_mesh);
-      if (volume_level_) hold_volume(i, known);
-    }
-    return known;
+  if (schedule_.side_by_side) return side_by_side(known, move_mesh);
+  for (const std::size_t i : group_) {
+    ask(i, known, move_mesh);
+    answer(i, known[i], move_mesh);
+    if (volume_level_) hold_volume(i, known);
   }
+  return known;
+}
+
+/// All of the group are asked at once. Failures are collected, so that every reply is taken.
+std::vector<coupling::Exchange> Pass::side_by_side(const std::vector<coupling::Exchange>& known,
+                                                   bool move_mesh) {
   for (const std::size_t i : group_) ask(i, known, move_mesh);
   std::vector<coupling::Exchange> given = known;
   std::string failures;
@@ -101,62 +124,61 @@ std::vector<coupling::Exchange> Coupler::pass(std::vector<coupling::Exchange> kn
   return given;
 }
 
-/// Tries a step half as long, two passes, which are forgotten; pass_once() has the whole one.
-void Coupler::look_at_lag(coupling::Step step) {
-  half_.reset();
-  if (!lag_ || history_.now.rider.empty() || !CouplingAudit::looks_at(step.number)) return;
-  step.dt /= 2;
-  std::vector<coupling::Exchange> outputs;
-  bool first = true;
-  const auto answer_to = [&](const Iterate& x) {
-    std::vector<coupling::Exchange> known(partners_.size());
-    unknown_->scatter(x, known);
-    give_back(std::move(outputs));
-    outputs = pass(std::move(known), std::exchange(first, false));
-    --iterations_;
-    return unknown_->gather(outputs);
-  };
+void Pass::ask(std::size_t i, const std::vector<coupling::Exchange>& known, bool move_mesh) {
+  // The moved one blocks until the mesh has been moved, so the mover's command goes out first.
+  const bool with_mover = move_mesh && schedule_.mover && partners_[i].name() == *schedule_.moved;
+  if (with_mover) partners_.front().send({coupling::Op::solve, {}, guess_, 0, -1, ""});
+  coupling::Command command{coupling::Op::solve, {}, links_->input(i, known), 0, -1, ""};
+  partners_[i].send(command);
+  taken_[i] = std::move(command.data);
+}
+
+void Pass::answer(std::size_t i, coupling::Exchange& given, bool move_mesh) {
+  const bool with_mover = move_mesh && schedule_.mover && partners_[i].name() == *schedule_.moved;
+  // A failed motion makes the moved one fail too; the mover knows the reason. Both replies are always taken.
+  std::optional<SolveFailure> mover_failed;
+  if (with_mover) {
+    try {
+      partners_.front().receive();
+    } catch (const SolveFailure& failure) {
+      mover_failed = failure;
+    }
+  }
   try {
-    ask_all(everyone(), {coupling::Op::begin_step, step, {}, 0, -1, ""});
-    LagEstimate::Look look;
-    look.x = predict(*unknown_, history_, step.dt, schedule_.predictor);
-    look.image = answer_to(look.x);
-    look.again = answer_to(look.image);
-    half_ = std::move(look);
+    coupling::Reply reply = partners_[i].receive();
+    partners_[i].channel->reuse(std::exchange(given, std::move(reply.data)));
+    answered_anew_ = answered_anew_ || reply.anew;
   } catch (const SolveFailure&) {
-    return;  // nothing is learnt; why the step itself fails is said there
+    if (!mover_failed) throw;
   }
-  give_back(std::move(outputs));
+  if (mover_failed) throw SolveFailure(*mover_failed);
+  require_finite_answer(i, given);
+  answered_(i, taken_[i], given);
 }
 
-std::optional<Iterate> Coupler::look_within(const FixedPointMap& map) {
-  if (!unknown_->asked_within()) return {};
-  Iterate image = map(last_.x);
-  last_.x = unknown_->held(unknown_->ends(std::move(last_.x)));
-  return image;
+/// After `i` has answered, where fluids are closed.
+void Pass::hold_volume(std::size_t i, std::vector<coupling::Exchange>& known) {
+  volume_level_->loaded(i, taken_[i], known[i]);
+  if (i != volume_level_->structures().back()) return;
+  volume_level_->find(known, [&] {
+    for (const std::size_t structure : volume_level_->structures()) {
+      ask(structure, known, false);
+      answer(structure, known[structure], false);
+    }
+  });
 }
 
-void Coupler::pass_once(const coupling::Step& step, const FixedPointMap& map) {
-  last_.image = map(last_.x);
-  last_.residual = worst(unknown_->measure(last_.x, last_.image));
-  last_.iterations = 1;
-  // Not where sub-steps see a line through what was given: each pass would bend it.
-  if (step.scheme != coupling::Scheme::explicit_ || !schedule_.sub_steps.empty() ||
-      !CouplingAudit::looks_for_causes_at(step.number))
-    return;
-  const bool at_start = !CouplingAudit::looks_at(step.number);
-  try {
-    const Iterate again = map(last_.image);
-    const Residual returned = worst(unknown_->measure(last_.image, again));
-    if (at_start)
-      audit_->returned_at_start(last_.residual, returned);
-    else
-      audit_->returned(last_.residual, returned);
-    if (half_) lag_->looked({last_.x, last_.image, again}, *half_, step.dt);
-  } catch (const SolveFailure&) {  // the step has its answer without this look
-  }
-  last_.image = map(last_.x);  // the step is what it is without this look
-  iterations_ -= 2;            // nor are these its passes
+void Pass::save(io::CheckpointWriter& file) const {
+  if (volume_level_) volume_level_->save(file, sides_);
+  for (const Partner& partner : partners_)
+    if (const auto* foreign = dynamic_cast<const ForeignStructure*>(partner.channel.get()))
+      foreign->save(file);
+}
+
+void Pass::load(io::CheckpointReader& file) {
+  if (volume_level_) volume_level_->load(file, sides_);
+  for (const Partner& partner : partners_)
+    if (auto* foreign = dynamic_cast<ForeignStructure*>(partner.channel.get())) foreign->load(file);
 }
 
 }  // namespace couplet::coupler

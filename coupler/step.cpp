@@ -1,114 +1,138 @@
 // SPDX-License-Identifier: Apache-2.0
-// One step: its scheme, and the iteration of its passes.
+// One coupled step: predict, pass, accelerate, converge, accept.
+#include <bit>
 #include <limits>
 #include <utility>
 
 #include "common/base/error.hpp"
-#include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
 
 namespace couplet::coupler {
+namespace {
 
-std::optional<app::StepFailure> Coupler::attempt(const coupling::Step& step) {
-  if (!diverged_.empty()) return app::StepFailure(diverged_, false);
-  auto failure = attempt_once(step);
-  // Only what the iteration itself may have failed of: no scheme mends a first pass.
-  if (!failure || !failure->halving_helps || passes_ < 2 || !scheme_.failed()) return failure;
-  auto learnt = std::move(accelerator_);
-  start_acceleration();
-  if (attempt_once(step)) {
-    scheme_.withdraw();
-    accelerator_ = std::move(learnt);
-    return failure;
-  }
-  SchemeChoice::tell(step.time, "the semi-implicit step failed: " + failure->reason);
-  return {};
+/// Explicit coupling looks at what comes back in further passes: in the steps 1 (to explain a failure), 4, 16, 64, ...
+bool looks_at(GlobalIndex step) {
+  const auto n = static_cast<std::uint64_t>(step);
+  return n == 1 || (n >= 4 && std::has_single_bit(n) && std::countr_zero(n) % 2 == 0);
 }
 
-std::optional<app::StepFailure> Coupler::attempt_once(const coupling::Step& step) {
-  enter_(app::Phase::begin_step, step.time);
-  for (Partner& p : partners_) p.seconds = 0;
-  data_guard_->start_step();
-  scheme_.start_step();
-  passes_ = 0;
-  try {
-    solve(step);
-  } catch (const SchemeFailure& failure) {
-    return app::StepFailure(failure.what(), false);
-  } catch (const SolveFailure& failure) {
-    return cause_of(failure.what());
-  }
-  return {};
-}
+}  // namespace
 
+/// Solves x = H(x) for the step from t^n to t^n + dt. Participants keep their state n.
 void Coupler::solve(const coupling::Step& step) {
+  Unknown& unknown = known_->unknown;
   coupling::Step begun = step;
-  begun.waveform = schedule_.waveform;
+  begun.waveform = pass_.schedule().waveform;
   begun.scheme = scheme_.now();
-  look_at_lag(begun);
-  ask_all(everyone(), {coupling::Op::begin_step, begun, {}, 0, -1, ""});
+  pass_.ask_all({coupling::Op::begin_step, begun, {}, 0, -1, ""});
   enter_(app::Phase::solve, step.time);
-  if (volume_level_) volume_level_->start_step(step.dt);
+  if (VolumeLevel* level = pass_.volume_level()) level->start_step(step.dt);
+
   bool first = true;
   std::vector<coupling::Exchange> outputs;
   const auto pass_from = [&](std::vector<coupling::Exchange> known) {
-    give_back(std::move(outputs));
-    const bool shows_times = first && schedule_.iterates && unknown_->asked_within();
-    outputs = pass(std::move(known), std::exchange(first, false));
-    if (shows_times && unknown_->adopt_times(outputs))  // what was learnt was of other unknowns
-      start_acceleration();
+    pass_.give_back(std::move(outputs));
+    const bool shows_times = first && pass_.schedule().iterates && unknown.asked_within();
+    outputs = pass_(std::move(known), std::exchange(first, false), scheme_.now());
+    ++iterations_;
+    if (shows_times && unknown.adopt_times(outputs)) start_acceleration();
   };
   const FixedPointMap map = [&](const Iterate& x) {
-    std::vector<coupling::Exchange> known(partners_.size());
-    unknown_->scatter(x, known);
+    std::vector<coupling::Exchange> known(pass_.partners().size());
+    unknown.scatter(x, known);
     pass_from(std::move(known));
-    if (answered_anew_) map_changed();
-    return unknown_->gather(outputs);
-  };
-  const bool begins =
-      history_.now.unknown.empty() && history_.now.rider.empty() && !unknown_->parts().empty();
-  if (begins || unknown_->parts().empty()) {
-    // Data that nobody has given yet are missing from this first pass.
-    pass_from(std::vector<coupling::Exchange>(partners_.size()));
-    if (!unknown_->scaled()) unknown_->scale(outputs);
-    last_ = {unknown_->gather(outputs), unknown_->gather(outputs), {}, 1};
-  }
-  if (!begins) last_.x = unknown_->begin_step(predict(*unknown_, history_, step.dt, schedule_.predictor));
-  if (!schedule_.iterates) {
-    if (!begins && !unknown_->parts().empty()) {
-      pass_once(step, map);
+    if (pass_.answered_anew()) {
+      scheme_.renewed();
+      if (accelerator_) accelerator_->map_changed();
     }
-    monitor_->iteration(step, 1, last_.residual, std::numeric_limits<double>::quiet_NaN());
-  } else if (!unknown_->parts().empty()) {
-    const bool constant = parameters_.acceleration.type == AccelerationParameters::Type::constant;
-    iteration_guard_.start_step();
-    if (errors_) errors_->start_step();
-    const IterationObserver observer = [&](int k, const Residual& residual, double omega) {
-      monitor_->iteration(step, k, residual, omega);
-      if (errors_) errors_->pass(residual);
-      if (!converged(residual, parameters_.convergence))
-        iteration_guard_.pass(residual.absolute, omega, constant);
-    };
-    const ResidualMeasure measure = [&](const Iterate& x, const Iterate& image) {
-      return unknown_->measure(x, image);
-    };
-    std::optional<Iterate> seen = begins ? std::nullopt : look_within(map);
-    const FixedPointMap on = [&](const Iterate& x) { return seen ? *std::exchange(seen, {}) : map(x); };
-    last_ = solve_fixed_point(std::move(last_.x), seen ? on : map, measure, parameters_.convergence,
-                              *accelerator_, observer);
-    if (!last_.converged) report_unconverged(step.time);
+    return unknown.gather(outputs);
+  };
+
+  const bool iterates_on_data = !unknown.parts().empty();
+  const bool begins = iterates_on_data && history_.now.unknown.empty() && history_.now.rider.empty();
+  if (begins || !iterates_on_data) {
+    // Data that nobody has given yet are missing from this first pass.
+    pass_from(std::vector<coupling::Exchange>(pass_.partners().size()));
+    if (!unknown.scaled()) unknown.scale(outputs);
+    last_ = {unknown.gather(outputs), unknown.gather(outputs), {}, 1};
   }
-  give_back(std::exchange(given_, std::move(outputs)));
+  if (!begins) last_.x = unknown.begin_step(predict(unknown, history_, step.dt, pass_.schedule().predictor));
+  if (iterates_on_data && pass_.schedule().iterates)
+    last_ = iterate(step, std::move(last_.x), map);
+  else if (iterates_on_data && !begins)
+    last_ = pass_once(begun, std::move(last_.x), map);
+  if (!pass_.schedule().iterates)
+    known_->record.monitor().iteration(step, 1, last_.residual, std::numeric_limits<double>::quiet_NaN());
+  pass_.set_given(std::move(outputs));
   last_dt_ = step.dt;
 }
 
-void Coupler::map_changed() {
-  scheme_.renewed();
-  if (accelerator_) accelerator_->map_changed();
+/// Passes and accelerated guesses until the residuals of all unknowns are below their bounds.
+FixedPointResult Coupler::iterate(const coupling::Step& step, Iterate guess, const FixedPointMap& map) {
+  Unknown& unknown = known_->unknown;
+  for (const auto& d : known_->diagnostics) d->begin_step();
+  const IterationObserver observer = [&](int k, const Residual& residual, double omega) {
+    known_->record.monitor().iteration(step, k, residual, omega);
+    for (const auto& d : known_->diagnostics) d->passed(residual, omega);
+  };
+  const ResidualMeasure measure = [&](const Iterate& x, const Iterate& image) {
+    return unknown.measure(x, image);
+  };
+  // Values within the step are iterated on at the times that the first pass shows.
+  std::optional<Iterate> seen;
+  const bool begins = history_.now.unknown.empty() && history_.now.rider.empty();
+  if (!begins && unknown.asked_within()) {
+    seen = map(guess);
+    guess = unknown.held(unknown.ends(std::move(guess)));
+  }
+  const FixedPointMap after_first = [&](const Iterate& x) {
+    return seen ? *std::exchange(seen, {}) : map(x);
+  };
+  return solve_fixed_point(std::move(guess), after_first, measure, parameters_.convergence, *accelerator_,
+                           observer);
 }
 
-void Coupler::start_acceleration() {
-  if (schedule_.iterates) accelerator_ = make_accelerator(parameters_.acceleration, comm_);
+/// The step of explicit coupling. What further passes return is shown to the diagnostics, and leaves no trace.
+FixedPointResult Coupler::pass_once(const coupling::Step& step, Iterate guess, const FixedPointMap& map) {
+  FixedPointResult result;
+  result.x = std::move(guess);
+  result.image = map(result.x);
+  result.residual = worst(known_->unknown.measure(result.x, result.image));
+  result.iterations = 1;
+  // Sub-steps see a line through what was given, which each further pass would bend.
+  if (step.scheme != coupling::Scheme::explicit_ || !pass_.schedule().sub_steps.empty() ||
+      !looks_at(step.number))
+    return result;
+  try {
+    const Iterate again = map(result.image);
+    for (const auto& d : known_->diagnostics) d->returned(step.number, result.x, result.image, again);
+  } catch (const SolveFailure&) {  // the step has its answer without this look
+  }
+  result.image = map(result.x);
+  iterations_ -= 2;
+  return result;
+}
+
+/// The step becomes state n.
+void Coupler::accept(double time, int output) {
+  Unknown& unknown = known_->unknown;
+  enter_(app::Phase::accept, {});
+  pass_.ask_all({coupling::Op::accept_step, {}, {}, time, output, ""});
+  enter_(app::Phase::accept, time);
+  // Scales are found after the first step, and hold from then on.
+  if (!unknown.scaled() && unknown.complete(pass_.given())) {
+    unknown.scale(pass_.given());
+    last_.image = unknown.gather(pass_.given());
+    history_ = {};
+    start_acceleration();
+  }
+  if (unknown.has_within()) last_.image = unknown.ends(std::move(last_.image));
+  known_->record.balance();
+  diagnostics_.accepted(time);
+  history_.accepted(last_.image, last_dt_, pass_.schedule().predictor);
+  if (VolumeLevel* level = pass_.volume_level()) level->accept(pass_.given());
+  known_->record.accepted(time, output, pass_.volume_level());
+  if (scheme_.accepted(time)) start_acceleration();
 }
 
 }  // namespace couplet::coupler

@@ -2,9 +2,9 @@
 #include "common/app/program.hpp"
 #include "common/io/cut/load_mesh.hpp"
 #include "common/linalg/petsc_environment.hpp"
+#include "fluid_solver/boundary/given_velocity.hpp"
 #include "fluid_solver/parameters/auto_effects.hpp"
 #include "fluid_solver/parameters/effect_cards.hpp"
-#include "fluid_solver/parameters/files.hpp"
 #include "fluid_solver/participant.hpp"
 
 int main(int argc, char** argv) {
@@ -32,6 +32,10 @@ int main(int argc, char** argv) {
             return couplet::fluid::make_participant(
                 std::move(loaded), parameters,
                 {context.name, context.output_folder, context.restart_time, context.simulation.fields}, link);
+          },
+      .diagnose =
+          [](const couplet::coupling::Participant& participant, couplet::diagnostics::Diagnostics& all) {
+            couplet::fluid::add_diagnostics(participant, all);
           },
       .environment = couplet::linalg::petsc_environment,
       .effects =

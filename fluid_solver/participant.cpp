@@ -14,16 +14,13 @@
 #include "common/log/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/judge/cavity.hpp"
-#include "fluid_solver/motion/body_start.hpp"
+#include "fluid_solver/boundary/cavity.hpp"
+#include "fluid_solver/motion/turning_walls.hpp"
 #include "fluid_solver/output/derived.hpp"
 #include "fluid_solver/state/state_io.hpp"
 
 namespace couplet::fluid {
 namespace {
-
-// At the end of a step: what a growing oscillation reaches.
-constexpr double near_limit = 0.1;
 
 bool holds_volume(const FluidParameters& p) { return p.volume_level == VolumeLevelBy::structure; }
 
@@ -37,12 +34,8 @@ FluidParticipant<D>::FluidParticipant(mesh::LoadedMesh loaded, const FluidParame
       output_(*fluid_, loaded.geometry, std::move(context)) {
   if (link) motion_ = link(mesh_, fluid_->points_at_rest());
   set_up_motion();
-  openings_.emplace(mesh_, parameters,
-                    !motion_ && !prescribed_ && fluid_->boundary().interface_patches().empty());
   if (parameters.statistics) statistics_.emplace(mesh_.cells.n_local(), mesh_.boundary.n_owned());
   if (!fluid_->boundary().interface_patches().empty()) set_up_interface(loaded.geometry);
-  if ((interface_ && motion_) || !fluid_->boundary().body_patches().empty())
-    for (const Index f : moving_faces()) at_start_.push_back(loaded.geometry.face_centre[f]);
 }
 
 template <int D>
@@ -212,9 +205,8 @@ coupling::Exchange FluidParticipant<D>::solve(const coupling::Exchange& in) {
 template <int D>
 coupling::StepReport FluidParticipant<D>::accept_step() {
   if (step_.scheme == coupling::Scheme::semi_implicit) {
-    ++steps_;
-    renewed_steps_ += renewal_.count() > 0 ? 1 : 0;
-    largest_unseen_ = std::max(largest_unseen_, fluid_->unseen_share(w_));
+    renewals_ = renewal_.count();
+    unseen_share_ = fluid_->unseen_share(w_);
   }
   const auto effort = [&] {
     return fluid_->statistics().pressure_iterations + fluid_->statistics().viscous_iterations;
@@ -222,12 +214,7 @@ coupling::StepReport FluidParticipant<D>::accept_step() {
   const long before = effort();
   displacement_ = trial_displacement_;
   fluid_->accept();
-  openings_->add(fluid_->state().phi, step_.dt);
-  if (errors_) errors_->accepted(step_.dt);
   tell_sub_steps();
-  see_given_step();
-  see_motion();
-  see_ringing();
   if (statistics_ && fluid_->state().time > fluid_->parameters().statistics->start)
     statistics_->add(fluid_->state(), fluid_->pressure().get(), step_.dt);
   return {.dt = step_.dt, .iterations = effort() - before, .energy = fluid_->state().ledger.energy};
@@ -240,8 +227,6 @@ void FluidParticipant<D>::save(io::CheckpointWriter& file) const {
   fluid_->solvers().save(file);
   if (statistics_) statistics_->save(file);
   file.write_scalar("slowest-contraction", renewal_.slowest());
-  file.write_scalar("has-errors", errors_ ? 1 : 0);
-  if (errors_) errors_->save(file);
 }
 
 template <int D>
@@ -252,7 +237,6 @@ void FluidParticipant<D>::load(io::CheckpointReader& file) {
   fluid_->solvers().load(file);
   if (statistics_) statistics_->load(file);
   renewal_.restore(file.read_scalar("slowest-contraction"));
-  if (const bool has_errors = file.read_scalar("has-errors") != 0; errors_) errors_->load(file, has_errors);
 }
 
 template <int D>
@@ -272,8 +256,22 @@ void FluidParticipant<D>::write_monitors(double time) {
   output_.write_series(time);
 }
 
+template <int D>
+std::vector<std::string> FluidParticipant<D>::finish() {
+  if (!statistics_ || statistics_->duration() > 0) return {};
+  return {fmt::format("Running statistics start at t = {:g} s, but this run ended before: there are none.",
+                      fluid_->parameters().statistics->start)};
+}
+
 template class FluidParticipant<2>;
 template class FluidParticipant<3>;
+
+void add_diagnostics(const coupling::Participant& participant, diagnostics::Diagnostics& all) {
+  if (const auto* flat = dynamic_cast<const FluidParticipant<2>*>(&participant))
+    add_diagnostics(flat->view(), all);
+  else
+    add_diagnostics(dynamic_cast<const FluidParticipant<3>&>(participant).view(), all);
+}
 
 std::unique_ptr<coupling::Participant> make_participant(mesh::LoadedMesh loaded,
                                                         const FluidParameters& parameters,

@@ -10,18 +10,12 @@
 #include "common/coupling/interface_map.hpp"
 #include "common/coupling/mesh_motion.hpp"
 #include "common/coupling/participant.hpp"
-#include "common/effects/position.hpp"
-#include "fluid_solver/boundary/openings.hpp"
-#include "fluid_solver/judge/compliance.hpp"
-#include "fluid_solver/judge/error_estimate.hpp"
-#include "fluid_solver/judge/ringing.hpp"
+#include "fluid_solver/diagnostics/view.hpp"
 #include "fluid_solver/output/output.hpp"
 #include "fluid_solver/step/fluid.hpp"
 #include "fluid_solver/step/renewal.hpp"
 
 namespace couplet::fluid {
-
-struct FluidEvidence;
 
 /// Makes the link to a mesh mover once the mesh has its final place; empty for a mesh at rest.
 using MotionLink = std::function<std::unique_ptr<coupling::MeshMotionSource>(const mesh::Mesh&,
@@ -40,9 +34,7 @@ using MotionLink = std::function<std::unique_ptr<coupling::MeshMotionSource>(con
 ///   implicit, explicit every solve() moves the mesh and starts from level n
 ///   standalone         interfaces are walls at rest; bodies move as the case prescribes, in every scheme
 template <int D>
-class FluidParticipant final : public coupling::Participant,
-                               public coupling::EstimatesError,
-                               public effects::KnowsItsPlace {
+class FluidParticipant final : public coupling::Participant {
  public:
   FluidParticipant(mesh::LoadedMesh loaded, const FluidParameters& parameters, FluidContext context,
                    const MotionLink& link);
@@ -56,15 +48,13 @@ class FluidParticipant final : public coupling::Participant,
   void load(io::CheckpointReader& file) override;
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
-  std::vector<effects::EffectVerdict> audit() const override;
-  /// Of a step, or what it was cut into: Courant number, or nu dt/h^2 where friction limits it.
-  std::vector<effects::Coordinate> position() const override;
   std::vector<std::string> finish() override;
-  void collect_errors() override { errors_.emplace(*fluid_); }
-  coupling::ErrorParts error_parts() const override {
-    return errors_ ? errors_->parts() : coupling::ErrorParts{};
-  }
 
+  /// What diagnostics see; refers to this participant, which must outlive it. After initialise().
+  FluidView<D> view() const {
+    return {mesh_,         *fluid_,           fluid_->sizes(), step_,     bool(interface_),
+            bool(motion_), bool(prescribed_), displacement_,   renewals_, unseen_share_};
+  }
   const Fluid<D>& fluid() const { return *fluid_; }
 
  private:
@@ -87,16 +77,10 @@ class FluidParticipant final : public coupling::Participant,
   std::vector<Vec3> receive_points();
   coupling::Exchange forces() const;
   void tell_sub_steps();
-  void see_given_step();
-  std::vector<Index> moving_faces() const;
-  void see_motion();
-  void see_ringing();
-  void add_motion(FluidEvidence& evidence) const;
-  void doubt_given_step(double size);
 
   const mesh::Mesh mesh_;
   std::unique_ptr<Fluid<D>> fluid_;
-  std::unique_ptr<coupling::InterfaceMap> interface_;   // null: no interface patch
+  std::unique_ptr<coupling::InterfaceMap> interface_;   // nullptr without an interface patch
   coupling::Interface description_;                     // of what this rank has of it
   mesh::Csr interface_vertices_;                        // per interface face: entries of interface_->points()
   std::vector<double> interface_area_;                  // per interface face, at rest [m^2]
@@ -104,9 +88,7 @@ class FluidParticipant final : public coupling::Participant,
   std::unique_ptr<coupling::MeshMotionSource> motion_;  // by a mesh mover
   std::unique_ptr<fv::PrescribedMotion> prescribed_;    // by the case
   std::optional<RunningStatistics<D>> statistics_;
-  std::optional<FluidErrorEstimate<D>> errors_;  // none: not wanted
   FluidOutput<D> output_;
-  std::optional<Openings> openings_;
   coupling::Step step_;
   std::vector<Vec3> points_;  // of the first guess; semi-implicit only
   bool predicted_ = false;    // in the step under way
@@ -115,16 +97,13 @@ class FluidParticipant final : public coupling::Participant,
   Vectors<D> w_;  // of the last pass
   // Of the interface on a mesh that stands still: largest displacement over the height of the cell there.
   double displacement_ = 0, trial_displacement_ = 0;
-  ComplianceWatch compliance_;
-  RingingWatch ringing_;
-  std::vector<Vec3> at_start_;  // centres of moving_faces()
-  long steps_ = 0, renewed_steps_ = 0;
-  int told_sub_steps_ = 1;     // in the log
-  double longest_seen_ = 0;    // of given sub-steps [s]
-  int steps_unseen_ = 0;       // whose limit may have changed
-  double doubted_times_ = 0;   // the limit that such a one was when it was last doubted
-  double largest_unseen_ = 0;  // share of the load, of the accepted steps
+  int renewals_ = 0;         // of the prediction, in the last step
+  double unseen_share_ = 0;  // error of the friction at the end of the last step, over the load
+  int told_sub_steps_ = 1;   // in the log
 };
+
+/// Adds the diagnostics of a participant that make_participant() made. After its initialise().
+void add_diagnostics(const coupling::Participant& participant, diagnostics::Diagnostics& all);
 
 /// The participant of the dimension that the parameters name.
 std::unique_ptr<coupling::Participant> make_participant(mesh::LoadedMesh loaded,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the participant tells its fluid of the walls that others move.
+// Data of the walls that other programs or a prescribed motion move.
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +9,15 @@
 #include "fluid_solver/participant.hpp"
 
 namespace couplet::fluid {
+namespace {
+
+/// A datum of the interface; nothing where none was given, as at the very start.
+std::vector<double> datum(const coupling::Exchange& in, const char* name) {
+  const auto given = in.find(name);
+  return given == in.end() ? std::vector<double>{} : given->second;
+}
+
+}  // namespace
 
 /// One a corner of each face of the patch, at the end of the step. After receive_points().
 template <int D>
@@ -34,16 +43,8 @@ std::vector<Vec3> FluidParticipant<D>::body_velocities(const mesh::Patch& patch)
 /// At the faces of bodies the mean of the velocities of their points, as at an interface.
 template <int D>
 void FluidParticipant<D>::add_body_velocity(Vectors<D>& w) const {
-  for (const mesh::Patch* patch : fluid_->boundary().body_patches()) {
-    const std::vector<Vec3> velocities = body_velocities(*patch);
-    auto next = velocities.begin();
-    for (Index f = patch->first; f < patch->first + patch->count; ++f) {
-      const auto n = mesh_.face_points[f].size();
-      Vec3 sum = Vec3::Zero();
-      for (std::size_t i = 0; i < n; ++i) sum += *next++;
-      w[f - mesh_.n_interior] = (sum / double(n)).template head<D>();
-    }
-  }
+  for (const mesh::Patch* patch : fluid_->boundary().body_patches())
+    set_face_means<D>(mesh_, *patch, body_velocities(*patch), w);
 }
 
 /// See turn_of(); nothing where no wall turns. After prepare(), which knows the points.
@@ -56,9 +57,7 @@ Vectors<D> FluidParticipant<D>::wall_turn(const coupling::Exchange& in) const {
   for (const mesh::Patch* patch : fluid_->boundary().body_patches())
     fluid::set_turn<D>(mesh_, *patch, points, body_velocities(*patch), turn);
   if (!coupled) return turn;
-  const auto given = in.find("velocity");
-  const std::vector<double> at_points =
-      interface_->scatter_vertices(given == in.end() ? std::vector<double>{} : given->second, D);
+  const std::vector<double> at_points = interface_->scatter_vertices(datum(in, "velocity"), D);
   const std::vector<Index>& faces = interface_->faces();
   std::vector<Vec3> corners, velocities;
   for (std::size_t i = 0; i < faces.size(); ++i) {
@@ -82,9 +81,7 @@ Vectors<D> FluidParticipant<D>::wall_velocity(const coupling::Exchange& in) cons
   Vectors<D> w(mesh_.boundary.n_owned(), Vec<D>::Zero());
   if (moves_bodies()) add_body_velocity(w);
   if (!coupled) return w;
-  const auto given = in.find("velocity");
-  const std::vector<double> at_points =
-      interface_->scatter_vertices(given == in.end() ? std::vector<double>{} : given->second, D);
+  const std::vector<double> at_points = interface_->scatter_vertices(datum(in, "velocity"), D);
   const std::vector<Index>& faces = interface_->faces();
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const auto vertices = interface_vertices_[static_cast<Index>(i)];
@@ -99,9 +96,7 @@ Vectors<D> FluidParticipant<D>::wall_velocity(const coupling::Exchange& in) cons
 template <int D>
 std::vector<double> FluidParticipant<D>::wall_load(const coupling::Exchange& in) const {
   std::vector<double> load(mesh_.boundary.n_owned(), 0.);
-  const auto given = in.find("own-wall-force");
-  const std::vector<double> at_faces =
-      interface_->scatter_faces(given == in.end() ? std::vector<double>{} : given->second, 1);
+  const std::vector<double> at_faces = interface_->scatter_faces(datum(in, "own-wall-force"), 1);
   const std::vector<Index>& faces = interface_->faces();
   for (std::size_t i = 0; i < faces.size(); ++i)
     load[faces[i] - mesh_.n_interior] = at_faces[i] / interface_area_[i];
@@ -111,21 +106,17 @@ std::vector<double> FluidParticipant<D>::wall_load(const coupling::Exchange& in)
 /// `impedance: structure`.
 template <int D>
 void FluidParticipant<D>::take_wall_mass(const coupling::Exchange& in) {
-  const auto given = in.find("surface-density");
-  const std::vector<double> masses =
-      interface_->scatter_faces(given == in.end() ? std::vector<double>{} : given->second, 1);
+  const std::vector<double> masses = interface_->scatter_faces(datum(in, "surface-density"), 1);
   std::vector<Index> faces = interface_->faces();
   for (Index& f : faces) f -= mesh_.n_interior;
   fluid_->set_wall_mass(faces, masses);
 }
 
-/// Of the faces of the interface: largest mean displacement over the height of the cell beside them.
+/// Largest mean displacement of an interface face over the height of the cell beside it.
 /// Collective.
 template <int D>
 double FluidParticipant<D>::wall_displacement(const coupling::Exchange& in) const {
-  const auto given = in.find("displacement");
-  const std::vector<double> at_points =
-      interface_->scatter_vertices(given == in.end() ? std::vector<double>{} : given->second, D);
+  const std::vector<double> at_points = interface_->scatter_vertices(datum(in, "displacement"), D);
   const std::vector<Index>& faces = interface_->faces();
   double largest = 0;
   for (std::size_t i = 0; i < faces.size(); ++i) {

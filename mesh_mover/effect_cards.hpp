@@ -8,9 +8,7 @@
 
 namespace couplet::mesh_mover {
 
-/// Bad cells are refused when they appear, so that nothing is left for a verdict at the end.
-struct Evidence {};
-using Card = effects::EffectCard<Parameters, Evidence>;
+using Card = effects::EffectCard<Parameters>;
 std::span<const Card> effect_cards();
 
 }  // namespace couplet::mesh_mover

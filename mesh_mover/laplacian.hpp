@@ -10,8 +10,8 @@
 #include "common/linalg/linear_solver.hpp"
 #include "common/mesh/mesh.hpp"
 #include "common/mesh/periodic_points.hpp"
-#include "mesh_mover/affine.hpp"
 #include "mesh_mover/motion_method.hpp"
+#include "mesh_mover/moving_patches.hpp"
 #include "mesh_mover/parameters.hpp"
 
 namespace couplet::mesh_mover {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
 #include "common/linalg/petsc_environment.hpp"
+#include "mesh_mover/diagnostics.hpp"
 #include "mesh_mover/effect_cards.hpp"
 #include "mesh_mover/mover.hpp"
 
@@ -15,6 +16,11 @@ int main(int argc, char** argv) {
       .make =
           [&](const couplet::app::ParticipantContext& context) {
             return std::make_unique<couplet::mesh_mover::Mover>(parameters, context);
+          },
+      .diagnose =
+          [](const couplet::coupling::Participant& participant, couplet::diagnostics::Diagnostics& all) {
+            couplet::mesh_mover::add_diagnostics(dynamic_cast<const couplet::mesh_mover::Mover&>(participant),
+                                                 all);
           },
       .environment = couplet::linalg::petsc_environment,
       .effects =

@@ -10,7 +10,6 @@
 #include "common/coupling/interface_map.hpp"
 #include "common/coupling/mesh_motion.hpp"
 #include "common/coupling/participant.hpp"
-#include "common/effects/position.hpp"
 #include "common/io/fields/field_writer.hpp"
 #include "common/io/series.hpp"
 #include "common/mesh/periodic_points.hpp"
@@ -26,7 +25,7 @@ namespace couplet::mesh_mover {
 /// case prescribes, and sends the displacement of every point to the fluid, rank to rank. Alone it writes the
 /// moved mesh. In the total form the motion depends on the given displacement alone, so there is no state but
 /// the last accepted motion (a warm start); in the incremental form each step starts from the accepted mesh.
-class Mover final : public coupling::Participant, public effects::KnowsItsPlace {
+class Mover final : public coupling::Participant {
  public:
   Mover(const Parameters& parameters, const app::ParticipantContext& context);
 
@@ -38,7 +37,8 @@ class Mover final : public coupling::Participant, public effects::KnowsItsPlace 
   void load(io::CheckpointReader& file) override;
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
-  std::vector<effects::Coordinate> position() const override;
+  /// Smallest scaled Jacobian of the run; none before it was looked at.
+  const std::optional<double>& least_jacobian() const { return least_jacobian_; }
 
   const mesh::Mesh& mesh() const { return mesh_; }
   /// Of the points as read.

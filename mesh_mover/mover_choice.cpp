@@ -57,9 +57,4 @@ void Mover::choose_method(const app::SimulationParameters& simulation) {
   tell_choice();
 }
 
-std::vector<effects::Coordinate> Mover::position() const {
-  if (!least_jacobian_) return {};
-  return {{"least scaled Jacobian", *least_jacobian_, 0, "mover-rotation", true}};
-}
-
 }  // namespace couplet::mesh_mover

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "common/fv/prescribed_motion.hpp"
@@ -29,6 +32,31 @@ class MovingPatches {
   const mesh::Mesh& mesh_;
   const mesh::Geometry& geometry_;
   std::vector<Moving> patches_;
+};
+
+/// Values at some points of a mesh, a + b . (x - centre): the components of the displacement of a rigid body,
+/// whatever the size of its motion, are of this kind.
+class AffineFit {
+ public:
+  static constexpr int most = 4;
+  using Coefficients = std::array<double, most>;  // a, b_x, b_y, b_z
+
+  /// `points`: local points, ghosts too. Collective.
+  AffineFit(const mesh::Mesh& mesh, const mesh::Geometry& geometry, std::vector<Index> points);
+  /// Least squares of component `component` of `values` (dim per local point). Nothing if it leaves more than
+  /// round-off at any point. Collective.
+  std::optional<Coefficients> operator()(std::span<const double> values, int component) const;
+  /// The function that has coefficient k alone, at a point.
+  double shape(int k, const Vec3& x) const { return k == 0 ? 1.0 : x[k - 1] - centre_[k - 1]; }
+  int count() const { return mesh_.dim + 1; }
+
+ private:
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
+  std::vector<Index> points_;
+  double n_ = 0;
+  Vec3 centre_ = Vec3::Zero();
+  Tensor3 inverse_ = Tensor3::Zero();  // of sum (x - centre)(x - centre)^T where the points extend, else 0
 };
 
 }  // namespace couplet::mesh_mover

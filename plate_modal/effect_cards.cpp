@@ -8,18 +8,16 @@
 #include <cmath>
 #include <numbers>
 
-#include "plate_modal/effect_judgements.hpp"
 #include "plate_modal/model/build_model.hpp"
 
 namespace couplet::plate {
 namespace {
 
 using S = PlateScene;
-using E = PlateEvidence;
-using V = std::optional<effects::EffectVerdict>;
 
 std::string when(bool on, const char* reason) { return on ? reason : ""; }
 bool is_dynamic(const S& s) { return s.parameters.analysis == Parameters::Analysis::dynamic; }
+std::string dynamic_asked_by(const S& s) { return when(is_dynamic(s), "analysis: dynamic"); }
 
 /// What a contact over the whole of a plate lasts at least, and the steps in it; modes of a file tell it in a run.
 std::string contact_asked_by(const S& s) {
@@ -36,58 +34,50 @@ std::string contact_asked_by(const S& s) {
 }
 
 /// What a run judges without having it.
-PlateCard left_out(const char* name, const char* key, const char* limit, V (*judge)(const S&, const E&)) {
-  return {name, key, [](const S&) { return std::string(); }, {}, limit, judge};
+PlateCard left_out(const char* name, const char* key, const char* judged_by) {
+  return {name, key, [](const S&) { return std::string(); }, {}, judged_by};
 }
 
 const std::array cards{
-    PlateCard{"inertia", "`analysis: dynamic`",
-              [](const S& s) { return when(is_dynamic(s), "analysis: dynamic"); },
-              "rate and acceleration per mode"},
-    PlateCard{"balance of the energies", "`analysis: dynamic`",
-              [](const S& s) { return when(is_dynamic(s), "analysis: dynamic"); }, "energies.csv",
-              "error of the energy balance over the largest energy, 0.01", judge_energy, true},
-    PlateCard{"step that resolves the modes", "`analysis: dynamic`",
-              [](const S& s) { return when(is_dynamic(s), "analysis: dynamic"); }, "",
-              "share of modes with fewer than ten steps per period in the displacement, 0.1", judge_step,
-              true},
-    PlateCard{"step near a resonance", "`analysis: dynamic`",
-              [](const S& s) { return when(is_dynamic(s), "analysis: dynamic"); }, "",
-              "frequency error x 2 x amplification of a varying load, relative to the displacement, 0.1",
-              judge_resonance, true},
+    PlateCard{"inertia", "`analysis: dynamic`", dynamic_asked_by, "rate and acceleration per mode"},
+    PlateCard{"balance of the energies", "`analysis: dynamic`", dynamic_asked_by, "energies.csv",
+              "in a dynamic analysis: error of the energy balance over the largest energy, 0.01", true},
+    PlateCard{
+        "step that resolves the modes", "`analysis: dynamic`", dynamic_asked_by, "",
+        "in a dynamic analysis: share of modes with fewer than ten steps per period in the displacement, 0.1",
+        true},
+    PlateCard{
+        "step near a resonance", "`analysis: dynamic`", dynamic_asked_by, "",
+        "in a dynamic analysis: frequency error x 2 x amplification of a varying load, relative to the displacement, 0.1",
+        true},
     PlateCard{"step that resolves the load", "`load`",
               [](const S& s) { return when(is_dynamic(s) && s.parameters.load.has_value(), "load"); }, "",
-              "load at mid-step against its mean over the step, 0.1", judge_load, true},
+              "in a dynamic analysis: load at mid-step against its mean over the step, 0.1", true},
     PlateCard{"step that resolves the contact", "`contact`",
               [](const S& s) { return when(s.parameters.contact.has_value(), "contact"); }, "",
-              "a step over the duration of an impact, 0.1", judge_contact, true},
+              "with `contact`: a step over the duration of an impact, 0.1", true},
     left_out("large rotation", "no key: not in the model",
-             "max displacement over the structure's size, or rigid rotation [rad], 0.25", judge_rotation),
+             "max displacement over the structure's size, or rigid rotation [rad], 0.25"),
     left_out("motion in the plane", "no key: not in the model",
-             "in-plane share of gravity on a plate that may fall, or of the initial velocity, 0.01",
-             judge_in_plane),
+             "in-plane share of gravity on a plate that may fall, or of the initial velocity, 0.01"),
     left_out("deflection beyond the modes", "`modes.number`",
-             "truncated modes: static, of the deflection, dynamic, of the compliance of the loads, 0.05",
-             judge_kept),
+             "truncated modes: static, of the deflection, dynamic, of the compliance of the loads, 0.05"),
     left_out("load faster than the modes", "`modes.number`",
-             "frequency of an oscillating load over that of the highest retained mode, 2/3",
-             judge_load_beyond),
+             "frequency of an oscillating load over that of the highest retained mode, 2/3"),
     left_out("initial velocity beyond the modes", "`modes.number`",
-             "share of its energy outside the modes, 0.1", judge_velocity),
+             "share of its energy outside the modes, 0.1"),
     left_out("load between the faces or steps", "no key: finer mesh or step",
-             "a prescribed pressure that is 0 wherever it is evaluated", judge_lost),
+             "a prescribed pressure that is 0 wherever it is evaluated"),
     left_out("load that moves no mode", "no key: `load`, `modes.number`",
-             "modal loads of the pressures over what they would be along the motion, 1e-9", judge_no_part),
+             "modal loads of the pressures over what they would be along the motion, 1e-9"),
     left_out("load within a face", "no key: finer mesh",
-             "face centre against sixteen points, of the load's effect on the modes, 0.05", judge_within),
+             "face centre against sixteen points, of the load's effect on the modes, 0.05"),
     left_out("mesh that resolves the modes", "no key: finer mesh",
-             "mean of a cell's corners against its mean deflection, rms over the motion, 0.1", judge_mesh),
+             "mean of a cell's corners against its mean deflection, rms over the motion, 0.1"),
     left_out("stretch of the mid-surface", "no key: not in the model",
-             "of a plate with two or more held edges: deflection over thickness, 0.5, or 0.2 with hinges",
-             judge_stretch),
+             "of a plate with two or more held edges: deflection over thickness, 0.5, or 0.2 with hinges"),
     left_out("shear and rotary inertia", "no key: not in the model",
-             "thickness over half the wavelength of the highest mode with 1 % of the motion, 0.1",
-             judge_shear),
+             "thickness over half the wavelength of the highest mode with 1 % of the motion, 0.1"),
     PlateCard{"damping", "`damping`",
               [](const S& s) { return when(s.parameters.damping.has_value(), "damping"); },
               "a coefficient per mode"},

@@ -2,7 +2,6 @@
 #include "common/app/program.hpp"
 #include "common/linalg/petsc_environment.hpp"
 #include "plate_modal/effect_cards.hpp"
-#include "plate_modal/model/files.hpp"
 #include "plate_modal/structure.hpp"
 
 int main(int argc, char** argv) {
@@ -16,6 +15,10 @@ int main(int argc, char** argv) {
             return std::make_unique<couplet::plate::Structure>(
                 parameters, couplet::plate::PlateContext{c.comm, c.name, c.case_folder, c.output_folder,
                                                          c.restart_time, c.simulation.time_step});
+          },
+      .diagnose =
+          [](const couplet::coupling::Participant& participant, couplet::diagnostics::Diagnostics& all) {
+            add_diagnostics(dynamic_cast<const couplet::plate::Structure&>(participant).view(), all);
           },
       .environment = couplet::linalg::petsc_environment,
       .effects =

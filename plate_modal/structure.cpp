@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <numeric>
 #include <utility>
 
 #include "common/base/error.hpp"
@@ -24,33 +22,6 @@ Parameters with_unit_directions(Parameters p) {
     direction.stableNormalize();
   }
   return p;
-}
-
-double largest_of(const std::vector<double>& vectors) {
-  double largest = 0;
-  for (std::size_t i = 0; i < vectors.size(); i += 3) largest = std::max(largest, Vec3(&vectors[i]).norm());
-  return largest;
-}
-
-double norm_of(std::span<const double> amplitudes) {
-  return std::sqrt(std::inner_product(amplitudes.begin(), amplitudes.end(), amplitudes.begin(), 0.0));
-}
-
-/// Rate at which damping `c` takes away what moves as the modes do now [1/s].
-double rate_of_decay(std::span<const double> omega, std::span<const double> c, std::span<const double> v) {
-  double lost = 0, all = 0;
-  for (std::size_t m = 0; m < c.size(); ++m) {
-    // The slower of two rates beyond the critical damping.
-    lost += v[m] * v[m] * (c[m] <= 2 * omega[m] ? 0.5 * c[m] : omega[m] * omega[m] / c[m]);
-    all += v[m] * v[m];
-  }
-  return all > 0 ? lost / all : 0;
-}
-
-/// Kinetic, strain and contact energy without what the scheme made, or the work of the loads: whichever is more.
-double true_energy(const ModalState& state) {
-  const Energies& e = state.energies;
-  return std::max(e.kinetic + e.strain + e.contact - std::max(0.0, e.mismatch()), std::abs(e.load_work));
 }
 
 }  // namespace
@@ -79,18 +50,12 @@ Structure::Structure(Parameters parameters, PlateContext context, const mesh::Ra
   if (p.contact) make_contact();
   if (p.load && (p.load->upper || p.load->lower))
     pressure_ = std::make_unique<PressureLoad>(*share_, *p.load, p.placement.normal(), context_.name);
-  if (p.analysis == Parameters::Analysis::dynamic)
-    resolution_ = std::make_unique<Resolution>(share_->omega());
   oscillators_ =
       std::make_unique<Oscillators>(share_->omega(), damping(), gravity_, p.time_scheme, contact_.get());
   state_ = trial_ = initial_state();
   if (contact_ && !p.contact->starts_inside) refuse_wound_springs();
   results_ = std::make_unique<PlateResults>(*this);
-  find_rotations();
-  mesh::on_root(context_.comm, [&] {
-    if (built_.plate && resolution_)
-      truncation_ = std::make_unique<Truncation>(*built_.plate, built_.model, p.placement.normal());
-  });
+  displacement_ = share_->gather_vertices(state_.q);
 }
 
 Structure::~Structure() = default;
@@ -109,7 +74,8 @@ coupling::Interface Structure::initialise() {
 
 /// A scheme that has made more energy than the structure ever had moves something else than the structure.
 void Structure::refuse_made_energy() const {
-  const double made = trial_.energies.mismatch(), had = std::max(largest_true_, true_energy(trial_));
+  const double made = trial_.energies.mismatch(),
+               had = std::max(trial_.energies.largest, trial_.energies.own());
   if (!(made > had)) return;
   throw SolveFailure(
       "At t = {:g} s the time scheme has generated {:.3g} J, more than the {:.3g} J that the structure had "
@@ -127,7 +93,9 @@ coupling::Exchange Structure::solve(const coupling::Exchange& in) {
     share_->add_load(share_->scatter_faces(given == in.end() ? std::vector<double>{} : given->second), fluid);
   }
   share_->sum(fluid);
-  if (truncation_) take_fluid(in);
+  const auto given = in.find("pressure-force");
+  fluid_force_ = given == in.end() ? std::vector<double>{} : given->second;
+  pressure_acts_ = false;
   if (parameters_.analysis == Parameters::Analysis::dynamic) {
     // A partner's load is its mean over the step: that of the middle. Schemes that solve later continue it from the middle of the last step.
     const time::TimeScheme scheme = parameters_.time_scheme.type;
@@ -151,7 +119,7 @@ coupling::Exchange Structure::solve(const coupling::Exchange& in) {
   coupling::Exchange out;
   std::vector<double> u = share_->gather_vertices(trial_.q), v = share_->gather_vertices(trial_.v);
   if (parallel::comm_rank(context_.comm) != 0) return out;
-  trial_largest_ = largest_of(direct_.empty() ? u : direct_);
+  trial_displacement_ = direct_.empty() ? u : direct_;
   out["displacement"] = std::move(u);
   out["velocity"] = std::move(v);
   if (parameters_.surface_density) out["surface-density"] = built_.model.face_density;
@@ -160,64 +128,59 @@ coupling::Exchange Structure::solve(const coupling::Exchange& in) {
 
 void Structure::add_pressure(double t, std::span<double> load) {
   pressure_->at(t, load);
-  load_acted_ = load_acted_ || std::ranges::any_of(load, [](double f) { return f != 0; });
+  pressure_acts_ = pressure_acts_ || std::ranges::any_of(load, [](double f) { return f != 0; });
 }
 
-/// Does the step that is accepted now (from trial_, before, to state_) resolve what it moves?
-void Structure::look_at_step() {
-  resolution_->accepted(trial_, state_, oscillators_->load(), step_.dt);
-  // A load that differs from place to place costs an expression a face: not each time.
-  const long steps = resolution_->steps();
-  if (pressure_ && pressure_->changes_in_time() &&
-      (pressure_->is_uniform() || steps <= 16 || steps % 16 == 0))
-    resolution_->load(pressure_->seen(step_.time, step_.dt, 6 + int(steps % 5)));
-  const double work = state_.energies.impact_work - trial_.energies.impact_work;
-  if (contact_ && work != 0)
-    resolution_->impact(contact_->stiffness_of_impact(trial_.q, state_.q, oscillators_->seat().force), work,
-                        std::max(largest_exchange_, state_.energies.kinetic + state_.energies.strain),
-                        step_.dt);
+/// q = Q / omega^2 of each mode; beside it K u = f on rank 0.
+void Structure::solve_static(double t, std::span<const double> fluid) {
+  std::vector<double> load(fluid.size(), 0);
+  if (pressure_) add_pressure(t, load);
+  for (std::size_t m = 0; m < load.size(); ++m) {
+    trial_.q[m] = (load[m] + fluid[m] + gravity_[m]) / (share_->omega()[m] * share_->omega()[m]);
+    trial_.v[m] = 0;
+  }
+  // The same loads again: the same answer.
+  const bool first = !repeats_;
+  repeats_ = trial_.q == solved_ && trial_.q == state_.q;
+  if (repeats_) {
+    if (first && parallel::comm_rank(context_.comm) == 0)
+      log::info("the loads do not change from step to step, so the constant deflection is written once");
+    return;
+  }
+  solved_ = trial_.q;
+  std::vector<double> by_modes = share_->gather_vertices(trial_.q);
+  mesh::on_root(context_.comm, [&] {
+    if (!built_.plate) return;
+    direct_ = direct_deflection(t);
+    Deflection& d = deflection_.emplace(Deflection{});
+    for (std::size_t i = 0; i < direct_.size(); ++i) {
+      d.direct = std::max(d.direct, std::abs(direct_[i]));
+      d.by_modes = std::max(d.by_modes, std::abs(by_modes[i]));
+      d.apart = std::max(d.apart, std::abs(direct_[i] - by_modes[i]));
+    }
+    log::info("static deflection: max {:.6e} m; by {} modes {:.6e} m; max difference {:.2e} m", d.direct,
+              share_->n_modes(), d.by_modes, d.apart);
+  });
+}
+
+std::vector<double> Structure::direct_deflection(double t) const {
+  const PlateModel& plate = *built_.plate;
+  const modes::EigenModes one{
+      {0}, {plate.deflect(plate.load_of(cell_pressures(plate, parameters_, pressure_.get(), t)))}, 0, 0};
+  return skin_of(plate, one, parameters_.placement, parameters_.wetted,
+                 std::vector<bool>(plate.surface().patches.size(), false))
+      .vertex_shape;
 }
 
 coupling::StepReport Structure::accept_step() {
   std::swap(state_, trial_);
-  met_seat_ = met_seat_ || state_.energies.impact_work != 0;
-  if (step_errors_ && resolution_)  // trial_ is what it started from
-    step_errors_->add(trial_.v, state_.v, state_.dt, trial_.dt, norm_of(state_.q), norm_of,
-                      parameters_.damping ? rate_of_decay(share_->omega(), damping(), state_.v) : 0);
-  if (resolution_) look_at_step();
-  largest_ = std::max(largest_, trial_largest_);
-  if (!rotations_.empty()) look_at_rotation();
-  if (resolution_) look_at_modes();
-  const Energies& e = state_.energies;
-  worst_mismatch_ = std::max(worst_mismatch_, std::abs(e.mismatch()));
-  largest_true_ = std::max(largest_true_, true_energy(state_));
-  largest_exchange_ = std::max({largest_exchange_, e.kinetic + e.strain + e.contact, std::abs(e.load_work)});
+  std::swap(displacement_, trial_displacement_);
+  Energies& e = state_.energies;
+  e.largest = std::max(e.largest, e.own());
   return {.dt = step_.dt, .iterations = oscillators_->newton_iterations(), .energy = e.total()};
-}
-
-std::vector<double> Structure::displacement() const {
-  if (!direct_.empty()) return direct_;
-  return share_->gather_vertices(state_.q);
 }
 
 void Structure::write_output(double time, int) { results_->write_fields(time); }
 void Structure::write_monitors(double time) { results_->write_series(time); }
-
-std::vector<std::string> Structure::finish() {
-  finished_ = true;
-  std::vector<std::string> said;
-  if (contact_ && !met_seat_)
-    if (const Contact::Place nearest = contact_->deepest(state_.q); !(nearest.depth > 0))
-      said.push_back(fmt::format(
-          "contact: the structure never touched the seat; final minimum gap {:.3g} m, at ({:.4g}, {:.4g}, "
-          "{:.4g}).",
-          -nearest.depth, nearest.centre.x(), nearest.centre.y(), nearest.centre.z()));
-  if (parameters_.analysis == Parameters::Analysis::dynamic && largest_exchange_ > 0)
-    said.push_back(fmt::format(
-        "energy: max error of the balance of the structure (4.29-4.31): {:.2e} J, {:.2g} % of the largest "
-        "energy.",
-        worst_mismatch_, 100 * worst_mismatch_ / largest_exchange_));
-  return said;
-}
 
 }  // namespace couplet::plate

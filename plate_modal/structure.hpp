@@ -5,16 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/coupling/error_parts.hpp"
-#include "common/coupling/participant.hpp"
-#include "common/time/velocity_errors.hpp"
-#include "plate_modal/model/build_model.hpp"
-#include "plate_modal/motion/contact.hpp"
-#include "plate_modal/motion/oscillators.hpp"
-#include "plate_modal/motion/pressure_load.hpp"
-#include "plate_modal/motion/resolution.hpp"
-#include "plate_modal/motion/share.hpp"
-#include "plate_modal/truncation.hpp"
+#include "plate_modal/diagnostics/view.hpp"
 
 namespace couplet::plate {
 
@@ -22,7 +13,7 @@ class PlateResults;
 
 /// A structure by superposition of its modes, as a participant: takes the forces on the faces of its surface,
 /// gives displacement and velocity of its vertices.
-class Structure final : public coupling::Participant, public coupling::EstimatesError {
+class Structure final : public coupling::Participant {
  public:
   /// `raw`: mid-surface on rank 0 in place of the mesh that the parameters name. Collective.
   Structure(Parameters parameters, PlateContext context, const mesh::RawMesh* raw = nullptr);
@@ -36,26 +27,21 @@ class Structure final : public coupling::Participant, public coupling::Estimates
   void load(io::CheckpointReader& file) override;
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
-  std::vector<effects::EffectVerdict> audit() const override;
-  std::vector<std::string> finish() override;
-  void collect_errors() override { step_errors_.emplace(parameters_.time_scheme); }
-  coupling::ErrorParts error_parts() const override;
 
+  /// View for diagnostics. It refers to this structure, which must outlive it.
+  PlateView view() const {
+    return {parameters_, built_, *share_,       *oscillators_, contact_.get(), pressure_.get(), step_,
+            trial_,      state_, displacement_, deflection_,   fluid_force_,   pressure_acts_};
+  }
   const Parameters& parameters() const { return parameters_; }
   const PlateContext& context() const { return context_; }
   const Share& share() const { return *share_; }
   const ModalState& state() const { return state_; }
   const modes::ModalModel& model() const { return built_.model; }  ///< on rank 0
   const Contact* contact() const { return contact_.get(); }
-  /// Static analysis: largest deflections of the plate itself and by its modes, largest difference [m]; rank
-  /// 0.
-  struct Deflection {
-    double direct = 0, by_modes = 0, apart = 0;
-  };
-  const std::optional<Deflection>& deflection() const { return deflection_; }
-  bool repeats() const { return repeats_; }  ///< of a static analysis: the answer of the step before
-  /// Displacement of every vertex now [m], 3 each, on rank 0. Collective.
-  std::vector<double> displacement() const;
+  const std::optional<Deflection>& deflection() const { return deflection_; }  ///< static analysis; on rank 0
+  bool repeats() const { return repeats_; }  ///< a static analysis has found the answer of the step before
+  const std::vector<double>& displacement() const { return displacement_; }  ///< [m], 3 a vertex, on rank 0
 
  private:
   std::vector<double> damping() const;
@@ -63,18 +49,9 @@ class Structure final : public coupling::Participant, public coupling::Estimates
   void make_contact();
   void refuse_wound_springs() const;
   void add_pressure(double t, std::span<double> load);
-  void look_at_step();
-  void find_rotations();
-  void look_at_rotation();
-  double in_plane_share() const;
   void refuse_made_energy() const;
   void solve_static(double t, std::span<const double> fluid);
   std::vector<double> direct_deflection(double t) const;
-  std::vector<double> cell_pressures(double t) const;
-  void take_fluid(const coupling::Exchange& in);
-  void look_at_modes();
-  void look_at_pressure(double t);
-  double mesh_gap() const;
 
   Parameters parameters_;
   PlateContext context_;
@@ -82,28 +59,18 @@ class Structure final : public coupling::Participant, public coupling::Estimates
   std::unique_ptr<Share> share_;
   std::unique_ptr<Contact> contact_;  // none: no seat in this scene
   std::unique_ptr<Oscillators> oscillators_;
-  std::unique_ptr<PressureLoad> pressure_;           // none: no pressures of the case
-  std::unique_ptr<Resolution> resolution_;           // of a dynamic analysis
-  std::optional<time::VelocityErrors> step_errors_;  // of modes of unit mass; none: not wanted
+  std::unique_ptr<PressureLoad> pressure_;  // none: no pressures of the case
   std::vector<double> gravity_;
   ModalState state_, trial_;
+  // Displacements of the vertices on rank 0 [m], 3 each: at the accepted time, and in the last solve().
+  std::vector<double> displacement_, trial_displacement_;
   std::vector<double> direct_;  // static deflection of the plate itself, 3 a vertex on rank 0
   std::optional<Deflection> deflection_;
   std::vector<double> solved_;  // static analysis: the modes that direct_ and deflection_ belong to
   bool repeats_ = false;
   coupling::Step step_;
-  double worst_mismatch_ = 0, largest_exchange_ = 0;
-  double largest_true_ = 0;  // largest energy that the scheme did not make, or work of the loads [J]
-  double largest_ = 0, trial_largest_ = 0;  // displacement of any vertex [m], on rank 0
-  std::vector<Vec3> rotations_;             // of each mode [1/(sqrt(kg) m)]; empty: none is a rigid motion
-  std::unique_ptr<Truncation> truncation_;  // of a mesh in a dynamic analysis, on rank 0
-  std::vector<double> fluid_pressure_;      // of the last solve, a cell, on rank 0; empty: no fluid
-  bool load_acted_ = false;                 // a prescribed pressure was not 0 somewhere
-  std::vector<double> within_{0, 0};  // what the midpoint rule misses of prescribed pressures, on rank 0
-  LoadOnModes on_modes_;              // of prescribed pressures, on rank 0
-  bool met_seat_ = false;             // contact did work
-  bool finished_ = false;             // no step will follow
-  double largest_rotation_ = 0;       // of the body as a whole [rad]
+  std::vector<double> fluid_force_;  // pressure forces of the last solve(), 3 a face on rank 0
+  bool pressure_acts_ = false;       // a prescribed pressure was not 0 somewhere in the last solve()
   std::unique_ptr<PlateResults> results_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the motion starts: seat, damping, amplitudes and velocities.
+// Where the motion starts: seat, damping, amplitudes and velocities, or a checkpoint.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,11 +7,35 @@
 #include <numbers>
 
 #include "common/base/error.hpp"
+#include "common/base/numbers.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/on_root.hpp"
 #include "plate_modal/structure.hpp"
 
 namespace couplet::plate {
+namespace {
+
+/// A restart with changes may have taken away the seat, or moved it, or the gravity: the energy that the structure has
+/// in the new scene is where its balance starts from.
+void take_changed_energy(const Oscillators& oscillators, bool tells, ModalState& state) {
+  Energies& kept = state.energies;
+  const Energies now = oscillators.start(state.q, state.v).energies;
+  const double scale =
+      std::abs(kept.kinetic) + std::abs(kept.strain) + std::abs(kept.gravity) + std::abs(kept.contact);
+  const double jump = now.contact - kept.contact + now.gravity - kept.gravity;
+  if (!(std::abs(now.contact - kept.contact) + std::abs(now.gravity - kept.gravity) > 1e-9 * scale)) return;
+  if (tells)
+    log::warn(
+        "energy: with the changes of this restart the seat stores {:.4g} J instead of {:.4g} J, and gravity "
+        "{:.4g} J instead of {:.4g} J: this jump of {:.4g} J is not part of the balance.",
+        now.contact, kept.contact, now.gravity, kept.gravity, jump);
+  kept.contact = now.contact;
+  kept.gravity = now.gravity;
+  kept.initial += jump;
+}
+
+}  // namespace
 
 /// A seat in which the structure stands at the start has wound springs: energy that nobody asked for.
 void Structure::refuse_wound_springs() const {
@@ -66,6 +90,27 @@ ModalState Structure::initial_state() const {
   for (std::size_t m = 0; m < parameters_.initial_amplitudes.size(); ++m)
     q[m] = parameters_.initial_amplitudes[m] / largest[m];
   return oscillators_->start(std::move(q), std::move(v));
+}
+
+void Structure::save(io::CheckpointWriter& file) const {
+  file.write_common("omega", share_->omega());
+  file.write_common("state", base::to_numbers(state_));
+}
+
+void Structure::load(io::CheckpointReader& file) {
+  if (file.read_common("omega") != share_->omega())
+    throw Error(
+        "The checkpoint was written with other modes than this run uses: mesh, material, thickness, "
+        "supports or the number of modes differ.");
+  const ModalState fresh = initial_state();
+  base::from_numbers(file.read_common("state"), state_, "modes");
+  for (const auto part :
+       {&ModalState::q, &ModalState::v, &ModalState::a, &ModalState::q_old, &ModalState::v_old})
+    if ((state_.*part).size() != (fresh.*part).size())
+      throw Error("The checkpoint was written with another time scheme than this run uses.");
+  take_changed_energy(*oscillators_, parallel::comm_rank(context_.comm) == 0, state_);
+  trial_ = state_;
+  displacement_ = share_->gather_vertices(state_.q);
 }
 
 }  // namespace couplet::plate

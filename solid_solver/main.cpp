@@ -5,6 +5,7 @@
 #include "common/app/program.hpp"
 #include "common/io/cut/load_mesh.hpp"
 #include "common/linalg/petsc_environment.hpp"
+#include "solid_solver/diagnostics/table.hpp"
 #include "solid_solver/effects/auto_effects.hpp"
 #include "solid_solver/effects/effect_cards.hpp"
 #include "solid_solver/solid.hpp"
@@ -43,6 +44,7 @@ int main(int argc, char** argv) {
           return std::make_unique<couplet::solid::ThermalSolid>(std::move(body), parameters, where);
         return std::make_unique<couplet::solid::Solid>(std::move(body), parameters, where);
       },
+      .diagnose = couplet::solid::add_diagnostics,
       .environment = couplet::linalg::petsc_environment,
       .effects =
           [&](const couplet::effects::EffectScene&) {

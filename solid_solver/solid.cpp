@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/io/archive.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/probes/probe.hpp"
 #include "common/log/log.hpp"
-#include "solid_solver/effects/effect_cards.hpp"
 #include "solid_solver/output/output.hpp"
 
 namespace couplet::solid {
@@ -91,10 +91,6 @@ coupling::ErrorParts Solid::error_parts() const {
   return parts;
 }
 
-std::vector<effects::EffectVerdict> Solid::audit() const {
-  return couplet::effects::audit(solid_effect_cards(), body_.parameters(), judge_.evidence());
-}
-
 std::vector<std::string> Solid::finish() {
   if (body_.is_dynamic()) {
     judge_.look();
@@ -132,7 +128,8 @@ void Solid::write_monitors(double time) {
 
 void Solid::save(io::CheckpointWriter& file) const {
   stepper_.save_state(file);
-  judge_.save(file);
+  io::Archive archive(file);
+  const_cast<SolidJudge&>(judge_).visit(archive);  // writing changes nothing
   for (const auto& effect : body_.effects()) effect->save(file);
   stepper_.save_guesses(file);
   file.write_scalar("has-errors", errors_ ? 1 : 0);
@@ -141,7 +138,8 @@ void Solid::save(io::CheckpointWriter& file) const {
 
 void Solid::load(io::CheckpointReader& file) {
   stepper_.load_state(file);
-  judge_.load(file);
+  io::Archive archive(file);
+  judge_.visit(archive);
   for (const auto& effect : body_.effects()) effect->load(file);
   body_.place_expansion(stepper_.state().time);
   stepper_.load_guesses(file);

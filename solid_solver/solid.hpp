@@ -12,8 +12,8 @@
 #include "solid_solver/body/solid_context.hpp"
 #include "solid_solver/body/solid_fields.hpp"
 #include "solid_solver/body/solid_interface.hpp"
-#include "solid_solver/judge/error_estimate.hpp"
-#include "solid_solver/judge/judge.hpp"
+#include "solid_solver/diagnostics/error_estimate.hpp"
+#include "solid_solver/diagnostics/judge.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
 #include "solid_solver/output/quantities.hpp"
 
@@ -22,7 +22,7 @@ namespace couplet::solid {
 class SolidOutput;
 
 /// An elastic solid as a participant: its rooms, and in which order they are asked.
-class Solid final : public coupling::Participant, public coupling::EstimatesError {
+class Solid final : public coupling::Participant {
  public:
   /// Collective over mesh.comm.
   Solid(mesh::LoadedMesh body, SolidParameters parameters, SolidContext context);
@@ -41,10 +41,11 @@ class Solid final : public coupling::Participant, public coupling::EstimatesErro
   void write_monitors(double time) override;
   /// Those of the last step, after it.
   const std::vector<QuantityEstimate>& quantities() const { return quantities_; }
-  std::vector<effects::EffectVerdict> audit() const override;
   std::vector<std::string> finish() override;
-  void collect_errors() override;
-  coupling::ErrorParts error_parts() const override;
+  /// Called before the first step if the run is to end with an estimate of its error.
+  void collect_errors();
+  /// Of the accepted state, after the last step. Collective.
+  coupling::ErrorParts error_parts() const;
 
   const SolidBody& body() const { return body_; }
   const SolidStepper& stepper() const { return stepper_; }

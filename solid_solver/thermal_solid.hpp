@@ -24,7 +24,7 @@ namespace couplet::solid {
 /// A solid that conducts heat and does not deform (`analysis: thermal`): no elastic operator is built.
 /// Writes the fields `temperature` and `cell-temperature`, probes.csv, and heat.csv with the heat through
 /// each patch.
-class ThermalSolid final : public coupling::Participant, public coupling::EstimatesError {
+class ThermalSolid final : public coupling::Participant {
  public:
   /// Collective over mesh.comm.
   ThermalSolid(mesh::LoadedMesh body, SolidParameters parameters, SolidContext context);
@@ -39,8 +39,10 @@ class ThermalSolid final : public coupling::Participant, public coupling::Estima
   }
   void save(io::CheckpointWriter& file) const override;
   void load(io::CheckpointReader& file) override;
-  void collect_errors() override { errors_.emplace(mesh_, geometry_, parameters_.heat.value()); }
-  coupling::ErrorParts error_parts() const override {
+  /// Called before the first step if the run is to end with an estimate of its error.
+  void collect_errors() { errors_.emplace(mesh_, geometry_, parameters_.heat.value()); }
+  /// Of the accepted state, after the last step. Collective.
+  coupling::ErrorParts error_parts() const {
     return errors_ ? errors_->parts(*heat_) : coupling::ErrorParts{};
   }
   void write_output(double time, int number) override;

@@ -3,6 +3,7 @@
 #include "thermocline/judge/effect_cards.hpp"
 #include "thermocline/judge/elsewhere.hpp"
 #include "thermocline/judge/files.hpp"
+#include "thermocline/judge/table.hpp"
 
 int main(int argc, char** argv) {
   couplet::thermocline::ElementParameters parameters;
@@ -15,6 +16,7 @@ int main(int argc, char** argv) {
           [&](const couplet::app::ParticipantContext& context) {
             return couplet::thermocline::make_element(parameters, context);
           },
+      .diagnose = couplet::thermocline::add_diagnostics,
       .effects =
           [&](const couplet::effects::EffectScene&) {
             return couplet::effects::effects_of("thermocline", couplet::thermocline::effect_cards(),

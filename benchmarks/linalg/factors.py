@@ -9,14 +9,33 @@ import subprocess
 import sys
 import tempfile
 
-sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / folder) for folder in ("scripts", "client/python")]
-from validation.parts.right_by_default.before import PLANE, SECTION
-
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 S = "participants.solid."
 SOFT = "{density: 2600, youngs-modulus: 10 MPa, poissons-ratio: 0.3}"
 TURNS = 3
+PLANE = """simulation: {name: plane, end-time: 1 s, time-step: 0.1 s, output: {folder: out}}
+participants:
+  solid:
+    program: solid_solver
+    mesh: section.geo
+    mesh-parameters: {n: %d}
+    dimension: 2
+    plane: strain
+    material: {density: 2600, youngs-modulus: 10 MPa, poissons-ratio: 0.3}
+    time-scheme: {type: trapezoidal}
+    boundaries:
+      root: {type: fixed-displacement, value: [0, 0]}
+      tip: {type: traction, value: [0, "t <= 7 ? -125*t/7 : 0"]}
+      sides: {type: free}
+"""
+SECTION = """DefineConstant [ n = 8 ];
+Point(1) = {0, 0, 0}; Point(2) = {20, 0, 0}; Point(3) = {20, 2, 0}; Point(4) = {0, 2, 0};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
+Transfinite Curve {1, 3} = 10 * n + 1; Transfinite Curve {2, 4} = n + 1;
+Curve Loop(1) = {1:4}; Plane Surface(1) = {1}; Transfinite Surface {1}; Recombine Surface {1};
+Physical Curve("root") = {4}; Physical Curve("tip") = {2}; Physical Curve("sides") = {1, 3}; Physical Surface("beam") = {1};
+"""
 
 
 def case_of(name):

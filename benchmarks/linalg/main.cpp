@@ -5,7 +5,6 @@
 
 #include "benchmarks/linalg/system.hpp"
 #include "common/base/error.hpp"
-#include "common/linalg/lazy/petsc_calls.hpp"
 #include "common/linalg/petsc_environment.hpp"
 
 int main(int argc, char** argv) {
@@ -22,7 +21,6 @@ int main(int argc, char** argv) {
   int code = 1;
   try {
     const couplet::linalg::PetscEnvironment environment(MPI_COMM_WORLD);
-    couplet::linalg::start_petsc();
     code = couplet::benchmark::run_matrix(argv[2], argv[3]);
   } catch (const couplet::Error& e) {
     std::fprintf(stderr, "%s\n", e.what());

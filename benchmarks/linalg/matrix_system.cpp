@@ -10,6 +10,7 @@
 #include "common/linalg/petsc_environment.hpp"
 
 namespace couplet::benchmark {
+
 using namespace linalg;
 namespace {
 
@@ -17,8 +18,7 @@ namespace {
 constexpr int repeated = 10;
 
 LinearMethod method_of(const std::string& name) {
-  static const std::map<std::string, LinearMethod> known{{"cg-single", LinearMethod::cg_single},
-                                                         {"cg-direct", LinearMethod::cg_direct},
+  static const std::map<std::string, LinearMethod> known{{"cg-direct", LinearMethod::cg_direct},
                                                          {"cg-multigrid", LinearMethod::cg_multigrid}};
   if (!known.contains(name)) throw Error("No method '{}': cg-single, cg-direct, cg-multigrid.", name);
   return known.at(name);
@@ -68,9 +68,7 @@ Result solve_by_program(const System& system, SparseMatrix& matrix, std::span<co
   matrix.fill(made);
   const Meter whole(system.comm);
   LinearSolver solver("pressure", matrix, {.method = method});
-  solver.restore({.is_due = false,
-                  .is_single = method == LinearMethod::cg_single && parallel::comm_size(system.comm) == 1,
-                  .most_iterations = 500});
+  solver.restore({.is_due = false, .most_iterations = 500});
   result.setup = whole.seconds();
   matrix.fill(now);
   const double filled = whole.seconds();

@@ -8,6 +8,7 @@
 #include "common/linalg/petsc_check.hpp"
 
 namespace couplet::benchmark {
+
 using namespace linalg;
 namespace {
 

@@ -10,6 +10,7 @@
 #include "common/linalg/petsc_check.hpp"
 
 namespace couplet::benchmark {
+
 using namespace linalg;
 namespace {
 

@@ -13,7 +13,6 @@
 #include "common/app/program.hpp"
 #include "common/base/error.hpp"
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
-#include "common/linalg/lazy/petsc_calls.hpp"
 #include "common/linalg/petsc_check.hpp"
 #include "common/linalg/petsc_environment.hpp"
 #include "common/mesh/load.hpp"
@@ -22,6 +21,7 @@
 #include "solid_solver/solid.hpp"
 
 namespace couplet::benchmark {
+
 using namespace linalg;
 
 using namespace solid;
@@ -215,7 +215,6 @@ int run_solid(const std::string& folder, const std::string& how, int argc, char*
   program.declare = [&](config::Section& section) { declare(section, parameters); };
   program.environment = petsc_environment;
   program.make = [&](const app::ParticipantContext& context) -> std::unique_ptr<coupling::Participant> {
-    linalg::start_petsc();  // its calls here are linked, and start nothing
     mesh::LoadedMesh loaded = mesh::load_mesh(context.comm, context.case_folder / parameters.mesh,
                                               parameters.dimension, parameters.mesh_parameters, {},
                                               zones_of(parameters.materials), true, parameters.mesh_scale);

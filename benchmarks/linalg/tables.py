@@ -3,8 +3,6 @@
 import csv
 import pathlib
 
-import jobs
-
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 COLUMNS = ("system", "size", "ranks", "unknowns", "solver", "iterations", "setup", "solve", "reuse", "megabytes", "tolerance", "residual", "error",
@@ -18,11 +16,9 @@ PETSC = ("GAMG", "BoomerAMG", "MUMPS")
 # programs use it.
 HAND_WRITTEN = {
     "component_multigrid": ("our krylov CG, component_multigrid", lambda name: "component_multigrid" not in name, ("plate B", "tetrahedra", "slender")),
-    "single_factors": ("our single_factors, CG", lambda name: "PETSc" in name, ("fluid 2-D",)),
-    "krylov": ("our krylov CG, component_multigrid", lambda name: "CG, our component_multigrid" in name, ("plate B", "tetrahedra", "slender")),
 }
 # What else lies in that folder: PETSc's and MUMPS's own behind one call, LAPACK, what is no linear solver.
-NOT_SOLVERS = ("acceleration", "dense_eigenvalues", "dot", "linear_map", "linear_solver", "matrix", "petsc_calls", "petsc_check", "petsc_environment", "petsc_methods", "petsc_shell",
+NOT_SOLVERS = ("acceleration", "cell_solver", "dense_eigenvalues", "dot", "krylov", "linear_map", "linear_solver", "matrix", "petsc_check", "petsc_environment", "petsc_shell",
                "residual_projection", "symmetric_factors")
 BEGIN, END = "<!-- tables -->", "<!-- end of tables -->"
 
@@ -59,11 +55,6 @@ def gains(rows, name):
     return found
 
 
-def whole_jobs(name, path=HERE / "jobs.csv"):
-    """[(seconds of a whole small job over those with PETSc's libraries loaded, row)] of a solver that spares them."""
-    return [(float(row["seconds"]) / float(row["with_petsc"]), row) for row in jobs.read(path) if row["solver"] == name]
-
-
 def best(rows, name):
     """On one rank: seconds of two hold the waiting of one for the other."""
     return min((g for g in gains(rows, name) if g[2]["ranks"] == "1"), key=lambda g: min(g[:2]), default=None)
@@ -71,7 +62,7 @@ def best(rows, name):
 
 def wins(rows, name):
     found = best(rows, name)
-    return found is not None and min(*found[:2], *(ratio for ratio, _ in whole_jobs(name))) <= WINS
+    return found is not None and min(found[:2]) <= WINS
 
 
 def problems(rows, folder=ROOT / "common/linalg"):
@@ -101,10 +92,6 @@ def verdicts(rows):
     for name in HAND_WRITTEN:
         for time, memory, row in gains(rows, name):
             yield f"| {name} | {row['system']} | {row['size']} | {row['ranks']} | {row['unknowns']} | {time:.2f} | {f'{memory:.2f}' if memory < 1e300 else 'under 30 MB'} |"
-    yield from ("", "| solver | whole job | cells | processor seconds | with PETSc's libraries loaded | ratio |", "|---|---|---|---|---|---|")
-    for name in HAND_WRITTEN:
-        for ratio, row in whole_jobs(name):
-            yield f"| {name} | {row['job']} | {row['cells']} | {row['seconds']} | {row['with_petsc']} | {ratio:.2f} |"
 
 
 def table_of(rows, system, size):

@@ -23,7 +23,7 @@ def once(folder, make):
 
 
 def series(folder, peers):
-    """[(name, [(seconds, error)])] for the picture of scripts/study, of peers (name, its program, run, meshes): each run(folder, mesh) is
+    """[(name, [(seconds, error)])] for the picture of scripts/couplet study, of peers (name, its program, run, meshes): each run(folder, mesh) is
     made once; what is not installed is left out."""
     def one(name, run, mesh):
         label = "x".join(map(str, mesh)) if isinstance(mesh, tuple) else mesh

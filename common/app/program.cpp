@@ -68,7 +68,8 @@ int run(const Job& job, const Program& program) {
                         program.effects({!job.alone, !job.alone && has_mover, job.simulation.time_step})));
   }
   const std::unique_ptr<coupling::Participant> participant = program.make(context);
-  return job.alone ? run_alone(job, *participant) : run_coupled(job, coupler, *participant);
+  return job.alone ? run_alone(job, *participant, program.diagnose)
+                   : run_coupled(job, coupler, *participant, program.diagnose);
 }
 
 }  // namespace

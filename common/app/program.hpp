@@ -9,14 +9,14 @@
 #include <memory>
 #include <string>
 
-#include "common/app/case/problem_of_key.hpp"
+#include "common/app/case/check_files.hpp"
 #include "common/app/loop/simulation.hpp"
 #include "common/config/section.hpp"
 #include "common/coupling/mesh_motion.hpp"
 #include "common/coupling/participant.hpp"
+#include "common/diagnostics/diagnostics.hpp"
 #include "common/effects/card.hpp"
 #include "common/effects/choice.hpp"
-#include "common/effects/expected.hpp"
 
 namespace couplet::app {
 
@@ -43,6 +43,8 @@ struct Program {
   config::Section::Declare declare;
   /// Called once after reading; the parameters are those that `declare` filled.
   std::function<std::unique_ptr<coupling::Participant>(const ParticipantContext&)> make;
+  /// Adds the diagnostics of the participant, once that is initialised; empty: it has none.
+  std::function<void(coupling::Participant&, diagnostics::Diagnostics&)> diagnose = {};
   /// What the program's libraries need from before the participant is made until after it is gone (petsc_environment());
   /// empty: nothing. A program without one links no PETSc, whose libraries take 60 ms to load.
   std::function<std::shared_ptr<void>(MPI_Comm)> environment = {};

@@ -8,16 +8,16 @@
 #include <utility>
 
 #include "common/app/loop/step_loop.hpp"
-#include "common/app/run_audit.hpp"
 #include "common/app/run_report.hpp"
 #include "common/base/error.hpp"
 #include "common/coupling/error_parts.hpp"
 #include "common/coupling/serve.hpp"
+#include "common/diagnostics/diagnostics.hpp"
+#include "common/io/archive.hpp"
 #include "common/log/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/log/progress.hpp"
 #include "common/log/terminal.hpp"
-#include "common/log/timer.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::app {
@@ -81,33 +81,49 @@ class Bookkeeping {
   double processor_since_ = 0;
 };
 
-/// The estimate of the run's error, from a participant that can tell it and a case that wants it.
-class Errors {
+/// A participant with its diagnostics: they see each step that it accepts, and their memory is saved with its state.
+class Observed final : public coupling::Participant {
  public:
-  Errors(const Job& job, coupling::Participant& participant)
-      : name_(job.name),
-        wanted_(job.simulation.error_estimate),
-        source_(job.simulation.error_estimate ? dynamic_cast<coupling::EstimatesError*>(&participant)
-                                              : nullptr) {
-    if (source_) source_->collect_errors();
+  Observed(coupling::Participant& inner, diagnostics::Diagnostics& diagnostics, const Diagnose& diagnose)
+      : inner_(inner), diagnostics_(diagnostics), diagnose_(diagnose) {}
+  coupling::Interface initialise() override {
+    coupling::Interface interface = inner_.initialise();
+    if (diagnose_) diagnose_(inner_, diagnostics_);
+    return interface;
   }
-  /// After the last step, with what neglected effects make of the answer. Collective.
-  void find(effects::ModelError model) {
-    if (source_) parts_ = source_->error_parts();
-    if (!wanted_) return;
-    parts_.model = model.sum;
-    parts_.model_by = std::move(model.largest);
-    parts_.omittable = std::move(model.omittable);
+  double suggest_dt() override { return inner_.suggest_dt(); }
+  void begin_step(const coupling::Step& step) override {
+    end_ = step.time + step.dt;
+    inner_.begin_step(step);
   }
-  const coupling::ErrorParts& parts() const { return parts_; }
-  std::vector<std::string> sentences() const { return coupling::error_sentences({{name_, parts_}}); }
-  std::optional<log::Finding> worthless() const { return couplet::coupling::worthless({{name_, parts_}}); }
+  coupling::Exchange solve(const coupling::Exchange& in) override { return inner_.solve(in); }
+  bool answered_anew() const override { return inner_.answered_anew(); }
+  coupling::StepReport accept_step() override {
+    const coupling::StepReport report = inner_.accept_step();
+    diagnostics_.accepted(end_);
+    return report;
+  }
+  void save(io::CheckpointWriter& file) const override {
+    inner_.save(file);
+    io::Archive archive(file);
+    diagnostics_.visit(archive);
+  }
+  void load(io::CheckpointReader& file) override {
+    inner_.load(file);
+    io::Archive archive(file);
+    diagnostics_.visit(archive);
+  }
+  void write_output(double time, int number) override {
+    inner_.write_output(time, number);
+    diagnostics_.look();
+  }
+  void write_monitors(double time) override { inner_.write_monitors(time); }
 
  private:
-  std::string name_;
-  bool wanted_;
-  coupling::EstimatesError* source_;  // null: none
-  coupling::ErrorParts parts_;
+  coupling::Participant& inner_;
+  diagnostics::Diagnostics& diagnostics_;
+  const Diagnose& diagnose_;
+  double end_ = 0;  // of the step under way [s]
 };
 
 /// How a run is told of at its end.
@@ -117,23 +133,22 @@ struct Closing {
       false;  ///< what it left out then counts only where it was not sound, and nothing says what its answer errs by
 };
 
-void closing_words(const Job& job, coupling::Participant& participant, RunAudit& audit, Errors& errors,
+void closing_words(const Job& job, coupling::Participant& participant, diagnostics::Diagnostics& diagnostics,
                    const Closing& closing, double seconds) {
   std::vector<std::string> sentences = participant.finish();
-  for (std::string& line : audit.closing_lines(!closing.has_failed)) sentences.push_back(std::move(line));
+  for (std::string& line : diagnostics.conclude(closing.has_failed)) sentences.push_back(std::move(line));
   if (closing.has_failed)
     sentences.push_back(
         "the run failed: its error and neglected effects are not judged, except as reported above.");
-  else
-    errors.find(audit.model());
-  for (std::string& line : errors.sentences()) {
+  const std::vector<coupling::NamedErrors> errors{{job.name, diagnostics.errors()}};
+  for (std::string& line : coupling::error_sentences(errors)) {
     sentences.push_back(std::move(line));
     if (!closing.is_alone) break;
   }
-  if (std::string where = effects::position_sentence(audit.position()); !where.empty())
+  if (std::string where = effects::position_sentence(diagnostics.position()); !where.empty())
     sentences.push_back(std::move(where));
   if (closing.is_alone)
-    if (const auto finding = errors.worthless()) log::finding(job.rank, *finding);
+    if (const auto finding = coupling::worthless(errors)) log::finding(job.rank, *finding);
   const double mine = RunReport::peak_memory();
   const double most = parallel::max(job.comm, mine), all = parallel::sum(job.comm, mine);
   if (job.rank != 0) return;
@@ -146,8 +161,8 @@ void closing_words(const Job& job, coupling::Participant& participant, RunAudit&
 /// Commands to the participant from its own loop, with the same bookkeeping as in a coupled run.
 class OwnCommands {
  public:
-  OwnCommands(const Job& job, coupling::Participant& participant, RunReport& run, RunAudit& audit)
-      : job_(job), participant_(participant), run_(run), audit_(audit), books_(job, run) {}
+  OwnCommands(const Job& job, coupling::Participant& participant, RunReport& run)
+      : job_(job), participant_(participant), run_(run), books_(job, run) {}
   coupling::Reply operator()(const coupling::Command& command) {
     books_.received(command);
     const coupling::Reply reply = coupling::carry_out(command, participant_, job_.name, job_.comm);
@@ -158,7 +173,6 @@ class OwnCommands {
       report_ = reply.report;
       report_.seconds = std::exchange(seconds_, 0.0);
       run_.accepted(command.time, reply.report);
-      audit_.accepted(command.time, command.output >= 0);
     }
     return reply;
   }
@@ -188,7 +202,6 @@ class OwnCommands {
   const Job& job_;
   coupling::Participant& participant_;
   RunReport& run_;
-  RunAudit& audit_;
   Bookkeeping books_;
   coupling::StepReport report_;
   double seconds_ = 0;  // since the last accepted step
@@ -220,11 +233,11 @@ class Console {
 
 }  // namespace
 
-int run_alone(const Job& job, coupling::Participant& participant) {
+int run_alone(const Job& job, coupling::Participant& participant, const Diagnose& diagnose) {
   RunReport run(job);
-  Errors errors(job, participant);
-  RunAudit audit(job.rank, participant);
-  OwnCommands command(job, participant, run, audit);
+  diagnostics::Diagnostics diagnostics(job.rank, job.simulation.error_estimate);
+  Observed observed(participant, diagnostics, diagnose);
+  OwnCommands command(job, observed, run);
   StepLoop loop(job.comm, job.simulation, coupling::Scheme::standalone, job.checkpoints);
   Console console(job.simulation);
   command.must({coupling::Op::initialise, {}, {}, 0, -1, ""});
@@ -249,19 +262,20 @@ int run_alone(const Job& job, coupling::Participant& participant) {
   actions.advised_dt = [&] { return command.advised_dt(); };
   const std::string problem = loop.run(actions);
   job.enter(Phase::finalise);
-  closing_words(job, participant, audit, errors, {.has_failed = !problem.empty()}, console.seconds());
-  run.finish(console.seconds(), problem, errors.parts(), audit.position());
+  closing_words(job, participant, diagnostics, {.has_failed = !problem.empty()}, console.seconds());
+  run.finish(console.seconds(), problem, diagnostics.errors(), diagnostics.position());
   if (job.rank == 0) log::tell_where(job.output_folder.string(), job.name + ".log");
   if (problem.empty()) return 0;
   if (job.rank == 0) log::error("{}", problem);
   return 1;
 }
 
-int run_coupled(const Job& job, MPI_Comm coupler, coupling::Participant& participant) {
+int run_coupled(const Job& job, MPI_Comm coupler, coupling::Participant& participant,
+                const Diagnose& diagnose) {
   const auto start = Clock::now();
   RunReport run(job);
-  RunAudit audit(job.rank, participant);
-  Errors errors(job, participant);
+  diagnostics::Diagnostics diagnostics(job.rank, job.simulation.error_estimate);
+  Observed observed(participant, diagnostics, diagnose);
   Bookkeeping books(job, run);
   coupling::ServeObserver observer;
   observer.waiting = [&] { books.waiting(); };
@@ -269,17 +283,16 @@ int run_coupled(const Job& job, MPI_Comm coupler, coupling::Participant& partici
     books.waited();
     books.received(command);
     if (command.op != coupling::Op::finalise) return;
-    closing_words(job, participant, audit, errors, {.is_alone = false, .has_failed = !command.folder.empty()},
+    closing_words(job, participant, diagnostics, {.is_alone = false, .has_failed = !command.folder.empty()},
                   seconds_since(start));
-    run.finish(seconds_since(start), "", errors.parts(), audit.position());
+    run.finish(seconds_since(start), "", diagnostics.errors(), diagnostics.position());
   };
-  observer.last_word = [&] { return errors.parts().text(); };
+  observer.last_word = [&] { return diagnostics.errors().text(); };
   observer.done = [&](const coupling::Command& command) { books.done(command); };
   observer.accepted = [&](const coupling::Command& command, const coupling::StepReport& report) {
     run.accepted(command.time, report);
-    audit.accepted(command.time, command.output >= 0);
   };
-  coupling::serve(coupler, job.comm, job.name, participant, observer);
+  coupling::serve(coupler, job.comm, job.name, observed, observer);
   return 0;
 }
 

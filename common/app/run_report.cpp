@@ -12,7 +12,7 @@
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
 #include "common/log/finding.hpp"
-#include "common/log/timer.hpp"
+#include "common/log/progress.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::app {

@@ -46,21 +46,11 @@ std::vector<std::string> error_sentences(const std::vector<NamedErrors>& partici
 ErrorParts largest(const std::vector<NamedErrors>& participants);
 
 /// Of mesh, steps, solvers and coupling; 0 if nothing is known. What neglected effects change is not in it: it is judged by
-/// findings of its own (RunAudit).
+/// findings of its own.
 double total_error(const std::vector<NamedErrors>& participants);
 /// From an error as large as the solution on the answer is useless. `wrong` where one part alone is so large: parts are good to
 /// a factor of a few, and a sum of several that just reaches it proves nothing; it is a warning. Nothing below.
 constexpr double as_large_as_the_solution = 1;
 std::optional<log::Finding> worthless(const std::vector<NamedErrors>& participants);
-
-/// A participant that can tell its parts at the end of a run.
-class EstimatesError {
- public:
-  virtual ~EstimatesError() = default;
-  /// Before initialise(), if the run is to end with an estimate; else nothing is collected.
-  virtual void collect_errors() = 0;
-  /// Of the accepted state, after the last step. Collective; changes nothing.
-  virtual ErrorParts error_parts() const = 0;
-};
 
 }  // namespace couplet::coupling

@@ -67,8 +67,8 @@ std::vector<std::vector<GlobalIndex>> exchange_owned_ids(MPI_Comm peers, const m
 }
 
 /// send[r] goes to rank r of the other side.
-std::vector<std::vector<GlobalIndex>> exchange(MPI_Comm peers,
-                                               const std::vector<std::vector<GlobalIndex>>& send) {
+std::vector<std::vector<GlobalIndex>> exchange_ids(MPI_Comm peers,
+                                                   const std::vector<std::vector<GlobalIndex>>& send) {
   const int n = remote_size(peers);
   std::vector<int> send_counts(n), send_first(n), counts(n), first(n);
   std::vector<GlobalIndex> out;
@@ -124,7 +124,7 @@ class Source final : public MeshMotionSource {
       wanted[found->second].push_back(mesh.point_id[p]);
       points[found->second].push_back(p);
     }
-    exchange(peers, wanted);
+    exchange_ids(peers, wanted);
     if (any_of_source(peers, mesh.comm, true, missing))
       throw_other_points(": their points have different numbers");
     for (std::size_t r = 0; r < points.size(); ++r)
@@ -192,7 +192,7 @@ class Sink final : public MeshMotionSink {
   Sink(MPI_Comm peers, const mesh::Mesh& mesh, std::span<const Vec3> places) : peers_(peers), dim_(mesh.dim) {
     meet(peers, fluid_name);
     exchange_owned_ids(peers, mesh);
-    const auto wanted = exchange(peers, std::vector<std::vector<GlobalIndex>>(remote_size(peers)));
+    const auto wanted = exchange_ids(peers, std::vector<std::vector<GlobalIndex>>(remote_size(peers)));
     if (any_of_source(peers, mesh.comm, false, false))
       throw_other_points(": their points have different numbers");
 

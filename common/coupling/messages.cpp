@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "common/base/error.hpp"
+#include "common/coupling/sub_stepping.hpp"
 #include "common/coupling/unpacker.hpp"
-#include "common/coupling/within_step.hpp"
 
 namespace couplet::coupling {
 namespace {

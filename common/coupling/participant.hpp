@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "common/base/types.hpp"
-#include "common/effects/verdict.hpp"
 
 namespace couplet::io {
 class CheckpointWriter;
@@ -107,11 +106,8 @@ class Participant {
   virtual void write_output(double time, int number) = 0;
   /// Monitors and probes after each accepted step.
   virtual void write_monitors(double time) = 0;
-  /// What the run so far says about effects that were left out (see common/effects). Asked now and then after an
-  /// accepted step and at the end; a change for the worse is told at once. Collective; changes nothing.
-  virtual std::vector<effects::EffectVerdict> audit() const { return {}; }
-  /// Called once after the last step: writes what is due then, and gives closing sentences beside the verdicts,
-  /// which rank 0 prints. Collective.
+  /// Called once after the last step: writes what is due then, and gives closing sentences, which
+  /// rank 0 prints. Collective.
   virtual std::vector<std::string> finish() { return {}; }
 };
 

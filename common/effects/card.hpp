@@ -1,35 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cmath>
 #include <limits>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "common/effects/prices.hpp"
-#include "common/effects/verdict.hpp"
 
 namespace couplet::effects {
 
 /// One effect of a program as data. `asked_by` names what in the scene asks for it (a key with its value), or
-/// is empty where it is off. `judge` says of an effect that is off (or, with `judged_when_on`, of one that is
-/// on) what the evidence of the run says about it; null: nothing can be said from inside the run. It returns
-/// no verdict where it has no evidence.
-template <class Parameters, class Evidence>
+/// is empty where it is off.
+template <class Parameters>
 struct EffectCard {
   const char* name;
   const char* keys;  ///< what switches it on, for the documents
   std::string (*asked_by)(const Parameters&);
   std::string_view
       adds{};  ///< where it is on: fields, matrices, files, processes; nothing of it exists where it is off
-  const char* judged_by = "";  ///< the number and its threshold, for the documents
-  std::optional<EffectVerdict> (*judge)(const Parameters&, const Evidence&) = nullptr;
+  const char* judged_by = "";  ///< the number and its limit by which a run judges it, for the documents
   bool judged_when_on = false;
-  /// Of an effect that is on: how little it does, and what leaving it out `saves`.
-  std::optional<EffectVerdict> (*spare)(const Parameters&, const Evidence&) = nullptr;
 };
 
 /// A card looked at with the parameters of a scene.
@@ -50,38 +42,14 @@ struct EffectScene {
   double time_step = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN: not known
 };
 
-template <class Parameters, class Evidence>
-std::vector<Effect> effects_of(std::string_view program,
-                               std::span<const EffectCard<Parameters, Evidence>> cards,
+template <class Parameters>
+std::vector<Effect> effects_of(std::string_view program, std::span<const EffectCard<Parameters>> cards,
                                const Parameters& parameters) {
   std::vector<Effect> effects;
   for (const auto& card : cards)
     effects.push_back({card.name, card.keys, card.asked_by(parameters), card.adds,
                        prices_of(program, card.name), card.judged_by, card.judged_when_on});
   return effects;
-}
-
-/// The verdicts that the evidence allows.
-template <class Parameters, class Evidence>
-std::vector<EffectVerdict> audit(std::span<const EffectCard<Parameters, Evidence>> cards,
-                                 const Parameters& parameters, const Evidence& evidence) {
-  std::vector<EffectVerdict> verdicts;
-  for (const auto& card : cards) {
-    const bool on = !card.asked_by(parameters).empty();
-    if (card.judge != nullptr && on == card.judged_when_on)
-      if (std::optional<EffectVerdict> verdict = card.judge(parameters, evidence)) {
-        verdict->effect = card.name;
-        verdict->left_out = !card.judged_when_on;
-        verdicts.push_back(std::move(*verdict));
-      }
-    if (card.spare != nullptr && on)
-      if (std::optional<EffectVerdict> verdict = card.spare(parameters, evidence)) {
-        verdict->effect = card.name;
-        verdict->left_out = false;
-        verdicts.push_back(std::move(*verdict));
-      }
-  }
-  return verdicts;
 }
 
 /// "effects: inertia (analysis: dynamic), gravity (gravity); left out: ...", for the start of a run.

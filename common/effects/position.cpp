@@ -4,34 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 namespace couplet::effects {
-namespace {
-
-struct Axis {
-  const char* effect;
-  const char* quantity;
-  const char* map;
-};
-
-constexpr std::array axes{
-    Axis{"near-incompressibility", "Poisson's ratio", "solid-nu"},
-    Axis{"resolved-grains", "Biot number of the grains", "tank-biot"},
-    Axis{"step-that-resolves-the-contact", "step over the duration of an impact", "plate-contact"}};
-
-}  // namespace
-
-std::vector<Coordinate> coordinates_of(const std::vector<EffectVerdict>& verdicts) {
-  std::vector<Coordinate> found;
-  for (const EffectVerdict& v : verdicts) {
-    const auto axis = std::ranges::find(axes, v.id(), [](const Axis& a) { return std::string(a.effect); });
-    if (axis != axes.end() && !(v.saves > 0) && v.threshold > 0)
-      found.push_back({axis->quantity, v.number, v.threshold, axis->map});
-  }
-  return found;
-}
-
 void keep_nearest(std::vector<Coordinate>& kept, const std::vector<Coordinate>& seen) {
   for (const Coordinate& c : seen) {
     const auto before = std::ranges::find(kept, c.quantity, &Coordinate::quantity);

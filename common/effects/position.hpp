@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "common/effects/verdict.hpp"
-
 namespace couplet::effects {
 
 /// Where a run stands on a map of the atlas (docs/stability.md), in the terms of its axis.
@@ -17,18 +15,12 @@ struct Coordinate {
   bool floor = false;  ///< true: from here up
   /// Of the way to the limit [1]: beyond it above 1. With a floor the way begins at 1, the best value.
   double used() const { return floor ? (1 - value) / (1 - limit) : value / limit; }
+  /// For checkpoints.
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(quantity, value, limit, map, floor);
+  }
 };
-
-/// A participant that knows where it stands.
-class KnowsItsPlace {
- public:
-  virtual ~KnowsItsPlace() = default;
-  /// Of the accepted state and its step. Collective; changes nothing.
-  virtual std::vector<Coordinate> position() const = 0;
-};
-
-/// Of verdicts whose number is the axis of a map.
-std::vector<Coordinate> coordinates_of(const std::vector<EffectVerdict>& verdicts);
 
 /// The one of each quantity that is nearer to its limit.
 void keep_nearest(std::vector<Coordinate>& kept, const std::vector<Coordinate>& seen);

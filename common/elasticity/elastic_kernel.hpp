@@ -34,8 +34,8 @@ struct ElasticLoads {
   std::vector<double> pressure;  ///< of thermal strain, per local face [Pa]; empty: none
 };
 
-/// The rows of ElasticOperator applied without a matrix: result = A u + K known, in some 30 ns (thesis) to 80
-/// ns (corrected) a hexahedron where the assembled matrix moves 2 kB and more.
+/// The rows of ElasticOperator applied without a matrix: result = A u + K known, in some 80 ns
+/// (corrected) a hexahedron where the assembled matrix moves 2 kB and more.
 ///
 /// `corrected`: with the least-squares gradients G_P of the cells (over face neighbours, weight 1/d^3, which
 /// is exact for quadratics on a stretched line of cells; mirrored at symmetry planes)

@@ -8,7 +8,6 @@
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/checkpoint_set.hpp"
-#include "common/io/rehearse.hpp"
 
 namespace couplet::io {
 namespace {
@@ -97,7 +96,7 @@ int ranks_that_wrote(const hdf5::Reader& in) {
 void examine_checkpoint(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) throw Error("The checkpoint '{}' does not exist.", file.string());
   if (const std::string problem = problem_in_set(file); !problem.empty()) throw Error(problem);
-  rehearse(file, what, [&] { examine_content(open_checkpoint(file)); });
+  examine_content(open_checkpoint(file));
 }
 
 std::string problem_of_checkpoint(const std::filesystem::path& file) {

@@ -15,7 +15,8 @@ namespace couplet::io {
 constexpr const char* checkpoint_format = "couplet checkpoint";
 // 3: errors of steps, net heat of a tank's report, what the pressure preconditioner was made from. 4: order of the errors.
 // 5: fields by the numbers of cells, points and faces, for any number of ranks. 6: the scheme of a coupling that chooses it.
-constexpr int checkpoint_version = 6;
+// 7: what diagnostics remember of the run.
+constexpr int checkpoint_version = 7;
 
 // arrays/NAME with layout/NAME: values rank by rank; count and checksum of each rank's.
 // fields/NAME with checks/NAME: rows by the entries' numbers; rows, values per row, checksum over all ranks' rows.

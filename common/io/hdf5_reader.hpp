@@ -15,9 +15,6 @@ namespace couplet::io::hdf5 {
 /// expected. No way leads out of the file: soft, external and user-defined links, external storage and virtual tables
 /// are refused, filters other than deflate, shuffle and fletcher32 (HDF5 would load a library for them) too. A table is
 /// at most as large as the file that holds it; a compressed one may be larger by `most_expansion`.
-///
-/// HDF5 itself has faults in its reading of damaged files: read a file that another program may have written or
-/// damaged in rehearse() first.
 class Reader final {
  public:
   static constexpr std::uint64_t most_expansion = 64u

@@ -11,18 +11,14 @@ namespace couplet::linalg {
 
 /// Sum of the products over this rank's entries, in several partial sums, so that additions do not wait for
 /// each other.
-template <class Number>
-double sum_of_products(std::span<const Number> a, std::span<const double> b) {
+inline double dot_here(std::span<const double> a, std::span<const double> b) {
   std::array<double, 8> sum{};
   std::size_t i = 0;
   for (; i + 8 <= b.size(); i += 8)
-    for (std::size_t k = 0; k < 8; ++k) sum[k] += double(a[i + k]) * b[i + k];
-  for (; i < b.size(); ++i) sum[0] += double(a[i]) * b[i];
+    for (std::size_t k = 0; k < 8; ++k) sum[k] += a[i + k] * b[i + k];
+  for (; i < b.size(); ++i) sum[0] += a[i] * b[i];
   return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
 }
-
-inline double dot_here(std::span<const double> a, std::span<const double> b) { return sum_of_products(a, b); }
-inline double dot_here(std::span<const float> a, std::span<const double> b) { return sum_of_products(a, b); }
 
 /// Sums over all ranks. Collective.
 template <std::size_t N>

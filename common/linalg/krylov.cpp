@@ -12,16 +12,87 @@
 #include "common/linalg/dot.hpp"
 #include "common/linalg/petsc_shell.hpp"
 #include "common/linalg/residual_projection.hpp"
-#include "common/log/life.hpp"
 #include "common/log/log.hpp"
+#include "common/log/progress.hpp"
 
 namespace couplet::linalg {
 namespace {
 
+struct Goal {
+  double residual;
+  int most;  // iterations
+};
+
+/// Preconditioned conjugate gradients [hestenes1952] in the flexible form of Polak and Ribiere, which forgives a
+/// preconditioner that rounds to single precision. Moves `x` and its residual `r`; stops at a curvature that is not positive,
+/// as Newton's method relies on (PETSc's KSPFCG goes on, and KSPCG is not flexible). Returns the number of iterations.
+int conjugate_gradients(MPI_Comm comm, const LinearMap& apply, const LinearMap& precondition,
+                        std::span<double> r, std::span<double> x, const Goal& goal) {
+  const std::size_t n = r.size();
+  std::vector<double> z(n), v(n);
+  precondition(r, z);
+  std::vector<double> p = z;
+  double rz = over_ranks<1>(comm, {dot_here(r, z)})[0];
+  for (int k = 1; k <= goal.most; ++k) {
+    log::alive();
+    apply(p, v);
+    const double curvature = over_ranks<1>(comm, {dot_here(p, v)})[0];
+    const double alpha = rz / curvature;
+    if (!(curvature > 0) || !std::isfinite(alpha)) return k;
+    for (std::size_t i = 0; i < n; ++i) {
+      x[i] += alpha * p[i];
+      r[i] -= alpha * v[i];
+    }
+    if (std::sqrt(over_ranks<1>(comm, {dot_here(r, r)})[0]) <= goal.residual) return k;
+    precondition(r, z);
+    const auto [next, change] = over_ranks<2>(comm, {dot_here(r, z), dot_here(v, z)});
+    const double beta = -alpha * change / rz;  // z . (r - r_before) / (z . r)_before
+    rz = next;
+    for (std::size_t i = 0; i < n; ++i) p[i] = z[i] + beta * p[i];
+  }
+  return goal.most;
+}
+
+/// BiCGStab [vandervorst1992], preconditioned from the right. Moves `x` and its residual `r` and returns the number of
+/// iterations. PETSc's KSPBCGS in its place led Newton's method another way: a step of bent-beam had to be halved.
+int bicgstab(MPI_Comm comm, const LinearMap& apply, const LinearMap& precondition, std::span<double> r,
+             std::span<double> x, const Goal& goal) {
+  const std::size_t n = r.size();
+  const std::vector<double> shadow(r.begin(), r.end());
+  std::vector<double> p = shadow, v(n), t(n), z(n);
+  double rho = over_ranks<1>(comm, {dot_here(r, r)})[0];
+  for (int k = 1; k <= goal.most; ++k) {
+    log::alive();
+    precondition(p, z);
+    apply(z, v);
+    const double alpha = rho / over_ranks<1>(comm, {dot_here(shadow, v)})[0];
+    if (!std::isfinite(alpha)) return k;
+    for (std::size_t i = 0; i < n; ++i) {
+      x[i] += alpha * z[i];
+      r[i] -= alpha * v[i];
+    }
+    if (std::sqrt(over_ranks<1>(comm, {dot_here(r, r)})[0]) <= goal.residual) return k;
+    precondition(r, z);
+    apply(z, t);
+    const auto [tr, tt] = over_ranks<2>(comm, {dot_here(t, r), dot_here(t, t)});
+    if (tt == 0) return k;
+    const double omega = tr / tt;
+    for (std::size_t i = 0; i < n; ++i) {
+      x[i] += omega * z[i];
+      r[i] -= omega * t[i];
+    }
+    const auto [next, rr] = over_ranks<2>(comm, {dot_here(shadow, r), dot_here(r, r)});
+    if (std::sqrt(rr) <= goal.residual) return k;
+    const double beta = next / rho * (alpha / omega);
+    if (!std::isfinite(beta) || beta == 0) return k;
+    rho = next;
+    for (std::size_t i = 0; i < n; ++i) p[i] = r[i] + beta * (p[i] - omega * v[i]);
+  }
+  return goal.most;
+}
+
 // A residual below so many times the difference that rounding makes in A x is as small as it gets.
 constexpr double at_rounding = 10;
-// Iterations of BiCGStab after which the spectrum is taken to be one that it is slow on.
-constexpr int patience = 50;
 
 }  // namespace
 
@@ -36,7 +107,7 @@ KrylovSolver::KrylovSolver(std::string what, MPI_Comm comm, std::size_t n, Linea
 KrylovSolver::~KrylovSolver() = default;
 
 void KrylovSolver::forget_vectors() {
-  for (auto* v : {&r_, &shadow_, &p_, &v_, &t_, &z_}) *v = std::vector<double>();
+  r_ = std::vector<double>();
   gmres_.reset();
 }
 
@@ -64,7 +135,7 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
   r_.resize(n_);
   const double size = std::sqrt(over_ranks<1>(comm_, {dot_here(b, b)})[0]);
   // Below that the squares of what is left underflow, and no norm is right any more: a motion that has died away.
-  const double wanted = std::max(options.relative_tolerance * size, 1e-150);
+  const double wanted = std::max({options.relative_tolerance * size, options.absolute_tolerance, 1e-150});
   statistics.residual = true_residual(b, x);
   // Every comparison with a NaN is false, so that it would count as converged.
   if (!std::isfinite(size) || !std::isfinite(statistics.residual))
@@ -82,7 +153,7 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
   while (!(statistics.residual <= wanted)) {
     bool stuck = statistics.residual > 0.9 * before;
     if (stuck && statistics.residual < at_rounding * rounding(x)) break;
-    if (!is_hard && !options.is_symmetric && (stuck || statistics.iterations >= patience)) {
+    if (!is_hard && !options.is_symmetric && (stuck || statistics.iterations >= options.patience)) {
       is_hard = true;
       stuck = false;
     }
@@ -102,14 +173,23 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
     const double aim = is_near ? wanted / 2 : wanted;
     before = statistics.residual;
     const int earlier = statistics.iterations;
+    const bool is_bicgstab = !options.is_symmetric && !is_hard;
+    const std::vector<double> start_of_it(x.begin(), is_bicgstab ? x.end() : x.begin());
     if (options.is_symmetric)
-      run_cg(x, aim, options.max_iterations, statistics);
-    else if (is_hard)
-      run_gmres(x, aim, options.max_iterations, statistics);
+      statistics.iterations +=
+          conjugate_gradients(comm_, apply_, precondition_, r_, x, {aim, options.max_iterations - earlier});
+    else if (is_bicgstab)
+      statistics.iterations += bicgstab(comm_, apply_, precondition_, r_, x,
+                                        {aim, std::min(options.max_iterations, options.patience) - earlier});
     else
-      try_bicgstab(x, aim, std::min(options.max_iterations, patience), statistics);
+      statistics.iterations += run_gmres(x, aim, options.max_iterations - earlier, earlier > 0);
     const bool keep = options.is_symmetric && is_true && statistics.iterations - earlier <= options.carried;
     statistics.residual = keep ? std::sqrt(over_ranks<1>(comm_, {dot_here(r_, r_)})[0]) : true_residual(b, x);
+    if (is_bicgstab && !(statistics.residual <= before)) {
+      // A correction that leaves more than it found is undone: GMRES starts where BiCGStab did.
+      std::ranges::copy(start_of_it, x.begin());
+      statistics.residual = true_residual(b, x);
+    }
     is_true = true;
   }
   if (projection) projection->finish(r_, x);
@@ -117,91 +197,12 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
   return statistics;
 }
 
-/// Preconditioned conjugate gradients in the flexible form of Polak and Ribiere, which forgives a
-/// preconditioner that rounds to single precision.
-void KrylovSolver::run_cg(std::span<double> x, double wanted, int max_iterations,
-                          SolveStatistics& statistics) {
-  const std::size_t n = r_.size();
-  for (auto* v : {&p_, &v_, &z_}) v->resize(n);
-  precondition_(r_, z_);
-  p_ = z_;
-  double rz = over_ranks<1>(comm_, {dot_here(r_, z_)})[0];
-  while (statistics.iterations < max_iterations) {
-    log::alive();
-    ++statistics.iterations;
-    apply_(p_, v_);
-    const double curvature = over_ranks<1>(comm_, {dot_here(p_, v_)})[0];
-    const double alpha = rz / curvature;
-    if (!(curvature > 0) || !std::isfinite(alpha)) return;
-    for (std::size_t i = 0; i < n; ++i) {
-      x[i] += alpha * p_[i];
-      r_[i] -= alpha * v_[i];
-    }
-    if (std::sqrt(over_ranks<1>(comm_, {dot_here(r_, r_)})[0]) <= wanted) return;
-    precondition_(r_, z_);
-    const auto [next, change] = over_ranks<2>(comm_, {dot_here(r_, z_), dot_here(v_, z_)});
-    const double beta = -alpha * change / rz;  // z . (r - r_before) / (z . r)_before
-    rz = next;
-    for (std::size_t i = 0; i < n; ++i) p_[i] = z_[i] + beta * p_[i];
-  }
-}
-
-void KrylovSolver::run_gmres(std::span<double> x, double wanted, int max_iterations,
-                             SolveStatistics& statistics) {
-  if (!is_announced_ && statistics.iterations > 0)
-    log::info("{}: {} iterations of BiCGStab were not enough; GMRES continues", what_, statistics.iterations);
+/// Counts two applications as an iteration, as BiCGStab makes two in one.
+int KrylovSolver::run_gmres(std::span<double> x, double wanted, int most, bool continues) {
+  if (!is_announced_ && continues) log::info("{}: BiCGStab was not enough; GMRES continues", what_);
   is_announced_ = true;
-  for (auto* v : {&shadow_, &p_, &v_, &t_, &z_}) *v = std::vector<double>();
   if (!gmres_) gmres_ = std::make_unique<PetscGmres>(comm_, n_, apply_, precondition_);
-  // An iteration of BiCGStab preconditions and applies twice.
-  const int applications = gmres_->run(r_, x, wanted, 2 * (max_iterations - statistics.iterations));
-  statistics.iterations += (applications + 1) / 2;
-}
-
-/// What leaves more than it found is undone: GMRES starts where this did.
-void KrylovSolver::try_bicgstab(std::span<double> x, double wanted, int max_iterations,
-                                SolveStatistics& statistics) {
-  const std::vector<double> start(x.begin(), x.end());
-  run_bicgstab(x, wanted, max_iterations, statistics);
-  if (!(std::sqrt(over_ranks<1>(comm_, {dot_here(r_, r_)})[0]) <= statistics.residual))
-    std::ranges::copy(start, x.begin());
-}
-
-void KrylovSolver::run_bicgstab(std::span<double> x, double wanted, int max_iterations,
-                                SolveStatistics& statistics) {
-  const std::size_t n = r_.size();
-  for (auto* v : {&shadow_, &p_, &v_, &t_, &z_}) v->resize(n);
-  shadow_ = r_;
-  p_ = r_;
-  double rho = over_ranks<1>(comm_, {dot_here(r_, r_)})[0];
-  while (statistics.iterations < max_iterations) {
-    log::alive();
-    ++statistics.iterations;
-    precondition_(p_, z_);
-    apply_(z_, v_);
-    const double alpha = rho / over_ranks<1>(comm_, {dot_here(shadow_, v_)})[0];
-    if (!std::isfinite(alpha)) return;
-    for (std::size_t i = 0; i < n; ++i) {
-      x[i] += alpha * z_[i];
-      r_[i] -= alpha * v_[i];
-    }
-    if (std::sqrt(over_ranks<1>(comm_, {dot_here(r_, r_)})[0]) <= wanted) return;
-    precondition_(r_, z_);
-    apply_(z_, t_);
-    const auto [tr, tt] = over_ranks<2>(comm_, {dot_here(t_, r_), dot_here(t_, t_)});
-    if (tt == 0) return;
-    const double omega = tr / tt;
-    for (std::size_t i = 0; i < n; ++i) {
-      x[i] += omega * z_[i];
-      r_[i] -= omega * t_[i];
-    }
-    const auto [next, rr] = over_ranks<2>(comm_, {dot_here(shadow_, r_), dot_here(r_, r_)});
-    if (std::sqrt(rr) <= wanted) return;
-    const double beta = next / rho * (alpha / omega);
-    if (!std::isfinite(beta) || beta == 0) return;
-    rho = next;
-    for (std::size_t i = 0; i < n; ++i) p_[i] = r_[i] + beta * (p_[i] - omega * v_[i]);
-  }
+  return (gmres_->run(r_, x, wanted, 2 * most) + 1) / 2;
 }
 
 }  // namespace couplet::linalg

@@ -10,27 +10,29 @@
 
 #include "common/linalg/linear_map.hpp"
 #include "common/linalg/linear_solver.hpp"
+#include "common/linalg/petsc_shell.hpp"
 
 namespace couplet::linalg {
 
-class PetscGmres;
 class ResidualProjection;
 
 struct KrylovOptions {
   double relative_tolerance = 1e-8;  ///< of |b - A x| / |b|
   int max_iterations = 500;
-  bool is_symmetric = false;  ///< A and the preconditioner are, and positive: conjugate gradients
+  bool is_symmetric = false;  ///< A and the preconditioner are symmetric and positive: conjugate gradients
   bool is_hard = false;       ///< known to be slow for BiCGStab: GMRES from the start
-  int carried =
-      0;  ///< after so many iterations of conjugate gradients at most, the residual they carry counts as true
+  /// Up to this number of iterations, conjugate gradients' own residual counts as the true one.
+  int carried = 0;
+  double absolute_tolerance = 0;  ///< of |b - A x|
+  int patience = 50;              ///< iterations of BiCGStab after which GMRES takes over
 };
 
-/// BiCGStab [vandervorst1992] preconditioned from the right, for operators that are only applied; where it
-/// has not converged after 50 iterations, PETSc's GMRES goes on, which needs more memory and tolerates more. The
-/// residual that is judged is the true one, b - A x: the recurrence drifts away from it on long runs, so that
-/// it is computed anew when the recurrence has reached the tolerance (but for KrylovOptions::carried), and the iteration begins again from
-/// there if it has not. Symmetric positive pairs take preconditioned conjugate gradients [hestenes1952] in
-/// their place, under the same rules. A residual that is only what rounding leaves in A x counts as reached.
+/// Conjugate gradients, BiCGStab and PETSc's GMRES for operators that are only applied, with rules about residuals. BiCGStab is preconditioned from
+/// the right; where it has not converged after KrylovOptions::patience, GMRES goes on, which needs more memory and tolerates
+/// more. Symmetric positive pairs take conjugate gradients. The residual that is judged is the true one, b - A x: the
+/// recurrence drifts away from it on long runs, so it is computed anew when the recurrence has reached the tolerance (except
+/// for KrylovOptions::carried), and the iteration begins again from there if it has not. A residual that is only what
+/// rounding leaves in A x counts as reached.
 class KrylovSolver {
  public:
   /// `what` names the unknown in messages. `n`: rows of this rank.
@@ -47,17 +49,14 @@ class KrylovSolver {
  private:
   double true_residual(std::span<const double> b, std::span<const double> x);
   double rounding(std::span<const double> x);
-  void try_bicgstab(std::span<double> x, double wanted, int max_iterations, SolveStatistics& statistics);
-  void run_bicgstab(std::span<double> x, double wanted, int max_iterations, SolveStatistics& statistics);
-  void run_cg(std::span<double> x, double wanted, int max_iterations, SolveStatistics& statistics);
-  void run_gmres(std::span<double> x, double wanted, int max_iterations, SolveStatistics& statistics);
+  int run_gmres(std::span<double> x, double wanted, int most, bool continues);
 
   std::string what_;
   MPI_Comm comm_;
   std::size_t n_;
   LinearMap apply_, precondition_;
-  std::vector<double> r_, shadow_, p_, v_, t_, z_;
-  std::unique_ptr<PetscGmres> gmres_;  // while it is needed
+  std::vector<double> r_;
+  std::unique_ptr<PetscGmres> gmres_;  // created on first use
   bool is_announced_ = false;
 };
 

@@ -3,11 +3,13 @@
 
 #include <petscksp.h>
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
 
 #include "common/linalg/matrix.hpp"
+#include "common/linalg/petsc_shell.hpp"
 
 namespace couplet::linalg {
 
@@ -15,16 +17,14 @@ enum class LinearMethod {
   direct,            ///< LU: PETSc's own for small matrices (whole on every rank), else MUMPS
   direct_symmetric,  ///< Cholesky: the same
   direct_planar,     ///< Cholesky of a 2-D mesh's matrix, positive definite: on one rank by CHOLMOD
-  cg_direct,         ///< CG with kept Cholesky factors: moving 2-D meshes, symmetric positive definite
-  cg_single,         ///< the same, the factors in single precision where that is enough (one rank)
-  cg_multigrid,      ///< CG with smoothed aggregation (ML), symmetric SOR
-  gmres_multigrid,   ///< GMRES with BoomerAMG
-  bicgstab_ilu,  ///< BiCGStab with ILU(0), block Jacobi over the ranks; GMRES where that breaks down or is
-                 ///< slow
-  cg_icc,        ///< CG with incomplete Cholesky factors, block Jacobi over the ranks
+  cg_direct,     ///< CG with kept Cholesky factors, on one rank PETSc's own: 2-D, symmetric positive definite
+  cg_multigrid,  ///< CG with smoothed aggregation (ML), symmetric SOR
+  gmres_multigrid,  ///< GMRES with BoomerAMG
+  bicgstab_ilu,     ///< KrylovSolver's BiCGStab and GMRES with ILU(0), block Jacobi over the ranks
+  cg_icc,           ///< CG with incomplete Cholesky factors, block Jacobi over the ranks
 };
 
-class SingleFactors;
+class KrylovSolver;
 
 struct LinearOptions {
   LinearMethod method = LinearMethod::cg_multigrid;
@@ -46,7 +46,6 @@ struct SolveStatistics {
 /// made again bit for bit: a run that goes on from a checkpoint has the preconditioner that it had.
 struct PreconditionerMemory {
   bool is_due = true;  ///< made anew at the next solve
-  bool is_single = false;
   int most_iterations = 0;
   bool operator==(const PreconditionerMemory&) const = default;
 };
@@ -69,13 +68,14 @@ class LinearSolver {
   /// preconditioner while iterations stay below twice (plus 2) those seen right after it was made, and make
   /// it anew when it fails.
   void matrix_changed();
+  /// Takes what `make` gives for its preconditioner, whenever that is due.
+  void set_preconditioner(std::function<LinearMap()> make);
   /// Builds the preconditioner anew at the next solve.
   void refresh();
-  PreconditionerMemory memory() const { return {rebuild_, single_ != nullptr, most_iterations_}; }
+  PreconditionerMemory memory() const { return {rebuild_, most_iterations_}; }
   /// Makes the preconditioner now, of the matrix as it stands: the one that `memory` goes with. Collective.
   void restore(const PreconditionerMemory& memory);
   int preconditioners_built() const { return built_; }
-  int total_iterations() const { return total_iterations_; }
   /// |v| over all ranks. Collective.
   double norm(std::span<const double> values) const;
   /// |b - A x|. Collective.
@@ -83,22 +83,22 @@ class LinearSolver {
 
  private:
   void make_preconditioner();
-  void use_single_precision();
-  void make_single_factors();
-  void leave_single_precision();
-  KSPConvergedReason continue_by_gmres(std::span<const double> b, std::span<double> x, double wanted,
-                                       SolveStatistics& statistics);
-  KSPConvergedReason attempt(std::span<const double> b, std::span<double> x, SolveStatistics& statistics);
+  KSPConvergedReason attempt(std::span<const double> b, std::span<double> x, double relative_tolerance,
+                             double absolute_tolerance, SolveStatistics& statistics);
 
   std::string what_;
   LinearOptions options_;
   const SparseMatrix* matrix_;
-  std::unique_ptr<SingleFactors> single_;  // null: PETSc has its own preconditioner
+  std::unique_ptr<KrylovSolver> krylov_;  // of bicgstab_ilu
+  std::function<LinearMap()> make_;       // empty: PETSc's own preconditioner
+  LinearMap inverse_;
+  std::exception_ptr failure_;
+  ShellOperator shell_{&inverse_, &failure_};
   KSP ksp_ = nullptr;
   ::Vec b_ = nullptr, x_ = nullptr;
   bool rebuild_ = true;
   int most_iterations_ = 0;  // above: the preconditioner has aged
-  int built_ = 0, total_iterations_ = 0;
+  int built_ = 0;
 };
 
 }  // namespace couplet::linalg

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/linalg/petsc_check.hpp"
-#include "common/log/life.hpp"
+#include "common/log/progress.hpp"
 
 namespace couplet::linalg {
 namespace {

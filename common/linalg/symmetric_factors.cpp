@@ -13,15 +13,31 @@ namespace {
 
 constexpr PetscInt largest_whole = 60000;
 
+/// a - s b, to be destroyed.
+class Shifted {
+ public:
+  Shifted(Mat a, Mat b, double s) {
+    petsc_check(MatDuplicate(a, MAT_COPY_VALUES, &matrix));
+    petsc_check(MatAXPY(matrix, -s, b, UNKNOWN_NONZERO_PATTERN));
+  }
+  ~Shifted() {
+    if (std::uncaught_exceptions() == 0) MatDestroy(&matrix);
+  }
+  Mat matrix = nullptr;
+};
+
 }  // namespace
 
-SymmetricFactors::SymmetricFactors(const SparseMatrix& matrix) {
-  Mat a = matrix.petsc();
+SymmetricFactors::SymmetricFactors(const SparseMatrix& a, const SparseMatrix& b, double s)
+    : SymmetricFactors(Shifted(a.petsc(), b.petsc(), s).matrix) {}
+
+SymmetricFactors::SymmetricFactors(Mat a) {
+  const int ranks = parallel::comm_size(PetscObjectComm(reinterpret_cast<PetscObject>(a)));
   petsc_check(MatSetOption(a, MAT_SYMMETRIC, PETSC_TRUE));
   petsc_check(MatCreateVecs(a, &x_, &b_));
   PetscInt rows = 0;
   petsc_check(MatGetSize(a, &rows, nullptr));
-  if (parallel::comm_size(matrix.comm()) == 1 || rows > largest_whole) {
+  if (ranks == 1 || rows > largest_whole) {
     factorise(a);
     return;
   }
@@ -29,8 +45,7 @@ SymmetricFactors::SymmetricFactors(const SparseMatrix& matrix) {
   petsc_check(VecScatterCreateToAll(b_, &to_all_, &whole_b_));
   petsc_check(VecDuplicate(whole_b_, &whole_x_));
   Mat whole = nullptr;
-  petsc_check(MatCreateRedundantMatrix(a, parallel::comm_size(matrix.comm()), MPI_COMM_NULL,
-                                       MAT_INITIAL_MATRIX, &whole));
+  petsc_check(MatCreateRedundantMatrix(a, ranks, MPI_COMM_NULL, MAT_INITIAL_MATRIX, &whole));
   petsc_check(MatSetOption(whole, MAT_SYMMETRIC, PETSC_TRUE));
   factorise(whole);
   petsc_check(MatDestroy(&whole));

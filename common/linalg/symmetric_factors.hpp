@@ -14,7 +14,9 @@ namespace couplet::linalg {
 class SymmetricFactors {
  public:
   /// Throws SolveFailure. Collective.
-  explicit SymmetricFactors(const SparseMatrix& matrix);
+  explicit SymmetricFactors(const SparseMatrix& matrix) : SymmetricFactors(matrix.petsc()) {}
+  /// Factors of a - s b.
+  SymmetricFactors(const SparseMatrix& a, const SparseMatrix& b, double s);
   ~SymmetricFactors();
   SymmetricFactors(const SymmetricFactors&) = delete;
   SymmetricFactors& operator=(const SymmetricFactors&) = delete;
@@ -25,6 +27,7 @@ class SymmetricFactors {
   GlobalIndex negative_pivots() const { return negative_; }
 
  private:
+  explicit SymmetricFactors(Mat matrix);
   void factorise(Mat matrix);
 
   Mat factors_ = nullptr;

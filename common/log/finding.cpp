@@ -51,6 +51,17 @@ void finding(int rank, Finding f) {
 
 const std::vector<Finding>& findings() { return kept(); }
 
+void resume_findings(int rank, const std::vector<Finding>& earlier) {
+  std::vector<Finding> again = std::move(kept());
+  kept() = earlier;
+  for (const Finding& f : earlier)
+    if (rank == 0) info("found before the restart: {}", line(f));
+  for (Finding& f : again)
+    if (std::ranges::none_of(earlier,
+                             [&](const Finding& e) { return e.id == f.id && e.sentence == f.sentence; }))
+      kept().push_back(std::move(f));
+}
+
 void accept(std::span<const std::string> ids) {
   accepted_ids().insert(accepted_ids().end(), ids.begin(), ids.end());
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+#include <chrono>
+#include <map>
 #include <string>
 
 namespace couplet::log {
@@ -11,5 +14,63 @@ std::string format_duration(double seconds);
 /// "ETA 3 h 12 min" if the rest runs as fast as what was done of `total` in `wall_seconds`; empty while
 /// nothing was done.
 std::string eta(double done, double total, double wall_seconds);
+
+/// Seconds and calls by name; waiting time is a row of its own ("waiting for coupler").
+class Timers {
+ public:
+  struct Entry {
+    double seconds = 0;
+    long calls = 0;
+  };
+  void add(const std::string& name, double seconds) {
+    Entry& e = entries_[name];
+    e.seconds += seconds;
+    ++e.calls;
+  }
+  const std::map<std::string, Entry>& entries() const { return entries_; }
+  /// Table with share of `total` seconds, largest first.
+  std::string table(const std::string& title, double total) const;
+
+ private:
+  std::map<std::string, Entry> entries_;
+};
+
+/// Adds the time until the end of the scope.
+class ScopedTimer {
+ public:
+  ScopedTimer(Timers& timers, const char* name) : timers_(timers), name_(name) {}
+  ~ScopedTimer() {
+    timers_.add(name_, std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count());
+  }
+  ScopedTimer(const ScopedTimer&) = delete;
+
+ private:
+  Timers& timers_;
+  const char* name_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// The timers of this process.
+Timers& timers();
+
+/// Where the watch over a job (common/app/watch/watch) hears that this process is alive.
+struct LifeSigns {
+  std::atomic<double>* last = nullptr;    ///< time of the last sign [s], machine's steady clock
+  std::atomic<int>* long_work = nullptr;  ///< above 0: within LongWork
+};
+void listen_for_life(LifeSigns signs);
+
+/// A sign of life out of work that may take long: an iteration of a solver, a field written. Costs 30 ns.
+void alive();
+
+/// Work that can give no sign while it lasts (a factorisation, a mesh being made by another program): until the end of
+/// the scope the processor time of the process and of its children is the sign.
+class LongWork {
+ public:
+  LongWork();
+  ~LongWork();
+  LongWork(const LongWork&) = delete;
+  LongWork& operator=(const LongWork&) = delete;
+};
 
 }  // namespace couplet::log

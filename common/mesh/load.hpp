@@ -51,10 +51,9 @@ RawMesh read_inp(const std::filesystem::path& file);
 std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim,
                                const MeshParameters& parameters = {});
 
-/// Distributes: cells by PT-Scotch (PETSc MatPartitioning), one ring of vertex-neighbour ghosts (two at
-/// Mesh::wide_points), owned cells
-/// renumbered by reverse Cuthill-McKee. `raw` is read on rank 0 only. Every boundary face must belong to
-/// exactly one patch; errors name the place. Collective.
+/// Distributes: cells by PT-Scotch, one ring of vertex-neighbour ghosts (two at Mesh::wide_points), owned cells
+/// renumbered by reverse Cuthill-McKee. `raw` is read on rank 0 only. Every boundary face must belong to exactly one
+/// patch; errors name the place. Collective.
 LoadedMesh distribute(MPI_Comm comm, const RawMesh& raw);
 
 /// File (.msh, .inp, .geo, or what convert_mesh() reads) to distributed mesh, `periodic`, `materials` and `find_wide_points` as

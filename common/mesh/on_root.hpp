@@ -52,7 +52,7 @@ void on_all(MPI_Comm comm, Work&& work) {
   throw Error(text);
 }
 
-/// Rank 0's values on every rank, in pieces that MPI's int counts can hold.
+/// Rank 0's values on every rank, in pieces that MPI's int counts can hold. Collective.
 template <class T>
 void broadcast(MPI_Comm comm, std::vector<T>& values) {
   GlobalIndex size = static_cast<GlobalIndex>(values.size());
@@ -62,11 +62,6 @@ void broadcast(MPI_Comm comm, std::vector<T>& values) {
   const GlobalIndex bytes = size * GlobalIndex(sizeof(T)), piece = GlobalIndex(1) << 30;
   for (GlobalIndex at = 0; at < bytes; at += piece)
     MPI_Bcast(data + at, static_cast<int>(std::min(piece, bytes - at)), MPI_BYTE, 0, comm);
-}
-
-inline void broadcast(MPI_Comm comm, Csr& rows) {
-  broadcast(comm, rows.offset);
-  broadcast(comm, rows.index);
 }
 
 inline void broadcast(MPI_Comm comm, std::vector<std::string>& texts) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/partition.hpp"
 
-#include <petscmat.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -10,11 +8,10 @@
 #include <numeric>
 
 extern "C" {
-#include <scotch.h>  // needs FILE
+#include <ptscotch.h>  // needs FILE
 }
 
 #include "common/base/error.hpp"
-#include "common/linalg/petsc_check.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::mesh {
@@ -40,60 +37,68 @@ Csr make_graph(Index n, std::span<const Index> first, std::span<const Index> sec
 
 namespace {
 
-/// Rows of the graph that this rank has, into `parts` parts.
+// Excess of a part over the mean, as PETSc's partitioner allows it.
+constexpr double imbalance = 0.01;
+
+void check(int failed) {
+  if (failed != 0) throw Error("Scotch could not divide the mesh.");
+}
+
+/// Rows of the graph that this rank has, into `parts` parts. Scotch's own calls take the arrays as they are, without const.
 std::vector<int> apply_ptscotch(MPI_Comm comm, GlobalIndex n_all, std::span<const Index> offset,
-                                const auto& neighbours, int parts) {
+                                std::span<const GlobalIndex> neighbours, int parts) {
   // With several threads Scotch 7 gives another partition each time, and a restart would not be bit for bit.
   setenv("SCOTCH_PTHREAD_NUMBER", "1", 1);
   // Scotch goes on in its row of random numbers: a second mesh of a process would be shared out in another way.
   SCOTCH_randomReset();
-  const auto n = static_cast<PetscInt>(offset.size()) - 1;
-  // PETSc frees both arrays with the matrix.
-  PetscInt *rows = nullptr, *columns = nullptr;
-  linalg::petsc_check(PetscMalloc1(n + 1, &rows));
-  linalg::petsc_check(PetscMalloc1(std::max<std::size_t>(1, neighbours.size()), &columns));
-  std::copy(offset.begin(), offset.end(), rows);
-  std::transform(neighbours.begin(), neighbours.end(), columns,
-                 [](auto i) { return static_cast<PetscInt>(i); });
-  Mat adjacency = nullptr;
-  MatPartitioning tool = nullptr;
-  IS result = nullptr;
-  linalg::petsc_check(
-      MatCreateMPIAdj(comm, n, static_cast<PetscInt>(n_all), rows, columns, nullptr, &adjacency));
-  linalg::petsc_check(MatPartitioningCreate(comm, &tool));
-  linalg::petsc_check(MatPartitioningSetType(tool, MATPARTITIONINGPTSCOTCH));
-  linalg::petsc_check(MatPartitioningSetAdjacency(tool, adjacency));
-  linalg::petsc_check(MatPartitioningSetNParts(tool, parts));
-  linalg::petsc_check(MatPartitioningApply(tool, &result));
-  const PetscInt* part = nullptr;
-  linalg::petsc_check(ISGetIndices(result, &part));
-  std::vector<int> parts_of(part, part + n);
-  linalg::petsc_check(ISRestoreIndices(result, &part));
-  linalg::petsc_check(ISDestroy(&result));
-  linalg::petsc_check(MatPartitioningDestroy(&tool));
-  linalg::petsc_check(MatDestroy(&adjacency));
-  return parts_of;
+  const auto n = static_cast<SCOTCH_Num>(offset.size()) - 1;
+  std::vector<SCOTCH_Num> rows(offset.begin(), offset.end()), columns(neighbours.begin(), neighbours.end());
+  columns.resize(std::max<std::size_t>(1, columns.size()));
+  std::vector<SCOTCH_Num> part(std::max<SCOTCH_Num>(1, n));
+  SCOTCH_Arch parts_of_all;
+  SCOTCH_Strat strategy;
+  check(SCOTCH_archInit(&parts_of_all));
+  check(SCOTCH_archCmplt(&parts_of_all, parts));
+  check(SCOTCH_stratInit(&strategy));
+  if (n == n_all) {
+    SCOTCH_Graph graph;
+    check(SCOTCH_graphInit(&graph));
+    check(SCOTCH_graphBuild(&graph, 0, n, rows.data(), rows.data() + 1, nullptr, nullptr, rows[n],
+                            columns.data(), nullptr));
+    check(SCOTCH_stratGraphMapBuild(&strategy, SCOTCH_STRATDEFAULT, parts, imbalance));
+    check(SCOTCH_graphMap(&graph, &parts_of_all, &strategy, part.data()));
+    SCOTCH_graphExit(&graph);
+  } else if (!parallel::any(comm, n == n_all)) {
+    MPI_Comm own = MPI_COMM_NULL;  // Scotch keeps attributes at its communicator
+    MPI_Comm_dup(comm, &own);
+    SCOTCH_Dgraph graph;
+    check(SCOTCH_dgraphInit(&graph, own));
+    check(SCOTCH_dgraphBuild(&graph, 0, n, n, rows.data(), rows.data() + 1, nullptr, nullptr, rows[n],
+                             rows[n], columns.data(), nullptr, nullptr));
+    check(SCOTCH_stratDgraphMapBuild(&strategy, SCOTCH_STRATDEFAULT, parts, parts, imbalance));
+    check(SCOTCH_dgraphMap(&graph, &parts_of_all, &strategy, part.data()));
+    SCOTCH_dgraphExit(&graph);
+    MPI_Comm_free(&own);
+  }
+  SCOTCH_stratExit(&strategy);
+  SCOTCH_archExit(&parts_of_all);
+  return {part.begin(), part.begin() + n};
 }
 
 }  // namespace
 
-std::vector<int> partition(const Csr& graph, int parts) {
-  if (parts == 1) return std::vector<int>(graph.size(), 0);
-  return apply_ptscotch(PETSC_COMM_SELF, graph.size(), graph.offset, graph.index, parts);
-}
-
 std::vector<int> partition(MPI_Comm comm, std::span<const Index> offset,
-                           std::span<const GlobalIndex> neighbours) {
-  const int parts = parallel::comm_size(comm);
+                           std::span<const GlobalIndex> neighbours, int parts) {
   const auto n = static_cast<Index>(offset.size()) - 1;
-  if (parts == 1) return std::vector<int>(n, 0);
   const GlobalIndex n_all = parallel::sum(comm, GlobalIndex(n));
-  if (n_all > std::numeric_limits<PetscInt>::max())
+  if (n_all > std::numeric_limits<SCOTCH_Num>::max())
     throw Error(
-        "The mesh has {} cells, more than this build of PETSc can number ({}). Build with a PETSc of 64-bit "
+        "The mesh has {} cells, more than this build of Scotch can number ({}). Build with a Scotch of 64-bit "
         "integers.",
-        n_all, std::numeric_limits<PetscInt>::max());
-  return apply_ptscotch(comm, n_all, offset, neighbours, parts);
+        n_all, std::numeric_limits<SCOTCH_Num>::max());
+  if (parallel::max(comm, GlobalIndex(n)) < n_all)
+    return apply_ptscotch(comm, n_all, offset, neighbours, parts);
+  return n == 0 ? std::vector<int>() : apply_ptscotch(MPI_COMM_SELF, n_all, offset, neighbours, parts);
 }
 
 namespace {

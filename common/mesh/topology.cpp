@@ -1,50 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/topology.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 #include "common/base/error.hpp"
-#include "common/mesh/half_faces.hpp"
+#include "common/base/text.hpp"
 
 namespace couplet::mesh {
 namespace {
 
-Vec3 mean_point(const RawMesh& raw, std::span<const Index> points) {
-  Vec3 sum = Vec3::Zero();
-  for (const Index p : points) sum += raw.points[p];
-  return sum / double(points.size());
-}
-
-struct Interior {
-  HalfFace owner;
-  Index neighbour;
-};
-struct Boundary {
-  HalfFace owner;
-  Index element;
-};
-
-void check_elements(const RawMesh& raw, std::span<const HalfFace> cells, std::span<const HalfFace> elements) {
-  if (elements.empty()) return;
-  const auto where = [&] {
-    return place(mean_point(raw, raw.boundary_points[elements[0].element()]), raw.dim);
-  };
-  const std::string& name = raw.patches[raw.boundary_patch[elements[0].element()]];
-  if (cells.empty()) throw Error(face_without_cell(name, where()));
-  if (cells.size() == 2) throw Error(face_inside(name, where()));
-  for (const HalfFace& e : elements)
-    if (raw.boundary_patch[e.element()] != raw.boundary_patch[elements[0].element()])
-      throw Error(face_in_two_patches(name, raw.patches[raw.boundary_patch[e.element()]], where()));
-}
-
-void report_unassigned(const RawMesh& raw, const HalfFaces& halves, const std::vector<HalfFace>& unassigned) {
-  if (unassigned.empty()) return;
-  std::vector<std::string> places;
-  for (const HalfFace& face : unassigned) {
-    if (places.size() == 3) break;
-    places.push_back(place(mean_point(raw, halves.points(face)), raw.dim));
+/// Volume of a cell as its points stand, quadrilateral faces cut at their first point: good enough for a
+/// sign.
+double signed_volume(const RawMesh& raw, Index cell) {
+  const CellShape& shape = shape_of(raw.cell_type[cell]);
+  const auto points = raw.cell_points[cell];
+  const Vec3& origin = raw.points[points[0]];
+  double volume = 0;
+  for (int f = 0; f < shape.n_faces; ++f) {
+    const auto x = [&](int i) -> Vec3 { return raw.points[points[shape.faces[f][i]]] - origin; };
+    if (shape.dim == 2) {
+      const Vec3 a = x(0), b = x(1);
+      volume += 0.5 * (a[0] * b[1] - a[1] * b[0]);
+      continue;
+    }
+    for (int i = 2; i < shape.face_size(f); ++i) volume += x(0).dot(x(i - 1).cross(x(i))) / 6;
   }
-  throw Error(faces_in_no_patch(GlobalIndex(unassigned.size()), places, raw.dim));
+  return volume;
+}
+
+/// Diameter of the cell's bounding box: the scale below which a volume counts as none.
+double extent(const RawMesh& raw, Index cell) {
+  Vec3 low = raw.points[raw.cell_points[cell][0]], high = low;
+  for (const Index p : raw.cell_points[cell]) {
+    low = low.cwiseMin(raw.points[p]);
+    high = high.cwiseMax(raw.points[p]);
+  }
+  return (high - low).norm();
 }
 
 }  // namespace
@@ -55,87 +48,10 @@ std::string place(const Vec3& x, int dim) {
                   : fmt::format("({:.6g}, {:.6g}, {:.6g})", x[0] + 0.0, x[1] + 0.0, x[2] + 0.0);
 }
 
-std::string face_without_cell(const std::string& patch, const std::string& where) {
-  return fmt::format(
-      "Patch '{}' has a face at {} that belongs to no cell. Mesh the boundary and the interior together so "
-      "that their points coincide.",
-      patch, where);
-}
-
-std::string face_inside(const std::string& patch, const std::string& where) {
-  return fmt::format(
-      "Patch '{}' has a face at {} that lies between two cells. A patch must lie on the boundary; remove the "
-      "inner surface from the physical group (or the mesh contains every cell twice).",
-      patch, where);
-}
-
-std::string face_in_two_patches(const std::string& one, const std::string& other, const std::string& where) {
-  return fmt::format(
-      "The boundary face at {} is in two patches, '{}' and '{}'. Every boundary face must be in exactly one "
-      "patch.",
-      where, one, other);
-}
-
-std::string face_of_many_cells(std::size_t cells, const std::string& where) {
-  return fmt::format(
-      "{} cells share the face at {}, but a face has at most two cells; the mesh has duplicate or "
-      "overlapping cells.",
-      cells, where);
-}
-
-std::string faces_in_no_patch(GlobalIndex n, const std::vector<std::string>& places, int dim) {
-  std::string text;
-  for (const std::string& at : places) text += (text.empty() ? "" : ", ") + at;
-  return fmt::format(
-      "{} boundary face{} in no patch, with centre{} {}{}. Every boundary face must be in exactly one "
-      "patch: add {} to a physical group (for a location inside the domain: the mesh has two coincident "
-      "points there that should be one).",
-      n, n == 1 ? " is" : "s are", n == 1 ? "" : "s", text, n > GlobalIndex(places.size()) ? ", ..." : "",
-      dim == 2 ? "the curve (Physical Curve)" : "the surface (Physical Surface)");
-}
-
-Faces build_faces(const RawMesh& raw) {
-  HalfFaces halves(raw, true);
-  std::vector<Interior> interior;
-  std::vector<Boundary> boundary;
-  std::vector<HalfFace> unassigned;
-  halves.for_each_face([&](std::span<const HalfFace> cells, std::span<const HalfFace> elements) {
-    if (cells.size() > 2)
-      throw Error(face_of_many_cells(cells.size(), place(mean_point(raw, halves.points(cells[0])), raw.dim)));
-    check_elements(raw, cells, elements);
-    if (cells.size() == 2)
-      interior.push_back({cells[0], cells[1].cell});
-    else if (elements.empty())
-      unassigned.push_back(cells[0]);
-    else
-      boundary.push_back({cells[0], elements[0].element()});
-  });
-  report_unassigned(raw, halves, unassigned);
-
-  std::sort(interior.begin(), interior.end(), [](const Interior& a, const Interior& b) {
-    return std::pair(a.owner.cell, a.neighbour) < std::pair(b.owner.cell, b.neighbour);
-  });
-  std::sort(boundary.begin(), boundary.end(),
-            [](const Boundary& a, const Boundary& b) { return a.element < b.element; });
-  Faces faces;
-  faces.n_interior = static_cast<Index>(interior.size());
-  for (const Interior& f : interior) {
-    faces.points.push_row(halves.points(f.owner));
-    faces.owner.push_back(f.owner.cell);
-    faces.neighbour.push_back(f.neighbour);
-  }
-  for (const Boundary& f : boundary) {
-    faces.points.push_row(halves.points(f.owner));
-    faces.owner.push_back(f.owner.cell);
-    faces.patch.push_back(raw.boundary_patch[f.element]);
-  }
-  return faces;
-}
-
 Csr outer_faces(const RawMesh& raw) {
-  HalfFaces halves(raw, false);
+  HalfFaces halves(raw);
   std::vector<HalfFace> outer;
-  halves.for_each_face([&](std::span<const HalfFace> cells, std::span<const HalfFace>) {
+  halves.for_each_face([&](std::span<const HalfFace> cells) {
     if (cells.size() == 1) outer.push_back(cells[0]);
   });
   std::sort(outer.begin(), outer.end(), [](const HalfFace& a, const HalfFace& b) {
@@ -143,6 +59,58 @@ Csr outer_faces(const RawMesh& raw) {
   });
   Csr result;
   for (const HalfFace& h : outer) result.push_row(halves.points(h));
+  return result;
+}
+
+void orient_cells(RawMesh& raw, GlobalIndex first) {
+  for (Index c = 0; c < raw.cell_points.size(); ++c) {
+    const CellShape& shape = shape_of(raw.cell_type[c]);
+    Index* points = raw.cell_points.index.data() + raw.cell_points.offset[c];
+    if (shape.dim != raw.dim)
+      throw Error("Cell {} at {} is a {}, which does not fit a {}-D mesh.", first + c,
+                  place(raw.points[points[0]], 3), name_of(raw.cell_type[c]), raw.dim);
+    const double volume = signed_volume(raw, c);
+    if (!(std::abs(volume) > 1e-13 * std::pow(extent(raw, c), raw.dim)))
+      throw Error(
+          "Cell {} at {} has zero volume: its points lie in one {}, or some coincide. Repair the mesh there.",
+          first + c, place(raw.points[points[0]], raw.dim), raw.dim == 2 ? "line" : "plane");
+    if (volume > 0) continue;
+    std::array<Index, 8> as_read{};
+    std::copy_n(points, shape.n_points, as_read.begin());
+    for (int i = 0; i < shape.n_points; ++i) points[i] = as_read[shape.mirrored[i]];
+  }
+}
+
+void check_plane(std::span<const Vec3> points, double diagonal) {
+  for (const Vec3& x : points)
+    if (std::abs(x[2]) > 1e-12 * diagonal)
+      throw Error(
+          "The 2-D mesh has a point at {}. A 2-D mesh must lie in the plane z = 0; rotate or shift it there.",
+          place(x, 3));
+}
+
+std::vector<int> materials_of_cells(const RawMesh& raw) {
+  if (raw.materials.empty()) return {};
+  std::vector<int> of_zone(raw.zones.size(), -1);
+  for (std::size_t m = 0; m < raw.materials.size(); ++m)
+    for (const std::string& name : raw.materials[m]) {
+      const auto zone = std::ranges::find(raw.zones, name);
+      if (zone == raw.zones.end())
+        throw Error("It has no zone '{}' for a material. {} The zones (physical {} of gmsh) are {}.", name,
+                    base::did_you_mean(name, raw.zones, "zones"), raw.dim == 2 ? "surfaces" : "volumes",
+                    base::join(raw.zones));
+      int& material = of_zone[zone - raw.zones.begin()];
+      if (material >= 0)
+        throw Error("Its zone '{}' is assigned to two materials; each zone has exactly one.", name);
+      material = static_cast<int>(m);
+    }
+  for (std::size_t z = 0; z < of_zone.size(); ++z)
+    if (of_zone[z] < 0)
+      throw Error("Its zone '{}' has no material; add it to the zones of a material. The zones are {}.",
+                  raw.zones[z], base::join(raw.zones));
+  if (raw.materials.size() == 1) return {};
+  std::vector<int> result;
+  for (const int zone : raw.cell_zone) result.push_back(of_zone[zone]);
   return result;
 }
 

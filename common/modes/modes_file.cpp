@@ -6,7 +6,6 @@
 
 #include "common/base/error.hpp"
 #include "common/io/hdf5_reader.hpp"
-#include "common/io/rehearse.hpp"
 #include "common/modes/modal_checks.hpp"
 
 namespace couplet::modes {
@@ -119,16 +118,13 @@ ModalModel read_modes(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file))
     throw Error("The modes file '{}' does not exist. The path is relative to the folder of the YAML file.",
                 file.string());
-  io::rehearse(file, what, [&] { read_tables(io::hdf5::Reader(file, what, advice)); });
   return read_model(io::hdf5::Reader(file, what, advice));
 }
 
 std::string key_of_modes(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) return "";
   try {
-    const auto key = [&] { return io::hdf5::Reader(file, what).text("/", "key"); };
-    io::rehearse(file, what, key);
-    return key();
+    return io::hdf5::Reader(file, what).text("/", "key");
   } catch (const Error&) {
     return "";  // damaged or of another kind: it is made anew
   }

@@ -13,7 +13,6 @@ namespace {
 
 // "Of late" is about this part of the time that has gone by.
 constexpr double window = 0.25;
-constexpr std::size_t scalars = 6;
 
 }  // namespace
 
@@ -52,37 +51,61 @@ double StepErrors::over_size() const {
   return all / size_;
 }
 
-std::vector<double> StepErrors::state() const {
-  std::vector<double> values{rate_, size_, below_, highest_, time_, double(amplitude_.size())};
-  for (const auto& [swing, amplitude] : amplitude_) values.insert(values.end(), {double(swing), amplitude});
-  for (const auto& [key, sum] : errors_)
-    values.insert(values.end(), {double(key.first), double(key.second), sum.all, sum.kept});
+StepErrors::Seen VelocityErrors::add(std::span<const double> before, std::span<const double> now, double dt,
+                                     double dt_old, double size, const Norm& norm, double forgotten) {
+  const bool first_order = local_.order == 1, knows_third = !first_order && has_before_;
+  if (knows_third && v_before_.size() != now.size())
+    throw Error("The checkpoint's step errors are from another mesh. Use an earlier checkpoint.");
+  std::vector<double> second(now.size()), third(knows_third ? now.size() : 0);
+  for (std::size_t i = 0; i < second.size(); ++i) second[i] = (now[i] - before[i]) / dt;
+  for (std::size_t i = 0; i < third.size(); ++i)
+    third[i] = 2 * (second[i] - (before[i] - v_before_[i]) / dt_old) / (dt + dt_old);
+  StepErrors::Seen seen{
+      .rate = norm(now), .size = size, .dt = dt, .order = local_.order, .forgotten = forgotten};
+  const double by_two = norm(second);
+  seen.below = first_order ? seen.rate : by_two;
+  if (first_order || knows_third) {
+    seen.highest = first_order ? by_two : norm(third);
+    seen.error = std::abs(local_.constant) * std::pow(dt, local_.order + 1) * seen.highest;
+    errors_.add(seen, first_order || judged_ ? 1 : 2);
+    judged_ = true;
+  }
+  v_before_.assign(before.begin(), before.end());
+  has_before_ = true;
+  return seen;
+}
+
+std::vector<double> VelocityErrors::numbers() const {
+  std::vector<double> values{(judged_ ? 1. : 0.) + (has_before_ ? 2. : 0.)};
+  const std::vector<double> sums = errors_.state();
+  values.insert(values.end(), sums.begin(), sums.end());
   return values;
 }
 
-void StepErrors::restore(std::span<const double> state) {
-  *this = {};
-  if (state.empty()) return;  // of a run that did not collect them
+void VelocityErrors::restore(std::span<const double> numbers, std::vector<double> before) {
+  v_before_ = std::move(before);
+  errors_ = {};
+  judged_ = has_before_ = false;
+  if (numbers.empty()) return;
+  base::SavedNumbers saved(numbers, "step errors");
+  const double kind = saved.real();
+  judged_ = kind == 1 || kind == 3;
+  has_before_ = kind >= 2;
+  errors_.restore(saved.rest());
+}
+
+std::vector<double> VelocityErrors::state() const {
+  std::vector<double> values{double(v_before_.size())};
+  const std::vector<double> all = numbers();
+  for (const auto* part : {&v_before_, &all}) values.insert(values.end(), part->begin(), part->end());
+  return values;
+}
+
+void VelocityErrors::restore(std::span<const double> state) {
+  if (state.empty()) return restore({}, {});
   base::SavedNumbers saved(state, "step errors");
-  const std::span<const double> head = saved.next(scalars - 1);
-  rate_ = head[0], size_ = head[1], below_ = head[2], highest_ = head[3], time_ = head[4];
-  const auto key = [&] {  // may be negative
-    const double value = saved.real();
-    if (!(value >= std::numeric_limits<int>::min() && value <= std::numeric_limits<int>::max()))
-      saved.damaged();
-    return int(value);
-  };
-  for (std::size_t n = saved.count_of(2); n > 0; --n) {
-    const int at = key();
-    amplitude_[at] = saved.real();
-  }
-  if (saved.left() % 4 != 0) saved.damaged();
-  while (saved.left() > 0) {
-    const int first = key(), second = key();
-    if (!amplitude_.contains(first)) saved.damaged();
-    Sum& sum = errors_[{first, second}];
-    sum.all = saved.real(), sum.kept = saved.real();
-  }
+  const std::span<const double> v = saved.next(saved.count_of(1));
+  restore(saved.rest(), {v.begin(), v.end()});
 }
 
 }  // namespace couplet::time

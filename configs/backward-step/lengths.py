@@ -30,6 +30,10 @@ def lengths(folder):
             "upper reattachment": back[-1] if back else np.nan}
 
 
+def largest_error(folder):
+    return max(abs(value / GARTLING[name] - 1) for name, value in lengths(folder).items())
+
+
 if __name__ == "__main__":
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else here / "out" / "fluid"
     if not (folder / "sample-near-floor.csv").exists():

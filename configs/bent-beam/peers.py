@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""CalculiX on the same beam for the picture of scripts/study: (processor seconds, error of the deflection); omitted where it is not installed."""
+"""CalculiX on the same beam for the picture of scripts/couplet study: (processor seconds, error of the deflection); omitted where it is not installed."""
 import pathlib
 import sys
 

@@ -70,12 +70,12 @@ def periodic(folder, mean_speed, last=1.5):
 
 
 def mean_02(folder):
-    """For scripts/study: the steady flow of mean speed 0.2 m/s."""
+    """For scripts/couplet study: the steady flow of mean speed 0.2 m/s."""
     return steady(folder, 0.2)
 
 
 def street(folder):
-    """For scripts/study: the vortex street of mean speed 1 m/s."""
+    """For scripts/couplet study: the vortex street of mean speed 1 m/s."""
     return periodic(folder, 1)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""For scripts/study: relative L2 errors of temperature and hoop stress over the wall against the closed form."""
+"""For scripts/couplet study: relative L2 errors of temperature and hoop stress over the wall against the closed form."""
 import pathlib
 import sys
 

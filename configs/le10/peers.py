@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""CalculiX on the same plate, held in the same strip, for the picture of scripts/study: (processor seconds, error of the stress
+"""CalculiX on the same plate, held in the same strip, for the picture of scripts/couplet study: (processor seconds, error of the stress
 at D); omitted where it is not installed."""
 import pathlib
 import sys

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""CalculiX on the same meshes for the picture of scripts/study: (processor seconds, error of the stress at A); omitted where it is not installed."""
+"""CalculiX on the same meshes for the picture of scripts/couplet study: (processor seconds, error of the stress at A); omitted where it is not installed."""
 import pathlib
 import re
 import shutil

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OpenFOAM's icoFoam on the same cells and steps for the picture of scripts/study: (processor seconds, error of the velocity); omitted
+"""OpenFOAM's icoFoam on the same cells and steps for the picture of scripts/couplet study: (processor seconds, error of the velocity); omitted
 where it is not installed."""
 import math
 import pathlib

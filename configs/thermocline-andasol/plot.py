@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Draws out/thermocline-andasol.png from what scripts/study has left in out/study."""
+"""Draws out/thermocline-andasol.png from what scripts/couplet study has left in out/study."""
 import pathlib
 import sys
 

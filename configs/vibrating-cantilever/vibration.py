@@ -45,7 +45,7 @@ def history(folder):
 
 
 def numbers(folder):
-    """For scripts/study: period [s], decay of the amplitude a period [1], amplitude [m]."""
+    """For scripts/couplet study: period [s], decay of the amplitude a period [1], amplitude [m]."""
     return dict(zip(("period", "decay", "amplitude"), fit(*history(folder))))
 
 

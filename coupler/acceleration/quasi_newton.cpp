@@ -5,6 +5,7 @@
 #include "common/io/checkpoint.hpp"
 
 namespace couplet::coupler {
+
 // -- least squares
 // --------------------------------------------------------------------------------------------
 

@@ -10,6 +10,7 @@
 #include "common/io/checkpoint.hpp"
 
 namespace couplet::coupler {
+
 double aitken_factor(double omega, std::span<const double> residual, std::span<const double> next_residual,
                      MPI_Comm comm) {
   assert(residual.size() == next_residual.size());

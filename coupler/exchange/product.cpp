@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "common/parallel/collective.hpp"
-#include "coupler/exchange/owners.hpp"
+#include "coupler/exchange/search.hpp"
 
 namespace couplet::coupler {
 namespace {

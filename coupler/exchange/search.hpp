@@ -3,11 +3,13 @@
 
 #include <mpi.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "common/coupling/blocks.hpp"
 #include "common/coupling/participant.hpp"
+#include "common/parallel/parcels.hpp"
 
 namespace couplet::coupler {
 
@@ -50,5 +52,17 @@ struct Neighbour {
 /// For each point of `points` on this rank the nearest of `among` on any rank; of equals the one of the
 /// smallest id. No rank sees more of `among` than its own part. Collective.
 std::vector<Neighbour> nearest(MPI_Comm comm, const std::vector<Vec3>& points, const PointSet& among);
+
+/// Every item on the rank that has it, owner(item); there those of rank 0 first, of each rank in the order in which it had
+/// them. Nothing is sent where all are there. Items are copied as bytes. Collective.
+template <class Item, class Owner>
+std::vector<Item> to_owners(MPI_Comm comm, std::vector<Item> items, const Owner& owner) {
+  const int rank = parallel::comm_rank(comm);
+  const bool stay = std::ranges::all_of(items, [&](const Item& item) { return int(owner(item)) == rank; });
+  if (!parallel::any(comm, !stay)) return items;
+  const parallel::Parcels<Item> out = parallel::sort_by_rank(comm, items, owner);
+  std::vector<Item>().swap(items);
+  return parallel::exchange(comm, out).items;
+}
 
 }  // namespace couplet::coupler

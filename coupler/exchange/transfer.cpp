@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "common/parallel/collective.hpp"
-#include "coupler/exchange/owners.hpp"
+#include "coupler/exchange/search.hpp"
 
 namespace couplet::coupler {
 namespace {

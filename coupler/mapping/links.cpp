@@ -8,10 +8,10 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
-#include "common/coupling/within_step.hpp"
+#include "common/coupling/sub_stepping.hpp"
 #include "common/parallel/collective.hpp"
 #include "coupler/mapping/conjugate_map.hpp"
-#include "coupler/mapping/map_projection.hpp"
+#include "coupler/mapping/sparse_map.hpp"
 
 namespace couplet::coupler {
 namespace {

@@ -8,7 +8,7 @@
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 #include "coupler/exchange/product.hpp"
-#include "coupler/mapping/map_projection.hpp"
+#include "coupler/mapping/sparse_map.hpp"
 #include "coupler/mapping/surface_rows.hpp"
 #include "coupler/mapping/surroundings.hpp"
 

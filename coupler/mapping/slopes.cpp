@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "common/base/point_tree.hpp"
-#include "coupler/mapping/corner_weights.hpp"
-#include "coupler/mapping/map_local.hpp"
+#include "coupler/mapping/face_weights.hpp"
+#include "coupler/mapping/sparse_map.hpp"
 
 namespace couplet::coupler {
 namespace {

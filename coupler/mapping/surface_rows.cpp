@@ -7,10 +7,9 @@
 #include <utility>
 
 #include "common/parallel/collective.hpp"
-#include "coupler/exchange/owners.hpp"
-#include "coupler/mapping/corner_weights.hpp"
-#include "coupler/mapping/face_integrals.hpp"
-#include "coupler/mapping/map_projection.hpp"
+#include "coupler/exchange/search.hpp"
+#include "coupler/mapping/face_weights.hpp"
+#include "coupler/mapping/sparse_map.hpp"
 #include "coupler/mapping/surroundings.hpp"
 
 namespace couplet::coupler {

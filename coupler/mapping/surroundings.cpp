@@ -8,7 +8,7 @@
 
 #include "common/base/point_tree.hpp"
 #include "common/parallel/collective.hpp"
-#include "coupler/mapping/corner_weights.hpp"
+#include "coupler/mapping/face_weights.hpp"
 
 namespace couplet::coupler {
 namespace {

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/parameters/effect_cards.hpp"
 
-#include <fmt/format.h>
-
 #include <array>
-#include <cmath>
 
-#include "coupler/parameters/schedule.hpp"
+#include "coupler/parameters/effect_cards.hpp"
 
 namespace couplet::coupler {
 namespace {
@@ -26,29 +23,6 @@ bool is_quasi_newton(const P& p) {
   return p.acceleration.type == AccelerationType::iqn_ils || p.acceleration.type == AccelerationType::iqn_mvj;
 }
 
-// One pass a step holds while the guess that the load is of is not thrown over: a guess with velocity v^n returns
-// r = added mass / mass of the last change, lambda = -r; one of 2 v^n - v^{n-1} (order 2) gives
-// lambda^2 + r (2 lambda - 1) = 0, which reaches -1 at r = 1/3. The error goes with r: half the limit is asked for.
-std::optional<effects::EffectVerdict> judge_one_pass(const P& p, const CouplingEvidence& e) {
-  if (p.scheme != coupling::Scheme::explicit_ || std::isnan(e.returned)) return {};
-  const double limit = limit_of_one_pass(p);
-  return effects::verdict(
-      e.returned, limit / 2,
-      fmt::format(
-          "added-mass ratio: {:.3g} of a change of the motion returns through the load in the next pass; "
-          "one pass per step diverges from {:.2g}",
-          e.returned, limit),
-      "iterate the added mass: 'scheme: semi-implicit'",
-      std::min(e.returned, 1.));  // what the load of this step leaves to the next
-}
-
-std::optional<effects::EffectVerdict> judge_lost_load(const P&, const CouplingEvidence& e) {
-  return effects::verdict(
-      e.lost_load, 0.02, fmt::format("fluid forces not taken / taken by the structure = {:.2g}", e.lost_load),
-      "let the structure take 'viscous-force' as well ('interface: {load: forces}' of a solid)",
-      e.lost_load / (1 + e.lost_load));  // of all forces
-}
-
 const std::array cards{
     CouplingCard{"exchange among any participants", "`exchange`",
                  [](const P& p) { return when(p.exchange.has_value(), "exchange"); },
@@ -65,8 +39,7 @@ const std::array cards{
         [](const P& p) { return when(p.scheme.is_semi_implicit(), semi_implicit_of(p)); },
         "a pressure solve and a structure step per pass; mesh motion and predictor once per step",
         "explicit: share of a change of the motion that the next pass returns, 0.5 (predictor of order 2: "
-        "0.17); two additional passes in the second step and in steps 4, 16, 64, ...",
-        judge_one_pass},
+        "0.17); two additional passes in the second step and in steps 4, 16, 64, ..."},
     CouplingCard{"friction of the current wall velocity",
                  "`scheme: auto` or `semi-implicit`, implicit viscous term",
                  [](const P& p) { return when(p.scheme.is_semi_implicit(), semi_implicit_of(p)); },
@@ -78,12 +51,12 @@ const std::array cards{
         [](const P& p) { return when(p.scheme.is_semi_implicit(), semi_implicit_of(p)); },
         "sums over the interface per pass; where active, the first part of the fluid's step is repeated "
         "each time"},
-    CouplingCard{
-        "viscous coupling load", "by a structure that takes `viscous-force` in addition to `pressure-force`",
-        [](const P& p) {
-          return when(p.fluid.has_value() || p.exchange.has_value(), "what the structure takes");
-        },
-        "a force per interface face", "fluid forces not taken over those taken, 0.02", judge_lost_load, true},
+    CouplingCard{"viscous coupling load",
+                 "by a structure that takes `viscous-force` in addition to `pressure-force`",
+                 [](const P& p) {
+                   return when(p.fluid.has_value() || p.exchange.has_value(), "what the structure takes");
+                 },
+                 "a force per interface face", "fluid forces not taken over those taken, 0.02", true},
     CouplingCard{"relaxation by Aitken", "`acceleration.type: aitken`",
                  [](const P& p) {
                    return when(iterates(p) && p.acceleration.type == AccelerationType::aitken,
@@ -126,8 +99,6 @@ const std::array cards{
 };
 
 }  // namespace
-
-double limit_of_one_pass(const P& p) { return predictor_order_of(p) >= 2 ? 1.0 / 3 : 1.0; }
 
 std::span<const CouplingCard> coupling_effect_cards() { return cards; }
 

@@ -9,6 +9,7 @@
 #include "common/parallel/collective.hpp"
 
 namespace couplet::fluid {
+
 namespace {
 
 void check_names(const mesh::Mesh& mesh, const FluidParameters& parameters) {
@@ -42,7 +43,7 @@ Boundary<D>::Boundary(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
   rows_.sort();
 }
 
-/// What a compressible fluid makes of inlets and outlets.
+/// Adds the absorbing patches and the inlets before a volume, which only a compressible fluid has.
 template <int D>
 void Boundary<D>::add_openings(const mesh::Mesh& mesh, const FluidParameters& parameters) {
   const bool compressible = parameters.is_compressible();
@@ -169,6 +170,26 @@ void Boundary<D>::close(const mesh::Mesh& mesh, const Placement<D>& at, const Ve
     const Vec<D> n = at.area[f].normalized();
     const double t = rows_.friction(at, static_cast<Index>(b), f), q = rows_.pressure[b];
     u_boundary[b] = t * w[b] + (1 - t) * inside + (1 - q - t) * (w[b] - inside).dot(n) * n;
+  }
+}
+
+template <int D>
+void Boundary<D>::convect(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
+                          const Vectors<D>& w_begin, double dt, Vectors<D>& w) const {
+  for (const auto& [first, count] : convective_patches_) {
+    double sums[2] = {0, 0};
+    for (Index b = first; b < first + count; ++b) {
+      const Vec<D>& area = at.area[mesh.n_interior + b];
+      sums[0] += w_begin[b].dot(area);
+      sums[1] += area.norm();
+    }
+    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm_);
+    const double speed = std::max(0.0, sums[0] / sums[1]);
+    for (Index b = first; b < first + count; ++b) {
+      const Index f = mesh.n_interior + b;
+      const double courant = dt * speed * at.conductance[f] / at.area[f].norm();
+      w[b] = (w_begin[b] + courant * u[mesh.owner[f]]) / (1 + courant);
+    }
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fluid_solver/boundary/face_rows.hpp"
@@ -24,7 +25,7 @@ class Boundary {
   /// Throws Error if a patch has no boundary or a boundary names no patch.
   Boundary(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const FluidParameters& parameters);
 
-  /// What the conditions give to the loops over boundary faces.
+  /// Numbers of the conditions for the loops over boundary faces.
   const FaceRows& rows() const { return rows_; }
   /// No face of the whole domain has a given pressure: the pressure level is free.
   bool closed() const { return closed_; }
@@ -50,6 +51,10 @@ class Boundary {
   /// Error if one is not above 0.
   bool set_wall_mass(std::span<const Index> boundary_faces, std::span<const double> masses);
 
+  /// Pressure that gave walls which yield their velocity, per boundary face [Pa].
+  void set_wall_load(std::vector<double> load) { wall_load_ = std::move(load); }
+  const std::vector<double>& wall_load() const { return wall_load_; }
+
   /// w at time t [m/s] at the faces with given velocity; interface faces are left as they are.
   void velocity_at(double t, const std::vector<Vec3>& centres, Vectors<D>& w) const;
   /// Some walls may turn or stretch: the same on all ranks.
@@ -71,7 +76,7 @@ class Boundary {
     return convective_patches_.empty() ? is_interface(boundary_face) : convective_[boundary_face] != 0;
   }
   bool has_convective_outlet() const { return !convective_patches_.empty(); }
-  /// The same patches in the same order on all ranks.
+  /// Absorbing patches, in the same order on all ranks.
   const std::vector<AbsorbingPatch>& absorbing_patches() const { return absorbing_patches_; }
   /// Inlets of a compressible fluid behind which a volume lies: faces of given pressure, that of the volume, whose given
   /// velocity is what flows into the volume.
@@ -98,7 +103,7 @@ class Boundary {
   bool closed_ = true, yields_ = false, asks_for_mass_ = false, turns_ = false;
   std::vector<AbsorbingPatch> absorbing_patches_;
   std::vector<FaceRange> upstream_patches_;
-  std::vector<double> wall_mass_;
+  std::vector<double> wall_mass_, wall_load_;
   std::vector<Index> two_sided_;
   std::vector<char> asked_;  // by boundary face: its mass is the structure's word
 };

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "fluid_solver/conditions/condition.hpp"
+#include "fluid_solver/parameters/condition.hpp"
 #include "fluid_solver/state/placement.hpp"
 
 namespace couplet::fluid {

@@ -16,51 +16,52 @@ constexpr double stress_of_eddies = 2;
 
 }  // namespace
 
-/// What is left of the residual adds up over the steps: much tighter than the change of u in one of them.
+/// Residuals add up over the steps, so the tolerance is much tighter than the change of u in one of them.
 template <int D>
 double ImplicitFriction<D>::tolerance() const {
-  return std::min(1e-7, 0.1 * k_.parameters.pressure_tolerance);
+  return std::min(1e-7, 0.1 * scene_.parameters.pressure_tolerance);
 }
 
 /// u^n + r (u^n - u^{n-1}), then one sweep of Jacobi's method, which costs no face loop: its viscous rate is
 /// that of the levels, extrapolated in the same way.
 template <int D>
-void ImplicitFriction<D>::guess(const State<D>& from, const Rates<D>& rates, double a) {
-  if (k_.by.dt_old == 0) {
-    k_.u_p = from.u;
+void ImplicitFriction<D>::guess(const State<D>& from, const Rates<D>& rates, double a, const Vectors<D>& side,
+                                Vectors<D>& u) const {
+  if (step_.by.dt_old == 0) {
+    u = from.u;
     return;
   }
-  const double ratio = k_.step.dt / k_.by.dt_old;
+  const double ratio = step_.ratio();
   const std::vector<double>& inverse = solver_.inverse_diagonal();
-  for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) {
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
     const Vec<D> ahead = from.u[c] + ratio * (from.u[c] - from.u_old[c]);
     const Vec<D> rate = rates.viscous[c] + ratio * (rates.viscous[c] - from.rates_old.viscous[c]);
-    k_.u_p[c] =
-        ahead + inverse[c] * (k_.right_side[c] + k_.step.dt * a * rate - k_.step.to->volume[c] * ahead);
+    u[c] = ahead + inverse[c] * (side[c] + step_.dt * a * rate - step_.to->volume[c] * ahead);
   }
-  k_.mesh.cells.update_ghosts(flat<D>(k_.u_p), D);
+  mesh_.cells.update_ghosts(flat<D>(u), D);
 }
 
 template <int D>
-void ImplicitFriction<D>::solve(const State<D>& from, const Rates<D>& rates, const Vectors<D>& w, double a) {
+void ImplicitFriction<D>::solve(const State<D>& from, const Rates<D>& rates, const Vectors<D>& w, double a,
+                                Vectors<D>& side, Vectors<D>& u) {
   const EddyShare eddies =
-      from.eddy.empty() ? EddyShare{} : EddyShare{&eddy_, stress_of_eddies * a * k_.step.dt};
-  if (eddies.eddy) add_eddies(from);
-  solver_.prepare(k_.step.to, a * k_.nu * k_.step.dt, eddies);
-  guess(from, rates, a);
-  if (eddies.eddy) damp_eddies(from, eddies);
-  if (k_.oblique)
-    solve_in_passes(w, a);
+      from.eddy.empty() ? EddyShare{} : EddyShare{&eddy_, stress_of_eddies * a * step_.dt};
+  if (eddies.eddy) add_eddies(from, side);
+  solver_.prepare(step_.to, a * scene_.fluid.nu * step_.dt, eddies);
+  guess(from, rates, a, side, u);
+  if (eddies.eddy) damp_eddies(from, eddies, side);
+  if (scene_.oblique)
+    solve_in_passes(w, a, side, u);
   else
-    k_.statistics.viscous_iterations += solver_.solve(w, tolerance(), k_.right_side, k_.u_p);
+    iterations_ += solver_.solve(w, tolerance(), side, u);
 }
 
 /// The stress of u~ = (1 + r/2) u^n - r/2 u^{n-1}, with its own nu_t: what multiplies the velocities of all three levels, here and in
 /// damp_eddies(), must be the same. By Adams-Bashforth a nu_t that falls by a factor of ten from step to step, as in a gap that
 /// opens, leaves an old rate that nothing damps. On the mesh of level n.
 template <int D>
-void ImplicitFriction<D>::add_eddies(const State<D>& from) {
-  const double ratio = k_.by.dt_old > 0 ? k_.step.dt / k_.by.dt_old : 0, e0 = 1 + ratio / 2, e1 = -ratio / 2;
+void ImplicitFriction<D>::add_eddies(const State<D>& from, Vectors<D>& side) {
+  const double ratio = step_.ratio(), e0 = 1 + ratio / 2, e1 = -ratio / 2;
   between_ = from.u;
   between_boundary_ = from.u_boundary;
   if (ratio > 0) {
@@ -69,28 +70,26 @@ void ImplicitFriction<D>::add_eddies(const State<D>& from) {
       between_boundary_[b] = e0 * from.u_boundary[b] + e1 * from.u_boundary_old[b];
   }
   eddy_rate_.assign(between_.size(), Vec<D>::Zero());
-  rate_operator_.add_eddies(*k_.parameters.turbulence, *from.placement, between_, between_boundary_, eddy_,
-                            eddy_rate_);
-  for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) {
-    if ((k_.bodies && k_.bodies->is_closed(c)) || (k_.gap_closed() && k_.gaps->is_blocked(c))) continue;
-    k_.right_side[c] += k_.step.dt * eddy_rate_[c];
-  }
+  rate_operator_.add_eddies(*scene_.parameters.turbulence, *from.placement, between_, between_boundary_,
+                            eddy_, eddy_rate_);
+  scene_.obstacles->clear(eddy_rate_);
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) side[c] += step_.dt * eddy_rate_[c];
 }
 
 /// Theta dt nu_t g times the second difference of u in time, whose part at n+1 is in the matrix: with the a of modified
 /// Crank-Nicolson, an extrapolated rate so becomes that scheme, and no nu_t limits the step. Thin cells need it, where a few times
 /// the molecular viscosity asks for a thousandth of the convective step.
 template <int D>
-void ImplicitFriction<D>::damp_eddies(const State<D>& from, const EddyShare& eddies) {
-  const double ratio = k_.by.dt_old > 0 ? k_.step.dt / k_.by.dt_old : 0;
+void ImplicitFriction<D>::damp_eddies(const State<D>& from, const EddyShare& eddies, Vectors<D>& side) const {
+  const double ratio = step_.ratio();
   const auto ahead = [&](Index c) {
     return ratio > 0 ? Vec<D>((1 + ratio) * from.u[c] - ratio * from.u_old[c]) : from.u[c];
   };
-  for (Index f = 0; f < k_.mesh.n_interior; ++f) {
-    const Index p = k_.mesh.owner[f], n = k_.mesh.neighbour[f];
-    const Vec<D> part = eddies.at(p, n) * k_.step.to->conductance[f] * (ahead(n) - ahead(p));
-    k_.right_side[p] -= part;
-    k_.right_side[n] += part;
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+    const Vec<D> part = eddies.at(p, n) * step_.to->conductance[f] * (ahead(n) - ahead(p));
+    side[p] -= part;
+    side[n] += part;
   }
 }
 
@@ -98,43 +97,44 @@ void ImplicitFriction<D>::damp_eddies(const State<D>& from, const EddyShare& edd
 /// implicit orthogonal part it grows as soon as its share of the operator exceeds 1/8 (AB2 against 9/16, 3/8,
 /// 1/16), which a mesh sheared by 14 degrees reaches. The passes contract by that share.
 template <int D>
-void ImplicitFriction<D>::solve_in_passes(const Vectors<D>& w, double a) {
-  const double enough = std::clamp(10 * k_.parameters.pressure_tolerance, 1e-11, 1e-4);
+void ImplicitFriction<D>::solve_in_passes(const Vectors<D>& w, double a, const Vectors<D>& side,
+                                          Vectors<D>& u) {
+  const double enough = std::clamp(10 * scene_.parameters.pressure_tolerance, 1e-11, 1e-4);
   for (int pass = 1;; ++pass) {
-    k_.boundary.close(k_.mesh, *k_.step.to, k_.u_p, w, k_.u_boundary);
-    oblique_rate_.assign(k_.u_p.size(), Vec<D>::Zero());
-    rate_operator_.add_oblique(*k_.step.to, k_.u_p, k_.u_boundary, oblique_rate_);
-    right_side_ = k_.right_side;
-    for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) right_side_[c] += k_.step.dt * a * oblique_rate_[c];
-    before_ = k_.u_p;
-    k_.statistics.viscous_iterations += solver_.solve(w, tolerance(), right_side_, k_.u_p);
+    scene_.boundary.close(mesh_, *step_.to, u, w, u_boundary_);
+    oblique_rate_.assign(u.size(), Vec<D>::Zero());
+    rate_operator_.add_oblique(*step_.to, u, u_boundary_, oblique_rate_);
+    right_side_ = side;
+    for (Index c = 0; c < mesh_.cells.n_owned(); ++c) right_side_[c] += step_.dt * a * oblique_rate_[c];
+    before_ = u;
+    iterations_ += solver_.solve(w, tolerance(), right_side_, u);
     double sums[2] = {0, 0};
-    for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) {
-      sums[0] += (k_.u_p[c] - before_[c]).squaredNorm();
-      sums[1] += k_.u_p[c].squaredNorm();
+    for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+      sums[0] += (u[c] - before_[c]).squaredNorm();
+      sums[1] += u[c].squaredNorm();
     }
-    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, k_.mesh.comm);
+    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
     if (sums[0] <= enough * enough * sums[1]) return;
     if (pass == most_passes)
       throw SolveFailure(
           "The non-orthogonal correction of the viscous term did not converge in {} passes (change {:.2e}). "
           "The mesh is too skewed for an implicit viscous term: use 'viscous: explicit'.",
           most_passes, std::sqrt(sums[0] / sums[1]));
-    if (pass >= passes_alone) accelerate(pass == passes_alone);
+    if (pass >= passes_alone) accelerate(pass == passes_alone, u);
   }
 }
 
-/// Of slow passes: u_p, found from before_, becomes the guess of the next by Anderson's acceleration. Collective.
+/// Makes u, found from before_ in a slow pass, the guess of the next by Anderson's acceleration. Collective.
 template <int D>
-void ImplicitFriction<D>::accelerate(bool start) {
-  const std::size_t owned = static_cast<std::size_t>(k_.mesh.cells.n_owned()) * D;
+void ImplicitFriction<D>::accelerate(bool start, Vectors<D>& u) {
+  const std::size_t owned = static_cast<std::size_t>(mesh_.cells.n_owned()) * D;
   if (!accelerator_)
-    accelerator_ = std::make_unique<linalg::Accelerator>(k_.mesh.comm, owned, pass_acceleration);
+    accelerator_ = std::make_unique<linalg::Accelerator>(mesh_.comm, owned, pass_acceleration);
   if (start) accelerator_->restart();
-  for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) k_.u_p[c] -= before_[c];
-  accelerator_->advance(flat<D>(before_).first(owned), flat<D>(k_.u_p).first(owned));
-  k_.u_p.swap(before_);
-  k_.mesh.cells.update_ghosts(flat<D>(k_.u_p), D);
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) u[c] -= before_[c];
+  accelerator_->advance(flat<D>(before_).first(owned), flat<D>(u).first(owned));
+  u.swap(before_);
+  mesh_.cells.update_ghosts(flat<D>(u), D);
 }
 
 template class ImplicitFriction<2>;

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "common/base/processor_clones.hpp"
-#include "fluid_solver/turbulence/turbulence.hpp"
+#include "fluid_solver/momentum/turbulence.hpp"
 
 namespace couplet::fluid {
 

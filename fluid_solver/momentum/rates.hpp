@@ -4,7 +4,7 @@
 #include <span>
 
 #include "fluid_solver/boundary/boundary.hpp"
-#include "fluid_solver/lines/fourth_order.hpp"
+#include "fluid_solver/state/fourth_order.hpp"
 #include "fluid_solver/state/state.hpp"
 
 namespace couplet::fluid {
@@ -61,7 +61,7 @@ class RateOperator {
   /// Collective.
   void add_oblique(const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& u_boundary,
                    Vectors<D>& rate);
-  /// Null: second order everywhere.
+  /// nullptr if the order is second everywhere.
   void set_fourth(const FourthOrder<D>* fourth) { fourth_ = fourth; }
   /// state.eddy from state.u. Collective.
   void set_eddy_viscosity(const TurbulenceParameters& model, State<D>& state);

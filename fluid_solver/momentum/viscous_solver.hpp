@@ -2,16 +2,41 @@
 #pragma once
 
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "fluid_solver/boundary/boundary.hpp"
-#include "fluid_solver/momentum/viscous_rows.hpp"
 #include "fluid_solver/state/placement.hpp"
 
 namespace couplet::fluid {
 
-/// Of an eddy viscosity in the matrix: theta dt nu_t at interior faces, nu_t the mean of two cells.
+/// A symmetric matrix by the rows of the owned cells, all of one width: what CG does with it takes one pass over the rows and two
+/// over the vectors. A loop over the faces, which writes each cell once per face, takes twice the instructions.
+struct ViscousRows {
+  Index width = 0;  ///< entries per row beside the diagonal: the most neighbours of a cell
+  std::vector<Index> column,
+      face;  ///< local cells, and the faces between; where there is none: the row's own cell, and -1
+  std::vector<double> value;     ///< 0 where there is none
+  std::vector<double> diagonal;  ///< per owned cell
+
+  explicit ViscousRows(const mesh::Mesh& mesh);
+  Index size() const { return static_cast<Index>(diagonal.size()); }
+};
+
+/// y = A x; returns x.y over the owned cells. `x`: per local cell, with ghosts current.
+double multiply(const ViscousRows& a, const Vectors<2>& x, Vectors<2>& y);
+double multiply(const ViscousRows& a, const Vectors<3>& x, Vectors<3>& y);
+
+/// A step of CG: u += alpha s, r -= alpha q; returns r.r.
+double go_along(double alpha, std::span<const double> s, std::span<const double> q, std::span<double> u,
+                std::span<double> r);
+
+/// The next search direction: s = r + gamma s.
+void turn_search(double gamma, std::span<const double> r, std::span<double> s);
+
+/// Share of an eddy viscosity in the matrix: theta dt nu_t at interior faces, nu_t the mean of two cells.
 struct EddyShare {
-  const std::vector<double>* eddy = nullptr;  ///< nu_t per local cell [m^2/s]; null: none
+  const std::vector<double>* eddy = nullptr;  ///< nu_t per local cell [m^2/s]; nullptr if there is none
   double factor = 0;                          ///< theta dt [s]
   double at(Index p, Index n) const { return eddy ? 0.5 * factor * ((*eddy)[p] + (*eddy)[n]) : 0; }
 };
@@ -25,7 +50,7 @@ class ViscousSolver {
   ViscousSolver(const mesh::Mesh& mesh, const Boundary<D>& boundary) : mesh_(mesh), boundary_(boundary) {}
   /// The system of the solves that follow. Collective.
   void prepare(std::shared_ptr<const Placement<D>> at, double beta, const EddyShare& eddies = {});
-  /// Of its diagonal D, per owned cell.
+  /// Inverse of its diagonal D, per owned cell.
   const std::vector<double>& inverse_diagonal() const { return inverse_diagonal_; }
   /// `b`: per local cell (owned ones count) without boundary parts; `w`: given velocity per boundary face;
   /// `u`: guess on entry, with ghosts current on exit. Returns the iterations; throws SolveFailure.
@@ -33,7 +58,7 @@ class ViscousSolver {
   int solve(const Vectors<D>& w, double tolerance, Vectors<D>& b, Vectors<D>& u);
 
  private:
-  /// What a boundary face adds to the row of its cell: beta g [t I + (1 - t) n n], see FaceRow.
+  /// Addition of a boundary face to the row of its cell: beta g [t I + (1 - t) n n], see FaceRow.
   struct BoundaryRow {
     Index cell;
     double both, normal;  // beta g t, beta g (1 - t)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/motion/gap_pockets.hpp"
+#include "fluid_solver/motion/gaps.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace couplet::fluid {
 namespace {
 
-// Of what passes a pocket's inlets: what their profiles may leave over.
+// Share of the flux through a pocket's inlets that their profiles may leave over.
 constexpr double inlet_leftover = 1e-6;
 
 }  // namespace
@@ -64,7 +64,7 @@ void GapPockets<D>::find(const std::vector<int>& gap) {
 template <int D>
 void GapPockets<D>::check(const Placement<D>& at, const Vectors<D>& w, double time, bool compressible) const {
   if (shut_.empty()) return;
-  // Of each pocket: what goes out, its size, and the same through each patch, to name it.
+  // Net outflow of each pocket and the sum of its absolute values, then the same of each patch, to name it.
   const std::size_t n = shut_.size();
   std::vector<double> sums(n * (1 + given_.size()), 0.0), sizes(sums.size(), 0.0);
   for (std::size_t g = 0; g < given_.size(); ++g)

@@ -9,12 +9,24 @@
 #include "common/base/error.hpp"
 #include "common/base/nearest.hpp"
 #include "common/base/text.hpp"
+#include "common/fv/expression.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::fluid {
 namespace {
 
-/// Of x from segments (2-D) or triangles, whose corners stand one after the other.
+constexpr double near_enough = 0.1;  // of the opening
+// A blocked face keeps this share of its conductance. The leak is as small, and the pressure in the gap is that
+// of a fluid at rest in a slot between the pressures at its two ends (lubrication: linear along a parallel slot).
+constexpr double kept = 1e-6;
+
+Vec3 direction_of(const GapParameters& gap, int dimension) {
+  const std::vector<double>& d = gap.direction;
+  if (d.empty()) return dimension == 2 ? Vec3::UnitY() : Vec3::UnitZ();
+  return Vec3(d[0], d[1], d.size() > 2 ? d[2] : 0).normalized();
+}
+
+/// Distance of x from segments (2-D) or triangles, whose corners stand one after the other.
 template <int D>
 double distance(const Vec3& x, const std::vector<double>& corners) {
   double least = base::infinity;
@@ -26,6 +38,33 @@ double distance(const Vec3& x, const std::vector<double>& corners) {
   return least;
 }
 
+/// The second wall of each gap with a `height` stands there: the seat that a structure lands on is that of the mesh.
+/// Throws Error if a point is off by more than a tenth of the opening. Collective.
+void check_seats(const mesh::Mesh& mesh, const FluidParameters& parameters, std::span<const Vec3> points) {
+  for (const auto& [name, gap] : parameters.gaps) {
+    const mesh::Patch* seat = gap.height ? mesh.find_patch(gap.between[1]) : nullptr;
+    if (seat == nullptr) continue;
+    const fv::Expression height(*gap.height, "gaps." + name + ".height");
+    const Vec3 direction = direction_of(gap, mesh.dim);
+    std::vector<double> worst{0, 0, 0, 0, 0};  // off by, place, height given there
+    for (Index f = seat->first; f < seat->first + seat->count; ++f)
+      for (const Index p : mesh.face_points[f]) {
+        const Vec3& x = points[p];
+        const double given = height(x, 0), off = x.dot(direction) - given;
+        if (std::abs(off) > std::abs(worst[0])) worst = {off, x.x(), x.y(), x.z(), given};
+      }
+    const std::vector<double> all = parallel::all_gather(mesh.comm, worst);
+    for (std::size_t i = 0; i < all.size(); i += 5)
+      if (std::abs(all[i]) > std::abs(worst[0])) worst.assign(all.begin() + i, all.begin() + i + 5);
+    if (std::abs(worst[0]) <= near_enough * gap.opening) continue;
+    throw Error(
+        "gaps.{0}.height: the seat is stated at {1:.4g} m, but the mesh has its wall '{2}' {3:.3g} m {4} at ({5:.4g}, {6:.4g}, "
+        "{7:.4g}), more than {8:g} % of the opening ({9:g} m). Correct 'height', or the mesh.",
+        name, worst[4], gap.between[1], std::abs(worst[0]), worst[0] > 0 ? "above it" : "below it", worst[1],
+        worst[2], worst[3], 100 * near_enough, gap.opening);
+  }
+}
+
 bool inside(const Vec3& x, const Vec3& low, const Vec3& high) {
   return (x.array() >= low.array()).all() && (x.array() <= high.array()).all();
 }
@@ -33,8 +72,13 @@ bool inside(const Vec3& x, const Vec3& low, const Vec3& high) {
 }  // namespace
 
 template <int D>
-Gaps<D>::Gaps(const mesh::Mesh& mesh, const FluidParameters& parameters)
-    : mesh_(mesh), never_(mesh.cells.n_local(), 0), gap_(mesh.cells.n_local(), -1) {
+Gaps<D>::Gaps(const mesh::Mesh& mesh, const FluidParameters& parameters, std::span<const Vec3> points)
+    : Obstacles<D>(mesh),
+      pockets_(mesh, parameters),
+      compressible_(parameters.is_compressible()),
+      never_(mesh.cells.n_local(), 0),
+      gap_(mesh.cells.n_local(), -1) {
+  check_seats(mesh, parameters, points);
   std::vector<std::string> there;
   for (const mesh::Patch& patch : mesh.patches) there.push_back(patch.name);
   for (const auto& [name, gap] : parameters.gaps) {
@@ -71,7 +115,7 @@ void Gaps<D>::Wall::extend(const mesh::Mesh& mesh, std::span<const Vec3> points,
   MPI_Allreduce(MPI_IN_PLACE, high.data(), 3, MPI_DOUBLE, MPI_MAX, mesh.comm);
 }
 
-/// Of the faces of all ranks that reach into a box, as segments or triangles.
+/// Corners of the faces of all ranks that reach into a box, as segments or triangles.
 template <int D>
 std::vector<double> Gaps<D>::Wall::corners(const mesh::Mesh& mesh, std::span<const Vec3> points,
                                            const Vec3& low, const Vec3& high) const {
@@ -128,25 +172,79 @@ void Gaps<D>::mark_gap(int gap, std::span<const Vec3> points, const Placement<D>
 }
 
 template <int D>
-bool Gaps<D>::mark(std::span<const Vec3> points, const Placement<D>& at) {
+typename Gaps<D>::Changed Gaps<D>::mark(double, const std::shared_ptr<const Placement<D>>& at,
+                                        const std::vector<Vec3>& points) {
+  if (marked_ == at) return Changed::nothing;
+  marked_ = at;
   const std::vector<int> before = gap_;
   std::fill(gap_.begin(), gap_.end(), -1);
-  for (std::size_t g = 0; g < names_.size(); ++g) mark_gap(static_cast<int>(g), points, at);
+  for (std::size_t g = 0; g < names_.size(); ++g) mark_gap(static_cast<int>(g), points, *at);
   active_ = std::ranges::any_of(facts_, [](const Facts& f) { return f.cells > 0; });
-  return parallel::any(mesh_.comm, before != gap_);
-}
-
-template <int D>
-void Gaps<D>::follow(const Placement<D>& from, const Placement<D>& to, double dt) {
+  this->close([&](Index c) { return gap_[c] >= 0; });
   velocity_.assign(gap_.size(), Vec<D>::Zero());
-  for (std::size_t c = 0; c < gap_.size(); ++c)
-    if (gap_[c] >= 0 && dt > 0) velocity_[c] = (to.centre[c] - from.centre[c]) / dt;
+  const bool changed = parallel::any(mesh_.comm, before != gap_);
+  if (changed && active_) pockets_.find(gap_);
+  around_.reset();
+  if (active_) {
+    auto around = std::make_shared<Placement<D>>(*at);
+    for (Index f = 0; f < mesh_.n_interior; ++f) {
+      if (!is_blocked(f)) continue;
+      around->conductance[f] *= kept;
+      if (!around->oblique.empty()) around->oblique[f].setZero();
+    }
+    around_ = std::move(around);
+  }
+  return changed ? Changed::cells : Changed::nothing;
 }
 
 template <int D>
-void Gaps<D>::hold(Vectors<D>& u) const {
+void Gaps<D>::begin(const Step<D>& step, const State<D>& from, const Vectors<D>& w) {
+  bool other = false;
   for (std::size_t c = 0; c < gap_.size(); ++c)
+    other |= (gap_[c] >= 0) != (from.blocked && (*from.blocked)[c]);
+  changed_ = parallel::any(mesh_.comm, other);
+  if (!active_) return;
+  pockets_.check(*step.to, w, step.end(), compressible_);
+  for (std::size_t c = 0; c < gap_.size(); ++c)
+    if (gap_[c] >= 0) velocity_[c] = (step.to->centre[c] - from.placement->centre[c]) / step.dt;
+}
+
+template <int D>
+void Gaps<D>::hold(const Placement<D>&, double, Vectors<D>& u) const {
+  for (std::size_t c = 0; active_ && c < gap_.size(); ++c)
     if (gap_[c] >= 0) u[c] = velocity_[c];
+}
+
+template <int D>
+void Gaps<D>::block(const Step<D>& step, std::vector<double>& phi) const {
+  for (Index f = 0; active_ && f < mesh_.n_interior; ++f)
+    if (is_blocked(f)) phi[f] = step.moving() ? step.swept[f] / step.dt : 0;
+}
+
+template <int D>
+void Gaps<D>::correct_memory(State<D>& s) const {
+  for (Index f = 0; active_ && f < mesh_.n_interior; ++f)
+    if (is_blocked(f)) s.memory[f] = 0;
+}
+
+/// Linear in between the free cell would feel the slope of the pressure along the gap, which drives nothing.
+template <int D>
+void Gaps<D>::part(const Placement<D>& at, const std::vector<double>& p, const Vectors<D>* gradient,
+                   const Vectors<D>& area, Vectors<D>& sum) const {
+  for (Index f = 0; active_ && f < mesh_.n_interior; ++f) {
+    if (!is_blocked(f)) continue;
+    const Index o = mesh_.owner[f], n = mesh_.neighbour[f];
+    double linear = at.weight[f] * p[o] + (1 - at.weight[f]) * p[n];
+    if (gradient && at.skewed()) linear += skew_part(mesh_, at, *gradient, f);
+    if (!is_closed(o)) sum[o] += (p[o] - linear) * area[f];
+    if (!is_closed(n)) sum[n] -= (p[n] - linear) * area[f];
+  }
+}
+
+/// A compressible fluid compresses in the parts that are shut off.
+template <int D>
+std::string Gaps<D>::cause(const Placement<D>& at) const {
+  return active_ && !compressible_ ? pockets_.cause(at) : std::string();
 }
 
 template <int D>
@@ -155,14 +253,6 @@ std::shared_ptr<const std::vector<char>> Gaps<D>::marks() const {
   auto marks = std::make_shared<std::vector<char>>(gap_.size(), 0);
   for (std::size_t c = 0; c < gap_.size(); ++c) (*marks)[c] = gap_[c] >= 0;
   return marks;
-}
-
-template <int D>
-bool Gaps<D>::differs(const std::vector<char>* marks) const {
-  bool other = false;
-  for (std::size_t c = 0; c < gap_.size(); ++c)
-    other |= is_blocked(static_cast<Index>(c)) != (marks && (*marks)[c]);
-  return parallel::any(mesh_.comm, other);
 }
 
 template class Gaps<2>;

@@ -18,9 +18,9 @@ constexpr double beside = 1.01;
 
 template <int D>
 ImmersedBodies<D>::ImmersedBodies(const mesh::Mesh& mesh, const FluidParameters& parameters)
-    : mesh_(mesh),
+    : Obstacles<D>(mesh),
       cut_(parameters.bodies.begin()->second.surface == BodySurface::cut),
-      nu_(parameters.viscosity / parameters.density),
+      nu_(parameters.kinematic_viscosity()),
       body_(mesh.cells.n_local(), -1),
       depth_(mesh.cells.n_local(), 0.0),
       velocity_(mesh.cells.n_local(), Vec<D>::Zero()) {
@@ -85,8 +85,8 @@ CutCells<D> ImmersedBodies<D>::shape(double t, const Placement<D>& at, std::span
 }
 
 template <int D>
-typename ImmersedBodies<D>::Changed ImmersedBodies<D>::mark(double t, const Placement<D>& at,
-                                                            std::span<const Vec3> points) {
+typename ImmersedBodies<D>::Changed ImmersedBodies<D>::mark_cells(double t, const Placement<D>& at,
+                                                                  std::span<const Vec3> points) {
   if (!cut_) {
     const std::vector<int> before = body_;
     find_levels(t, at);
@@ -101,6 +101,83 @@ typename ImmersedBodies<D>::Changed ImmersedBodies<D>::mark(double t, const Plac
     others |= (before.cells[c] == 0) != (shape_.cells[c] == 0);
   if (parallel::any(mesh_.comm, others)) return Changed::cells;
   return parallel::any(mesh_.comm, before.faces != shape_.faces) ? Changed::shares : Changed::nothing;
+}
+
+template <int D>
+typename ImmersedBodies<D>::Changed ImmersedBodies<D>::mark(double t,
+                                                            const std::shared_ptr<const Placement<D>>& at,
+                                                            const std::vector<Vec3>& points) {
+  const Changed changed = mark_cells(t, *at, points);
+  if (changed == Changed::nothing && around_of_ == at) return changed;
+  this->close([&](Index c) { return cut_ ? shape_.cells[c] == 0 : is_solid(c); });
+  auto around = std::make_shared<Placement<D>>(*at);
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    const double share = open(f);
+    if (share == 1) continue;
+    around->conductance[f] *= share;
+    if (!around->oblique.empty()) around->oblique[f] *= share;
+  }
+  around_ = std::move(around);
+  around_of_ = at;
+  return changed;
+}
+
+template <int D>
+void ImmersedBodies<D>::block(const Step<D>& step, std::vector<double>& phi) const {
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f)
+    if (const double share = open(f); share < 1) phi[f] = share * phi[f] + carried(f, *step.to);
+}
+
+template <int D>
+void ImmersedBodies<D>::block(const Step<D>& step, const std::vector<Index>& boundary_faces,
+                              std::vector<double>& phi) const {
+  for (const Index b : boundary_faces) {
+    const Index f = mesh_.n_interior + b;
+    if (const double share = open(f); share < 1) phi[f] = share * phi[f] + carried(f, *step.to);
+  }
+}
+
+/// The memory is that of the flux that the whole face would have with the velocity in its open part. A closed face remembers that
+/// nothing passes: what
+/// opens next begins without a flux, whatever the velocities beside it.
+template <int D>
+void ImmersedBodies<D>::correct_memory(State<D>& s) const {
+  if (!cut_) {
+    for (Index f = 0; f < mesh_.n_interior; ++f)
+      if (open(f) == 0) s.memory[f] = 0;
+    return;
+  }
+  const Placement<D>& at = *around_of_;
+  std::vector<double> mean(mesh_.n_flux_faces());
+  carry(at, s.u, mean);
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    if (!beside_surface(f)) continue;
+    const double share = open(f);
+    s.memory[f] = (share > 0 ? (s.phi[f] - carried(f, at)) / share : s.phi[f]) - mean[f];
+  }
+}
+
+template <int D>
+void ImmersedBodies<D>::before(std::vector<double>& b, std::vector<double>& p) const {
+  this->clear(b);
+  this->clear(p);
+}
+
+template <int D>
+void ImmersedBodies<D>::after(const Placement<D>& at, std::vector<double>& p) const {
+  std::vector<double> weight(p.size(), 0.0), mean(p.size(), 0.0);
+  const auto add = [&](Index closed, Index fluid, double g) {
+    if (!is_closed(closed) || is_closed(fluid)) return;
+    weight[closed] += g;
+    mean[closed] += g * p[fluid];
+  };
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    add(mesh_.owner[f], mesh_.neighbour[f], at.conductance[f]);
+    add(mesh_.neighbour[f], mesh_.owner[f], at.conductance[f]);
+  }
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
+    if (weight[c] > 0) p[c] = mean[c] / weight[c];
+  mesh_.cells.update_ghosts(p);
 }
 
 template <int D>

@@ -8,8 +8,8 @@
 
 #include "common/fv/expression.hpp"
 #include "fluid_solver/motion/cut_cells.hpp"
+#include "fluid_solver/motion/obstacles.hpp"
 #include "fluid_solver/parameters/parameters.hpp"
-#include "fluid_solver/state/state.hpp"
 
 namespace couplet::fluid {
 
@@ -20,18 +20,18 @@ namespace couplet::fluid {
 /// which pass the surface close and open gradually. Mesh and bodies may both move. All follows from time and points alone: it is
 /// the same after a restart and in a repeated step.
 template <int D>
-class ImmersedBodies {
+class ImmersedBodies final : public Obstacles<D> {
  public:
+  using Changed = typename Obstacles<D>::Changed;
+  using Obstacles<D>::is_closed;
+
   /// `parameters`: with the same kind of surface for all bodies.
   ImmersedBodies(const mesh::Mesh& mesh, const FluidParameters& parameters);
 
-  enum class Changed { nothing, shares, cells };  ///< `cells`: others are closed
-  /// Marks the cells at time t. `points`: of the placement. The same on all ranks. Collective.
-  Changed mark(double t, const Placement<D>& at, std::span<const Vec3> points);
+  Changed mark(double t, const std::shared_ptr<const Placement<D>>& at,
+               const std::vector<Vec3>& points) override;
   /// Its centre is in a body since the last mark().
   bool is_solid(Index cell) const { return body_[cell] >= 0; }
-  /// Nothing passes any face of this cell but what the body displaces.
-  bool is_closed(Index cell) const { return cut_ ? shape_.cells[cell] == 0 : is_solid(cell); }
   /// Share of a flux face through which the fluid passes.
   double open(Index f) const { return cut_ ? shape_.faces[f] : blocked(f) ? 0 : 1; }
   bool cuts() const { return cut_; }
@@ -41,12 +41,19 @@ class ImmersedBodies {
   }
   /// Volume flux of the bodies' motion through what of a face is not open [m^3/s].
   double carried(Index flux_face, const Placement<D>& at) const;
-  /// Sets u in the marked cells, and lets it go over to that within `dt` beside the surface if that cuts cells. Ghosts current before
-  /// and after. Collective.
-  void force(const Placement<D>& at, double dt, Vectors<D>& u) const;
+  /// In the marked cells; beside a surface that cuts cells u goes over to that within `dt`.
+  void hold(const Placement<D>& at, double dt, Vectors<D>& u) const override;
   /// Mean fluxes of whole faces beside the surface with the velocity in the middle of what is open of the cells; `cut` only.
-  /// Collective.
-  void carry_to_open(const Placement<D>& at, const Vectors<D>& u, std::span<double> phi) const;
+  void carry(const Placement<D>& at, const Vectors<D>& u, std::vector<double>& phi) const override;
+  void block(const Step<D>& step, std::vector<double>& phi) const override;
+  void block(const Step<D>& step, const std::vector<Index>& boundary_faces,
+             std::vector<double>& phi) const override;
+  void correct_memory(State<D>& state) const override;
+  bool has_pressure() const override { return false; }
+  void before(std::vector<double>& b, std::vector<double>& p) const override;
+  /// Mean of the fluid cells beside a closed one, so that the gradient there sees no jump.
+  void after(const Placement<D>& at, std::vector<double>& p) const override;
+  bool is_in_budget() const override { return false; }
 
   /// On each body [N]: pressure, then friction. `p` with its gradient. Collective.
   std::vector<std::pair<Vec<D>, Vec<D>>> forces(const Placement<D>& at, const PressureLevel<D>& level,
@@ -56,9 +63,12 @@ class ImmersedBodies {
   double leak(const Placement<D>& at, const std::vector<double>& phi) const;
 
  private:
+  using Obstacles<D>::mesh_;
+  using Obstacles<D>::around_;
   using Sums = std::vector<double>;  // of each body: pressure, then friction
   Index other(Index f) const { return f < mesh_.n_interior ? mesh_.neighbour[f] : mesh_.owner[f]; }
   bool blocked(Index f) const { return is_solid(mesh_.owner[f]) || is_solid(other(f)); }
+  Changed mark_cells(double t, const Placement<D>& at, std::span<const Vec3> points);
   void find_levels(double t, const Placement<D>& at);
   void find_velocities(double t, const Placement<D>& at);
   CutCells<D> shape(double t, const Placement<D>& at, std::span<const Vec3> points) const;
@@ -69,7 +79,7 @@ class ImmersedBodies {
                            double viscosity, Sums& sums) const;
   void add_forces_of_cuts(const Placement<D>& at, const PressureLevel<D>& level, const Vectors<D>& u,
                           double viscosity, Sums& sums) const;
-  const mesh::Mesh& mesh_;
+  std::shared_ptr<const Placement<D>> around_of_;  // that around_ was made from
   bool cut_;
   double nu_;  // [m^2/s]
   std::vector<std::string> names_;

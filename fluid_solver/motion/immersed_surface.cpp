@@ -15,7 +15,7 @@ constexpr double of_shear = 0.3;
 }  // namespace
 
 template <int D>
-void ImmersedBodies<D>::force(const Placement<D>& at, double dt, Vectors<D>& u) const {
+void ImmersedBodies<D>::hold(const Placement<D>& at, double dt, Vectors<D>& u) const {
   if (cut_)
     force_by_cuts(at, dt, u);
   else
@@ -87,8 +87,8 @@ void ImmersedBodies<D>::force_by_cuts(const Placement<D>& at, double dt, Vectors
 
 /// At s' in the middle of what is open of a cell: u + (s' - s) du/ds.
 template <int D>
-void ImmersedBodies<D>::carry_to_open(const Placement<D>& at, const Vectors<D>& u,
-                                      std::span<double> phi) const {
+void ImmersedBodies<D>::carry(const Placement<D>& at, const Vectors<D>& u, std::vector<double>& phi) const {
+  if (!cut_) return;
   const Vectors<D> slope = slopes(at, u);
   const auto in_open = [&](Index c) -> Vec<D> {
     if (shape_.cells[c] == 1) return u[c];
@@ -158,15 +158,13 @@ std::vector<std::pair<Vec<D>, Vec<D>>> ImmersedBodies<D>::forces(const Placement
   return result;
 }
 
-template void ImmersedBodies<2>::force(const Placement<2>&, double, Vectors<2>&) const;
-template void ImmersedBodies<2>::carry_to_open(const Placement<2>&, const Vectors<2>&,
-                                               std::span<double>) const;
+template void ImmersedBodies<2>::hold(const Placement<2>&, double, Vectors<2>&) const;
+template void ImmersedBodies<2>::carry(const Placement<2>&, const Vectors<2>&, std::vector<double>&) const;
 template std::vector<std::pair<Vec<2>, Vec<2>>> ImmersedBodies<2>::forces(const Placement<2>&,
                                                                           const PressureLevel<2>&,
                                                                           const Vectors<2>&, double) const;
-template void ImmersedBodies<3>::force(const Placement<3>&, double, Vectors<3>&) const;
-template void ImmersedBodies<3>::carry_to_open(const Placement<3>&, const Vectors<3>&,
-                                               std::span<double>) const;
+template void ImmersedBodies<3>::hold(const Placement<3>&, double, Vectors<3>&) const;
+template void ImmersedBodies<3>::carry(const Placement<3>&, const Vectors<3>&, std::vector<double>&) const;
 template std::vector<std::pair<Vec<3>, Vec<3>>> ImmersedBodies<3>::forces(const Placement<3>&,
                                                                           const PressureLevel<3>&,
                                                                           const Vectors<3>&, double) const;

@@ -2,39 +2,28 @@
 #include "fluid_solver/motion/mesh_path.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
+#include "fluid_solver/state/largest_cell.hpp"
 
 namespace couplet::fluid {
 namespace {
 
-// Of the distance of periodic patches: how far apart their sides may move.
+// Largest relative motion of the sides of periodic patches, as a share of their distance.
 constexpr double most_torn = 1e-8;
 
 /// Whoever moved the points: a cell turned over has no flow.
 template <int D>
 void refuse_inverted(const mesh::Mesh& mesh, const Placement<D>& at, double time) {
-  struct {
-    double value;
-    int rank;
-  } least{std::numeric_limits<double>::infinity(), parallel::comm_rank(mesh.comm)};
-  Index where = 0;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
-    if (at.volume[c] >= least.value) continue;
-    least.value = at.volume[c];
-    where = c;
-  }
-  MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, mesh.comm);
-  if (least.value > 0) return;
-  Vec3 place = Vec3::Zero();
-  if (mesh.cells.n_owned() > 0) place.template head<D>() = at.centre[where];
-  MPI_Bcast(place.data(), 3, MPI_DOUBLE, least.rank, mesh.comm);
+  bool inverted = false;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) inverted |= !(at.volume[c] > 0);
+  if (!parallel::any(mesh.comm, inverted)) return;
+  const LargestCell worst = find_largest(mesh, at, [&](Index c) { return -at.volume[c]; });
   throw SolveFailure(
       "The mesh motion from t = {:.6g} s inverts a cell near ({:.6g}, {:.6g}, {:.6g}) m (volume {:.3e} m^3).",
-      time, place.x(), place.y(), place.z(), least.value);
+      time, worst.place.x(), worst.place.y(), worst.place.z(), -worst.value);
 }
 
 }  // namespace

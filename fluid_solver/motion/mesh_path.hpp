@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "common/mesh/periodic_points.hpp"
-#include "fluid_solver/motion/step_work.hpp"
+#include "fluid_solver/parameters/parameters.hpp"
+#include "fluid_solver/state/step.hpp"
 
 namespace couplet::fluid {
 
@@ -25,11 +26,11 @@ class MeshPath {
   bool moves() const { return moves_; }
   /// As a frame that does not turn.
   bool translates() const { return translates_; }
-  /// Of the mesh at rest; a frame that is only translated keeps its shape, and with it the pressure equation and its factors.
+  /// Placement of the mesh at rest; a frame that is only translated keeps its shape, and with it the pressure equation and its factors.
   std::shared_ptr<const Placement<D>> start(const mesh::Geometry& geometry);
-  /// Of other points; empty: of those at rest.
+  /// Placement of other points; of those at rest if `points` is empty.
   std::shared_ptr<const Placement<D>> at(std::span<const Vec3> points) const;
-  /// What a sub-step of `dt` needs of the mesh that ends at the share `s` of the way from `begin` to `end` (empty: it rests
+  /// The sub-step of `dt` on a mesh that ends at the share `s` of the way from `begin` to `end` (empty: it rests
   /// there). `level`: where it starts, at t = `time` of the coupling step. Throws SolveFailure for inverted cells.
   /// Collective.
   SubStep<D> sub_step(const State<D>& level, double dt, double s, std::span<const Vec3> begin,

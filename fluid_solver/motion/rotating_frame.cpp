@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "fluid_solver/step/fluid.hpp"
 
 namespace couplet::fluid {
 
@@ -54,19 +53,8 @@ void add_centrifugal(const RotatingFrame<D>& frame, const Placement<D>& at, doub
     level.boundary[b] += factor * frame.potential(level.time, at.boundary_centre[b]);
 }
 
-template <int D>
-std::shared_ptr<const PressureLevel<D>> Fluid<D>::pressure() const {
-  const auto& latest = accepted_.pressure[0];
-  if (!latest || !step_.frame()) return latest;
-  auto whole = std::make_shared<PressureLevel<D>>(*latest);
-  add_centrifugal(*step_.frame(), *accepted_.placement, parameters_.density, *whole);
-  return whole;
-}
-
 template void add_centrifugal<2>(const RotatingFrame<2>&, const Placement<2>&, double, PressureLevel<2>&);
 template void add_centrifugal<3>(const RotatingFrame<3>&, const Placement<3>&, double, PressureLevel<3>&);
-template std::shared_ptr<const PressureLevel<2>> Fluid<2>::pressure() const;
-template std::shared_ptr<const PressureLevel<3>> Fluid<3>::pressure() const;
 
 template class RotatingFrame<2>;
 template class RotatingFrame<3>;

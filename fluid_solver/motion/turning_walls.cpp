@@ -2,8 +2,10 @@
 #include "fluid_solver/motion/turning_walls.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
-#include "fluid_solver/step/fluid.hpp"
+#include "common/io/probes/place_search.hpp"
+#include "common/parallel/collective.hpp"
 
 namespace couplet::fluid {
 
@@ -35,7 +37,7 @@ void set_turn(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const 
   }
 }
 
-/// Of the walls whose velocity the case gives; the others' was given before.
+/// Adds the walls whose velocity the case gives; the others were added before.
 template <int D>
 void Boundary<D>::add_turn(const mesh::Mesh& mesh, std::span<const Vec3> points, double t,
                            Vectors<D>& turn) const {
@@ -53,19 +55,35 @@ void Boundary<D>::add_turn(const mesh::Mesh& mesh, std::span<const Vec3> points,
   }
 }
 
-/// Mean of the step's begin and end.
 template <int D>
-void Fluid<D>::add_turning() {
-  if (!boundary_.walls_turn()) return;
-  turn_ = given_turn_;
-  turn_.resize(viscous_force_.size(), Vec<D>::Zero());
-  const std::vector<Vec3>& points = step_.points().empty() ? points_at_rest() : step_.points();
-  boundary_.add_turn(mesh_, points, time_ + dt_, turn_);
-  for (std::size_t b = 0; b < turn_.size(); ++b) {
-    Vec<D> mean = 0.5 * turn_[b];
-    if (!accepted_.turn.empty()) mean += 0.5 * accepted_.turn[b];
-    viscous_force_[b] += turning_force<D>(parameters_.viscosity, mean);
+void set_face_means(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const Vec3> velocities,
+                    Vectors<D>& w) {
+  auto next = velocities.begin();
+  for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+    const auto n = mesh.face_points[f].size();
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = 0; i < n; ++i) sum += *next++;
+    w[f - mesh.n_interior] = (sum / double(n)).template head<D>();
   }
+}
+
+template <int D>
+double set_body_start(const mesh::Mesh& mesh, std::span<const Vec3> points, const Boundary<D>& boundary,
+                      const fv::MotionParameters& motion, double time, Vectors<D>& w, Vectors<D>& turn) {
+  const fv::PrescribedMotion prescribed(motion, D);
+  const double length = io::mesh_size(mesh, points);
+  double largest = 0;
+  for (const mesh::Patch* patch : boundary.body_patches()) {
+    std::vector<Vec3> corners;
+    for (Index f = patch->first; f < patch->first + patch->count; ++f)
+      for (const Index v : mesh.face_points[f]) corners.push_back(points[v]);
+    const std::vector<Vec3> velocities = prescribed.starting_velocities(corners, time, length);
+    if (!turn.empty()) set_turn<D>(mesh, *patch, points, velocities, turn);
+    set_face_means<D>(mesh, *patch, velocities, w);
+    for (Index f = patch->first; f < patch->first + patch->count; ++f)
+      largest = std::max(largest, w[f - mesh.n_interior].norm());
+  }
+  return parallel::max(mesh.comm, largest);
 }
 
 template Vec<2> turn_of<2>(std::span<const Vec3>, std::span<const Vec3>);
@@ -76,7 +94,11 @@ template void set_turn<3>(const mesh::Mesh&, const mesh::Patch&, std::span<const
                           Vectors<3>&);
 template void Boundary<2>::add_turn(const mesh::Mesh&, std::span<const Vec3>, double, Vectors<2>&) const;
 template void Boundary<3>::add_turn(const mesh::Mesh&, std::span<const Vec3>, double, Vectors<3>&) const;
-template void Fluid<2>::add_turning();
-template void Fluid<3>::add_turning();
+template void set_face_means<2>(const mesh::Mesh&, const mesh::Patch&, std::span<const Vec3>, Vectors<2>&);
+template void set_face_means<3>(const mesh::Mesh&, const mesh::Patch&, std::span<const Vec3>, Vectors<3>&);
+template double set_body_start<2>(const mesh::Mesh&, std::span<const Vec3>, const Boundary<2>&,
+                                  const fv::MotionParameters&, double, Vectors<2>&, Vectors<2>&);
+template double set_body_start<3>(const mesh::Mesh&, std::span<const Vec3>, const Boundary<3>&,
+                                  const fv::MotionParameters&, double, Vectors<3>&, Vectors<3>&);
 
 }  // namespace couplet::fluid

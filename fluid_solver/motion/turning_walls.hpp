@@ -3,7 +3,8 @@
 
 #include <span>
 
-#include "fluid_solver/state/placement.hpp"
+#include "common/fv/prescribed_motion.hpp"
+#include "fluid_solver/boundary/boundary.hpp"
 
 namespace couplet::fluid {
 
@@ -20,10 +21,21 @@ template <int D>
 void set_turn(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const Vec3> points,
               std::span<const Vec3> velocities, Vectors<D>& turn);
 
+/// Sets w at the faces of a patch to the means of the velocities of their corners, which stand face by face.
+template <int D>
+void set_face_means(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const Vec3> velocities,
+                    Vectors<D>& w);
+
 /// Force on what is outside by the transposed gradient, -mu T; that by du/dn is the flux of Loads.
 template <int D>
 Vec<D> turning_force(double viscosity, const Vec<D>& turn) {
   return -viscosity * turn;
 }
+
+/// Sets w [m/s] at the faces of bodies to the velocity with which their motion begins at `time`, and, where it is not
+/// empty, the turn of these faces (see turn_of()); both per boundary face. Gives the largest speed. Collective.
+template <int D>
+double set_body_start(const mesh::Mesh& mesh, std::span<const Vec3> points, const Boundary<D>& boundary,
+                      const fv::MotionParameters& motion, double time, Vectors<D>& w, Vectors<D>& turn);
 
 }  // namespace couplet::fluid

@@ -37,7 +37,7 @@ template <int D>
 std::vector<std::array<double, 2>> wall_units(const Fluid<D>& fluid) {
   const mesh::Mesh& mesh = fluid.mesh();
   const Placement<D>& at = *fluid.state().placement;
-  const double rho = fluid.parameters().density, nu = fluid.parameters().viscosity / rho;
+  const auto [rho, mu, nu, sound] = fluid.parameters().properties();
   std::vector<std::array<double, 2>> units(fluid.viscous_force().size());
   for (std::size_t b = 0; b < units.size(); ++b) {
     const Index f = mesh.n_interior + static_cast<Index>(b);
@@ -103,11 +103,6 @@ double hydraulic_diameter(const Fluid<D>& fluid) {
   return sums[1] > 0 ? 4 * sums[0] / sums[1] : std::numeric_limits<double>::quiet_NaN();
 }
 
-template double hydraulic_diameter<2>(const Fluid<2>&);
-template double hydraulic_diameter<3>(const Fluid<3>&);
-template double through_moving_walls<2>(const Fluid<2>&);
-template double through_moving_walls<3>(const Fluid<3>&);
-
 template <int D>
 Coefficients force_coefficients(const Fluid<D>& fluid, const CoefficientParameters& c) {
   const mesh::Mesh& mesh = fluid.mesh();
@@ -163,6 +158,60 @@ EnergyBudget energy_budget(const Fluid<D>& fluid) {
   return {sums[0], sums[1], sums[2], sums[3]};
 }
 
+namespace {
+
+/// This rank's part; the pressure times the area.
+template <int D>
+void add_faces(const Fluid<D>& fluid, std::span<const double> pressure, const mesh::Patch& patch,
+               std::span<double> sums) {
+  const mesh::Mesh& mesh = fluid.mesh();
+  const State<D>& s = fluid.state();
+  for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+    const Index b = f - mesh.n_interior;
+    const double flux = s.mesh_flux.empty() ? s.phi[f] : s.phi[f] - s.mesh_flux[f];
+    const double area = s.placement->area[f].norm();
+    const Vec<D> momentum = fluid.parameters().density * flux * s.u_boundary[b] + fluid.pressure_force()[b] +
+                            fluid.viscous_force()[b];
+    sums[0] += flux;
+    sums[1] += area * pressure[b];
+    sums[2] += area;
+    for (int a = 0; a < D; ++a) sums[3 + a] += momentum[a];
+  }
+}
+
+}  // namespace
+
+template <int D>
+std::vector<PatchFlux<D>> patch_fluxes(const Fluid<D>& fluid) {
+  constexpr std::size_t width = 3 + D;
+  const mesh::Mesh& mesh = fluid.mesh();
+  const auto pressure = fluid.pressure();
+  if (!pressure || fluid.pressure_force().empty()) return {};
+  std::vector<double> sums(mesh.patches.size() * width, 0);
+  for (std::size_t p = 0; p < mesh.patches.size(); ++p)
+    add_faces(fluid, pressure->boundary, mesh.patches[p], std::span(sums).subspan(p * width, width));
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
+  std::vector<PatchFlux<D>> result;
+  for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
+    const double* of_patch = sums.data() + p * width;
+    if (!(of_patch[2] > 0)) continue;
+    result.push_back({mesh.patches[p].name, of_patch[0], Eigen::Map<const Vec<D>>(of_patch + 3),
+                      of_patch[1] / of_patch[2], of_patch[2]});
+  }
+  return result;
+}
+
+template <int D>
+FlowArea flow_area(const PatchFlux<D>& from, const PatchFlux<D>& to, double density) {
+  const double mass = -density * from.volume, drop = from.mean_pressure - to.mean_pressure,
+               area = mass / std::sqrt(2 * density * std::abs(drop)) * (drop < 0 ? -1 : 1);
+  return {mass, drop, drop != 0 ? area : std::numeric_limits<double>::quiet_NaN()};
+}
+
+template double hydraulic_diameter<2>(const Fluid<2>&);
+template double hydraulic_diameter<3>(const Fluid<3>&);
+template double through_moving_walls<2>(const Fluid<2>&);
+template double through_moving_walls<3>(const Fluid<3>&);
 template std::vector<double> vorticity<2>(const std::vector<Tensor<2>>&);
 template std::vector<double> vorticity<3>(const std::vector<Tensor<3>>&);
 template std::vector<double> q_criterion<2>(const std::vector<Tensor<2>>&);
@@ -175,5 +224,69 @@ template Coefficients force_coefficients<2>(const Fluid<2>&, const CoefficientPa
 template Coefficients force_coefficients<3>(const Fluid<3>&, const CoefficientParameters&);
 template EnergyBudget energy_budget<2>(const Fluid<2>&);
 template EnergyBudget energy_budget<3>(const Fluid<3>&);
+template FlowArea flow_area<2>(const PatchFlux<2>&, const PatchFlux<2>&, double);
+template FlowArea flow_area<3>(const PatchFlux<3>&, const PatchFlux<3>&, double);
+template std::vector<PatchFlux<2>> patch_fluxes<2>(const Fluid<2>&);
+template std::vector<PatchFlux<3>> patch_fluxes<3>(const Fluid<3>&);
+
+template <int D>
+Quantities<D>::Quantities(const Fluid<D>& fluid) : fluid_(fluid), pressure_(fluid.pressure()) {
+  const State<D>& s = fluid.state();
+  all_.push_back({"velocity", "m/s", D, flat<D>(s.u), flat<D>(s.u_boundary)});
+  if (pressure_)
+    all_.push_back({"pressure", "Pa", 1, pressure_->p, pressure_->boundary});
+  else
+    all_.push_back({"pressure", "Pa", 1, keep(std::vector<double>(fluid.mesh().cells.n_local(), 0.0)), {}});
+}
+
+template <int D>
+std::span<const double> Quantities<D>::keep(std::vector<double> values) {
+  kept_.push_back(std::move(values));
+  return kept_.back();
+}
+
+/// `values`: of the cells, then of the boundary faces.
+template <int D>
+void Quantities<D>::add(const char* name, const char* unit, int components, std::span<const double> values,
+                        std::size_t cells) {
+  const std::size_t n = cells * static_cast<std::size_t>(components);
+  all_.push_back({name, unit, components, values.first(n), values.subspan(n)});
+}
+
+template <int D>
+void Quantities<D>::add(const RunningStatistics<D>& statistics) {
+  const std::size_t n = statistics.cells();
+  const Vectors<D> velocity_rms = statistics.velocity_rms();
+  const std::span<const double> rms = flat<D>(velocity_rms);
+  add("velocity-mean", "m/s", D, flat<D>(statistics.velocity_mean()), n);
+  add("pressure-mean", "Pa", 1, statistics.pressure_mean(), n);
+  add("velocity-rms", "m/s", D, keep({rms.begin(), rms.end()}), n);
+  add("pressure-rms", "Pa", 1, keep(statistics.pressure_rms()), n);
+}
+
+template <int D>
+void Quantities<D>::add_in_cells(const RunningStatistics<D>* statistics) {
+  const State<D>& s = fluid_.state();
+  const FluidOutputParameters& wanted = fluid_.parameters().output;
+  const std::size_t n = s.u.size();
+  std::vector<Tensor<D>> gradient;
+  if (wanted.vorticity || wanted.q_criterion)
+    velocity_gradient<D>(fluid_.mesh(), *s.placement, s.u, s.u_boundary, gradient);
+  if (wanted.vorticity) add("vorticity", "1/s", D == 2 ? 1 : 3, keep(vorticity<D>(gradient)), n);
+  if (wanted.q_criterion) add("q-criterion", "1/s^2", 1, keep(q_criterion<D>(gradient)), n);
+  if (!s.eddy.empty()) add("eddy-viscosity", "m^2/s", 1, s.eddy, n);
+  if (statistics)
+    add("reynolds-shear", "m^2/s^2", RunningStatistics<D>::n_shear, keep(statistics->reynolds_shear()), n);
+}
+
+template <int D>
+int Quantities<D>::width() const {
+  int sum = 0;
+  for (const Quantity& quantity : all_) sum += quantity.components;
+  return sum;
+}
+
+template class Quantities<2>;
+template class Quantities<3>;
 
 }  // namespace couplet::fluid

@@ -2,7 +2,13 @@
 #pragma once
 
 #include <array>
+#include <deque>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
 
+#include "fluid_solver/output/statistics.hpp"
 #include "fluid_solver/step/fluid.hpp"
 
 namespace couplet::fluid {
@@ -27,7 +33,7 @@ WallSummary summarise_wall(const Fluid<D>& fluid, const mesh::Patch& patch);
 template <int D>
 std::vector<std::array<double, 2>> wall_units(const Fluid<D>& fluid);
 
-/// Of the moving walls of a mesh at rest the largest sum of |w . S| over the sum of |w| |S|; NaN without such walls, or
+/// Largest sum of |w . S| over the sum of |w| |S| of the moving walls of a mesh at rest; NaN without such walls, or
 /// before they move. Collective.
 template <int D>
 double through_moving_walls(const Fluid<D>& fluid);
@@ -54,5 +60,65 @@ struct EnergyBudget {
 };
 template <int D>
 EnergyBudget energy_budget(const Fluid<D>& fluid);
+
+/// Fluxes through a patch out of the fluid, relative to the patch where it moves.
+template <int D>
+struct PatchFlux {
+  std::string patch;
+  double volume = 0;                   ///< [m^3/s]
+  Vec<D> momentum = Vec<D>::Zero();    ///< rho sum u phi plus the load on what is outside [N]
+  double mean_pressure = 0, area = 0;  ///< [Pa], over the area; [m^2]
+};
+
+/// Area that an ideal flow would need to carry the same mass with the same difference of pressure, (KA)_e in [thesis] eq. (4.35).
+struct FlowArea {
+  double mass_flow = 0;      ///< into the fluid through the first patch [kg/s]
+  double pressure_drop = 0;  ///< mean pressures of the first less the second patch [Pa]
+  double area =
+      0;  ///< [m^2]; negative where the flow goes against the pressure; NaN where there is no difference
+};
+template <int D>
+FlowArea flow_area(const PatchFlux<D>& from, const PatchFlux<D>& to, double density);
+
+/// Fluxes of all patches with faces: volume, carried momentum and pressure at the accepted time, loads (those of forces.csv) as
+/// means over the last step; in a steady flow without body forces the sums of volume and momentum are zero. Nothing
+/// before the first step. Collective.
+template <int D>
+std::vector<PatchFlux<D>> patch_fluxes(const Fluid<D>& fluid);
+
+/// A field of the fluid as files, probes and samples show it.
+struct Quantity {
+  std::string name, unit;
+  int components = 1;
+  std::span<const double> cells;     ///< per local cell
+  std::span<const double> boundary;  ///< per owned boundary face; empty: it is known in the cells only
+};
+
+/// The fields of the accepted state that the case asks for. They refer to the fluid, which must not step on meanwhile.
+template <int D>
+class Quantities {
+ public:
+  /// Velocity and pressure, which is zero before the first step.
+  explicit Quantities(const Fluid<D>& fluid);
+  Quantities(const Quantities&) = delete;
+  /// Means and root mean squares.
+  void add(const RunningStatistics<D>& statistics);
+  /// Fields that are known in the cells only. `statistics`: nullptr if there are none. Collective.
+  void add_in_cells(const RunningStatistics<D>* statistics);
+
+  const std::vector<Quantity>& all() const { return all_; }
+  /// Sum of the components.
+  int width() const;
+
+ private:
+  std::span<const double> keep(std::vector<double> values);
+  void add(const char* name, const char* unit, int components, std::span<const double> values,
+           std::size_t cells);
+
+  const Fluid<D>& fluid_;
+  std::vector<Quantity> all_;
+  std::shared_ptr<const PressureLevel<D>> pressure_;
+  std::deque<std::vector<double>> kept_;  // values that were computed for this
+};
 
 }  // namespace couplet::fluid

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "common/io/fields/field_writer.hpp"
-#include "common/io/series.hpp"
 #include "fluid_solver/output/samples.hpp"
+#include "fluid_solver/output/series.hpp"
+#include "fluid_solver/output/statistics.hpp"
 #include "fluid_solver/output/surfaces.hpp"
 #include "fluid_solver/step/fluid.hpp"
-#include "fluid_solver/turbulence/statistics.hpp"
 
 namespace couplet::fluid {
 
@@ -31,27 +31,19 @@ class FluidOutput {
  public:
   /// `geometry`: of the mesh at rest, looked at while this is made.
   FluidOutput(const Fluid<D>& fluid, const mesh::Geometry& geometry, FluidContext context);
+  FluidOutput(const FluidOutput&) = delete;  // its tables look at it
   /// Where output `number` has fields in the volume. `statistics` may be null.
   void write_fields(double time, int number, const RunningStatistics<D>* statistics);
   void write_series(double time);
-  /// Of patches, where they are asked for. Collective.
+  /// Writes the patches that the case asks for. Collective.
   void write_surfaces(double time);
   /// Lines and planes. `statistics` may be null. Collective.
   void write_samples(double time, const RunningStatistics<D>* statistics);
 
  private:
   void set_up_points(const mesh::Geometry& geometry);
-  void write_forces(double time);
-  void write_walls(double time);
-  void write_coefficients(double time);
-  void write_fluxes(double time);
   void check_coefficients() const;
-  void write_flow_areas(double time);
-  void write_energy(double time);
-  void write_bodies(double time);
-  void write_gaps(double time);
-  void write_balance(double time);
-  void write_probes(double time);
+  Row probes();
   io::Series open(const std::string& file, const std::vector<std::string>& columns) const;
 
   const Fluid<D>& fluid_;
@@ -64,10 +56,7 @@ class FluidOutput {
   std::vector<const mesh::Patch*> walls_;
   std::optional<io::FieldWriter> fields_;
   std::optional<FluidSurfaces<D>> surfaces_;
-  std::vector<double> divergence_;
-  std::optional<io::Series> forces_, coefficients_, walls_series_, fluxes_, flow_areas_, balance_, energy_,
-      bodies_, gaps_,
-      probe_series_;                                      // on rank 0
+  std::vector<SeriesTable> tables_;
   std::vector<std::optional<io::Series>> sample_series_;  // one a sample, on rank 0
 };
 

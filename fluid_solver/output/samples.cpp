@@ -22,42 +22,27 @@ void PointValues<D>::follow() {
 }
 
 template <int D>
-void PointValues<D>::fill(std::span<const io::Probe> probes, Flat cell_velocity, Flat face_velocity,
-                          Flat cell_pressure, Flat face_pressure, std::span<double> values, int stride,
-                          int offset) const {
+void PointValues<D>::fill(const Quantities<D>& quantities, std::span<const io::Probe> probes,
+                          std::span<double> values) const {
   const mesh::Mesh& mesh = fluid_.mesh();
-  std::vector<double> velocity(face_velocity.begin(), face_velocity.end()),
-      pressure(face_pressure.begin(), face_pressure.end());
-  velocity.resize(std::size_t(mesh.boundary.n_local()) * D, 0.0);
-  pressure.resize(mesh.boundary.n_local(), 0.0);
-  mesh.boundary.update_ghosts(velocity, D);
-  mesh.boundary.update_ghosts(pressure);
-  for (const io::Probe& probe : probes)
-    for (const Index point : probe.points()) {
-      double* at = values.data() + std::size_t(point) * stride + offset;
-      const Vec<D> u = interpolation_.template scalar_at<D>(point, cell_velocity, velocity);
-      std::copy_n(u.data(), D, at);
-      at[D] = interpolation_.template scalar_at<1>(point, cell_pressure, pressure)[0];
-    }
-}
-
-template <int D>
-void PointValues<D>::state(std::span<const io::Probe> probes, std::span<double> values) const {
-  const State<D>& s = fluid_.state();
-  const auto pressure = fluid_.pressure();
-  fill(probes, flat<D>(s.u), flat<D>(s.u_boundary), pressure->p, pressure->boundary, values, D + 1, 0);
-}
-
-template <int D>
-void PointValues<D>::means(const RunningStatistics<D>& statistics, std::span<const io::Probe> probes,
-                           std::span<double> values) const {
-  const std::size_t n = statistics.cells();
-  const auto add = [&](const Vectors<D>& velocity, const std::vector<double>& pressure, int offset) {
-    const Flat u = flat<D>(velocity), p = pressure;
-    fill(probes, u.first(n * D), u.subspan(n * D), p.first(n), p.subspan(n), values, 2 * (D + 1), offset);
-  };
-  add(statistics.velocity_mean(), statistics.pressure_mean(), 0);
-  add(statistics.velocity_rms(), statistics.pressure_rms(), D + 1);
+  const int width = quantities.width();
+  int first = 0;
+  for (const Quantity& q : quantities.all()) {
+    std::vector<double> boundary(q.boundary.begin(), q.boundary.end());
+    boundary.resize(std::size_t(mesh.boundary.n_local()) * q.components, 0.0);
+    mesh.boundary.update_ghosts(boundary, q.components);
+    for (const io::Probe& probe : probes)
+      for (const Index point : probe.points()) {
+        double* at = values.data() + std::size_t(point) * width + first;
+        if (q.components == D) {
+          const Vec<D> value = interpolation_.template scalar_at<D>(point, q.cells, boundary);
+          std::copy_n(value.data(), D, at);
+        } else {
+          *at = interpolation_.template scalar_at<1>(point, q.cells, boundary)[0];
+        }
+      }
+    first += q.components;
+  }
 }
 
 Sample::Sample(const mesh::Mesh& mesh, std::span<const Vec3> places, std::string name,

@@ -8,8 +8,7 @@
 
 #include "common/fv/vertex_interpolation.hpp"
 #include "common/io/probes/probe.hpp"
-#include "fluid_solver/step/fluid.hpp"
-#include "fluid_solver/turbulence/statistics.hpp"
+#include "fluid_solver/output/derived.hpp"
 
 namespace couplet::fluid {
 
@@ -20,19 +19,13 @@ class PointValues {
  public:
   /// `geometry`: of the mesh at rest, looked at while this is made.
   PointValues(const Fluid<D>& fluid, const mesh::Geometry& geometry);
-  /// To be called when the mesh may have moved, before the others. Collective.
+  /// To be called when the mesh may have moved, before fill(). Collective.
   void follow();
-  /// At the probes' local points: velocity, then pressure of the accepted state. `values`: D + 1 a local point,
-  /// the others are left alone. Collective.
-  void state(std::span<const io::Probe> probes, std::span<double> values) const;
-  /// The mean velocity, mean pressure, rms of velocity, of pressure: 2 (D + 1) a local point. Collective.
-  void means(const RunningStatistics<D>& statistics, std::span<const io::Probe> probes,
-             std::span<double> values) const;
+  /// Sets `values`, width() a local point, at the points of the probes; the others are left alone. Collective.
+  void fill(const Quantities<D>& quantities, std::span<const io::Probe> probes,
+            std::span<double> values) const;
 
  private:
-  using Flat = std::span<const double>;
-  void fill(std::span<const io::Probe> probes, Flat cell_velocity, Flat face_velocity, Flat cell_pressure,
-            Flat face_pressure, std::span<double> values, int stride, int offset) const;
   const Fluid<D>& fluid_;
   fv::VertexInterpolation interpolation_;
 };
@@ -45,7 +38,7 @@ class Sample {
          const SampleParameters& parameters);
   const std::string& name() const { return name_; }
   const std::vector<io::Probe>& probes() const { return probes_; }
-  /// Of each probe: how far along from-to and from-up, 0 to 1.
+  /// Position of each probe along from-to and from-up, 0 to 1.
   const std::vector<std::array<double, 2>>& along() const { return along_; }
   /// Values at each probe from those at local points, `components` each, on rank 0; empty elsewhere. Collective.
   std::vector<double> gather(MPI_Comm comm, std::span<const double> at_points, int components) const;

@@ -16,7 +16,7 @@ struct FluidContext;
 template <int D>
 class FluidSurfaces {
  public:
-  /// By reference. Throws Error for a name that is no patch. Collective.
+  /// Keeps a reference. Throws Error for a name that is no patch. Collective.
   explicit FluidSurfaces(const Fluid<D>& fluid);
   /// Nothing before the first step, which alone gives a load. Collective.
   void write(double time, const FluidContext& context);

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <array>
 
-#include "fluid_solver/parameters/effect_judgements.hpp"
-
 namespace couplet::fluid {
 namespace {
 
@@ -28,37 +26,32 @@ const std::array cards{
         [](const S& s) { return when(s.parameters.turbulence && s.parameters.dimension == 3, "turbulence"); },
         "an eddy viscosity per cell, a velocity gradient per step",
         "max cell Reynolds number, 50, or 250 with resolved walls (y+ up to 1); beyond that the flow's own by the hydraulic "
-        "diameter, 3450: laminar below",
-        judge_turbulence, false, spare_turbulence},
+        "diameter, 3450: laminar below"},
     FluidCard{
         "eddy viscosity in two dimensions", "`turbulence` in two dimensions, where it models no turbulence",
         [](const S& s) { return when(s.parameters.turbulence && s.parameters.dimension == 2, "turbulence"); },
-        "as a turbulence model", "max eddy viscosity over the molecular, 0.01", judge_flat_eddies, true},
+        "as a turbulence model", "max eddy viscosity over the molecular, 0.01", true},
     FluidCard{"resolved walls", "`turbulence`",
               [](const S& s) { return when(s.parameters.turbulence.has_value(), "turbulence"); }, "",
-              "with a turbulence model: max y+, 2", judge_walls, true},
+              "with a turbulence model: max y+, 2", true},
     FluidCard{"balance of the kinetic energy", "always", [](const S&) { return std::string("always"); },
-              "a loop over the boundary", "kinetic energy without work, of the total, 0.1", judge_energy,
-              true},
+              "a loop over the boundary", "kinetic energy without work, of the total, 0.1", true},
     FluidCard{"compressibility", "not available here", [](const S&) { return std::string(); }, "",
-              "max speed over the speed of sound (`compressibility`, or by density and viscosity), 0.3",
-              judge_compressibility},
+              "max speed over the speed of sound (`compressibility`, or by density and viscosity), 0.3"},
     FluidCard{
         "waves of pressure", "`compressibility`",
         [](const S& s) { return when(s.parameters.is_compressible(), "compressibility"); },
         "three pressures per cell in the right side of the pressure equation, whose matrix changes with the step",
         "density change by the pressure range, 0.05; for moving walls: compressed over displaced volume, "
-        "0.1, and travel time of sound across the fluid over 1/omega of the wall motion, 0.3",
-        judge_waves},
+        "0.1, and travel time of sound across the fluid over 1/omega of the wall motion, 0.3"},
     FluidCard{"small changes of density", "`compressibility`",
               [](const S& s) { return when(s.parameters.is_compressible(), "compressibility"); }, "",
-              "with `compressibility`: density change by the pressure range, 0.05", judge_small_changes,
-              true},
+              "with `compressibility`: density change by the pressure range, 0.05", true},
     FluidCard{
         "mesh motion", "a mesh mover in `coupling.mesh`, or `motion`",
         [](const S& s) { return when(s.moving_mesh, s.parameters.motion ? "motion" : "coupling.mesh"); },
         "points, swept volumes, geometry of each step; without `motion` the process mesh_mover",
-        "for an interface: max displacement over the cell height, 0.1", judge_still_mesh},
+        "for an interface: max displacement over the cell height, 0.1"},
     FluidCard{"moving frame", "`motion` with only a `translation`",
               [](const S& s) {
                 return when(s.parameters.motion && s.parameters.motion->translates(), "motion.translation");
@@ -94,15 +87,14 @@ const std::array cards{
     FluidCard{"gaps that close", "`gaps`",
               [](const S& s) { return when(!s.parameters.gaps.empty(), "gaps"); },
               "a flag per cell; the distance of the two walls where they are close",
-              "share of the cells that they block, 0.5", judge_blocked, true},
+              "share of the cells that they block, 0.5", true},
     FluidCard{"walls that move along themselves", "`type: moving-wall`",
               [](const S& s) {
                 for (const auto& [name, b] : s.parameters.boundaries)
                   if (is_moving_wall(b)) return "boundaries." + name;
                 return std::string();
               },
-              "", "on a mesh at rest: flow through them over speed times area, 0.1", judge_moving_walls,
-              true},
+              "", "on a mesh at rest: flow through them over speed times area, 0.1", true},
     FluidCard{"body force", "`body-force`",
               [](const S& s) { return when(!s.parameters.body_force.empty(), "body-force"); },
               "a force per cell"},

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/base/text.hpp"
@@ -10,9 +11,10 @@
 #include "common/fv/expression.hpp"
 #include "common/io/fields/surface_series.hpp"
 #include "common/mesh/periodic_points.hpp"
-#include "fluid_solver/conditions/keys.hpp"
+#include "fluid_solver/parameters/condition.hpp"
 
 namespace couplet::fluid {
+
 std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& parameters) {
   std::map<std::string, std::string> partner_of;
   for (const auto& [name, b] : parameters.boundaries)
@@ -21,6 +23,64 @@ std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& 
 }
 
 namespace {
+
+void declare_gap(config::Section& s, GapParameters& gap) {
+  s.value("between", gap.between).required().doc("the two walls (patches), a valve and its seat");
+  s.value("opening", gap.opening)
+      .unit("m")
+      .plausible(1e-8, 10)
+      .positive()
+      .required()
+      .doc("cells where the walls are closer than this are blocked");
+  s.value("height", gap.height)
+      .unit("m")
+      .plausible(1e-9, 1e4)
+      .doc(
+          "height of the seat, the second wall, along 'direction', of x, y, z at rest: the mesh is refused if its wall is "
+          "elsewhere, and the 'contact' of a structure may name the gap; absent: where the mesh has it");
+  s.value("direction", gap.direction).doc("direction from the seat to the valve; absent: z, in 2-D y");
+  s.check([&gap] { return gap.height ? fv::problem_of(*gap.height) : std::string(); }, "height");
+  s.check(
+      [&gap] {
+        const auto& d = gap.direction;
+        const bool fits = d.empty() || ((d.size() == 2 || d.size() == 3) &&
+                                        std::hypot(d[0], d[1], d.size() > 2 ? d[2] : 0) > 0);
+        return fits ? std::string() : "two or three numbers are needed, not all 0";
+      },
+      "direction");
+  s.check(
+      [&gap] {
+        const bool two = gap.between.size() == 2 && gap.between[0] != gap.between[1];
+        return two ? std::string() : "requires two different patches";
+      },
+      "between");
+}
+
+/// A gap that nothing can open or close: what it blocks at the start remains blocked; empty if there is none.
+std::string gap_at_rest(const FluidParameters& p) {
+  const auto rests = [&p](const std::string& patch) {
+    const auto wall = p.boundaries.find(patch);
+    if (wall == p.boundaries.end()) return false;
+    const GivenBy by = condition_of(wall->second).velocity;
+    return by != GivenBy::structure && by != GivenBy::motion && by != GivenBy::mesh;
+  };
+  for (const auto& [name, gap] : p.gaps)
+    if (std::ranges::all_of(gap.between, rests))
+      return fmt::format(
+          "both walls of '{}' are at rest, so that it neither closes nor opens: one of them must be of `type: interface` or "
+          "`body`",
+          name);
+  return "";
+}
+
+/// After `boundaries`, at which it looks.
+void declare_gaps(config::Section& s, FluidParameters& p) {
+  s.map<GapParameters>(
+      "gaps", p.gaps, declare_gap, "gap",
+      "gaps that nearly close as the mesh moves: their cells block the flow, do not limit the step size, "
+      "and open again");
+  s.doubt([&p] { return gap_at_rest(p); }, "gaps");
+}
 
 /// Mesh and fluid.
 void declare_scene(config::Section& s, FluidParameters& p) {
@@ -86,7 +146,7 @@ void declare_steps(config::Section& s, FluidParameters& p) {
           "coupled run needs about 1e-4 of the coupling tolerance");
 }
 
-/// What the fluid starts from, and what pulls at it.
+/// Initial state and body forces.
 void declare_start(config::Section& s, FluidParameters& p) {
   s.value("initial-velocity", p.initial_velocity)
       .unit("m/s")
@@ -140,7 +200,7 @@ void declare_schemes(config::Section& s, FluidParameters& p) {
           "pressures keep zero mean");
 }
 
-/// What moves, closes or rotates.
+/// Parts that move, close or rotate.
 void declare_moving_parts(config::Section& s, FluidParameters& p) {
   s.map<BodyParameters>(
       "bodies", p.bodies,
@@ -219,7 +279,7 @@ void declare_models(config::Section& s, FluidParameters& p) {
           "compressibility");
 }
 
-/// What is wrong with the patches of output.flow-areas; empty if nothing is.
+/// Describes an error in the patches of output.flow-areas; empty if there is none.
 std::string wrong_flow_areas(const FluidParameters& p) {
   std::vector<std::string> patches;
   for (const auto& [patch, unused] : p.boundaries) patches.push_back(patch);
@@ -231,7 +291,7 @@ std::string wrong_flow_areas(const FluidParameters& p) {
   return "";
 }
 
-/// What is written.
+/// Output.
 void declare_written(config::Section& s, FluidParameters& p) {
   s.section(
       "output",

@@ -9,13 +9,13 @@
 
 #include "common/config/section.hpp"
 #include "common/fv/prescribed_motion.hpp"
-#include "fluid_solver/conditions/condition.hpp"
+#include "fluid_solver/parameters/condition.hpp"
 #include "fluid_solver/parameters/sound.hpp"
 
 namespace couplet::fluid {
 
 enum class ViscousTreatment { automatic, explicit_, implicit };
-/// Of the explicit terms: Adams-Bashforth of two levels, or Heun's Runge-Kutta of three stages.
+/// Scheme of the explicit terms: Adams-Bashforth of two levels, or Heun's Runge-Kutta of three stages.
 enum class ExplicitScheme { adams_bashforth, runge_kutta };
 /// How the face fluxes follow the cells' velocities from step to step.
 enum class Projection { flux_memory, incremental, non_incremental };
@@ -49,8 +49,8 @@ struct BodyParameters {
 struct GapParameters {
   std::vector<std::string> between;
   double opening = 0;  // [m]
-  std::optional<config::ExpressionText>
-      height;                     // of the seat, the second wall, along `direction` [m]; absent: not stated
+  /// Height of the seat, the second wall, along `direction` [m]; absent if it is not stated.
+  std::optional<config::ExpressionText> height;
   std::vector<double> direction;  // from the seat to the other wall; empty: z, in 2-D y
 };
 
@@ -94,6 +94,14 @@ struct ProbeParameters {
   Vec3 point = Vec3::Zero();  // [m]
 };
 
+/// A fluid by its numbers.
+struct Properties {
+  double rho = 0;    ///< density [kg/m^3]
+  double mu = 0;     ///< dynamic viscosity [Pa s]
+  double nu = 0;     ///< kinematic viscosity [m^2/s]
+  double sound = 0;  ///< speed of sound [m/s]; 0: incompressible
+};
+
 struct FluidParameters {
   std::string mesh;
   std::map<std::string, double> mesh_parameters;
@@ -105,8 +113,8 @@ struct FluidParameters {
   std::optional<double> time_step;  // [s]; empty: by the stability limit
   double safety_factor = 0.8;
   ViscousTreatment viscous = ViscousTreatment::automatic;
-  std::optional<double>
-      implicit_stretch;  // largest implicit sub-step over the explicit limit; empty: no such bound
+  /// Largest implicit sub-step over the explicit limit; empty without such a bound.
+  std::optional<double> implicit_stretch;
   double pressure_tolerance = 1e-6;
   std::vector<config::ExpressionText> initial_velocity;    // [m/s]; empty: at rest
   std::optional<config::ExpressionText> initial_pressure;  // [Pa]
@@ -127,14 +135,14 @@ struct FluidParameters {
   /// [m/s]; 0: the fluid is computed as incompressible.
   double sound_speed() const { return solved_sound(compressibility, density, viscosity); }
   bool is_compressible() const { return compressibility && compressibility->is_solved(); }
+  double kinematic_viscosity() const { return viscosity / density; }  ///< [m^2/s]
+  Properties properties() const { return {density, viscosity, kinematic_viscosity(), sound_speed()}; }
 };
 
 /// Pairs of periodic patches. Throws Error if two patches do not name each other.
 std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& parameters);
 
 void declare(config::Section& section, FluidParameters& parameters);
-/// The section `gaps`; after `boundaries`, at which it looks.
-void declare_gaps(config::Section& section, FluidParameters& parameters);
 /// The section `output`.
 void declare_output(config::Section& section, FluidOutputParameters& parameters);
 

@@ -35,7 +35,7 @@ struct Liquid {
 constexpr std::array liquids{Liquid{"water", 1482, 998},   Liquid{"sea-water", 1522, 1025},
                              Liquid{"ethanol", 1160, 789}, Liquid{"glycerol", 1920, 1261},
                              Liquid{"oil", 1430, 870},     Liquid{"mercury", 1450, 13546}};
-// Of a liquid's density, for salt, sugar, temperature; pressure of a gas up to which it is nearly ideal [Pa].
+// Tolerated factors of a liquid's density, for salt, sugar and temperature; pressure of a gas up to which it is nearly ideal [Pa].
 constexpr double least_share = 0.8, largest_share = 1.25, highest_pressure = 2e7;
 
 /// Marczak (1997), 0 to 95 degC.

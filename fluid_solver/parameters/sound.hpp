@@ -36,12 +36,12 @@ struct Sound {
   double speed = 0;  ///< [m/s]
   std::string of;    ///< "sf6 at 20 degC"
 };
-/// By the keys; else by density [kg/m^3] and viscosity [Pa s], where they are those of a gas at 1 atm or of a liquid. None for a
+/// Speed of sound by the keys, else by density [kg/m^3] and viscosity [Pa s], where they are those of a gas at 1 atm or of a liquid. None for a
 /// model fluid, such as one of 1 kg/m^3 and 1 Pa s: nothing is known of its sound.
 std::optional<Sound> sound_of(const std::optional<CompressibilityParameters>& parameters, double density,
                               double viscosity);
 
-/// Of a fluid that is computed as weakly compressible [m/s]; 0: it is not. Throws Error where nothing is known of its sound.
+/// Speed of sound of a fluid that is computed as weakly compressible [m/s], else 0. Throws Error if it is not known.
 double solved_sound(const std::optional<CompressibilityParameters>& parameters, double density,
                     double viscosity);
 

@@ -57,7 +57,7 @@ class Walls {
     if (!all.empty()) reach_ = thin * (high - low).norm();
   }
 
-  /// The face that the normal of `from` meets across the body from a place of it; null: none. Goes on as far as no face
+  /// The face that the normal of `from` meets across the body from a place of it; nullptr if there is none. Goes on as far as no face
   /// can be met, so that walls with one wet side cost little.
   const Face* across(const Face& from, const Vec3& place) const {
     for (double way = 0; way <= reach_;) {
@@ -90,7 +90,7 @@ class Walls {
   double widest_ = 0, reach_ = 0;  // largest radius; largest thickness [m]
 };
 
-/// What a face says of another rank's: they have this area in common.
+/// Area that a face has in common with one of another rank.
 struct Told {
   Index to, from;
   double area;

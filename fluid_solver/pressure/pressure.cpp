@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fluid_solver/pressure/pressure.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "common/base/error.hpp"
-#include "common/linalg/lanes/vector_passes.hpp"
-#include "common/linalg/poisson/petsc_cell_solver.hpp"
-#include "common/linalg/poisson/poisson_solver.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/pressure/largest_entry.hpp"
+#include "fluid_solver/state/largest_cell.hpp"
 
 namespace couplet::fluid {
 
 // Up to here kept Cholesky factors beat multigrid in 2-D: thin cells cost them no iterations.
 constexpr GlobalIndex largest_direct = 120000;
+
+namespace {
+
+Eigen::Map<Eigen::VectorXd> as_vector(std::span<double> v) { return {v.data(), std::ssize(v)}; }
+Eigen::Map<const Eigen::VectorXd> as_vector(std::span<const double> v) { return {v.data(), std::ssize(v)}; }
+
+}  // namespace
 
 template <int D>
 PressureEquation<D>::PressureEquation(const mesh::Mesh& mesh, const Boundary<D>& boundary, bool fixed,
@@ -28,29 +32,21 @@ PressureEquation<D>::PressureEquation(const mesh::Mesh& mesh, const Boundary<D>&
 
 template <int D>
 void PressureEquation<D>::make_solver() {
-  using linalg::LinearMethod, linalg::PoissonSolver;
   const linalg::CellGraph graph{mesh_.cells, mesh_.comm,
                                 std::span<const Index>(mesh_.owner).first(mesh_.n_interior),
                                 std::span<const Index>(mesh_.neighbour).first(mesh_.n_interior)};
-  const bool alone = parallel::comm_size(mesh_.comm) == 1;
-  // benchmarks/linalg records solves of PETSc.
-  const bool recorded = std::getenv("COUPLET_RECORD_SOLVE") != nullptr;
-  if (!couplings_ && !recorded && (alone || !direct_)) {
-    solver_ = std::make_unique<PoissonSolver>(
-        "pressure", graph,
-        direct_ ? PoissonSolver::Preconditioner::factors : PoissonSolver::Preconditioner::multigrid);
-    pinned_ = direct_;
-    return;
-  }
   linalg::Beside beside;
   if (couplings_) beside = {couplings_->row, couplings_->column};
-  solver_ = std::make_unique<linalg::PetscCellSolver>(
-      "pressure", graph, beside, direct_ ? LinearMethod::cg_single : LinearMethod::cg_multigrid);
+  using Preconditioner = linalg::CellSolver::Preconditioner;
+  const Preconditioner kind = direct_      ? Preconditioner::factors
+                              : couplings_ ? Preconditioner::ml
+                                           : Preconditioner::multigrid;
+  solver_ = std::make_unique<linalg::CellSolver>("pressure", graph, beside, kind);
+  pinned_ = kind != Preconditioner::multigrid;
 }
 
 template <int D>
-std::vector<double> PressureEquation<D>::diagonal(const Placement<D>& at, std::span<const double> admittance,
-                                                  std::span<const double> storage) const {
+std::vector<double> PressureEquation<D>::diagonal(const Placement<D>& at, const Diagonal& added) const {
   const Index owned = mesh_.cells.n_owned();
   std::vector<double> sum(owned, 0.0);
   for (Index f = 0; f < mesh_.n_interior; ++f)
@@ -58,9 +54,9 @@ std::vector<double> PressureEquation<D>::diagonal(const Placement<D>& at, std::s
       if (cell < owned) sum[cell] += at.conductance[f];
   for (const Index b : boundary_.rows().of_pressure)
     sum[mesh_.owner[mesh_.n_interior + b]] += at.conductance[mesh_.n_interior + b];
-  for (std::size_t b = 0; b < admittance.size(); ++b)
-    sum[mesh_.owner[mesh_.n_interior + static_cast<Index>(b)]] += admittance[b];
-  for (std::size_t c = 0; c < storage.size(); ++c) sum[c] += storage[c];
+  for (std::size_t b = 0; b < added.faces.size(); ++b)
+    sum[mesh_.owner[mesh_.n_interior + static_cast<Index>(b)]] += added.faces[b];
+  for (std::size_t c = 0; c < added.cells.size(); ++c) sum[c] += added.cells[c];
   for (double& value : sum)
     if (value == 0) value = 1;  // inside a body: p = 0 there
   if (singular() && pinned_ && owned > 0 && mesh_.cells.first() == 0) sum[0] *= 2;
@@ -78,7 +74,6 @@ template <int D>
 void PressureEquation<D>::save(io::CheckpointWriter& file) const {
   if (fixed_) return;
   file.write_scalar("pressure-preconditioner-due", accepted_.memory.is_due);
-  file.write_scalar("pressure-preconditioner-single", accepted_.memory.is_single);
   file.write_scalar("pressure-preconditioner-iterations", accepted_.memory.most_iterations);
   const std::span<const double> all = *accepted_.made_from;  // nothing, or the diagonal, then the faces
   const std::size_t owned = all.empty() ? 0 : std::size_t(mesh_.cells.n_owned());
@@ -92,11 +87,10 @@ template <int D>
 void PressureEquation<D>::load(io::CheckpointReader& file) {
   if (fixed_) return;
   // Other ranks have another kind of preconditioner, or another one of the same kind: it is made anew.
-  linalg::PreconditionerMemory memory{true, solver_->memory().is_single, 0};
+  linalg::PreconditionerMemory memory;
   std::vector<double> saved;
   if (file.on_same_ranks()) {
     memory.is_due = file.read_scalar("pressure-preconditioner-due") != 0;
-    memory.is_single = file.read_scalar("pressure-preconditioner-single") != 0;
     memory.most_iterations = static_cast<int>(file.read_count("pressure-preconditioner-iterations", 1000000));
     saved = file.read_or_none(mesh::Entries::owned_cells, "pressure-preconditioner", 1);
     const std::vector<double> faces =
@@ -111,33 +105,31 @@ void PressureEquation<D>::load(io::CheckpointReader& file) {
     if (!memory.is_due && saved.size() != coefficients)
       throw Error("The checkpoint's preconditioner of the pressure is damaged. Use an earlier one.");
   }
-  const bool is_here = solver_->memory() == memory && *now_.made_from == saved;
+  const bool is_here = solver_->solver().memory() == memory && *now_.made_from == saved;
   if (parallel::any(mesh_.comm, !is_here)) {
     if (!memory.is_due) fill(saved), values_ = saved;
-    solver_->restore(memory);
+    solver_->solver().restore(memory);
     now_ = {memory, std::make_shared<const std::vector<double>>(std::move(saved))};
   }
   accept();
 }
 
 template <int D>
-void PressureEquation<D>::set(const Placement<D>& at, bool regular, std::span<const double> admittance,
-                              std::span<const double> storage) {
+void PressureEquation<D>::set(const Placement<D>& at, bool regular, const Diagonal& added) {
   regular_ = regular;
   if (!solver_) make_solver();
-  values_ = diagonal(at, admittance, storage);
+  values_ = diagonal(at, added);
   for (Index f = 0; f < mesh_.n_interior; ++f) values_.push_back(-at.conductance[f]);
   if (couplings_) values_.insert(values_.end(), couplings_->value.begin(), couplings_->value.end());
   fill(values_);
-  if (fixed_) std::vector<double>().swap(values_), solver_->refresh();
+  if (fixed_) std::vector<double>().swap(values_), solver_->solver().refresh();
 }
 
 // A closed domain has a pressure up to a constant only if the fluxes add up to nothing.
 template <int D>
 void PressureEquation<D>::remove_mean(std::vector<double>& b) const {
-  const double mean =
-      parallel::sum(mesh_.comm, linalg::sum_of(b)) / static_cast<double>(mesh_.cells.n_global());
-  linalg::shift(-mean, b);
+  const double sum = parallel::sum(mesh_.comm, as_vector(std::span<const double>(b)).sum());
+  as_vector(std::span(b)).array() -= sum / static_cast<double>(mesh_.cells.n_global());
 }
 
 /// A tolerance that is not finite would let anything pass: fluxes whose squares overflow make one.
@@ -145,11 +137,13 @@ template <int D>
 linalg::SolveStatistics PressureEquation<D>::solve_or_tell(const Placement<D>& at, std::span<const double> b,
                                                            std::span<double> p, double relative,
                                                            double absolute) {
-  const auto where = [&] { return largest_entry<D>(mesh_, at, [&](Index c) { return b[c]; }); };
+  const auto where = [&] {
+    return largest_entry(find_largest(mesh_, at, [&](Index c) { return std::abs(b[c]); }));
+  };
   if (!std::isfinite(absolute))
     throw SolveFailure("The fluxes of the pressure equation are out of range. {}", where());
   try {
-    return solver_->solve(b, p, relative, absolute);
+    return solver_->solver().solve(b, p, relative, absolute);
   } catch (const SolveFailure& failure) {  // on all ranks alike
     throw SolveFailure("{} {}", failure.what(), where());
   }
@@ -167,23 +161,23 @@ linalg::SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::
     // eigenvalue would be far below all others, which multigrid in single precision answers badly (cavity 32^3 on two ranks: 214 iterations in 30 steps for 151).
     double pin = owned > 0 ? p[0] : 0;
     MPI_Bcast(&pin, 1, MPI_DOUBLE, 0, mesh_.comm);
-    linalg::shift(-pin, std::span(p).first(owned));
+    as_vector(std::span(p).first(owned)).array() -= pin;
   }
   if (answer > 0) {
-    const double enough = relative * (size < 0 ? solver_->norm(b) : size);
-    const double left = answer * solver_->true_residual(b, std::span<const double>(p).first(owned));
+    const double enough = relative * (size < 0 ? solver_->solver().norm(b) : size);
+    const double left = answer * solver_->solver().true_residual(b, std::span<const double>(p).first(owned));
     absolute = std::max({absolute, least_answer * enough, std::min(enough, left)});
     relative = 0;
   } else if (size >= 0) {
     absolute = std::max(absolute, relative * size);
     relative = 0;
   }
-  const int made = solver_->preconditioners_built();
+  const int made = solver_->solver().preconditioners_built();
   const linalg::SolveStatistics statistics =
       solve_or_tell(at, b, std::span<double>(p).first(owned), relative, absolute);
   if (!fixed_) {
-    now_.memory = solver_->memory();
-    if (solver_->preconditioners_built() != made)
+    now_.memory = solver_->solver().memory();
+    if (solver_->solver().preconditioners_built() != made)
       now_.made_from = std::make_shared<const std::vector<double>>(values_);
   }
   if (singular()) {
@@ -196,12 +190,12 @@ linalg::SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::
       for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
         if (boundary_.is_convective(f - mesh_.n_interior)) add(at.area[f].norm(), mesh_.owner[f]);
     } else {
-      const std::span volume = std::span(at.volume).first(owned);
-      sums[0] = linalg::two_products(volume, std::span(p).first(owned), volume)[0],
-      sums[1] = linalg::sum_of(volume);
+      const auto volume = as_vector(std::span<const double>(at.volume).first(owned));
+      sums[0] = volume.dot(as_vector(std::span(p).first(owned)));
+      sums[1] = volume.sum();
     }
     MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-    linalg::shift(-sums[0] / sums[1], std::span(p).first(owned));
+    as_vector(std::span(p).first(owned)).array() -= sums[0] / sums[1];
   }
   mesh_.cells.update_ghosts(p);
   return statistics;

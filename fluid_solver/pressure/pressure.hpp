@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/io/checkpoint.hpp"
-#include "common/linalg/poisson/cell_solver.hpp"
+#include "common/linalg/cell_solver.hpp"
 #include "fluid_solver/boundary/boundary.hpp"
 #include "fluid_solver/state/placement.hpp"
 
@@ -19,29 +19,35 @@ struct Couplings {
   std::vector<double> value;  ///< [m]
 };
 
+/// Additions to the diagonal; an empty vector adds nothing.
+struct Diagonal {
+  std::vector<double> faces;  ///< per boundary face [m]
+  std::vector<double> cells;  ///< per owned cell [m]
+};
+
 /// A = -sum_f g (p_N - p_P), and g p_P at faces of given pressure: symmetric, positive (semi-)definite. Faces
 /// of given flux have no entry. The places of the entries are fixed; a moved mesh only refills the values.
 template <int D>
 class PressureEquation {
  public:
   /// `fixed`: the mesh rests; nothing is kept for a second set(). `couplings`: their places stay, set() takes their
-  /// values; null: none. They must outlive the equation.
+  /// values; nullptr if there are none. They must outlive the equation.
   PressureEquation(const mesh::Mesh& mesh, const Boundary<D>& boundary, bool fixed,
                    const Couplings* couplings = nullptr);
-  /// `regular`: walls or openings answer to the pressure with `admittance`, per boundary face [m], or cells with `storage`,
-  /// per owned cell [m], so that a closed domain has a level. Collective.
-  void set(const Placement<D>& at, bool regular = false, std::span<const double> admittance = {},
-           std::span<const double> storage = {});
+  /// `regular`: what is added gives a closed domain a level. Collective.
+  void set(const Placement<D>& at, bool regular = false, const Diagonal& added = {});
+  /// The pressure is known up to a constant only.
+  bool singular() const { return boundary_.closed() && !regular_; }
   /// The preconditioner lags behind a matrix that moves: what it was made from, to make it again. A fixed matrix needs
   /// none of this.
   void save(io::CheckpointWriter& file) const;
-  /// What save() saves is what there is now.
+  /// Makes the present state the one that save() saves.
   void accept() { accepted_ = now_; }
   /// The matrix is then that of the preconditioner: set() has to come before the next solve. Collective.
   void load(io::CheckpointReader& file);
   /// A new preconditioner at the next solve.
   void refresh() {
-    if (solver_) solver_->refresh();
+    if (solver_) solver_->solver().refresh();
   }
   /// `b`: per owned cell, made compatible here when the domain is closed; `p`: per local cell, guess on
   /// entry, mean zero in a closed domain (at its convective outlets, if there are any), ghosts current on
@@ -54,16 +60,13 @@ class PressureEquation {
 
  private:
   void make_solver();
-  /// The pressure is known up to a constant only.
-  bool singular() const { return boundary_.closed() && !regular_; }
-  std::vector<double> diagonal(const Placement<D>& at, std::span<const double> admittance,
-                               std::span<const double> storage) const;
+  std::vector<double> diagonal(const Placement<D>& at, const Diagonal& added) const;
   void remove_mean(std::vector<double>& b) const;
   linalg::SolveStatistics solve_or_tell(const Placement<D>& at, std::span<const double> b,
                                         std::span<double> p, double relative, double absolute);
   const mesh::Mesh& mesh_;
   const Boundary<D>& boundary_;
-  const Couplings* couplings_;  // null: none
+  const Couplings* couplings_;  // nullptr if there are none
   bool fixed_, regular_ = false;
   bool pinned_ = true;  // where the pressure is known up to a constant, one cell's is zero
   bool direct_;         // small 2-D meshes: kept Cholesky factors

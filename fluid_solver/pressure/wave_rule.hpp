@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <span>
 
+#include "fluid_solver/state/step.hpp"
+
 namespace couplet::fluid {
 
 /// dp/dt at the end of a step from pressures in the middles of steps: rate p + sum past_k p_k, p that of the step itself,
@@ -41,6 +43,24 @@ inline std::array<double, 3> middle_weights(double dt, double old) {
   if (old <= 0) return {1, 0, 0};
   const double a = 0.5 + c * old / dt;
   return {a, 1 - a - c, c};
+}
+
+/// The rule of a step; three levels at most.
+template <int D>
+WaveRule wave_rule(const Step<D>& step) {
+  std::array<double, 2> times{};
+  std::size_t levels = 0;
+  while (levels < times.size() && step.by.pressure[levels]) {
+    times[levels] = step.by.pressure[levels]->time;
+    ++levels;
+  }
+  return three_level_rule(step.middle(), step.end(), std::span(times).first(levels));
+}
+/// Factor of p in dp/dt at the end of the step [1/s]; 0 in a step that starts a flow without a pressure.
+template <int D>
+double wave_rate(const Step<D>& step, bool trapezoidal) {
+  if (!step.by.pressure[0]) return 0;
+  return trapezoidal ? 4 / step.dt : wave_rule(step).rate;
 }
 
 }  // namespace couplet::fluid

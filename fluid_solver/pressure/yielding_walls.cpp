@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/pressure/yielding_walls.hpp"
-
 #include <algorithm>
+#include <vector>
 
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
+#include "fluid_solver/pressure/opposite_faces.hpp"
+#include "fluid_solver/pressure/term.hpp"
 
 namespace couplet::fluid {
 namespace {
 
-// Of the interface's area: with less of it opposite itself nothing is said of two sides.
+// Share of the interface's area that must lie opposite itself for a line in the log.
 constexpr double worth_telling = 0.05;
 
 /// Where the case states that two sides move together there are two. Collective.
@@ -29,23 +30,63 @@ void check_sides(const mesh::Mesh& mesh, const FluidParameters& parameters, cons
   }
 }
 
-}  // namespace
+/// The interface as a Robin condition: what the structure would answer to the pressure that the equation finds, w is
+/// moved off the velocity w^k that the structure gave for p_b^k. A side of its own, with its mass per area m, Z = m/dt:
+///   Z (w - w^k) = p_b - p_b^k,   p_b = p_P + s - D (w - w^n),  D = rho S/(g dt),  normal to the wall
+/// so that its flux S w is that of w^k and S (p_P + q)/(Z + D), q = s - D (w^k - w^n) - p_b^k [badia2008]. Where the
+/// iteration stands p_b = p_b^k and w = w^k, whatever Z. Faces that lie opposite each other through a thin body, of the
+/// common area S', are driven by the difference of their pressures and have both masses:
+///   +- S' [(p_P + q) - (p_P + q)']/(Z + Z' + D + D')
+/// which couples the cells of the two sides in the matrix, symmetric and positive as before.
+template <int D>
+class YieldingWalls final : public Term<D> {
+ public:
+  /// Collective.
+  YieldingWalls(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction);
+
+  bool sets_level() const override { return step_.yields; }
+  double version() const override { return step_.yields; }
+  const Couplings* couplings() const override { return &couplings_; }
+  void add_to_diagonal(Diagonal& diagonal) override;
+  void foresee(const State<D>& from, Projected<D>& projected) override;
+  void after(Projected<D>& projected) override;
+
+ private:
+  using Term<D>::scene_;
+  using Term<D>::mesh_;
+  using Term<D>::step_;
+  using Term<D>::prediction_;
+  struct Side {
+    double resistance = 0, pressure = 0;  // Z + D [kg/(m^2 s)], [Pa]
+  };
+  void set_resistances();
+  void share();
+  double answer_of(const OppositeFaces::Pair& pair) const;
+  void add_answers(Projected<D>& projected);
+
+  OppositeFaces opposite_;
+  std::vector<double> alone_;  // area that has nothing opposite, over that of the face, per boundary face
+  std::vector<Side> sides_;    // per entry of the map
+  std::vector<double> flux_;   // of answers, per boundary face [m^3/s]
+  Couplings couplings_;
+};
 
 template <int D>
-YieldingWalls<D>::YieldingWalls(StepWork<D>& work) : k_(work) {
-  const mesh::Geometry geometry = mesh::compute_geometry(k_.mesh, k_.points_at_rest);
-  opposite_ = OppositeFaces(k_.mesh, geometry, k_.boundary.faces_with_two_sides());
-  check_sides(k_.mesh, k_.parameters, opposite_);
-  const std::size_t faces = std::size_t(k_.mesh.boundary.n_owned());
+YieldingWalls<D>::YieldingWalls(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction)
+    : Term<D>(scene, step, prediction) {
+  const mesh::Geometry geometry = mesh::compute_geometry(mesh_, scene_.points_at_rest);
+  opposite_ = OppositeFaces(mesh_, geometry, scene_.boundary.faces_with_two_sides());
+  check_sides(mesh_, scene_.parameters, opposite_);
+  const std::size_t faces = std::size_t(mesh_.boundary.n_owned());
   alone_.assign(faces, 1.);
   std::vector<GlobalIndex> cell(std::size_t(opposite_.map().n_local()));
   for (std::size_t b = 0; b < faces; ++b)
-    cell[b] = k_.mesh.cells.global(k_.mesh.owner[k_.mesh.n_interior + static_cast<Index>(b)]);
+    cell[b] = mesh_.cells.global(mesh_.owner[mesh_.n_interior + static_cast<Index>(b)]);
   opposite_.map().update_ghosts(std::span<GlobalIndex>(cell));
   for (const auto& pair : opposite_.pairs()) {
-    const Index f = k_.mesh.n_interior + pair.face;
+    const Index f = mesh_.n_interior + pair.face;
     alone_[pair.face] -= pair.area / geometry.face_area[f].norm();
-    couplings_.row.push_back(k_.mesh.owner[f]);
+    couplings_.row.push_back(mesh_.owner[f]);
     couplings_.column.push_back(cell[pair.other]);
   }
   for (double& share : alone_) share = std::max(share, 0.);
@@ -59,25 +100,28 @@ YieldingWalls<D>::YieldingWalls(StepWork<D>& work) : k_(work) {
 
 template <int D>
 void YieldingWalls<D>::set_resistances() {
-  const Placement<D>& at = *k_.step.to;
+  const Placement<D>& at = *step_.to;
   sides_.assign(std::size_t(opposite_.map().n_local()), {});
-  for (std::size_t b = 0; b < k_.boundary.wall_mass().size(); ++b) {
-    const Index f = k_.mesh.n_interior + static_cast<Index>(b);
-    const double m = k_.boundary.wall_mass()[b];
-    if (m > 0) sides_[b].resistance = (m + k_.rho * at.area[f].norm() / at.conductance[f]) / k_.step.dt;
+  for (std::size_t b = 0; b < scene_.boundary.wall_mass().size(); ++b) {
+    const Index f = mesh_.n_interior + static_cast<Index>(b);
+    const double m = scene_.boundary.wall_mass()[b];
+    if (m > 0)
+      sides_[b].resistance = (m + scene_.fluid.rho * at.area[f].norm() / at.conductance[f]) / step_.dt;
   }
 }
 
 template <int D>
-void YieldingWalls<D>::respond(std::vector<double>& admittance) {
+void YieldingWalls<D>::add_to_diagonal(Diagonal& diagonal) {
+  std::vector<double>& admittance = diagonal.faces;
+  admittance.resize(alone_.size(), 0.);
   std::fill(couplings_.value.begin(), couplings_.value.end(), 0.);
-  if (!k_.step.yields) return;
-  const Placement<D>& at = *k_.step.to;
+  if (!step_.yields) return;
+  const Placement<D>& at = *step_.to;
   set_resistances();
   share();
-  const double factor = k_.rho / k_.step.dt;
+  const double factor = scene_.fluid.rho / step_.dt;
   for (std::size_t b = 0; b < alone_.size(); ++b) {
-    const double area = at.area[k_.mesh.n_interior + static_cast<Index>(b)].norm();
+    const double area = at.area[mesh_.n_interior + static_cast<Index>(b)].norm();
     if (sides_[b].resistance > 0) admittance[b] += factor * area * alone_[b] / sides_[b].resistance;
   }
   for (std::size_t i = 0; i < couplings_.value.size(); ++i) {
@@ -95,58 +139,71 @@ double YieldingWalls<D>::answer_of(const OppositeFaces::Pair& pair) const {
   return here.resistance > 0 && there.resistance > 0 ? pair.area / (here.resistance + there.resistance) : 0;
 }
 
-/// Of the faces that lie opposite on other ranks.
+/// Updates the copies of faces that lie opposite on other ranks.
 template <int D>
 void YieldingWalls<D>::share() {
   opposite_.map().update_ghosts(std::as_writable_bytes(std::span(sides_)), sizeof(Side));
 }
 
 template <int D>
-void YieldingWalls<D>::foresee(const State<D>& from) {
-  const Placement<D>& at = *k_.step.to;
-  const double dt = k_.step.dt;
+void YieldingWalls<D>::foresee(const State<D>& from, Projected<D>& out) {
+  if (!step_.yields) return;
+  const Placement<D>& at = *step_.to;
+  const double dt = step_.dt;
   set_resistances();
   for (std::size_t b = 0; b < alone_.size(); ++b) {
     if (sides_[b].resistance == 0) continue;
-    const Index f = k_.mesh.n_interior + static_cast<Index>(b), p = k_.mesh.owner[f];
+    const Index f = mesh_.n_interior + static_cast<Index>(b), p = mesh_.owner[f];
     const double g = at.conductance[f];
-    double source = -k_.rho * (k_.w[b] - from.w[b]).dot(at.area[f]) / (g * dt) - k_.wall_load[b];
-    if (!k_.force.empty()) source += k_.rho * k_.force[p].dot(at.area[f]) / g;
-    if (!k_.gradient_guess.empty()) source -= k_.gradient_guess[p].dot(at.oblique_of(f)) / g;
+    double source = -scene_.fluid.rho * (out.w[b] - from.w[b]).dot(at.area[f]) / (g * dt) -
+                    scene_.boundary.wall_load()[b];
+    if (!prediction_.force.empty()) source += scene_.fluid.rho * prediction_.force[p].dot(at.area[f]) / g;
+    if (!out.gradient.empty()) source -= out.gradient[p].dot(at.oblique_of(f)) / g;
     sides_[b].pressure = source;
   }
-  add_answers();
+  add_answers(out);
 }
 
 template <int D>
-void YieldingWalls<D>::follow() {
+void YieldingWalls<D>::after(Projected<D>& out) {
+  if (!step_.yields) return;
   for (std::size_t b = 0; b < alone_.size(); ++b)
-    sides_[b].pressure = k_.p[k_.mesh.owner[k_.mesh.n_interior + static_cast<Index>(b)]];
-  add_answers();
+    sides_[b].pressure = out.p[mesh_.owner[mesh_.n_interior + static_cast<Index>(b)]];
+  add_answers(out);
 }
 
 /// The walls' velocities and fluxes move by what the pressures of their sides do to them.
 template <int D>
-void YieldingWalls<D>::add_answers() {
-  const Placement<D>& at = *k_.step.to;
+void YieldingWalls<D>::add_answers(Projected<D>& out) {
+  const Placement<D>& at = *step_.to;
   share();
   flux_.assign(alone_.size(), 0.);
   for (std::size_t b = 0; b < alone_.size(); ++b)
     if (sides_[b].resistance > 0)
-      flux_[b] = at.area[k_.mesh.n_interior + static_cast<Index>(b)].norm() * alone_[b] * sides_[b].pressure /
+      flux_[b] = at.area[mesh_.n_interior + static_cast<Index>(b)].norm() * alone_[b] * sides_[b].pressure /
                  sides_[b].resistance;
   for (const auto& pair : opposite_.pairs())
     flux_[std::size_t(pair.face)] += answer_of(pair) * (sides_[std::size_t(pair.face)].pressure -
                                                         sides_[std::size_t(pair.other)].pressure);
   for (std::size_t b = 0; b < alone_.size(); ++b) {
     if (sides_[b].resistance == 0) continue;
-    const Index f = k_.mesh.n_interior + static_cast<Index>(b);
-    k_.w[b] += flux_[b] / at.area[f].squaredNorm() * at.area[f];
-    k_.phi_p[f] = k_.w[b].dot(at.area[f]);
+    const Index f = mesh_.n_interior + static_cast<Index>(b);
+    out.w[b] += flux_[b] / at.area[f].squaredNorm() * at.area[f];
+    out.phi[f] = out.w[b].dot(at.area[f]);
   }
 }
 
-template class YieldingWalls<2>;
-template class YieldingWalls<3>;
+}  // namespace
+
+template <int D>
+std::unique_ptr<Term<D>> make_yielding_walls(const Scene<D>& scene, const Step<D>& step,
+                                             const Prediction<D>& prediction) {
+  return std::make_unique<YieldingWalls<D>>(scene, step, prediction);
+}
+
+template std::unique_ptr<Term<2>> make_yielding_walls<2>(const Scene<2>&, const Step<2>&,
+                                                         const Prediction<2>&);
+template std::unique_ptr<Term<3>> make_yielding_walls<3>(const Scene<3>&, const Step<3>&,
+                                                         const Prediction<3>&);
 
 }  // namespace couplet::fluid

@@ -19,7 +19,7 @@ struct FluxCorrection {
   const double* conductance;  ///< g
   double* phi;
 };
-/// sum += p_f S, p_f linear between the cells; `correction`: made in the same pass; null: none.
+/// sum += p_f S, p_f linear between the cells; `correction`: made in the same pass; nullptr for none.
 void add_pressure(const mesh::Mesh& mesh, const Placement<2>& at, std::span<const double> p,
                   const FluxCorrection* correction, Vectors<2>& sum);
 void add_pressure(const mesh::Mesh& mesh, const Placement<3>& at, std::span<const double> p,

@@ -26,12 +26,12 @@ struct PressureLevel {
   std::vector<double> boundary;  ///< p_b per boundary face [Pa]
   Vectors<D> gradient;  ///< (1/V) sum p_f S per local cell [Pa/m]; the latest level only, on oblique meshes
                         ///< the latest two
-  // Of a compressible fluid.
-  double upstream = 0;  ///< of the volume behind the inlets [Pa]
-  std::vector<double>
-      end;  ///< trapezoidal rule only: p at the end of the step, per local cell; last: `upstream` there [Pa]
-  double taken_up =
-      0;  ///< by this rank's cells at the end of the step: V dp/dt / (rho c^2) [m^3/s]; not saved
+  // Compressible fluids only.
+  double upstream = 0;      ///< of the volume behind the inlets [Pa]
+  std::vector<double> end;  ///< trapezoidal rule only: p at the end of the step, per local cell [Pa]
+  double upstream_end = 0;  ///< likewise, of the volume [Pa]
+  /// Sum of V dp/dt / (rho c^2) over this rank's cells at the end of the step [m^3/s]; not saved.
+  double taken_up = 0;
 };
 
 /// At the absorbing boundaries, per boundary face: what leaves beyond what is given, phi/S of outlets and (w - given).n of
@@ -51,7 +51,8 @@ struct History {
   double dt_old = 0;      ///< size of the last step [s]; 0: no history, the next step is an Euler step
   bool implicit = false;  ///< viscous term of the history (Rates::viscous is there)
   Start start = Start::flowing;
-  std::array<std::shared_ptr<const PressureLevel<D>>, 3> pressure;  ///< latest first; null: not there yet
+  std::array<std::shared_ptr<const PressureLevel<D>>, 3>
+      pressure;  ///< latest first; nullptr before it is there
 };
 
 /// Kinetic energy and what of it no work explains, see EnergyGuard.
@@ -79,14 +80,15 @@ struct State : History<D> {
   Vectors<D> turn;        ///< of the walls per boundary face at t^n, see turn_of() [m^2/s]; only with `turns`
   bool turns = false;     ///< the same on all ranks
   std::vector<double> phi;  ///< absolute volume flux per flux face at t^n [m^3/s]
-  std::vector<double> memory,
-      memory_old;  ///< delta^n per interior face [m^3/s] (incremental: what is left of delta^0)
+  /// delta^n per interior face [m^3/s] (incremental: what is left of delta^0).
+  std::vector<double> memory, memory_old;
 
-  OpeningsState openings;  ///< empty: no absorbing boundaries
+  OpeningsState openings;  ///< empty without absorbing boundaries
 
-  std::shared_ptr<const std::vector<char>> blocked;  ///< per local cell, in a closed gap; null: none
+  /// Per local cell, in a closed gap; nullptr if there is none.
+  std::shared_ptr<const std::vector<char>> blocked;
 
-  std::vector<double> eddy;  ///< eddy viscosity at t^n per local cell [m^2/s]; empty: no model
+  std::vector<double> eddy;  ///< eddy viscosity at t^n per local cell [m^2/s]; empty without a model
 
   Vectors<D> u_old, u_boundary_old;  ///< at t^{n-1}
   Rates<D> rates_old;                ///< at t^{n-1}

@@ -46,15 +46,15 @@ struct EnergyJudgement {
 template <int D>
 class EnergyGuard {
  public:
-  /// `pressure_tolerance`: of the pressure's solver, relative; `sound`: speed [m/s], 0: incompressible.
-  EnergyGuard(const mesh::Mesh& mesh, const Boundary<D>& boundary, double density, double viscosity,
-              double pressure_tolerance, double sound = 0)
+  /// `pressure_tolerance`: relative one of the pressure's solver.
+  EnergyGuard(const mesh::Mesh& mesh, const Boundary<D>& boundary, const Properties& fluid,
+              double pressure_tolerance)
       : mesh_(mesh),
         boundary_(boundary),
-        rho_(density),
-        mu_(viscosity),
+        rho_(fluid.rho),
+        mu_(fluid.mu),
         pressure_tolerance_(pressure_tolerance),
-        bulk_(density * sound * sound) {}
+        bulk_(fluid.rho * fluid.sound * fluid.sound) {}
   /// Collective.
   EnergyJudgement judge(const EnergyStep<D>& step) const;
   /// Sum of rho V |u|^2 / 2 [J] over the cells of this rank.

@@ -14,7 +14,7 @@ namespace {
 // Decay of the flux memory in one step for which its AB2 is stable and does not overshoot.
 constexpr double largest_decay = 2.0 / 3;
 
-/// Of add_memory().
+/// Weights for add_memory().
 struct MemoryWeights {
   double dt, now, before;  // a step, and delta at its middle from that of two levels
 };
@@ -61,39 +61,37 @@ COUPLET_PROCESSOR_CLONES Index memory_pass(const mesh::Mesh& mesh, const MemoryW
 
 /// phi^p = (mean u^p).S^{n+1} + delta' - (dt/rho) grad p~ . k, delta' on interior faces only.
 template <int D>
-void FaceFlux<D>::predict(const State<D>& from) {
-  const Placement<D>& now = *k_.step.to;
-  k_.phi_orthogonal.resize(k_.mesh.n_flux_faces());
+void FaceFlux<D>::predict(const State<D>& from, const Vectors<D>& u) {
+  const Placement<D>& now = *step_.to;
+  phi_.resize(mesh_.n_flux_faces());
   // Without the pressure the velocity at a wall is still that of level n: its change comes with grad p.
-  if (now.skewed()) k_.boundary.close(k_.mesh, now, k_.u_p, from.w, k_.u_boundary);
-  k_.gradient_of = 0;
-  mean_flux<D>(k_.mesh, now, k_.flux_velocity(now, increment_of_fourth() ? without_pressure() : k_.u_p),
-               k_.u_boundary, k_.velocity_gradient, k_.phi_orthogonal);
-  for (const Index b : k_.boundary.rows().of_pressure) {
-    const Index f = k_.mesh.n_interior + b;
-    k_.phi_orthogonal[f] = k_.u_p[k_.mesh.owner[f]].dot(now.area[f]);
+  if (now.skewed()) scene_.boundary.close(mesh_, now, u, from.w, u_boundary_);
+  gradient_.number = 0;
+  mean_flux<D>(mesh_, now, scene_.flux_velocity(now, increment_of_fourth() ? without_pressure(u) : u),
+               u_boundary_, gradient_.values, phi_);
+  for (const Index b : scene_.boundary.rows().of_pressure) {
+    const Index f = mesh_.n_interior + b;
+    phi_[f] = u[mesh_.owner[f]].dot(now.area[f]);
   }
-  if (k_.bodies && k_.bodies->cuts()) k_.bodies->carry_to_open(now, k_.u_p, k_.phi_orthogonal);
-  if (k_.parameters.projection == Projection::incremental)
+  scene_.obstacles->carry(now, u, phi_);
+  if (scene_.parameters.projection == Projection::incremental)
     add_increment(from);
   else if (!from.memory.empty())
     add_memory(from);
-  if (!k_.bodies) return;
-  for (Index f = 0; f < k_.mesh.n_flux_faces(); ++f)
-    if (k_.bodies->open(f) < 1) k_.phi_orthogonal[f] = k_.open_flux(f, k_.phi_orthogonal[f]);
+  scene_.obstacles->block(step_, phi_);
 }
 
 /// Rate at which friction and convection even out a difference in the cells, per local cell [1/s]. Fluxes
 /// relative to the mesh: the same in every frame.
 template <int D>
 void FaceFlux<D>::set_relaxation(const State<D>& from) {
-  relaxation_.assign(k_.mesh.cells.n_local(), 0.0);
+  relaxation_.assign(mesh_.cells.n_local(), 0.0);
   const Placement<D>& at = *from.placement;
   const bool moving = !from.mesh_flux.empty();
-  evening_pass(k_.mesh, k_.nu, at.conductance.data(), from.phi.data(),
+  evening_pass(mesh_, scene_.fluid.nu, at.conductance.data(), from.phi.data(),
                moving ? from.mesh_flux.data() : nullptr, relaxation_.data());
-  for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) relaxation_[c] /= at.volume[c];
-  k_.mesh.cells.update_ghosts(relaxation_);
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) relaxation_[c] /= at.volume[c];
+  mesh_.cells.update_ghosts(relaxation_);
 }
 
 /// d delta/dt = e - a delta: e is what the pressure does to the flux and not to the mean velocity, O(h^2); a
@@ -105,20 +103,18 @@ void FaceFlux<D>::set_relaxation(const State<D>& from) {
 template <int D>
 void FaceFlux<D>::add_memory(const State<D>& from) {
   set_relaxation(from);
-  const double ratio = k_.by.dt_old > 0 ? k_.step.dt / k_.by.dt_old : 0;
+  const double ratio = step_.ratio();
   const double now = 1 + ratio / 2, before = -ratio / 2;
-  far_.resize(std::size_t(k_.mesh.n_interior) + 1);
-  const Index n_far =
-      memory_pass(k_.mesh, {k_.step.dt, now, before}, relaxation_.data(), from.memory.data(),
-                  ratio > 0 ? from.memory_old.data() : nullptr, k_.phi_orthogonal.data(), far_.data());
-  if (!k_.by.pressure[0]) return;
-  const Vectors<D>& gradient = k_.flux_velocity(*from.placement, k_.by.pressure[0]->gradient);
+  far_.resize(std::size_t(mesh_.n_interior) + 1);
+  const Index n_far = memory_pass(mesh_, {step_.dt, now, before}, relaxation_.data(), from.memory.data(),
+                                  ratio > 0 ? from.memory_old.data() : nullptr, phi_.data(), far_.data());
+  if (!step_.by.pressure[0]) return;
+  const Vectors<D>& gradient = scene_.flux_velocity(*from.placement, step_.by.pressure[0]->gradient);
   for (const Index f : std::span(far_).first(n_far)) {
-    const double rate = 0.5 * (relaxation_[k_.mesh.owner[f]] + relaxation_[k_.mesh.neighbour[f]]);
-    const double decay = rate * k_.step.dt, share = decay / (1 + decay);
+    const double rate = 0.5 * (relaxation_[mesh_.owner[f]] + relaxation_[mesh_.neighbour[f]]);
+    const double decay = rate * step_.dt, share = decay / (1 + decay);
     const double mid = ratio > 0 ? now * from.memory[f] + before * from.memory_old[f] : from.memory[f];
-    k_.phi_orthogonal[f] +=
-        largest_decay * mid - share * (from.memory[f] + k_.step.dt * pressure_excess(from, gradient, f));
+    phi_[f] += largest_decay * mid - share * (from.memory[f] + step_.dt * pressure_excess(from, gradient, f));
   }
 }
 
@@ -129,30 +125,30 @@ void FaceFlux<D>::add_memory(const State<D>& from) {
 template <int D>
 void FaceFlux<D>::add_increment(const State<D>& from) {
   set_relaxation(from);
-  fading_.resize(k_.mesh.n_interior);
-  for (Index f = 0; f < k_.mesh.n_interior; ++f) {
-    const double rate = 0.5 * (relaxation_[k_.mesh.owner[f]] + relaxation_[k_.mesh.neighbour[f]]);
-    const double decay = rate * k_.step.dt;
+  fading_.resize(mesh_.n_interior);
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const double rate = 0.5 * (relaxation_[mesh_.owner[f]] + relaxation_[mesh_.neighbour[f]]);
+    const double decay = rate * step_.dt;
     fading_[f] = from.memory[f] / (1 + decay * (1 + decay / 2));  // exp(-decay) to second order
-    k_.phi_orthogonal[f] += fading_[f];
-    if (!k_.by.pressure[0]) continue;
-    k_.phi_orthogonal[f] += k_.step.dt * (k_.fourth ? pressure_flux(from, f) / k_.rho
-                                                    : -pressure_excess(from, k_.by.pressure[0]->gradient, f));
+    phi_[f] += fading_[f];
+    if (!step_.by.pressure[0]) continue;
+    phi_[f] += step_.dt * (scene_.fourth ? pressure_flux(from, f) / scene_.fluid.rho
+                                         : -pressure_excess(from, step_.by.pressure[0]->gradient, f));
   }
 }
 
-/// Of the flux of fourth order the part of the old pressure that its gradient makes is in the mean velocity already.
+/// In a flux of fourth order the part of the old pressure that its gradient makes is in the mean velocity already.
 template <int D>
 bool FaceFlux<D>::increment_of_fourth() const {
-  return k_.fourth && k_.parameters.projection == Projection::incremental && k_.by.pressure[0];
+  return scene_.fourth && scene_.parameters.projection == Projection::incremental && step_.by.pressure[0];
 }
 
 template <int D>
-const Vectors<D>& FaceFlux<D>::without_pressure() {
-  const Vectors<D>& gradient = k_.by.pressure[0]->gradient;
-  const double factor = k_.step.dt / k_.rho;
-  without_pressure_.resize(k_.u_p.size());
-  for (std::size_t c = 0; c < k_.u_p.size(); ++c) without_pressure_[c] = k_.u_p[c] - factor * gradient[c];
+const Vectors<D>& FaceFlux<D>::without_pressure(const Vectors<D>& u) {
+  const Vectors<D>& gradient = step_.by.pressure[0]->gradient;
+  const double factor = step_.dt / scene_.fluid.rho;
+  without_pressure_.resize(u.size());
+  for (std::size_t c = 0; c < u.size(); ++c) without_pressure_[c] = u[c] - factor * gradient[c];
   return without_pressure_;
 }
 
@@ -160,8 +156,8 @@ const Vectors<D>& FaceFlux<D>::without_pressure() {
 template <int D>
 double FaceFlux<D>::pressure_flux(const State<D>& from, Index f) const {
   const Placement<D>& at = *from.placement;
-  const PressureLevel<D>& level = *k_.by.pressure[0];
-  const Index p = k_.mesh.owner[f], n = k_.mesh.neighbour[f];
+  const PressureLevel<D>& level = *step_.by.pressure[0];
+  const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
   const double flux = at.conductance[f] * (level.p[n] - level.p[p]);
   if (at.oblique.empty()) return flux;
   const double w = at.weight[f];
@@ -172,41 +168,23 @@ double FaceFlux<D>::pressure_flux(const State<D>& from, Index f) const {
 /// it changes the flux velocity.
 template <int D>
 double FaceFlux<D>::pressure_excess(const State<D>& from, const Vectors<D>& gradient, Index f) const {
-  const Vec<D> mean = 0.5 * (gradient[k_.mesh.owner[f]] + gradient[k_.mesh.neighbour[f]]);
-  return (mean.dot(from.placement->area[f]) - pressure_flux(from, f)) / k_.rho;
+  const Vec<D> mean = 0.5 * (gradient[mesh_.owner[f]] + gradient[mesh_.neighbour[f]]);
+  return (mean.dot(from.placement->area[f]) - pressure_flux(from, f)) / scene_.fluid.rho;
 }
 
 template <int D>
 void FaceFlux<D>::remember(State<D>& s) {
-  if (k_.parameters.projection == Projection::non_incremental) return;
+  if (scene_.parameters.projection == Projection::non_incremental) return;
   s.memory_old.swap(s.memory);
-  if (k_.parameters.projection == Projection::incremental && !fading_.empty()) {
+  if (scene_.parameters.projection == Projection::incremental && !fading_.empty()) {
     s.memory.swap(fading_);
   } else {
-    s.memory.resize(k_.mesh.n_interior);
-    subtract_mean_flux<D>(k_.mesh, *k_.step.to, k_.flux_velocity(*k_.step.to, s.u), s.u_boundary,
-                          k_.velocity_gradient, s.phi, s.memory);
-    if (k_.step.to->skewed()) k_.gradient_of = s.number;
+    s.memory.resize(mesh_.n_interior);
+    subtract_mean_flux<D>(mesh_, *step_.to, scene_.flux_velocity(*step_.to, s.u), s.u_boundary,
+                          gradient_.values, s.phi, s.memory);
+    if (step_.to->skewed()) gradient_.number = s.number;
   }
-  if (k_.bodies && k_.bodies->cuts()) return remember_cuts(s);
-  if (!k_.bodies && !k_.gap_closed()) return;
-  for (Index f = 0; f < k_.mesh.n_interior; ++f)
-    if (k_.bodies ? k_.bodies->open(f) == 0 : k_.gaps->blocked(f)) s.memory[f] = 0;
-}
-
-/// Of the flux that the whole face would have with the velocity in its open part. A closed face remembers that nothing passes: what
-/// opens next begins without a flux, whatever the velocities beside it.
-template <int D>
-void FaceFlux<D>::remember_cuts(State<D>& s) {
-  if (k_.parameters.projection == Projection::incremental) return;
-  mean_.resize(k_.mesh.n_flux_faces());
-  k_.bodies->carry_to_open(*k_.step.to, s.u, mean_);
-  for (Index f = 0; f < k_.mesh.n_interior; ++f) {
-    if (!k_.bodies->beside_surface(f)) continue;
-    const double open = k_.bodies->open(f);
-    const double flux = open > 0 ? (s.phi[f] - k_.bodies->carried(f, *k_.step.to)) / open : s.phi[f];
-    s.memory[f] = flux - mean_[f];
-  }
+  scene_.obstacles->correct_memory(s);
 }
 
 template class FaceFlux<2>;

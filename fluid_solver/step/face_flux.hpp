@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "fluid_solver/motion/step_work.hpp"
+#include "fluid_solver/step/predictor.hpp"
 
 namespace couplet::fluid {
 
@@ -12,27 +12,33 @@ namespace couplet::fluid {
 template <int D>
 class FaceFlux {
  public:
-  explicit FaceFlux(StepWork<D>& work) : k_(work) {}
+  /// `gradient`: filled here.
+  FaceFlux(const Scene<D>& scene, const Step<D>& step, KnownGradient<D>& gradient)
+      : scene_(scene), mesh_(scene.mesh), step_(step), gradient_(gradient) {}
 
-  /// phi^p without the part of the pressure. Collective.
-  void predict(const State<D>& from);
+  /// phi^p of a predicted velocity without the part of the pressure, per flux face [m^3/s]. Collective.
+  void predict(const State<D>& from, const Vectors<D>& u);
+  const std::vector<double>& phi() const { return phi_; }
   /// delta^{n+1} of the state from its u and phi. Collective.
   void remember(State<D>& state);
 
  private:
-  void remember_cuts(State<D>& s);
   void set_relaxation(const State<D>& from);
   void add_memory(const State<D>& from);
   void add_increment(const State<D>& from);
   bool increment_of_fourth() const;
-  const Vectors<D>& without_pressure();
+  const Vectors<D>& without_pressure(const Vectors<D>& u);
   double pressure_flux(const State<D>& from, Index f) const;
   double pressure_excess(const State<D>& from, const Vectors<D>& gradient, Index f) const;
 
-  StepWork<D>& k_;
+  const Scene<D>& scene_;
+  const mesh::Mesh& mesh_;
+  const Step<D>& step_;
+  KnownGradient<D>& gradient_;
+  std::vector<double> phi_;
+  Vectors<D> u_boundary_;           // of the predicted velocity
   std::vector<double> relaxation_;  // [1/s]
   std::vector<Index> far_;          // faces whose decay is large
-  std::vector<double> mean_;        // fluxes beside the surface of bodies that cut cells
   Vectors<D> without_pressure_;
   std::vector<double> fading_;  // incremental: of the start's delta, at t^{n+1}
 };

@@ -2,10 +2,21 @@
 #include "fluid_solver/step/fluid.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+#include "fluid_solver/motion/turning_walls.hpp"
 #include "fluid_solver/step/fluid_checks.hpp"
 
 namespace couplet::fluid {
+namespace {
+
+// An interface faster than so many times all that moved so far (at the very start: than this [m/s]) diverges.
+constexpr double most_times_faster = 1e4, most_speed = 1e8;
+
+}  // namespace
 
 template <int D>
 Fluid<D>::Fluid(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const FluidParameters& parameters,
@@ -175,8 +186,143 @@ void Fluid<D>::accept() {
   accepted_.time = time_ + dt_;
   accepted_.turn.swap(turn_);
   accepted_.turns = boundary_.walls_turn();
-  statistics_.pressure_iterations = step_.statistics().pressure_iterations;
-  statistics_.viscous_iterations = step_.statistics().viscous_iterations;
+  statistics_.pressure_iterations = step_.pressure_iterations();
+  statistics_.viscous_iterations = step_.viscous_iterations();
+}
+
+template <int D>
+void Fluid<D>::start(const mesh::Geometry& geometry, double time) {
+  State<D>& s = accepted_;
+  s.time = time;
+  if (path_.moves()) s.points = geometry.points;
+  s.placement = path_.start(geometry);
+  if (parameters_.face_values != FaceValues::second_order) s.placement = step_.raise_order(s.placement);
+  sizes_.set_fourth(step_.fourth() != nullptr);
+  const Placement<D>& at = *s.placement;
+  s.u.assign(mesh_.cells.n_local(), Vec<D>::Zero());
+  s.w.assign(mesh_.boundary.n_owned(), Vec<D>::Zero());
+  s.u_boundary = s.w;
+  if (!parameters_.initial_velocity.empty()) {
+    const auto expressions = fv::make_expressions(parameters_.initial_velocity, D, "initial-velocity");
+    for (int c = 0; c < D; ++c) {
+      expressions[c].evaluate(geometry.cell_centre, time, flat<D>(s.u), D, c);
+      expressions[c].evaluate(at.boundary_centre, time, flat<D>(s.u_boundary), D, c);
+    }
+  }
+  // Without an initial velocity the fluid is at rest, its boundaries too: what they do from then on is an
+  // impulse in the first step, which an elastic wall must feel. A given field is made to fit its boundaries
+  // instead.
+  s.start = parameters_.initial_velocity.empty() ? Start::at_rest : Start::flowing;
+  if (s.start == Start::flowing) {
+    boundary_.velocity_at(time, at.boundary_centre, s.w);
+    if (boundary_.walls_turn()) {
+      s.turn.assign(s.w.size(), Vec<D>::Zero());
+      boundary_.add_turn(mesh_, geometry.points, time, s.turn);
+      s.turns = true;
+    }
+    if (parameters_.motion)
+      set_body_start(mesh_, geometry.points, boundary_, *parameters_.motion, time, s.w, s.turn);
+  }
+  for (std::size_t b = 0; b < s.w.size(); ++b)
+    if (boundary_.is_convective(b)) s.w[b] = s.u_boundary[b];
+  for (const Index b : boundary_.rows().of_pressure) s.u_boundary[b] = s.u[mesh_.owner[mesh_.n_interior + b]];
+  step_.project_initial(s);
+  const fv::Expression initial_pressure(parameters_.initial_pressure.value_or(config::ExpressionText{}),
+                                        "initial-pressure");
+  const bool is_state =
+      parameters_.is_compressible() && (parameters_.initial_pressure || s.start == Start::at_rest);
+  if (is_state || !initial_pressure.is_zero()) {
+    auto level = std::make_shared<PressureLevel<D>>();
+    level->time = time;
+    level->p.resize(mesh_.cells.n_local());
+    level->boundary.resize(s.w.size());
+    initial_pressure.evaluate(geometry.cell_centre, time, level->p);
+    initial_pressure.evaluate(at.boundary_centre, time, level->boundary);
+    if (step_.frame()) add_centrifugal(*step_.frame(), at, -parameters_.density, *level);
+    step_.start_level(at, *level);
+    s.pressure[0] = level;
+  }
+  step_.start_terms(s);
+  s.implicit = parameters_.viscous == ViscousTreatment::implicit;
+  step_.set_eddy_viscosity(s);
+  step_.keep();
+}
+
+/// The layer that a wall drags along within a step is rho sqrt(nu dt) thick: a mass that acts on w* in the
+/// loop, see docs/theory.md.
+template <int D>
+double Fluid<D>::unseen_share(const Vectors<D>& w) const {
+  const double layer = std::sqrt(parameters_.density * parameters_.viscosity / dt_);  // rho sqrt(nu dt)/dt
+  double sums[4] = {};  // unseen^2, load^2, load.S, S^2
+  for (std::size_t b = 0; b < guess_.size(); ++b) {
+    if (!boundary_.is_interface(static_cast<Index>(b))) continue;
+    const Vec<D>& area = level().placement->area[mesh_.n_interior + static_cast<Index>(b)];
+    const Vec<D> load = pressure_force_[b] + viscous_force_[b];
+    sums[0] += layer * layer * area.squaredNorm() * (w[b] - guess_[b]).squaredNorm();
+    sums[1] += load.squaredNorm();
+    sums[2] += load.dot(area);
+    sums[3] += area.squaredNorm();
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  const double load = sums[3] > 0 ? sums[1] - sums[2] * sums[2] / sums[3] : 0;
+  return load > 0 ? std::sqrt(sums[0] / load) : 0;
+}
+
+/// A structure that fails gives velocities that no fluid can follow. What moves less than the height of the cell
+/// beside it in the step is none of these, however still the fluid was; nor are bodies that move as prescribed.
+template <int D>
+void Fluid<D>::check_wall_velocity() const {
+  double worst = 0;
+  Index where = -1;
+  for (const std::string& name : boundary_.interface_patches()) {
+    const mesh::Patch& patch = *mesh_.find_patch(name);
+    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+      const Index b = f - mesh_.n_interior;
+      const double square = last_w_[b].squaredNorm();
+      const double height = 2 * step_.to().area[f].norm() / step_.to().conductance[f];
+      if (square <= worst || std::sqrt(square) * dt_ <= height) continue;
+      worst = std::isfinite(square) ? square : std::numeric_limits<double>::infinity();
+      where = b;
+    }
+  }
+  const double limit = step_.largest_speed() > 0 ? most_times_faster * step_.largest_speed() : most_speed;
+  if (!parallel::any(mesh_.comm, !(std::sqrt(worst) <= limit))) return;
+  struct {
+    double value;
+    int rank;
+  } first{worst, parallel::comm_rank(mesh_.comm)};
+  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_DOUBLE_INT, MPI_MAXLOC, mesh_.comm);
+  Vec3 place = where < 0 ? Vec3(Vec3::Zero()) : level().placement->boundary_centre[where];
+  MPI_Bcast(place.data(), 3, MPI_DOUBLE, first.rank, mesh_.comm);
+  throw SolveFailure(
+      "The velocity of the interface {} at t = {:.6g} s near ({:.6g}, {:.6g}, {:.6g}) m: the structure or "
+      "the coupling diverges.",
+      std::isfinite(first.value) ? fmt::format("is {:.3g} m/s", std::sqrt(first.value)) : "is not finite",
+      time_ + dt_, place.x(), place.y(), place.z());
+}
+
+/// Mean of the step's begin and end.
+template <int D>
+void Fluid<D>::add_turning() {
+  if (!boundary_.walls_turn()) return;
+  turn_ = given_turn_;
+  turn_.resize(viscous_force_.size(), Vec<D>::Zero());
+  const std::vector<Vec3>& points = step_.points().empty() ? points_at_rest() : step_.points();
+  boundary_.add_turn(mesh_, points, time_ + dt_, turn_);
+  for (std::size_t b = 0; b < turn_.size(); ++b) {
+    Vec<D> mean = 0.5 * turn_[b];
+    if (!accepted_.turn.empty()) mean += 0.5 * accepted_.turn[b];
+    viscous_force_[b] += turning_force<D>(parameters_.viscosity, mean);
+  }
+}
+
+template <int D>
+std::shared_ptr<const PressureLevel<D>> Fluid<D>::pressure() const {
+  const auto& latest = accepted_.pressure[0];
+  if (!latest || !step_.frame()) return latest;
+  auto whole = std::make_shared<PressureLevel<D>>(*latest);
+  add_centrifugal(*step_.frame(), *accepted_.placement, parameters_.density, *whole);
+  return whole;
 }
 
 template class Fluid<2>;

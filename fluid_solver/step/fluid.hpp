@@ -10,7 +10,7 @@
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/motion/mesh_path.hpp"
 #include "fluid_solver/step/fractional_step.hpp"
-#include "fluid_solver/step/sub_step_size.hpp"
+#include "fluid_solver/step/step_size.hpp"
 
 namespace couplet::fluid {
 
@@ -37,13 +37,13 @@ class Fluid {
 
   void begin_step(double time, double dt);
   /// `points`: at t^{n+1}, empty if the mesh rests. `wall_velocity`: per boundary face at t^{n+1} [m/s], only
-  /// the interface faces count (empty: at rest). Collective.
+  /// the interface faces count; empty if they rest. Collective.
   void prepare(std::span<const Vec3> points, const Vectors<D>& wall_velocity);
   /// Before prepare() and solve_pressure(): the pressure that gave the interface its velocity, per boundary face [Pa].
   /// Walls of a known mass then answer to what the pressure differs from it (see yielding_walls.cpp).
   void yield_from(std::vector<double> load) {
     yields_ = boundary_.yields();
-    step_.set_wall_load(std::move(load));
+    boundary_.set_wall_load(std::move(load));
   }
   /// Before yield_from(): Boundary::set_wall_mass. Collective.
   void set_wall_mass(std::span<const Index> boundary_faces, std::span<const double> masses) {
@@ -52,7 +52,7 @@ class Fluid {
   /// At the boundary faces, of the last solve_pressure() [Pa].
   const std::vector<double>& boundary_pressure() const { return step_.boundary_pressure(); }
   /// Before solve_pressure(): the turn of the interface's and the bodies' faces at the step's end, see turn_of();
-  /// empty: they do not turn. At the faces of other walls zeros.
+  /// empty if they do not turn. Zero at the faces of other walls.
   void set_turn(Vectors<D> turn) { given_turn_ = std::move(turn); }
   /// Throws SolveFailure if the flow that follows is not valid; everything that can fail is here and in prepare().
   /// `answer`: PressureEquation::solve(), of a pass of a coupling that iterates.
@@ -67,9 +67,9 @@ class Fluid {
   void accept();
 
   const State<D>& state() const { return accepted_; }
-  /// The pressure of the accepted state; null: none yet. In a frame that turns the state's lacks the centrifugal part.
+  /// The pressure of the accepted state; nullptr before the first step. In a frame that turns that of the state lacks the centrifugal part.
   std::shared_ptr<const PressureLevel<D>> pressure() const;
-  /// Of the step that was prepared.
+  /// Placement at the end of the step that was prepared.
   const Placement<D>& end() const { return step_.to(); }
   /// For checkpoints: replaces the accepted state.
   void restore(State<D> state);
@@ -88,15 +88,15 @@ class Fluid {
   SubStepSize<D>& sizes() { return sizes_; }
   bool moving() const { return path_.moves(); }
 
-  /// Null: no immersed bodies.
+  /// nullptr without immersed bodies.
   const ImmersedBodies<D>* bodies() const { return step_.bodies(); }
-  /// Null: second order everywhere.
+  /// nullptr if the order is second everywhere.
   const FourthOrder<D>* fourth() const { return step_.fourth(); }
-  /// Null: no gaps that may close.
+  /// nullptr without gaps that may close.
   const Gaps<D>* gaps() const { return step_.gaps(); }
 
  private:
-  /// What the sub-step under way starts from.
+  /// State that the sub-step under way starts from.
   const State<D>& level() const { return split_ ? trial_ : accepted_; }
   void run_stages(SubStep<D>& step, double done, const Vectors<D>& wall_velocity);
   void start(const mesh::Geometry& geometry, double time);

@@ -5,7 +5,7 @@
 
 namespace couplet::fluid {
 
-/// What `surface: auto` of bodies is. Throws Error if two bodies differ.
+/// Resolves `surface: auto` of bodies. Throws Error if two bodies differ.
 FluidParameters with_surfaces(FluidParameters parameters, bool moving);
 
 /// Throws Error for effects that do not go together; where one leaves a single choice of another, sets it. `moving`: the

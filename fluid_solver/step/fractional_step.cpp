@@ -1,116 +1,135 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of a fractional step in their order.
 #include "fluid_solver/step/fractional_step.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
+#include "common/base/error.hpp"
+#include "common/base/processor_clones.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/motion/seat_check.hpp"
+#include "fluid_solver/state/largest_cell.hpp"
 
 namespace couplet::fluid {
 namespace {
 
-constexpr double least_share = 0.5;  // of cells and directions that have lines, for which fourth order pays
+constexpr double least_share_of_lines =
+    0.5;                           // of cells and directions that have lines, for which fourth order pays
+constexpr double explosion = 1e3;  // growth of the largest speed in one step that is called divergence
+
+COUPLET_PROCESSOR_CLONES void velocity_pass(std::span<const double> predicted, double factor,
+                                            std::span<const double> gradient, std::span<double> u) {
+  for (std::size_t i = 0; i < u.size(); ++i) u[i] = predicted[i] - factor * gradient[i];
+}
+
+/// Infinity if one is not finite.
+template <int D>
+[[gnu::always_inline]] inline double find_largest_square(std::span<const Vec<D>> u) {
+  double largest = 0, all = 0;
+  for (const Vec<D>& v : u) {
+    const double square = v.squaredNorm();
+    largest = std::max(largest, square);
+    all += square;
+  }
+  return std::isfinite(all) ? largest : std::numeric_limits<double>::infinity();
+}
+COUPLET_PROCESSOR_CLONES double largest_square(std::span<const Vec<2>> u) {
+  return find_largest_square<2>(u);
+}
+COUPLET_PROCESSOR_CLONES double largest_square(std::span<const Vec<3>> u) {
+  return find_largest_square<3>(u);
+}
 
 }  // namespace
 
 template <int D>
 FractionalStep<D>::FractionalStep(const mesh::Mesh& mesh, const std::vector<Vec3>& points_at_rest,
                                   const Boundary<D>& boundary, const FluidParameters& parameters, bool moving)
-    : k_{mesh,
-         points_at_rest,
-         boundary,
-         parameters,
-         parameters.density,
-         parameters.viscosity / parameters.density,
-         parameters.sound_speed()},
-      predictor_(k_),
-      flux_(k_),
-      projection_(k_, moving),
-      loads_(k_),
-      energy_guard_(mesh, boundary, parameters.density, parameters.viscosity, parameters.pressure_tolerance,
-                    k_.sound) {
-  if (parameters.rotating_frame) k_.frame.emplace(*parameters.rotating_frame);
-  if (!parameters.bodies.empty()) k_.bodies = std::make_unique<ImmersedBodies<D>>(mesh, parameters);
-  if (parameters.gaps.empty()) return;
-  check_seats(mesh, parameters, points_at_rest);
-  k_.gaps = std::make_unique<Gaps<D>>(mesh, parameters);
-  k_.pockets = std::make_unique<GapPockets<D>>(mesh, parameters);
+    : mesh_(mesh),
+      scene_{mesh, points_at_rest, boundary, parameters, parameters.properties()},
+      predictor_(scene_, step_, gradient_, prediction_),
+      flux_(scene_, step_, gradient_),
+      projection_(scene_, step_, prediction_, projected_, moving),
+      energy_guard_(mesh, boundary, scene_.fluid, parameters.pressure_tolerance) {
+  if (parameters.rotating_frame) scene_.frame.emplace(*parameters.rotating_frame);
+  if (!parameters.bodies.empty()) {
+    auto bodies = std::make_unique<ImmersedBodies<D>>(mesh, parameters);
+    bodies_ = bodies.get();
+    scene_.obstacles = std::move(bodies);
+  }
+  if (!parameters.gaps.empty()) {
+    auto gaps = std::make_unique<Gaps<D>>(mesh, parameters, points_at_rest);
+    gaps_ = gaps.get();
+    scene_.obstacles = std::move(gaps);
+  }
 }
 
 template <int D>
 std::shared_ptr<const Placement<D>> FractionalStep<D>::raise_order(std::shared_ptr<const Placement<D>> at) {
-  Lines<D> lines(k_.mesh, *at);
-  if (k_.parameters.face_values == FaceValues::automatic) {
-    const bool pays = lines.share >= least_share;
+  Lines<D> lines(mesh_, *at);
+  if (scene_.parameters.face_values == FaceValues::automatic) {
+    const bool pays = lines.share >= least_share_of_lines;
     log::info("Face values: {} (auto: fourth order is possible on {:.0f} % of the mesh)",
               pays ? "fourth-order" : "second-order", 100 * lines.share);
     if (!pays) return at;
   }
-  auto seen = lines.seen(k_.mesh, *at);
-  k_.fourth = std::make_unique<FourthOrder<D>>(k_.mesh, std::move(lines));
-  predictor_.rate_operator().set_fourth(k_.fourth.get());
+  auto seen = lines.seen(mesh_, *at);
+  scene_.fourth = std::make_unique<FourthOrder<D>>(mesh_, std::move(lines));
+  predictor_.rate_operator().set_fourth(scene_.fourth.get());
   return seen;
+}
+
+/// The obstacles at the end of the step.
+template <int D>
+void FractionalStep<D>::mark(double time) {
+  using Changed = typename Obstacles<D>::Changed;
+  const Changed changed = scene_.obstacles->mark(time, step_.to, scene_.points_of(step_));
+  if (changed != Changed::nothing) projection_.forget_matrix();
+  if (changed == Changed::cells) projection_.equation().refresh();
 }
 
 template <int D>
 void FractionalStep<D>::predict(const State<D>& from, const History<D>& by, SubStep<D> step,
                                 const Vectors<D>& w) {
-  k_.step = std::move(step);
-  k_.by = by;
+  step_ = {std::move(step), by};
   level_.reset();
-  k_.w = w;
-  const bool moving = !k_.step.swept.empty();
-  if (moving)
-    for (const Index b : k_.boundary.rows().of_mesh) {
-      const Index f = k_.mesh.n_interior + b;
-      k_.w[b] = k_.step.swept[f] / (k_.step.dt * k_.step.to->area[f].squaredNorm()) * k_.step.to->area[f];
+  prediction_.w = w;
+  if (step_.moving())
+    for (const Index b : scene_.boundary.rows().of_mesh) {
+      const Index f = mesh_.n_interior + b;
+      prediction_.w[b] = step_.swept[f] / (step_.dt * step_.to->area[f].squaredNorm()) * step_.to->area[f];
     }
-  if (k_.bodies) projection_.mark_bodies(k_.by.time + k_.step.dt);
-  if (k_.gaps && moving) projection_.mark_gaps();
-  k_.gap_changed = k_.gaps && k_.gaps->differs(from.blocked.get());
-  if (k_.gap_closed()) {
-    k_.pockets->check(*k_.step.to, k_.w, k_.by.time + k_.step.dt, k_.sound > 0);
-    k_.gaps->follow(*from.placement, *k_.step.to, k_.step.dt);
-  }
+  mark(step_.end());
+  scene_.obstacles->begin(step_, from, prediction_.w);
   predictor_.predict(from);
-  loads_.remember_prediction(predictor_.weight());
-  k_.mesh.cells.update_ghosts(flat<D>(k_.u_p), D);
-  if (k_.bodies) k_.bodies->force(*k_.step.to, k_.step.dt, k_.u_p);
-  if (k_.gap_closed()) k_.gaps->hold(k_.u_p);
-  projection_.extrapolate_pressure();
-  projection_.prepare_waves(from);
-  flux_.predict(from);
-  if (k_.gap_closed()) projection_.block_gaps(k_.phi_orthogonal);
-  projection_.assemble();
+  mesh_.cells.update_ghosts(flat<D>(prediction_.u), D);
+  scene_.obstacles->hold(*step_.to, step_.dt, prediction_.u);
+  flux_.predict(from, prediction_.u);
+  projection_.prepare(from);
 }
 
 template <int D>
 void FractionalStep<D>::rates(const State<D>& of, Vectors<D>& rate, Vectors<D>& shear) {
   predictor_.set_rates(of, false);
-  rate = predictor_.rates().rate;
-  shear = predictor_.shear();
+  rate = prediction_.rates.rate;
+  shear = prediction_.shear;
 }
 
 template <int D>
 void FractionalStep<D>::project(const State<D>& from, const Vectors<D>& w, double answer) {
   level_.reset();
-  projection_.project(from, w, answer);
-  loads_.set_forces(from);
+  projection_.project(from, w, flux_.phi(), answer);
+  loads_.set(scene_, step_, prediction_, projected_, from);
 }
 
 template <int D>
 void FractionalStep<D>::mark_level(State<D>& s) {
-  if (!k_.gaps && !k_.bodies) return;
-  k_.step.to = s.placement;
-  k_.step.points = s.points;
-  k_.step.swept.clear();
-  if (k_.bodies) projection_.mark_bodies(s.time);
-  if (!k_.gaps) return;
-  projection_.mark_gaps();
-  k_.gaps->follow(*s.placement, *s.placement, 0);
-  s.blocked = k_.gaps->marks();
+  step_.to = s.placement;
+  step_.points = s.points;
+  step_.swept.clear();
+  mark(s.time);
+  s.blocked = scene_.obstacles->marks();
 }
 
 /// u = u0 - grad psi with phi free of divergence: the same equation with dt = 1 s, rho = 1. Where the given
@@ -118,64 +137,198 @@ void FractionalStep<D>::mark_level(State<D>& s) {
 /// flow.
 template <int D>
 void FractionalStep<D>::project_initial(State<D>& s) {
-  k_.oblique = parallel::max(k_.mesh.comm, s.placement->obliqueness) > orthogonal ||
-               (!s.points.empty() && !s.placement->shape);
+  scene_.oblique = parallel::max(mesh_.comm, s.placement->obliqueness) > orthogonal ||
+                   (!s.points.empty() && !s.placement->shape);
   const Placement<D>& at = *s.placement;
-  projection_.set_obliqueness(at);
-  k_.phi_p.assign(k_.mesh.n_flux_faces(), 0.0);
-  k_.step = {k_.rho, s.placement, {}, s.points};  // dt/rho = 1
+  projected_.phi.assign(mesh_.n_flux_faces(), 0.0);
+  step_ = {SubStep<D>{scene_.fluid.rho, s.placement, {}, s.points}, s};  // dt/rho = 1
   mark_level(s);
-  if (k_.bodies) k_.bodies->force(at, k_.step.dt, s.u);
-  mean_flux<D>(k_.mesh, at, k_.flux_velocity(at, s.u), s.u_boundary, k_.velocity_gradient, k_.phi_p);
-  if (k_.bodies && k_.bodies->cuts()) k_.bodies->carry_to_open(at, s.u, k_.phi_p);
+  scene_.obstacles->hold(at, step_.dt, s.u);
+  mean_flux<D>(mesh_, at, scene_.flux_velocity(at, s.u), s.u_boundary, gradient_.values, projected_.phi);
+  scene_.obstacles->carry(at, s.u, projected_.phi);
   for (std::size_t b = 0; b < s.w.size(); ++b)
-    k_.phi_p[k_.mesh.n_interior + b] = s.u_boundary[b].dot(at.area[k_.mesh.n_interior + b]);
-  k_.by = s;
-  k_.right_side.resize(s.u.size());
-  if (k_.bodies)
-    for (Index f = 0; f < k_.mesh.n_flux_faces(); ++f) k_.phi_p[f] = k_.open_flux(f, k_.phi_p[f]);
-  if (k_.gap_closed()) {
-    k_.gaps->hold(s.u);
-    projection_.block_gaps(k_.phi_p);
-  }
-  k_.w = s.w;
-  k_.gradient_guess.clear();
-  k_.u_p = s.u;
-  k_.p.assign(k_.mesh.cells.n_local(), 0.0);
-  k_.p_boundary.assign(s.w.size(), 0.0);
-  projection_.equation().set(k_.pressure_placement());
-  k_.assembled = s.placement;
-  if (k_.sound > 0 && k_.parameters.initial_pressure) return keep_initial(s);
+    projected_.phi[mesh_.n_interior + b] = s.u_boundary[b].dot(at.area[mesh_.n_interior + b]);
+  u_.resize(s.u.size());
+  scene_.obstacles->block(step_, projected_.phi);
+  projected_.w = s.w;
+  projected_.gradient.clear();
+  prediction_.u = s.u;
+  projected_.p.assign(mesh_.cells.n_local(), 0.0);
+  projected_.boundary.assign(s.w.size(), 0.0);
+  projection_.start(at);
+  if (scene_.is_compressible() && scene_.parameters.initial_pressure) return keep_initial(s);
   const Vectors<D> jump_from = s.u_boundary;
   projection_.set_boundary_flux(s.w);
   projection_.solve_initial(at);
-  for (const Index b : k_.boundary.rows().of_flux) {
-    const Index f = k_.mesh.n_interior + b;
-    k_.p_boundary[b] = k_.p[k_.mesh.owner[f]] - (s.w[b] - jump_from[b]).dot(at.area[f]) / at.conductance[f];
+  for (const Index b : scene_.boundary.rows().of_flux) {
+    const Index f = mesh_.n_interior + b;
+    projected_.boundary[b] =
+        projected_.p[mesh_.owner[f]] - (s.w[b] - jump_from[b]).dot(at.area[f]) / at.conductance[f];
   }
   correct();
-  s.phi.swap(k_.phi_p);
-  s.u.swap(k_.right_side);
-  s.w = k_.w;
+  s.phi.swap(projected_.phi);
+  s.u.swap(u_);
+  s.w = projected_.w;
   s.u_old.clear();
   s.pressure = {};
-  k_.boundary.close(k_.mesh, at, s.u, s.w, s.u_boundary);
+  scene_.boundary.close(mesh_, at, s.u, s.w, s.u_boundary);
   flux_.remember(s);
 }
 
 /// A compressible fluid may start from any velocity.
 template <int D>
 void FractionalStep<D>::keep_initial(State<D>& s) {
-  for (const Index b : k_.boundary.rows().of_flux) {
-    const Index f = k_.mesh.n_interior + b;
-    k_.phi_p[f] = s.w[b].dot(s.placement->area[f]);
+  for (const Index b : scene_.boundary.rows().of_flux) {
+    const Index f = mesh_.n_interior + b;
+    projected_.phi[f] = s.w[b].dot(s.placement->area[f]);
   }
-  s.phi.swap(k_.phi_p);
-  k_.phi_p.assign(s.phi.size(), 0.0);
+  s.phi.swap(projected_.phi);
+  projected_.phi.assign(s.phi.size(), 0.0);
   projection_.solve_initial(*s.placement);  // of nothing: the solver is there, as after any other start
   s.pressure = {};
-  k_.boundary.close(k_.mesh, *s.placement, s.u, s.w, s.u_boundary);
+  scene_.boundary.close(mesh_, *s.placement, s.u, s.w, s.u_boundary);
   flux_.remember(s);
+}
+
+/// phi at t^{n+1} in the place of phi^p, which the next project() makes anew, and u beside u^p.
+template <int D>
+std::shared_ptr<PressureLevel<D>> FractionalStep<D>::correct() {
+  const Placement<D>& now = *step_.to;
+  const std::vector<double>& conductance = scene_.around(step_).conductance;
+  const double factor = step_.dt / scene_.fluid.rho;
+  const FluxCorrection correction{factor, conductance.data(), projected_.phi.data()};
+  for (const Index b : scene_.boundary.rows().of_pressure) {
+    const Index f = mesh_.n_interior + b;
+    projected_.phi[f] -= factor * conductance[f] * (projected_.boundary[b] - projected_.p[mesh_.owner[f]]);
+  }
+  auto level = projection_.pressure_level(&correction);
+  Vectors<D>& u = u_;
+  u.resize(prediction_.u.size());
+  velocity_pass(flat<D>(prediction_.u), factor, flat<D>(level->gradient),
+                flat<D>(u).first(std::size_t(mesh_.cells.n_owned()) * D));
+  mesh_.cells.update_ghosts(flat<D>(u), D);
+  scene_.obstacles->hold(now, step_.dt, u);
+  return level;
+}
+
+template <int D>
+void FractionalStep<D>::complete(const State<D>& from) {
+  if (level_) return;
+  level_ = correct();
+  judgement_ = judge(from);
+  check(from);
+}
+
+template <int D>
+void FractionalStep<D>::commit(State<D>& s) {
+  if (!level_) {
+    level_ = correct();
+    judgement_ = judge(s);
+  }
+  speed_scale_ = std::max(speed_scale_, judgement_.speed);
+  s.ledger = judgement_.energy.ledger;
+  static_cast<History<D>&>(s) = step_.by;
+  for (const auto& term : projection_.terms()) term->commit(projected_, s);
+  s.phi.swap(projected_.phi);
+  s.u_old.swap(s.u);
+  s.u.swap(u_);
+  s.number = ++states_;
+  s.pressure = {std::move(level_), s.pressure[0], s.pressure[1]};
+  const std::size_t with_gradient = scene_.oblique ? 2 : 1;
+  if (auto& last = s.pressure[with_gradient]; last && !last->gradient.empty())
+    last = std::make_shared<PressureLevel<D>>(
+        PressureLevel<D>{last->time, last->p, last->boundary, {}, last->upstream, {}});
+  s.u_boundary_old.swap(s.u_boundary);
+  s.w = projected_.w;
+  scene_.boundary.close(mesh_, *step_.to, s.u, s.w, s.u_boundary);
+  flux_.remember(s);
+  s.rates_old.rate.swap(prediction_.rates.rate);
+  s.rates_old.viscous.swap(prediction_.rates.viscous);
+  s.shear_old.swap(prediction_.shear);
+  s.placement = step_.to;
+  s.blocked = scene_.obstacles->marks();
+  s.points.swap(step_.points);
+  s.mesh_flux.swap(step_.swept);
+  for (double& flux : s.mesh_flux) flux /= step_.dt;
+  s.dt_old = step_.dt;
+  s.time += step_.dt;
+  if (s.start == Start::at_rest || scene_.obstacles->starts_anew()) {
+    // The multi-step schemes begin after the impulse.
+    s.start = Start::after_impulse;
+    s.dt_old = 0;
+  }
+  set_eddy_viscosity(s);
+}
+
+template <int D>
+void FractionalStep<D>::set_eddy_viscosity(State<D>& state) {
+  if (scene_.parameters.turbulence)
+    predictor_.rate_operator().set_eddy_viscosity(*scene_.parameters.turbulence, state);
+}
+
+template <int D>
+EnergyStep<D> FractionalStep<D>::energy_step(const State<D>& from) const {
+  return {from,        *step_.to,         step_.dt, u_, projected_.w, projected_.phi, projected_.boundary,
+          step_.swept, prediction_.force, *level_};
+}
+
+template <int D>
+typename FractionalStep<D>::Judgement FractionalStep<D>::judge(const State<D>& from) const {
+  const std::span<const Vec<D>> u(u_.data(), mesh_.cells.n_owned());
+  const double fastest = largest_square(u);
+  double given = 0;
+  for (const Vec<D>& w : projected_.w) given = std::max(given, w.squaredNorm());
+  double largest[2] = {fastest, given};
+  MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPI_DOUBLE, MPI_MAX, mesh_.comm);
+  Judgement j;
+  j.energy = energy_guard_.judge(energy_step(from));
+  j.speed = std::sqrt(largest[0]);
+  j.given_speed = std::sqrt(largest[1]);
+  return j;
+}
+
+/// Much faster than all that moved so far and all that is given now, and so that the flow crosses a cell in the step:
+/// what begins to move in a fluid that was at rest, but for round-off, is no divergence.
+template <int D>
+bool FractionalStep<D>::too_fast() const {
+  if (!(speed_scale_ > 0) || !(judgement_.speed > explosion * std::max(speed_scale_, judgement_.given_speed)))
+    return false;
+  bool crosses = false;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
+    crosses |= !(std::pow(u_[c].norm() * step_.dt, D) <= step_.to->volume[c]);
+  return parallel::any(mesh_.comm, crosses);
+}
+
+/// Where it went wrong: the fastest cell if that is out of bounds, else the one that gained most energy.
+template <int D>
+void FractionalStep<D>::check(const State<D>& from) {
+  const bool finite = std::isfinite(judgement_.speed);
+  const bool fast = too_fast();
+  const bool created = judgement_.energy.out_of_bounds && scene_.obstacles->is_in_budget();
+  if (finite && !fast && !created) return;
+  const LargestCell worst = find_largest(mesh_, *step_.to, [&](Index c) {
+    const double square = u_[c].squaredNorm();
+    if (finite && !fast)
+      return step_.to->volume[c] * square - from.placement->volume[c] * from.u[c].squaredNorm();
+    return std::isfinite(square) ? square : std::numeric_limits<double>::max();
+  });
+  std::string cause;
+  if (worst.here >= 0)
+    cause = likely_cause(mesh_, scene_.boundary, energy_step(from), worst.here, scene_.fluid.nu,
+                         step_.by.implicit, scene_.frame ? scene_.frame->rate(step_.begin(), step_.dt) : 0);
+  parallel::broadcast(mesh_.comm, cause, worst.rank);
+  if (const std::string shut = scene_.obstacles->cause(*step_.to); !shut.empty()) cause = shut;
+  const EnergyJudgement& e = judgement_.energy;
+  const std::string what =
+      !finite ? "its velocity is not finite"
+      : fast  ? fmt::format("its velocity grew to {:.3g} m/s", judgement_.speed)
+              : fmt::format(
+                    "its kinetic energy grew by {:.3g} J to {:.3g} J in one step, of which boundaries and "
+                     "forces supplied {:.3g} J",
+                    e.gain, e.ledger.energy, e.work);
+  throw SolveFailure(
+      "The flow diverges at t = {:.6g} s: {}, mostly in cell {} at ({:.6g}, {:.6g}, {:.6g}) m. {}",
+      step_.end(), what, worst.id, worst.place.x(), worst.place.y(), worst.place.z(), cause);
 }
 
 template class FractionalStep<2>;

@@ -5,7 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "fluid_solver/motion/step_work.hpp"
+#include "fluid_solver/motion/gaps.hpp"
+#include "fluid_solver/motion/immersed.hpp"
 #include "fluid_solver/pressure/projection.hpp"
 #include "fluid_solver/step/energy_guard.hpp"
 #include "fluid_solver/step/face_flux.hpp"
@@ -14,13 +15,16 @@
 
 namespace couplet::fluid {
 
-/// One step of the non-incremental projection method on a moving mesh, in three parts, so that a
-/// semi-implicit coupling can repeat the middle one:
-///   predict   V' u^p = V u^n + dt [(1 + r/2) R^n - r/2 R^{n-1}] + sum dV_f u_f~ - (dt/rho) sum p_f^{n-1/2}
-///   (S^{n+1/2} - S^{n+1}) project   sum g (p_N - p_P) = (rho/dt) sum phi^p                      p =
-///   p^{n+1/2} complete    phi = phi^p - (dt/rho) g dp,  u^{n+1} = u^p - dt/(rho V') sum p_f S^{n+1}
-/// r = dt/dt_old; u~ = (1 + r/2) u^n - r/2 u^{n-1}; the thesis's (4.5)-(4.8) with its errata (density, sign
-/// of diffusion).
+// clang-format off
+/// One step of the non-incremental projection method on a moving mesh, in three stages, so that a semi-implicit coupling can repeat the
+/// second one. Each makes a result that the next one reads:
+///   predict   V' u^p = V u^n + dt [(1 + r/2) R^n - r/2 R^{n-1}] + sum dV_f u_f~
+///                      - (dt/rho) sum p_f^{n-1/2} (S^{n+1/2} - S^{n+1})                   Prediction, FaceFlux
+///   project   sum g (p_N - p_P) = (rho/dt) sum phi^p,    p = p^{n+1/2}                    Projected, Loads
+///   complete  phi = phi^p - (dt/rho) g dp,    u^{n+1} = u^p - dt/(rho V') sum p_f S^{n+1}
+/// with r = dt/dt_old and u~ = (1 + r/2) u^n - r/2 u^{n-1}. These are (4.5)-(4.8) of the thesis with its errata (density, sign of
+/// diffusion).
+// clang-format on
 template <int D>
 class FractionalStep {
  public:
@@ -30,8 +34,8 @@ class FractionalStep {
 
   /// Fourth order along the lines of a mesh at rest, from now on (`auto`: if they are half of it); gives the placement to use. Collective.
   std::shared_ptr<const Placement<D>> raise_order(std::shared_ptr<const Placement<D>> at);
-  /// Null: second order everywhere.
-  const FourthOrder<D>* fourth() const { return k_.fourth.get(); }
+  /// nullptr if the order is second everywhere.
+  const FourthOrder<D>* fourth() const { return scene_.fourth.get(); }
 
   /// `by`: how the step sees the level it starts from; `w`: given velocity per boundary face at t^{n+1}, as
   /// far as it is known. Collective.
@@ -49,51 +53,48 @@ class FractionalStep {
   /// Makes the initial velocity divergence-free: state.u, w and u_boundary (u at the faces) are given, phi is
   /// filled.
   void project_initial(State<D>& state);
-  /// What a compressible fluid keeps of its openings, of a state that no step made. Collective.
-  void start_waves(State<D>& state) const { projection_.start_waves(state); }
+  /// Sets what the terms of the pressure keep in a state that no step made. Collective.
+  void start_terms(State<D>& state) const {
+    for (const auto& term : projection_.terms()) term->start(state);
+  }
 
   /// state.blocked, of a level that no step made: the first, or one from a checkpoint. Collective.
   void mark_level(State<D>& state);
-  /// Null: none.
-  const Gaps<D>* gaps() const { return k_.gaps.get(); }
+  /// nullptr if there are none.
+  const Gaps<D>* gaps() const { return gaps_; }
   /// The result of the last project() as a level of history. Collective.
   std::shared_ptr<PressureLevel<D>> pressure_level() const { return projection_.pressure_level(); }
   /// Fills what follows from p and boundary in a level that no step made. Collective.
-  void start_level(const Placement<D>& at, PressureLevel<D>& level) const {
-    projection_.start_level(at, level);
-  }
-  /// Of the last project(), acting on what is outside the fluid [N]: Loads.
-  const Vectors<D>& pressure_force() const { return loads_.pressure_force(); }
-  const Vectors<D>& viscous_force() const { return loads_.viscous_force(); }
+  void start_level(const Placement<D>& at, PressureLevel<D>& level) const { projection_.start(at, level); }
+  /// Forces on what is outside the fluid after the last project() [N], see Loads.
+  const Vectors<D>& pressure_force() const { return loads_.pressure; }
+  const Vectors<D>& viscous_force() const { return loads_.viscous; }
   /// state.eddy, if there is a turbulence model. Collective.
   void set_eddy_viscosity(State<D>& state);
-  /// Null: none.
-  const ImmersedBodies<D>* bodies() const { return k_.bodies.get(); }
-  /// Null: none.
-  const RotatingFrame<D>* frame() const { return k_.frame ? &*k_.frame : nullptr; }
-  /// Pressure that gave the interface its w, per boundary face [Pa]: for steps that yield.
-  void set_wall_load(std::vector<double> load) { k_.wall_load = std::move(load); }
+  /// nullptr if there are none.
+  const ImmersedBodies<D>* bodies() const { return bodies_; }
+  /// nullptr if the frame rests.
+  const RotatingFrame<D>* frame() const { return scene_.frame ? &*scene_.frame : nullptr; }
   /// The masses of such walls have changed: the pressure matrix is made anew when it is needed next.
-  void forget_walls() { k_.assembled = nullptr; }
-  /// Of the last project(), per boundary face [Pa].
-  const std::vector<double>& boundary_pressure() const { return k_.p_boundary; }
-  /// What the next solves depend on beside the level they start from, as of the last keep(). load(): collective.
+  void forget_walls() { projection_.forget_matrix(); }
+  /// Pressure of the last project() per boundary face [Pa].
+  const std::vector<double>& boundary_pressure() const { return projected_.boundary; }
+  /// State of the solvers beside the level they start from, as of the last keep(). load() is collective.
   void keep() { projection_.accept(); }
   void save(io::CheckpointWriter& file) const { projection_.save(file); }
-  void load(io::CheckpointReader& file) {
-    projection_.load(file);
-    k_.assembled = nullptr;
-  }
-  const StepStatistics& statistics() const { return k_.statistics; }
-  double size() const { return k_.step.dt; }
-  /// Of its points at the end.
-  const Placement<D>& to() const { return *k_.step.to; }
-  /// At the end; empty: the mesh rests.
-  const std::vector<Vec3>& points() const { return k_.step.points; }
-  /// Of the accepted steps [m/s].
+  void load(io::CheckpointReader& file) { projection_.load(file); }
+  /// Iterations of the linear solvers so far.
+  int pressure_iterations() const { return projection_.iterations(); }
+  int viscous_iterations() const { return predictor_.iterations(); }
+  double size() const { return step_.dt; }
+  /// Placement at the end of the step.
+  const Placement<D>& to() const { return *step_.to; }
+  /// Points at the end; empty if the mesh rests.
+  const std::vector<Vec3>& points() const { return step_.points; }
+  /// Largest speed of the accepted steps [m/s].
   double largest_speed() const { return speed_scale_; }
   /// The mesh is not orthogonal, or may become so.
-  bool oblique() const { return k_.oblique; }
+  bool oblique() const { return scene_.oblique; }
 
  private:
   std::shared_ptr<PressureLevel<D>> correct();
@@ -107,14 +108,23 @@ class FractionalStep {
   bool too_fast() const;
   void check(const State<D>& from);
   void keep_initial(State<D>& state);
+  void mark(double time);
 
-  StepWork<D> k_;
+  const mesh::Mesh& mesh_;
+  Scene<D> scene_;
+  Step<D> step_;
+  Prediction<D> prediction_;
+  Projected<D> projected_;
+  KnownGradient<D> gradient_;
+  const ImmersedBodies<D>* bodies_ = nullptr;  // of the scene's obstacles; nullptr: none
+  const Gaps<D>* gaps_ = nullptr;              // likewise
   Predictor<D> predictor_;
   FaceFlux<D> flux_;
   PressureProjection<D> projection_;
   Loads<D> loads_;
   EnergyGuard<D> energy_guard_;
-  std::shared_ptr<PressureLevel<D>> level_;  // of level n+1; null: not made since the last project()
+  Vectors<D> u_;                             // u^{n+1} with level_
+  std::shared_ptr<PressureLevel<D>> level_;  // of level n+1; nullptr after project()
   Judgement judgement_;                      // of level_
   std::uint64_t states_ = 0;                 // numbered so far
   double speed_scale_ = 0;                   // largest of the accepted steps [m/s]

@@ -1,50 +1,61 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "common/fv/expression.hpp"
 #include "fluid_solver/momentum/implicit_friction.hpp"
 #include "fluid_solver/momentum/rates.hpp"
-#include "fluid_solver/motion/step_work.hpp"
+#include "fluid_solver/motion/scene.hpp"
 
 namespace couplet::fluid {
 
-/// The first part of a fractional step:
+/// The gradient of the velocity of a state that was needed last, on skewed meshes.
+template <int D>
+struct KnownGradient {
+  std::vector<Tensor<D>> values;
+  std::uint64_t number = 0;  ///< State::number; 0: of no state
+  const std::vector<Tensor<D>>* of(const State<D>& state) const {
+    return number != 0 && number == state.number ? &values : nullptr;
+  }
+};
+
+/// The first stage of a fractional step:
 ///   V' u^p = V u^n + dt [(1 + r/2) R^n - r/2 R^{n-1}] + sum dV_f u_f~ - (dt/rho) sum p_f^{n-1/2} (S^{n+1/2} - S^{n+1})
 /// r = dt/dt_old; u~ = (1 + r/2) u^n - r/2 u^{n-1}; with an implicit viscous term modified Crank-Nicolson.
 template <int D>
 class Predictor {
  public:
-  explicit Predictor(StepWork<D>& work);
+  /// `result`: filled here, but for w, which is given.
+  Predictor(const Scene<D>& scene, const Step<D>& step, const KnownGradient<D>& gradient,
+            Prediction<D>& result);
 
-  /// u^p in the owned cells and the viscous force of the walls, from the work's step. Collective.
+  /// u^p in the owned cells and the viscous force of the walls. Collective.
   void predict(const State<D>& from);
-  /// R of a state and its viscous force on the boundary faces. Collective.
+  /// R of a state and its viscous force on the boundary faces, into the prediction. Collective.
   void set_rates(const State<D>& from, bool implicit);
-  /// Of the last set_rates().
-  Rates<D>& rates() { return rates_; }
-  Vectors<D>& shear() { return shear_; }
-  /// Of t^{n+1} in the viscous flux of the last predict().
-  double weight() const { return weight_; }
   RateOperator<D>& rate_operator() { return rate_operator_; }
+  int iterations() const { return friction_.iterations(); }
 
  private:
   void set_explicit_friction(const State<D>& from, double e0, double e1);
   void add_body_force(const State<D>& from, double e0, double e1);
   void add_swept(const State<D>& from, double e0, double e1);
-  void part_from_gaps(const State<D>& from, bool implicit);
   void add_old_pressure(const State<D>& from, bool implicit);
-  void solve_viscous(const State<D>& from, const Vectors<D>& w, double a);
+  void solve_viscous(const State<D>& from, double a);
   void add_back_old_pressure();
 
-  StepWork<D>& k_;
+  const Scene<D>& scene_;
+  const mesh::Mesh& mesh_;
+  const Step<D>& step_;
+  const KnownGradient<D>& gradient_;
+  Prediction<D>& out_;
   RateOperator<D> rate_operator_;
   ImplicitFriction<D> friction_;
   std::vector<fv::Expression> body_force_;
-  Rates<D> rates_;
-  Vectors<D> shear_;  // viscous flux through the boundary, of level n
-  double weight_ = 0;
+  Vectors<D> side_;          // right-hand side
+  Vectors<D> u_boundary_;    // of u^p
   Vectors<D> old_pressure_;  // dt/rho sum p^{n-1/2} S^{n+1}, of an implicit predictor on a moving mesh
 };
 

@@ -6,8 +6,6 @@
 
 #include "common/mesh/mesh.hpp"
 #include "mesh_mover/barrier/barrier_system.hpp"
-#include "mesh_mover/barrier/held_points.hpp"
-#include "mesh_mover/barrier/simplices.hpp"
 #include "mesh_mover/motion_method.hpp"
 #include "mesh_mover/parameters.hpp"
 

@@ -1,16 +1,143 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "common/linalg/matrix.hpp"
 #include "common/mesh/mesh.hpp"
-#include "mesh_mover/barrier/held_points.hpp"
-#include "mesh_mover/barrier/simplices.hpp"
+#include "mesh_mover/parameters.hpp"
 
 namespace couplet::mesh_mover {
+
+/// The simplices that a barrier keeps from turning over: each triangle and tetrahedron by itself, of other cells one
+/// at each corner, spanned by its edges there. Flat arrays over the local cells, those of owned cells first.
+struct Simplices {
+  int dim = 0;
+  Index n_owned = 0;            ///< of owned cells: every simplex of the mesh counts on one rank
+  std::vector<Index> points;    ///< dim + 1 local points each
+  std::vector<double> inverse;  ///< of the reference edges, dim x dim by columns each [1/m]
+  std::vector<double> weight;   ///< share of its cell's reference volume times (V / mean V)^-chi [m^dim]
+  std::vector<Index> cell;      ///< local cell each
+  double total = 0;             ///< sum of the weights over all ranks
+  Index size() const { return static_cast<Index>(weight.size()); }
+};
+
+/// `volumes`: V per local cell. Throws SolveFailure if a simplex of the reference mesh is flat or inverted. Collective.
+Simplices make_simplices(const mesh::Mesh& mesh, const mesh::Geometry& geometry, double stiffening,
+                         const std::vector<double>& volumes);
+
+/// The symmetric Dirichlet energy [smith2015] of a simplex with the deformation gradient F,
+///   W = |F|^2 + |F^-1|^2 - 2 D = sum_i (s_i^2 + s_i^-2 - 2),   s_i the stretches:
+/// zero for rigid motions alone, infinite where det F -> 0; a cell that is compressed to a share s costs what one that
+/// is stretched by 1/s does.
+template <int D>
+struct Distortion {
+  using Matrix = Eigen::Matrix<double, D, D>;
+  static constexpr double unbounded = 1e300;
+
+  static double energy(const Matrix& f) { return f.squaredNorm() + f.inverse().squaredNorm() - 2 * D; }
+
+  /// dW/dF = 2 F - 2 F^-T F^-1 F^-T.
+  static Matrix stress(const Matrix& f) {
+    const Matrix inverse = f.inverse();
+    return 2 * f - 2 * (inverse * inverse.transpose() * inverse).transpose();
+  }
+
+  /// d2W/dF2 in the frame of the stretches, F = U diag(s) V^T [smith2019]: of the (ij) entry with itself `own`,
+  /// with the (ji) entry `across`. W is a sum over the stretches, so the stretches have W''(s_i) = 2 + 6 s_i^-4; each
+  /// pair of them a symmetric mode (W'_i - W'_j) / (s_i - s_j) and an antisymmetric one (W'_i + W'_j) / (s_i + s_j),
+  /// which alone may be negative: `is_projected` without that.
+  struct Tangent {
+    Matrix u, v;
+    Matrix own, across;
+  };
+  static Tangent tangent(const Matrix& f, bool is_projected) {
+    const Eigen::SelfAdjointEigenSolver<Matrix> eigen = decompose(f.transpose() * f);
+    Tangent t;
+    t.v = eigen.eigenvectors();
+    t.u = f * t.v;
+    std::array<double, D> s;
+    for (int i = 0; i < D; ++i) {
+      s[i] = t.u.col(i).norm();
+      t.u.col(i) /= s[i];
+      t.own(i, i) = 2 + 6 / (s[i] * s[i] * s[i] * s[i]);
+      t.across(i, i) = 0;
+    }
+    for (int i = 0; i < D; ++i)
+      for (int j = 0; j < i; ++j) {
+        const double product = s[i] * s[j], cube = product * product * product;
+        const double squares = s[i] * s[i] + s[j] * s[j];
+        const double even = 2 + 2 * (squares + product) / cube;
+        const double odd = std::max(2 - 2 * (squares - product) / cube, is_projected ? 0.0 : -unbounded);
+        t.own(i, j) = t.own(j, i) = (even + odd) / 2;
+        t.across(i, j) = t.across(j, i) = (even - odd) / 2;
+      }
+    return t;
+  }
+
+ private:
+  static Eigen::SelfAdjointEigenSolver<Matrix> decompose(const Matrix& c) {
+    Eigen::SelfAdjointEigenSolver<Matrix> eigen;
+    eigen.computeDirect(c);
+    return eigen;
+  }
+};
+
+/// Which directions of a point its patches hold or move. A point on several patches: `fixed` wins over what moves it,
+/// and the plane of a patch that slides over both, so that corners stay closed; where planes meet at an edge (of one
+/// patch or several) a point slides along the edge, where they meet at a corner it rests.
+struct HeldPoints {
+  /// Per local point: projector on the directions in which it is free (I inside the mesh, 0 where all is given) and
+  /// on those in which it follows what is prescribed.
+  std::vector<Tensor3> free, moved;
+};
+
+/// Throws Error if no patch holds or moves the mesh, or one is periodic. Collective.
+HeldPoints find_held_points(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                            const Parameters& parameters);
+
+/// The first place in (0, limit] where c0 + c1 a + c2 a^2 + c3 a^3 falls to zero, from below to a thousandth; limit:
+/// nowhere. c0 > 0.
+inline double first_root(const std::array<double, 4>& c, double limit) {
+  const auto at = [&](double a) { return c[0] + a * (c[1] + a * (c[2] + a * c[3])); };
+  const auto below = [](double x) { return x < 0 ? x : 0; };
+  if (c[0] + limit * (below(c[1]) + limit * (below(c[2]) + limit * below(c[3]))) > 0) return limit;
+  // Between its extrema it is monotone.
+  std::array<double, 3> ends{limit, limit, limit};
+  int n = 0;
+  const double a = 3 * c[3], b = c[2], root = b * b - a * c[1];
+  if (root >= 0) {
+    const double q = -(b + (b > 0 ? std::sqrt(root) : -std::sqrt(root)));
+    const double first = a != 0 ? q / a : -1, second = q != 0 ? c[1] / q : -1;
+    for (const double x : {std::fmin(first, second), std::fmax(first, second)})
+      if (x > 0 && x < limit) ends[n++] = x;
+  }
+  ends[n++] = limit;
+  double low = 0;
+  for (int i = 0; i < n; ++i) {
+    if (at(ends[i]) > 0) {
+      low = ends[i];
+      continue;
+    }
+    double high = ends[i];
+    while (high - low > 1e-3 * high) {
+      const double middle = (low + high) / 2;
+      (at(middle) > 0 ? low : high) = middle;
+      if (high < 1e-12 * limit) break;
+    }
+    return low;
+  }
+  return limit;
+}
 
 /// Distortion energy of the simplices of a mesh, its gradient and its projected Hessian over the owned points. Positions
 /// and directions: dim values per local point, ghosts current.

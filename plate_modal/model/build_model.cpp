@@ -10,7 +10,7 @@
 #include "common/base/text.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
-#include "common/mesh/msh/msh_entities.hpp"
+#include "common/mesh/msh/read_msh.hpp"
 #include "common/mesh/on_root.hpp"
 #include "common/mesh/quality.hpp"
 #include "common/modes/facing.hpp"
@@ -263,9 +263,18 @@ modes::ModalModel modes_of_file(const Parameters& p, const std::filesystem::path
                  "'modes.cavity: true'. ");
 }
 
+std::vector<app::ProblemOfKey> problems_of_files(const Parameters& p, const std::filesystem::path& folder) {
+  if (!p.modes_file) return {};
+  try {
+    (void)modes_of_file(p, folder / *p.modes_file);
+  } catch (const Error& error) {
+    return {{"modes.file", error.what()}};
+  }
+  return {};
+}
+
 Built build_model(const Parameters& p, const PlateContext& context, const mesh::RawMesh* raw) {
   Built built;
-  const modes::SlepcEnvironment slepc;
   mesh::on_root(context.comm, [&] {
     if (p.modes_file) {
       built.model = modes_of_file(p, context.case_folder / *p.modes_file);

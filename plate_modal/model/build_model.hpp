@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "common/app/case/check_files.hpp"
 #include "common/modes/modal_model.hpp"
 #include "plate_modal/model/parameters.hpp"
 
@@ -40,6 +41,10 @@ PlateModel plate_of(Midsurface surface, const Parameters& parameters, const std:
 /// Collective.
 Built build_model(const Parameters& parameters, const PlateContext& context,
                   const mesh::RawMesh* raw = nullptr);
+
+/// For --check: modes that are missing, broken or of no structure.
+std::vector<app::ProblemOfKey> problems_of_files(const Parameters& parameters,
+                                                 const std::filesystem::path& case_folder);
 
 /// Modes of another program, whose surface says by its faces alone where its outside is. Throws Error.
 modes::ModalModel modes_of_file(const Parameters& parameters, const std::filesystem::path& file);

@@ -50,7 +50,8 @@ void refuse_out_of_plane(const mesh::RawMesh& raw) {
       low.z(), high.z(), x.x(), x.y(), x.z());
 }
 
-void add_cells(const mesh::RawMesh& raw, Midsurface& s) {
+/// Adds points and cells; returns the new number of each point of the mesh.
+std::vector<Index> add_cells(const mesh::RawMesh& raw, Midsurface& s) {
   std::vector<Index> number(raw.points.size(), -1);
   for (Index c = 0; c < raw.cell_points.size(); ++c)
     for (const Index p : raw.cell_points[c]) number[p] = 0;
@@ -74,15 +75,11 @@ void add_cells(const mesh::RawMesh& raw, Midsurface& s) {
   s.zone.resize(s.cells.size(), 0);
   s.zones = raw.zones;
   if (s.zones.empty()) s.zones = {"plate"};
+  return number;
 }
 
-std::map<std::pair<Index, Index>, Index> element_of_edges(const mesh::RawMesh& raw) {
-  std::vector<Index> number(raw.points.size(), -1);
-  Index next = 0;
-  for (Index c = 0; c < raw.cell_points.size(); ++c)
-    for (const Index p : raw.cell_points[c]) number[p] = 0;
-  for (Index& n : number)
-    if (n == 0) n = next++;
+std::map<std::pair<Index, Index>, Index> element_of_edges(const mesh::RawMesh& raw,
+                                                          const std::vector<Index>& number) {
   std::map<std::pair<Index, Index>, Index> element;
   for (Index e = 0; e < raw.boundary_points.size(); ++e) {
     const auto ends = raw.boundary_points[e];
@@ -119,12 +116,12 @@ Midsurface midsurface_of(const mesh::RawMesh& raw, std::span<const int> curves) 
   Midsurface s;
   s.patches = raw.patches;
   refuse_out_of_plane(raw);
-  add_cells(raw, s);
+  const std::vector<Index> number = add_cells(raw, s);
   std::map<std::pair<Index, Index>, int> uses;
   for (Index c = 0; c < s.cells.size(); ++c)
     for (std::size_t i = 0, n = s.cells[c].size(); i < n; ++i)
       ++uses[std::minmax(s.cells[c][i], s.cells[c][(i + 1) % n])];
-  const auto elements = element_of_edges(raw);
+  const auto elements = element_of_edges(raw, number);
   refuse_inside(s, raw, elements, uses);
   for (Index c = 0; c < s.cells.size(); ++c)
     for (std::size_t i = 0, n = s.cells[c].size(); i < n; ++i) {

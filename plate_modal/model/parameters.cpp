@@ -189,6 +189,68 @@ void declare_loads(config::Section& s, Parameters& p) {
       "a rigid seat under the structure, for dynamic analyses only");
 }
 
+/// What describes a plate says nothing about the modes of a file, which have their own surface, place and mass.
+void check_file_alone(config::Section& s, const Parameters& p) {
+  const auto of_no_use = [&](const char* key, const char* why, auto&& is_given) {
+    s.check(
+        [&p, why, is_given] {
+          return p.modes_file && !p.mesh && is_given()
+                     ? fmt::format("it has no effect with 'modes.file': {}", why)
+                     : "";
+        },
+        key);
+  };
+  const char* inside = "the modes include it already";
+  of_no_use("mesh-parameters", "there is no .geo", [&p] { return !p.mesh_parameters.empty(); });
+  of_no_use("mesh-scale", "the file is in metres", [&p] { return p.mesh_scale != 1; });
+  of_no_use("material", inside, [&p] {
+    const Material m;
+    return p.material.density != m.density || p.material.youngs_modulus != m.youngs_modulus ||
+           p.material.poissons_ratio != m.poissons_ratio;
+  });
+  of_no_use("thickness", inside, [&p] { return p.thickness > 0; });
+  of_no_use("zones", inside, [&p] { return !p.zones.empty(); });
+  of_no_use("boundaries", inside, [&p] { return !p.boundaries.empty(); });
+  of_no_use("placement", "the file defines the position of the surface", [&p] {
+    const Placement here;
+    return p.placement.origin != here.origin || p.placement.x != here.x || p.placement.y != here.y;
+  });
+  of_no_use("wetted", "the interface is the surface of the file", [&p] { return p.wetted != Wetted::both; });
+}
+
+void check_together(config::Section& s, Parameters& p) {
+  using Analysis = Parameters::Analysis;
+  const auto refuse = [&](const char* key, const char* why, auto&& is_wrong) {
+    s.check([why, is_wrong] { return is_wrong() ? why : ""; }, key);
+  };
+  refuse("mesh", "give either 'mesh' (of the mid-surface) or 'modes.file' (modes of another program)",
+         [&p] { return p.mesh.has_value() == p.modes_file.has_value(); });
+  const char* plate = p.mesh ? "mesh" : "modes";
+  refuse(plate, "a plate needs 'thickness' above 0", [&p] { return p.mesh && !(p.thickness > 0); });
+  refuse(plate, "a plate needs 'material.density' above 0",
+         [&p] { return p.mesh && !(p.material.density > 0); });
+  refuse(plate, "a plate needs 'material.youngs-modulus' above 0",
+         [&p] { return p.mesh && !(p.material.youngs_modulus > 0); });
+  refuse("contact", "contact requires a dynamic analysis; remove it",
+         [&p] { return p.contact && p.analysis != Analysis::dynamic; });
+  refuse("contact", "with 'modes.file' the material is unknown: give 'stiffness'",
+         [&p] { return p.contact && p.modes_file && !p.contact->stiffness; });
+  refuse("contact", "'rule: conserving' requires the trapezoidal time scheme; use 'rule: midpoint'", [&p] {
+    return p.contact && p.contact->rule == ContactRule::conserving &&
+           p.time_scheme.type != time::TimeScheme::trapezoidal;
+  });
+  refuse("damping", "damping has no effect in this analysis; remove it",
+         [&p] { return p.damping && p.analysis != Analysis::dynamic; });
+  s.check(
+      [&p] {
+        return p.mesh && std::ssize(p.initial_amplitudes) > p.n_modes()
+                   ? fmt::format("{} amplitudes are given, but there are {} modes",
+                                 p.initial_amplitudes.size(), p.n_modes())
+                   : "";
+      },
+      "initial-amplitudes");
+}
+
 }  // namespace
 
 void declare(config::Section& s, Parameters& p) {

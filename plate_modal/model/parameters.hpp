@@ -77,8 +77,5 @@ struct Parameters {
 
 /// The keys of `participants.<name>` of a plate_modal.
 void declare(config::Section& section, Parameters& parameters);
-/// Rules between the keys, each reported at the key to change.
-void check_together(config::Section& section, Parameters& parameters);
-void check_file_alone(config::Section& section, const Parameters& parameters);
 
 }  // namespace couplet::plate

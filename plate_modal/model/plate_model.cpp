@@ -9,7 +9,6 @@
 #include "common/base/constants.hpp"
 #include "common/base/error.hpp"
 #include "common/linalg/linear_solver.hpp"
-#include "common/linalg/petsc_check.hpp"
 #include "plate_modal/model/outline.hpp"
 
 namespace couplet::plate {
@@ -53,7 +52,12 @@ void for_pieces(const Midsurface& s, F&& f) {
 PlateModel::PlateModel(Midsurface surface, std::vector<PlateCell> cells, const std::vector<Support>& support)
     : surface_(std::move(surface)), cells_(std::move(cells)) {
   support_points(support);
-  assemble();
+  const Triplets t = assemble();
+  const auto n = static_cast<GlobalIndex>(n_unknowns());
+  stiffness_ = std::make_unique<linalg::SparseMatrix>(MPI_COMM_SELF, n, t.row, t.column);
+  mass_ = std::make_unique<linalg::SparseMatrix>(MPI_COMM_SELF, n, t.row, t.column);
+  stiffness_->fill(t.stiffness);
+  mass_->fill(t.mass);
 }
 
 void PlateModel::support_points(const std::vector<Support>& support) {
@@ -103,9 +107,8 @@ TriangleMatrix PlateModel::turned(const TriangleMatrix& matrix, const std::array
   return turn.transpose() * matrix * turn;
 }
 
-void PlateModel::assemble() {
-  std::vector<GlobalIndex> row, column;
-  std::vector<double> k_values, m_values;
+PlateModel::Triplets PlateModel::assemble() const {
+  Triplets t;
   double scale = 0;
   for_pieces(surface_, [&](const std::array<Index, 3>& points, const Triangle& x, double share, Index c) {
     const TriangleMatrix k =
@@ -117,24 +120,29 @@ void PlateModel::assemble() {
         const std::size_t r = 3 * std::size_t(points[i / 3]) + i % 3,
                           s = 3 * std::size_t(points[j / 3]) + j % 3;
         if (fixed_[r] || fixed_[s]) continue;
-        row.push_back(static_cast<GlobalIndex>(r));
-        column.push_back(static_cast<GlobalIndex>(s));
-        k_values.push_back(k(i, j));
-        m_values.push_back(m(i, j));
+        t.row.push_back(static_cast<GlobalIndex>(r));
+        t.column.push_back(static_cast<GlobalIndex>(s));
+        t.stiffness.push_back(k(i, j));
+        t.mass.push_back(m(i, j));
       }
   });
   for (std::size_t r = 0; r < fixed_.size(); ++r) {
     if (!fixed_[r]) continue;
-    row.push_back(static_cast<GlobalIndex>(r));
-    column.push_back(static_cast<GlobalIndex>(r));
-    k_values.push_back(scale);
-    m_values.push_back(0);
+    t.row.push_back(static_cast<GlobalIndex>(r));
+    t.column.push_back(static_cast<GlobalIndex>(r));
+    t.stiffness.push_back(scale);
+    t.mass.push_back(0);
   }
-  const auto n = static_cast<GlobalIndex>(n_unknowns());
-  stiffness_ = std::make_unique<linalg::SparseMatrix>(MPI_COMM_SELF, n, row, column);
-  mass_ = std::make_unique<linalg::SparseMatrix>(MPI_COMM_SELF, n, std::move(row), std::move(column));
-  stiffness_->fill(k_values);
-  mass_->fill(m_values);
+  return t;
+}
+
+linalg::SparseMatrix PlateModel::shifted_stiffness(double shift) const {
+  Triplets t = assemble();
+  for (std::size_t i = 0; i < t.mass.size(); ++i) t.stiffness[i] += shift * t.mass[i];
+  linalg::SparseMatrix matrix(MPI_COMM_SELF, static_cast<GlobalIndex>(n_unknowns()), std::move(t.row),
+                              std::move(t.column));
+  matrix.fill(t.stiffness);
+  return matrix;
 }
 
 std::vector<double> PlateModel::to_points(std::span<const double> unknowns) const {
@@ -216,10 +224,6 @@ modes::EigenModes PlateModel::modes(int n) const {
     }
   }
   return modes;
-}
-
-void PlateModel::stiffen(double shift) {
-  linalg::petsc_check(MatAXPY(stiffness_->petsc(), shift, mass_->petsc(), SAME_NONZERO_PATTERN));
 }
 
 std::vector<double> PlateModel::deflect(std::span<const double> load) const {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/linalg/matrix.hpp"
-#include "common/modes/lowest_modes.hpp"
+#include "common/modes/pencil.hpp"
 #include "plate_modal/model/kirchhoff.hpp"
 
 namespace couplet::plate {
@@ -36,6 +36,8 @@ class PlateModel final {
   const PlateCell& cell(Index c) const { return cells_[c]; }
   const linalg::SparseMatrix& stiffness() const { return *stiffness_; }
   const linalg::SparseMatrix& mass() const { return *mass_; }
+  /// K + shift M.
+  linalg::SparseMatrix shifted_stiffness(double shift) const;
   std::size_t n_unknowns() const { return 3 * surface_.points.size(); }
   bool is_supported(std::size_t unknown) const { return fixed_[unknown]; }
 
@@ -52,14 +54,16 @@ class PlateModel final {
 
   /// The plate's lowest modes.
   modes::EigenModes modes(int n) const;
-  /// Puts K + shift M in the place of K.
-  void stiffen(double shift);
   /// K u = load. Throws Error if the supports leave it free, SolveFailure. In unknowns.
   std::vector<double> deflect(std::span<const double> load) const;
 
  private:
   void support_points(const std::vector<Support>& support);
-  void assemble();
+  struct Triplets {
+    std::vector<GlobalIndex> row, column;
+    std::vector<double> stiffness, mass;
+  };
+  Triplets assemble() const;
   TriangleMatrix turned(const TriangleMatrix& matrix, const std::array<Index, 3>& points) const;
 
   Midsurface surface_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <span>
 #include <vector>
@@ -17,9 +19,20 @@ struct Energies {
   double load_work = 0;    ///< done by the fluid and by prescribed pressures
   double impact_work = 0;  ///< done by the seat
   double damping_loss = 0;
+  double largest =
+      0;  ///< that the scheme did not make, or work of the loads: the most that the structure had so far
   double total() const { return kinetic + strain + gravity + contact; }
   /// What the scheme made or lost: of the structure together with the seat's springs.
   double mismatch() const { return total() - initial - load_work + damping_loss; }
+  /// Kinetic, strain and contact energy without what the scheme made, or the work of the loads: whichever is more.
+  double own() const {
+    return std::max(kinetic + strain + contact - std::max(0.0, mismatch()), std::abs(load_work));
+  }
+  /// For checkpoints.
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(kinetic, strain, gravity, contact, initial, load_work, impact_work, damping_loss, largest);
+  }
 };
 
 /// Generalised coordinates of the modes, thesis (4.26)-(4.27), at an accepted or a tried time.
@@ -29,6 +42,16 @@ struct ModalState {
   double dt = 0;                     ///< of the last step [s]; 0: none yet
   std::vector<double> partner;  ///< loads of a partner in the last step, where the scheme looks back at them
   Energies energies;
+  /// For checkpoints.
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(q, v, a, q_old, v_old, dt, partner, energies);
+  }
+};
+
+/// Static analysis: largest deflections of the plate itself and by its modes, largest difference [m].
+struct Deflection {
+  double direct = 0, by_modes = 0, apart = 0;
 };
 
 /// Integrates q'' + c q' + omega^2 q = Q + impact of all modes over one step. Without a seat every mode is a
@@ -49,6 +72,7 @@ class Oscillators final {
   int newton_iterations() const { return iterations_; }  ///< of the last step, most of its stages
   /// Of the last solve, in its last stage: fluid and prescribed pressures on each mode.
   std::span<const double> load() const { return load_; }
+  std::span<const double> damping() const { return damping_; }
   const Contact::Result& seat() const { return seat_; }  ///< at the end of the last step
 
  private:

@@ -120,28 +120,22 @@ void PressureLoad::at(double t, std::span<double> load) const {
   throw Error(texts.substr(0, texts.find('\n')));
 }
 
-PressureLoad::Seen PressureLoad::seen(double t, double dt, int samples) const {
-  const std::size_t n = share_.n_modes();
-  std::vector<double> all((samples + 1) * n + 1, 0);  // in the middle, at each sample; failures
-  try {
-    fill(t + 0.5 * dt, std::span(all).first(n));
-    for (int i = 0; i < samples; ++i)
-      fill(t + (i + 0.5) / samples * dt, std::span(all).subspan((i + 1) * n, n));
-  } catch (const Error&) {
-    all.back() = 1;  // the scheme need not ask for it there
+std::vector<double> cell_pressures(const PlateModel& plate, const Parameters& parameters,
+                                   const PressureLoad* load, double t) {
+  const Midsurface& s = plate.surface();
+  const Placement& place = parameters.placement;
+  const Vec3 normal = place.normal();
+  std::vector<double> pressure(s.cells.size(), 0);
+  for (Index c = 0; c < s.cells.size(); ++c) {
+    Vec2 middle = Vec2::Zero();
+    for (const Index p : s.cells[c]) middle += s.points[p] / double(s.cells[c].size());
+    const double half = 0.5 * plate.cell(c).thickness;
+    if (load && load->upper()) pressure[c] -= load->value(*load->upper(), place.place(middle, half), t);
+    if (load && load->lower()) pressure[c] += load->value(*load->lower(), place.place(middle, -half), t);
+    if (!parameters.gravity.empty())
+      pressure[c] += plate.cell(c).surface_density() * normal.dot(Vec3(parameters.gravity.data()));
   }
-  share_.sum(all);
-  Seen seen;
-  if (all.back() > 0) return seen;
-  for (std::size_t m = 0; m < n; ++m) {
-    double mean = 0;
-    for (int i = 1; i <= samples; ++i) {
-      mean += all[i * n + m] / samples;
-      seen.size += all[i * n + m] * all[i * n + m] / samples;
-    }
-    seen.apart += (mean - all[m]) * (mean - all[m]);
-  }
-  return seen;
+  return pressure;
 }
 
 }  // namespace couplet::plate

@@ -35,14 +35,6 @@ class PressureLoad final {
   /// Pressures at x on a face of this area, those that push against its normal [Pa].
   double push(const Vec3& area, const Vec3& x, double t) const;
 
-  /// What a step from t sees of the load: it takes the value in its middle for the mean over it.
-  struct Seen {
-    double apart = 0;  ///< square of (mean over the step - value in the middle), over all modes
-    double size = 0;   ///< mean of the square of the load
-  };
-  /// `samples`: times within the step. Zeros if the load has no finite value at one of them. Collective.
-  Seen seen(double t, double dt, int samples) const;
-
  private:
   void add_faces(const fv::Expression& side, double sign, double t, std::span<double> load) const;
   void fill(double t, std::span<double> load) const;
@@ -54,5 +46,10 @@ class PressureLoad final {
   std::array<std::vector<double>, 2>
       of_one_pascal_;  // on this rank's faces: upper, lower; empty: not uniform
 };
+
+/// Pressures on the cells of a plate at t, along its normal, its weight included [Pa]. `load` may be nullptr. On rank 0.
+/// Throws Error where a pressure has no value.
+std::vector<double> cell_pressures(const PlateModel& plate, const Parameters& parameters,
+                                   const PressureLoad* load, double t);
 
 }  // namespace couplet::plate

@@ -103,37 +103,29 @@ class Job:
             raise FileNotFoundError(f"the executable of test {name} is not built")
         return [w for w in words[first:] if not w.startswith("--gtest_filter")]
 
-    def fuzz(self, name, count, filter_="*"):
-        """{test: what a fuzz program recorded at so many inputs}, and whether all its tests passed."""
+    def gtest(self, name, filter_="*", timeout=7200, count=None):
+        """Runs a test executable (a fuzz program at `count` inputs); gives {"Suite.test": {"passed": bool, **recorded properties}} and its output."""
         def make():
             file = self.scratch / f"{name}-{count}.json"
-            result = self.run(["env", f"COUPLET_FUZZ_COUNT={count}", *self.test(name), f"--gtest_filter={filter_}", f"--gtest_output=json:{file}"], 3600, cwd=self.scratch)
+            inputs = ["env", f"COUPLET_FUZZ_COUNT={count}"] if count else []
+            result = self.run([*inputs, *self.test(name), f"--gtest_filter={filter_}", f"--gtest_output=json:{file}"], timeout, cwd=self.scratch)
             if not file.exists():
                 raise RuntimeError(f"{name} ended with code {result.returncode}: {result.stdout[-200:]}")
-            tests = {t["name"]: t for suite in json.loads(file.read_text())["testsuites"] for t in suite["testsuite"]}
-            return tests, result.returncode == 0 and not any(t.get("failures") for t in tests.values())
-        return self.once(("fuzz", name, count, filter_), make)
-
-    def gtest(self, name, filter_="*", timeout=7200):
-        """Runs a test executable; gives {"Suite.test": {"passed": bool, **recorded properties}} and its output."""
-        def make():
-            file = self.scratch / f"{name}.json"
-            result = self.run([*self.test(name), f"--gtest_filter={filter_}", f"--gtest_output=json:{file}"], timeout,
-                              cwd=self.scratch)
-            tests = {}
+            known, tests = {"name", "value_param", "type_param", "status", "result", "timestamp", "time", "classname", "failures", "file", "line"}, {}
             for suite in json.loads(file.read_text())["testsuites"]:
                 for test in suite["testsuite"]:
-                    known = {"name", "value_param", "type_param", "status", "result", "timestamp", "time", "classname",
-                             "failures", "file", "line"}
-                    if test.get("result") == "SKIPPED":  # does not apply to this mesh: says nothing about a bar
-                        continue
-                    tests[f"{suite['name']}.{test['name']}"] = {
-                        "passed": not test.get("failures") and test.get("result") == "COMPLETED",
-                        **{k: v for k, v in test.items() if k not in known}}
+                    if test.get("result") != "SKIPPED":  # does not apply to this mesh: says nothing about a bar
+                        tests[f"{suite['name']}.{test['name']}"] = {"passed": not test.get("failures") and test.get("result") == "COMPLETED",
+                                                                    **{k: v for k, v in test.items() if k not in known}}
             if not tests:
                 raise LookupError(f"{name} has no test {filter_}")
             return tests, result.stdout
-        return self.once(("gtest", name, filter_), make)
+        return self.once(("gtest", name, filter_, count), make)
+
+    def fuzz(self, name, count, filter_="*"):
+        """{test: what a fuzz program recorded}, and whether all its tests passed."""
+        tests, _ = self.gtest(name, filter_, 3600, count)
+        return {name.split(".", 1)[1]: found for name, found in tests.items()}, all(found["passed"] for found in tests.values())
 
     def recorded(self, name, pattern, key):
         """All values of a recorded property in the tests whose name matches, and whether all those tests passed."""
@@ -193,11 +185,6 @@ class Job:
             results.participant = participant
             return results
         return self.once(("solve", case, tuple(overrides), ranks), make)
-
-    def solve(self, *what, **more):
-        """Folder and log of alone()."""
-        run = self.alone(*what, **more)
-        return run.folder, run.log
 
     def beside(self, file):
         """A Python file of a case, such as configs/<case>/errors.py, as a module."""

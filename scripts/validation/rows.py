@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows as data: tables/NAME.yaml. Its keys: `about`; `sources`, folders whose change may change its rows; `note` before its rows; `pages`, functions that
-write what is made of the table; `items`, a file with its list of items; `library`, files below parts whose functions measure; `rows`.
+write what is made of the table; `library`, files below parts whose functions measure; `rows`.
 
 A row is `quantity: {wanted, long, but, sources, MEASURE: ARGUMENTS}` (job.Bar describes these). MEASURE is a function of shapes.py or of the library,
 'file.function' where two have it. It gets the job and ARGUMENTS: one value, a list in order, or a mapping by name. An entry with `rows` is a group: what
@@ -46,7 +46,6 @@ class Table:
     sources: tuple
     note: str
     pages: list
-    items: object  # (bars) -> text of NAME-items.md, or None
 
 
 def known():
@@ -72,7 +71,7 @@ def arguments(name, measure):
 def load(name, file=None):
     file = file or FOLDER / f"{name}.yaml"
     data = yaml.load(file.read_text(), Loader)
-    unknown = set(data) - {"about", "sources", "note", "pages", "items", "library", "rows"}
+    unknown = set(data) - {"about", "sources", "note", "pages", "library", "rows"}
     if unknown:
         raise ValueError(f"{file.name}: unknown {', '.join(unknown)}")
     library = {path.split("/")[-1]: part(path) for path in data.get("library") or ()}
@@ -82,8 +81,7 @@ def load(name, file=None):
     twice = {b.quantity for b in bars if sum(b.quantity == o.quantity for o in bars) > 1}
     if twice:
         raise ValueError(f"{file.name}: twice: {'; '.join(twice)}")
-    return Table(name, bars, tuple(data.get("sources") or ()), data.get("note", ""), [named(p) for p in data.get("pages") or ()],
-                 part(data["items"]).table if "items" in data else None)
+    return Table(name, bars, tuple(data.get("sources") or ()), data.get("note", ""), [named(p) for p in data.get("pages") or ()])
 
 
 def written_out(rows, shared=None):

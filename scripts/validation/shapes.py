@@ -6,13 +6,12 @@ configurations; `at_most`, `at_least`, `between`, `numbers`, `near`, `shown`, `t
 spaces) the numbers; a test that did not pass is never a bar that is met.
 
 Runs: `run` reads numbers of a case of configs/ that one program runs and compares them with what is right."""
-import ast
 import math
-import operator
 import re
 import sys
 
-from couplet.runs.warnings import WARNING
+from couplet.runs.pool import WARNING
+from couplet.study.axes import evaluate
 
 
 def tests(job, pattern, least=1, seconds=1800):
@@ -157,19 +156,6 @@ def reading(job, case, results, text):
     return {column: float(WAYS[way](results.column(results.participant, file, column)))}
 
 
-OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: operator.pow, ast.USub: operator.neg}
-
-
 def number(given):
     """A number, or the value of '100*40**3/(3*210e9/12)'; pi is known."""
-    def value(node):
-        if isinstance(node, ast.Constant) and isinstance(node.value, (int, float)):
-            return node.value
-        if isinstance(node, ast.Name) and node.id == "pi":
-            return math.pi
-        if isinstance(node, ast.BinOp) and type(node.op) in OPERATORS:
-            return OPERATORS[type(node.op)](value(node.left), value(node.right))
-        if isinstance(node, ast.UnaryOp) and type(node.op) in OPERATORS:
-            return OPERATORS[type(node.op)](value(node.operand))
-        raise ValueError(f"'{given}' is no number and no formula")
-    return value(ast.parse(given, mode="eval").body) if isinstance(given, str) else given
+    return evaluate(given, {"pi": math.pi}) if isinstance(given, str) else given

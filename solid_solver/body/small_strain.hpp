@@ -6,21 +6,23 @@
 
 #include "solid_solver/method/equilibrium.hpp"
 #include "solid_solver/parameters/parameters.hpp"
-#include "solid_solver/thermal/effect.hpp"
+#include "solid_solver/thermal/thermal_strain.hpp"
 
 namespace couplet::solid {
 
 /// A(u) = K u in the reference configuration, with the face gradient that was chosen.
 class SmallStrain final : public Equilibrium {
  public:
-  using Effects = std::vector<std::unique_ptr<SolidEffect>>;
+  using Effects = std::vector<std::unique_ptr<ThermalStrain>>;
   /// All by reference.
   SmallStrain(const mesh::Mesh& mesh, const elastic::ElasticKernel& kernel,
               const elastic::ElasticOperator& rows, const Effects& effects, const SolidParameters& parameters)
       : mesh_(mesh), kernel_(kernel), rows_(rows), effects_(effects), parameters_(parameters) {}
 
-  EquilibriumMeans means() const override { return {true, true, true}; }
-  bool takes_pressure() const override { return false; }
+  EquilibriumMeans means() const override {
+    return {
+        .recovers_stress = true, .has_products = true, .compares_gradients = true, .takes_pressure = false};
+  }
   std::string name(const SolidSystem& system) const override { return system.method->name(); }
   void prepare(const SolidProblem& problem, SolidSystem& system) const override;
   void set_pressure(std::vector<double>) override {}

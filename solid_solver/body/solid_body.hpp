@@ -14,7 +14,7 @@
 #include "solid_solver/contact/seat.hpp"
 #include "solid_solver/method/equilibrium.hpp"
 #include "solid_solver/parameters/parameters.hpp"
-#include "solid_solver/thermal/effect.hpp"
+#include "solid_solver/thermal/thermal_strain.hpp"
 
 namespace couplet::solid {
 
@@ -49,7 +49,8 @@ class SolidBody final {
   const Seat* seat() const { return seat_.get(); }
   const PrescribedDisplacement& prescribed() const { return prescribed_; }
   /// Those that the scene has.
-  const std::vector<std::unique_ptr<SolidEffect>>& effects() const { return effects_; }
+  /// Thermal strain, if the scene has temperatures.
+  const std::vector<std::unique_ptr<ThermalStrain>>& effects() const { return effects_; }
   /// The kernel has its own mass, and all its nodes inertia.
   bool has_mass() const { return has_mass_; }
   bool is_dynamic() const { return parameters_.analysis == SolidParameters::Analysis::dynamic; }
@@ -68,7 +69,7 @@ class SolidBody final {
   void set_load_factor(double factor) { load_factor_ = factor; }
   /// It knows the pressures at time t that follow the surface. Collective.
   void place_pressures(double t) const {
-    if (equilibrium_->takes_pressure()) equilibrium_->set_pressure(scaled(boundaries_.pressures(t)));
+    if (equilibrium_->means().takes_pressure) equilibrium_->set_pressure(scaled(boundaries_.pressures(t)));
   }
   /// It knows the thermal strains at time t that it takes itself: large strain. Collective.
   void place_expansion(double t) const;
@@ -117,7 +118,7 @@ class SolidBody final {
   PrescribedDisplacement prescribed_;
   RigidPatches rigid_;
   std::vector<fv::Expression> body_force_;
-  std::vector<std::unique_ptr<SolidEffect>> effects_;
+  std::vector<std::unique_ptr<ThermalStrain>> effects_;
 };
 
 }  // namespace couplet::solid

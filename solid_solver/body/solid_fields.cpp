@@ -1,7 +1,57 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/body/solid_fields.hpp"
 
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "common/fv/point_gradient.hpp"
+
 namespace couplet::solid {
+namespace {
+
+/// Cells all of whose neighbours by vertex are of the same kind and material. Elsewhere the values at points
+/// are less exact (kind) or have no one gradient (material).
+std::vector<bool> uniform_surroundings(const mesh::Mesh& mesh) {
+  constexpr int unseen = -1, several = -2;
+  std::vector<int> around(mesh.points.n_local(), unseen);
+  for (Index c = 0; c < mesh.cells.n_local(); ++c) {
+    const int here = static_cast<int>(mesh.cell_type[c]) + 16 * mesh.material_of(c);
+    for (const Index v : mesh.cell_points[c])
+      around[v] = around[v] == unseen || around[v] == here ? here : several;
+  }
+  std::vector<bool> uniform(mesh.cells.n_owned(), true);
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    for (const Index v : mesh.cell_points[c]) uniform[c] = uniform[c] && around[v] != several;
+  return uniform;
+}
+
+/// Unit normal of a boundary face whose points are at `places`, out of the body as the reference one is.
+Vec3 normal_at(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index face,
+               std::span<const Vec3> places) {
+  const auto corners = mesh.face_points[face];
+  if (corners.size() == 2) {
+    const auto turned = [&](std::span<const Vec3> x) {
+      const Vec3 along = x[corners[1]] - x[corners[0]];
+      return Vec3(along.y(), -along.x(), 0);
+    };
+    const double side = turned(geometry.points).dot(geometry.face_area[face]) > 0 ? 1 : -1;
+    return side * turned(places).normalized();
+  }
+  Vec3 area = Vec3::Zero();
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+    area += (places[corners[i]] - places[corners[0]]).cross(places[corners[i + 1]] - places[corners[0]]);
+  return area.normalized();
+}
+
+Tensor3 mean_stress(std::span<const Index> corners, std::span<const double> point_stress) {
+  Tensor3 mean = Tensor3::Zero();
+  for (const Index v : corners)
+    mean += unpack(point_stress.subspan(std::size_t(v) * tensor_size, tensor_size));
+  return mean / double(corners.size());
+}
+
+}  // namespace
+
 SolidFields::SolidFields(const SolidBody& body, const SolidState& state, const LastSolve& last)
     : body_(body),
       state_(state),
@@ -139,6 +189,63 @@ std::vector<double> SolidFields::point_stress(std::span<const double> points,
 std::vector<double> SolidFields::point_strain(std::span<const double> points) const {
   return point_tensors().interpolate(cell_strain(points),
                                      face_strain(mesh_.n_interior, mesh_.boundary.n_owned(), points));
+}
+
+// Gradients of the displacement in cells, from which stress and strain follow.
+
+/// Mean of the face gradients by the pyramids over the faces: exact for fields whose gradient is linear if
+/// those of the faces are. With the corrected face gradient the points' values are exact for quadratics, and
+/// Gauss's theorem over the faces with these means at the points errs by h^2/24 of the third derivatives
+/// along a line of cells where the mean of the faces' differences errs by h^2/6.
+std::vector<Tensor3> SolidFields::cell_gradient(std::span<const double> points) const {
+  const Index n_owned = mesh_.cells.n_owned();
+  std::vector<Tensor3> gradient(n_owned, Tensor3::Zero()), on_boundary;
+  std::vector<double> weight(n_owned, 0);
+  if (body_.is_corrected()) on_boundary.resize(mesh_.boundary.n_owned());
+  body_.visit_gradients(displacement(points), [&](Index f, const Tensor3& here) {
+    const auto add = [&](Index c) {
+      if (c >= n_owned) return;
+      const Vec3 arm = geometry_.face_centre[f] - geometry_.cell_centre[c];
+      const double pyramid = std::abs(arm.dot(geometry_.face_area[f]));
+      gradient[c] += pyramid * here;
+      weight[c] += pyramid;
+    };
+    add(mesh_.owner[f]);
+    if (f < mesh_.n_interior)
+      add(mesh_.neighbour[f]);
+    else if (body_.is_corrected())
+      on_boundary[f - mesh_.n_interior] = here;
+  });
+  for (Index c = 0; c < n_owned; ++c) gradient[c] /= weight[c];
+  weight = std::vector<double>();
+  if (!body_.is_corrected()) return gradient;
+
+  const std::vector<Tensor3> at_points = point_tensors().interpolate_full(gradient, on_boundary);
+  const std::vector<Tensor3> better = fv::gradients_from_points(mesh_, geometry_, points, at_points);
+  const std::vector<bool> uniform = uniform_surroundings(mesh_);
+  for (Index c = 0; c < n_owned; ++c)
+    if (uniform[c]) gradient[c] = better[c];
+  return gradient;
+}
+
+// Tractions of boundary faces: those of the loads where they are known, else of the stress at the faces' points.
+
+std::vector<double> SolidFields::traction(std::span<const Vec3> places,
+                                          std::span<const double> point_stress) const {
+  const std::size_t n = mesh_.boundary.n_owned(), dim = mesh_.dim;
+  const std::span<const Vec3> moved = body_.equilibrium().surface(places);
+  const std::vector<SurfaceTraction> known =
+      moved.empty() ? known_tractions() : std::vector<SurfaceTraction>(n);
+  std::vector<double> result(n * dim);
+  for (std::size_t b = 0; b < n; ++b) {
+    const Index f = mesh_.n_interior + Index(b);
+    const Vec3 normal =
+        moved.empty() ? geometry_.face_area[f].normalized() : normal_at(mesh_, geometry_, f, moved);
+    const Vec3 here = mean_stress(mesh_.face_points[f], point_stress) * normal;
+    const Vec3 value = known[b].traction + here - known[b].projector * here;
+    for (std::size_t a = 0; a < dim; ++a) result[b * dim + a] = value[Index(a)];
+  }
+  return result;
 }
 
 }  // namespace couplet::solid

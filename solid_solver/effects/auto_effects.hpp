@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "common/effects/choice.hpp"
-#include "common/effects/expected.hpp"
 #include "common/mesh/gmsh/mesh_facts.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 

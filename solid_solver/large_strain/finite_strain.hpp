@@ -37,14 +37,13 @@ class FiniteStrain final : public LargeStrain {
   FiniteStrain(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
                const SolidParameters& parameters);
 
-  bool has_tangent() const override { return !meets_seat_; }  // nothing but its own
-  using LargeStrain::name;
-  std::string name() const override;
+  EquilibriumMeans means() const override { return {.has_tangent = !meets_seat_}; }  // nothing but its own
+  std::string name(const SolidSystem& system) const override;
   void prepare(const SolidProblem& problem, SolidSystem& system) const override;
   /// Of the local cells; dynamic analyses.
   void set_density(std::span<const double> of_cells) override { kernel_->set_density(of_cells); }
   using Load = EquilibriumLoad;
-  linalg::SolveStatistics solve(const Load& load, std::span<double> u) override;
+  linalg::SolveStatistics find(const Load& load, SolidSystem& system, std::span<double> u) override;
   void set_pressure(std::vector<double> of_faces) override;
   void set_expansion(const std::function<std::vector<double>()>& of_faces) override;
   std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;

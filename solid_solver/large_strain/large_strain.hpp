@@ -18,12 +18,6 @@ class LargeStrain : public Equilibrium {
   LargeStrain(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows)
       : mesh_(mesh), geometry_(rows.geometry()), rows_(rows) {}
 
-  std::string name(const SolidSystem&) const override { return name(); }
-  void prepare(const SolidProblem&, SolidSystem&) const override {}
-  std::vector<double> force_of_known(std::span<const double>) const override { return {}; }
-  linalg::SolveStatistics find(const EquilibriumLoad& load, SolidSystem&, std::span<double> u) override {
-    return solve(load, u);
-  }
   /// Relative already.
   double share_left(double residual, double) const override { return residual; }
   void to_strain(std::span<Tensor3> gradients) const override;
@@ -31,9 +25,6 @@ class LargeStrain : public Equilibrium {
   std::vector<Tensor3> cell_stress(const Displaced& state) override;
   std::span<const Vec3> surface(std::span<const Vec3> moved) const override { return moved; }
 
-  virtual std::string name() const = 0;
-  /// `u`: the first guess on entry. Throws SolveFailure, `u` being of no use then.
-  virtual linalg::SolveStatistics solve(const EquilibriumLoad& load, std::span<double> u) = 0;
   /// Takes (face, F, P): F(i, j) = d x_i / d X_j, P the first Piola-Kirchhoff stress [Pa], of this rank's faces.
   using Take = std::function<void(Index, const Tensor3&, const Tensor3&)>;
   virtual void visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) = 0;

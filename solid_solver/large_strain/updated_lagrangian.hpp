@@ -26,10 +26,10 @@ class UpdatedLagrangian final : public LargeStrain {
                     const SolidParameters& parameters);
   ~UpdatedLagrangian() override;
 
-  using LargeStrain::name;
-  std::string name() const override;
+  std::string name(const SolidSystem& system) const override;
   void set_pressure(std::vector<double> of_faces) override { pressure_ = std::move(of_faces); }
-  linalg::SolveStatistics solve(const EquilibriumLoad& load, std::span<double> u) override;
+  linalg::SolveStatistics find(const EquilibriumLoad& load, SolidSystem& system,
+                               std::span<double> u) override;
   std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;
   double energy(std::span<const double> unknowns, std::span<const double> known) override;
   void visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) override;

@@ -100,8 +100,9 @@ class ContactNewton {
       correct();
       const double before = size;
       size = residual();
-      // At rounding level Newton's method stands still.
-      if (size >= before && size <= 1e3 * p_.tolerance * scale_ && i > 3) break;
+      // At rounding level Newton's method stands still, or creeps.
+      const double creeping = size >= before ? 1e3 : size > 0.5 * before ? 10 : 0;
+      if (size <= creeping * p_.tolerance * scale_ && i > 3) break;
     }
     statistics_.residual = size;
     return i;

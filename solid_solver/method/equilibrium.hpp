@@ -70,8 +70,11 @@ struct SoftMotion {
 struct EquilibriumMeans {
   bool recovers_stress = false;  ///< stress at points by patches of cells
   bool has_products = false;     ///< those of ElasticPart are the work of a stage
-  bool compares_gradients =
-      false;  ///< two gradients of one displacement judge mesh and energy; else the energy of the law does
+  /// Two gradients of one displacement judge mesh and energy; else the energy of the law does.
+  bool compares_gradients = false;
+  bool has_tangent = false;  ///< softness() and lowest_stiffness() are known
+  /// Pressures stay normal to the surface that moves, so that they are a part of A: set_pressure().
+  bool takes_pressure = true;
 };
 
 /// How a body resists, at small strain or at large, and how M m u + A(u) = b is solved for it. A state is the unknowns of
@@ -80,21 +83,17 @@ class Equilibrium {
  public:
   virtual ~Equilibrium() = default;
   virtual EquilibriumMeans means() const { return {}; }
-  /// softness() and lowest_stiffness() are known.
-  virtual bool has_tangent() const { return false; }
-  /// Pressures stay normal to the surface that moves, so that they are a part of A: set_pressure().
-  virtual bool takes_pressure() const { return true; }
   /// For the log.
   virtual std::string name(const SolidSystem& system) const = 0;
 
   /// Of the local cells [kg/m^3]; dynamic analyses.
   virtual void set_density(std::span<const double> /*of_cells*/) {}
   /// What a size of the inertia term needs is made.
-  virtual void prepare(const SolidProblem& problem, SolidSystem& system) const = 0;
+  virtual void prepare(const SolidProblem& /*problem*/, SolidSystem& /*system*/) const {}
   /// A pressure [Pa] on boundary faces of owned cells, one each, that follows the surface.
   virtual void set_pressure(std::vector<double> of_faces) = 0;
   /// What the known columns take from b; empty: find() does it.
-  virtual std::vector<double> force_of_known(std::span<const double> known) const = 0;
+  virtual std::vector<double> force_of_known(std::span<const double> /*known*/) const { return {}; }
   /// `u`: the first guess on entry. Throws SolveFailure, `u` being of no use then.
   virtual linalg::SolveStatistics find(const EquilibriumLoad& load, SolidSystem& system,
                                        std::span<double> u) = 0;

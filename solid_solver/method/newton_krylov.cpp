@@ -8,8 +8,8 @@
 
 #include "common/base/error.hpp"
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
-#include "common/elasticity/tied/tied_matrix.hpp"
-#include "common/log/timer.hpp"
+#include "common/elasticity/symmetric/tied_matrix.hpp"
+#include "common/log/progress.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::solid {
@@ -192,7 +192,7 @@ void NewtonKrylov::choose_factors() {
     std::vector<double> inertia(problem_.inertia.begin(), problem_.inertia.end());  // of a unit of volume
     for (std::size_t c = 0; c < inertia.size(); ++c) inertia[c] /= problem_.geometry().volume[Index(c)];
     if (problem_.mesh.dim == 3 && elastic::TiedMatrix::suits(problem_.mesh)) {
-      elastic::TiedParts parts;
+      elastic::EnergyParts parts;
       if (!inertia.empty()) parts.mass = 1, parts.density = inertia;
       tied_ = std::make_unique<elastic::TiedMatrix>(problem_.mesh, problem_.elastic, parts);
       tied_->factorise();

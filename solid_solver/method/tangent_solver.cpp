@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "common/elasticity/finite/finite_matrix.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/parallel/collective.hpp"
 

@@ -140,7 +140,7 @@ void check_heat_quantities(const Heat& heat, const std::map<std::string, SolidQu
   const mesh::Mesh& mesh = heat.conduction().mesh();
   if (HeatAnswer(heat).properties_vary())
     throw Error(
-        "quantities: the conductivity varies with the temperature; their errors are estimated where it is constant. 'scripts/study "
+        "quantities: the conductivity varies with the temperature; their errors are estimated where it is constant. 'couplet study "
         "--quantities' estimates them by differences of coarser runs.");
   std::vector<std::string> patches;
   for (const mesh::Patch& patch : mesh.patches)

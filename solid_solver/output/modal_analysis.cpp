@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "common/base/error.hpp"
-#include "common/elasticity/tied/tied_matrix.hpp"
+#include "common/elasticity/symmetric/tied_matrix.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/extent.hpp"
 #include "common/parallel/collective.hpp"
@@ -90,16 +90,17 @@ modes::EigenModes search_by_factors(const SolidProblem& problem, std::span<const
   std::vector<double> density;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
     density.push_back(cell_mass[std::size_t(c)] / geometry.volume[std::size_t(c)]);
-  const modes::SlepcEnvironment slepc;
   elastic::TiedMatrix shifted(mesh, problem.elastic, {.mass = shift, .density = density});
   check_factors(problem, shifted, shift);
   shifted.factorise();
-  const modes::ModalOperators of{
-      .stiffness = [&](std::span<const double> x, std::span<double> y) { problem.kernel.apply(x, {}, y); },
-      .mass = [&](std::span<const double> x,
-                  std::span<double> y) { problem.kernel.apply_with_mass(x, {}, 1, false, y); },
+  const modes::Pencil of{
+      .comm = mesh.comm,
+      .n = problem.elastic.n_unknowns(),
+      .k = [&](std::span<const double> x, std::span<double> y) { problem.kernel.apply(x, {}, y); },
+      .m = [&](std::span<const double> x,
+               std::span<double> y) { problem.kernel.apply_with_mass(x, {}, 1, false, y); },
       .solve = [&](std::span<const double> x, std::span<double> y) { shifted.solve(x, y); }};
-  return modes::lowest_modes(mesh.comm, problem.elastic.n_unknowns(), of, n, -shift);
+  return modes::lowest_modes(of, n, -shift);
 }
 
 /// The search with one preconditioner.
@@ -109,17 +110,18 @@ modes::EigenModes search(const SolidProblem& problem, const MethodParameters& me
   for (const double m : cell_mass) inertia.push_back(shift * m);
   const auto shifted =
       make_solution_method({problem.mesh, problem.elastic, inertia, problem.kernel, shift}, method);
-  const modes::SlepcEnvironment slepc;
-  const modes::ModalOperators of{
-      .stiffness = [&](std::span<const double> x, std::span<double> y) { problem.kernel.apply(x, {}, y); },
-      .mass = [&](std::span<const double> x,
-                  std::span<double> y) { problem.kernel.apply_with_mass(x, {}, 1, false, y); },
+  const modes::Pencil of{
+      .comm = problem.mesh.comm,
+      .n = problem.elastic.n_unknowns(),
+      .k = [&](std::span<const double> x, std::span<double> y) { problem.kernel.apply(x, {}, y); },
+      .m = [&](std::span<const double> x,
+               std::span<double> y) { problem.kernel.apply_with_mass(x, {}, 1, false, y); },
       .solve =
           [&](std::span<const double> x, std::span<double> y) {
             std::ranges::fill(y, 0);
             if (norm(problem.mesh.comm, x) > 0) shifted->solve(x, y);
           }};
-  return modes::lowest_modes(problem.mesh.comm, problem.elastic.n_unknowns(), of, n, -shift);
+  return modes::lowest_modes(of, n, -shift);
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 #include <optional>
 #include <span>
 
-#include "common/modes/lowest_modes.hpp"
 #include "common/modes/modal_model.hpp"
+#include "common/modes/pencil.hpp"
 #include "solid_solver/body/solid_body.hpp"
 #include "solid_solver/method/solution_method.hpp"
 

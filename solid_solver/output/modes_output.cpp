@@ -10,7 +10,7 @@
 #include "common/log/log.hpp"
 #include "common/modes/modes_file.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/judge/weighted_estimate.hpp"
+#include "solid_solver/diagnostics/weighted_estimate.hpp"
 #include "solid_solver/output/modal_analysis.hpp"
 #include "solid_solver/output/output.hpp"
 #include "solid_solver/stability/buckling.hpp"

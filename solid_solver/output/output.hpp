@@ -8,7 +8,7 @@
 
 #include "common/io/fields/field_writer.hpp"
 #include "common/io/series.hpp"
-#include "common/modes/lowest_modes.hpp"
+#include "common/modes/pencil.hpp"
 #include "solid_solver/body/solid_context.hpp"
 #include "solid_solver/body/solid_fields.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"

@@ -10,8 +10,8 @@
 #include "common/base/error.hpp"
 #include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/judge/dual_problem.hpp"
-#include "solid_solver/judge/local_quadratic.hpp"
+#include "solid_solver/diagnostics/dual_problem.hpp"
+#include "solid_solver/diagnostics/local_quadratic.hpp"
 #include "solid_solver/material/stress.hpp"
 #include "solid_solver/output/stress_report.hpp"
 
@@ -144,7 +144,7 @@ std::vector<QuantityEstimate> estimate_quantities(const SolidBody& body, const S
   if (!body.kernel().is_symmetric())
     throw Error(
         "quantities: their errors are estimated with 'solution-method: {face-gradient: symmetric}', the default; the matrix of the other "
-        "gradients is not symmetric. scripts/study --quantities estimates them by differences of runs.");
+        "gradients is not symmetric. couplet study --quantities estimates them by differences of runs.");
   const Estimates estimates(body, fields, state, method);
   std::vector<QuantityEstimate> found;
   for (const auto& [name, quantity] : body.parameters().quantities)

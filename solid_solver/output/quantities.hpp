@@ -29,7 +29,7 @@ struct QuantityEstimate {
   bool is_signed = false;  ///< both parts have the sign of what is missed
   /// In the unit: the larger part; with signs their sum, but at least half the larger, since what cancels does so to first order only; never less than `body`.
   /// Displacements within a factor of 3 of the truth, but for
-  /// three-dimensional bodies in bending, where it is 4 to 50 times too large (scripts/validate one-budget).
+  /// three-dimensional bodies in bending, where it is 4 to 50 times too large (scripts/validate error-estimates).
   double error() const;
 };
 

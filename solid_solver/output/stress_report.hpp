@@ -27,7 +27,7 @@ Vec3 place_of_largest_stress(const SolidBody& body, const SolidFields& fields,
 /// what the fits of the recovery leave there (StressRecovery::left_at_points) and of what the mesh leaves in the displacement
 /// (`mesh`, a share), which strains and stresses follow. Where the largest stress grows with each refinement (a clamped or inner corner), the
 /// first of them stays large. Within a factor of 3 of the true error in 81 % of 81 readings on 14 bodies, none below a third
-/// (scripts/validate right-by-default). On rank 0; empty elsewhere, and where nothing is recovered. Collective.
+/// (scripts/validate solid-accuracy). On rank 0; empty elsewhere, and where nothing is recovered. Collective.
 std::vector<ReportedStress> reported_stresses(const SolidBody& body, const SolidFields& fields,
                                               const SolidProbes& probes, double mesh);
 

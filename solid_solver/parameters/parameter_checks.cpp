@@ -177,14 +177,14 @@ void check_quantities(config::Section& s, SolidParameters& p) {
             return "heat conduction alone has the quantities temperature (at a 'point') and heat (through a 'patch')";
           return p.heat && p.heat->analysis == HeatParameters::Analysis::steady
                      ? ""
-                     : "the errors of 'quantities' are estimated with 'heat: {analysis: steady}'; 'scripts/study --quantities' estimates "
+                     : "the errors of 'quantities' are estimated with 'heat: {analysis: steady}'; 'couplet study --quantities' estimates "
                        "those of any run, by differences of coarser ones";
         }
         if (std::ranges::any_of(p.quantities, is_of_heat))
-          return "temperature and heat are quantities of 'analysis: thermal'; 'scripts/study --quantities' estimates those of any run, by "
+          return "temperature and heat are quantities of 'analysis: thermal'; 'couplet study --quantities' estimates those of any run, by "
                  "differences of coarser ones";
         if (p.analysis != SolidParameters::Analysis::static_ || has_finite_strain(p))
-          return "the errors of 'quantities' are estimated in a linear static analysis; 'scripts/study --quantities' estimates those of "
+          return "the errors of 'quantities' are estimated in a linear static analysis; 'couplet study --quantities' estimates those of "
                  "any run, by differences of coarser ones";
         if (is_axisymmetric(p) || has_rigid_patch(p) || p.contact)
           return "'quantities' support neither a body of revolution, nor a patch that moves as a rigid body, nor 'contact'";

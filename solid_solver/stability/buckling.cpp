@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "common/elasticity/tied/tied_matrix.hpp"
+#include "common/elasticity/symmetric/tied_matrix.hpp"
 #include "common/mesh/extent.hpp"
-#include "common/modes/largest_ratios.hpp"
+#include "common/modes/pencil.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::solid {
@@ -66,25 +66,26 @@ Buckling find_buckling(const SolidBody& body, const elastic::Prestress& prestres
   const auto stress = elastic::make_stress_stiffness(mesh, body.elastic(), prestress);
   elastic::TiedMatrix stiffness(mesh, body.elastic(), {});
   stiffness.factorise();
-  const modes::RatioOperators of{
-      .a =
+  const modes::Pencil of{
+      .comm = mesh.comm,
+      .n = body.elastic().n_unknowns(),
+      .k =
           [&](std::span<const double> x, std::span<double> y) {
             stress->apply(x, y);
             for (double& v : y) v = -v;
           },
-      .b = [&](std::span<const double> x, std::span<double> y) { body.kernel().apply(x, {}, y); },
-      .solve_b = [&](std::span<const double> x, std::span<double> y) { stiffness.solve(x, y); }};
-  const modes::SlepcEnvironment slepc;
+      .m = [&](std::span<const double> x, std::span<double> y) { body.kernel().apply(x, {}, y); },
+      .solve = [&](std::span<const double> x, std::span<double> y) { stiffness.solve(x, y); }};
   for (int more = extra; more <= 8 * extra; more *= 2) {
-    modes::Ratios found = modes::largest_ratios(mesh.comm, body.elastic().n_unknowns(), of, n + more);
+    modes::EigenModes found = modes::largest_modes(of, n + more);
     Buckling result;
-    if (found.value.empty()) {
+    if (found.eigenvalue.empty()) {
       if (counts(body, prestress, overload(body, prestress), 0)) return result;
       continue;
     }
-    const double least = ratio_rounding * std::abs(found.value.front());
-    for (std::size_t i = 0; i < found.value.size() && found.value[i] > least; ++i) {
-      result.factor.push_back(1 / found.value[i]);
+    const double least = ratio_rounding * std::abs(found.eigenvalue.front());
+    for (std::size_t i = 0; i < found.eigenvalue.size() && found.eigenvalue[i] > least; ++i) {
+      result.factor.push_back(1 / found.eigenvalue[i]);
       result.shape.push_back(std::move(found.shape[i]));
       make_largest_one(mesh.comm, result.shape.back());
     }
@@ -127,18 +128,19 @@ modes::EigenModes preloaded_modes(const SolidBody& body, const elastic::Prestres
   shifted.factorise();
   const auto stress = elastic::make_stress_stiffness(mesh, body.elastic(), prestress);
   std::vector<double> of_stress(body.elastic().n_unknowns());
-  const modes::ModalOperators of{
-      .stiffness =
+  const modes::Pencil of{
+      .comm = mesh.comm,
+      .n = body.elastic().n_unknowns(),
+      .k =
           [&](std::span<const double> x, std::span<double> y) {
             kernel.apply(x, {}, y);
             stress->apply(x, of_stress);
             for (std::size_t i = 0; i < y.size(); ++i) y[i] += of_stress[i];
           },
-      .mass = [&](std::span<const double> x,
-                  std::span<double> y) { kernel.apply_with_mass(x, {}, 1, false, y); },
+      .m = [&](std::span<const double> x,
+               std::span<double> y) { kernel.apply_with_mass(x, {}, 1, false, y); },
       .solve = [&](std::span<const double> x, std::span<double> y) { shifted.solve(x, y); }};
-  const modes::SlepcEnvironment slepc;
-  return modes::lowest_modes(mesh.comm, body.elastic().n_unknowns(), of, n, -shift);
+  return modes::lowest_modes(of, n, -shift);
 }
 
 }  // namespace couplet::solid

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "common/modes/lowest_modes.hpp"
+#include "common/modes/pencil.hpp"
 #include "solid_solver/stability/prestress.hpp"
 
 namespace couplet::solid {

@@ -11,8 +11,7 @@
 #include <utility>
 
 #include "common/log/finding.hpp"
-#include "common/modes/lowest_quotient.hpp"
-#include "common/modes/negative_curvature.hpp"
+#include "common/modes/pencil.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
 
@@ -114,19 +113,19 @@ BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fie
   if (!method.approximate_inverse(force, of_stress)) return {};
   compression_seen = here;
   const auto stress = elastic::make_stress_stiffness(mesh, body.elastic(), std::move(prestress));
-  const modes::QuotientOperators of{
-      .a = [&](std::span<const double> x, std::span<double> y) { stress->apply(x, y); },
-      .b = [&](std::span<const double> x, std::span<double> y) { body.kernel().apply(x, {}, y); },
-      .precondition = [&](std::span<const double> r,
-                          std::span<double> z) { method.approximate_inverse(r, z); }};
+  const modes::Pencil of{
+      .comm = mesh.comm,
+      .n = force.size(),
+      .k = [&](std::span<const double> x, std::span<double> y) { stress->apply(x, y); },
+      .m = [&](std::span<const double> x, std::span<double> y) { body.kernel().apply(x, {}, y); },
+      .solve = [&](std::span<const double> r, std::span<double> z) { method.approximate_inverse(r, z); }};
   const auto look = [&](double load) {
     const linalg::LinearMap loaded = [&, load](std::span<const double> x, std::span<double> y) {
-      of.b(x, y);
-      of.a(x, of_stress);
+      of.m(x, y);
+      of.k(x, of_stress);
       for (std::size_t i = 0; i < y.size(); ++i) y[i] += load * of_stress[i];
     };
-    return modes::look_for_negative_curvature(mesh.comm, loaded, of.precondition, force, shown_at,
-                                              most_searches);
+    return modes::look_for_negative_curvature(mesh.comm, loaded, of.solve, force, shown_at, most_searches);
   };
   modes::Curvature found = look(BucklingEstimate::low);
   if (!found.is_negative) return {.factor = 0, .iterations = found.iterations};
@@ -139,7 +138,7 @@ BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fie
     return rho.size() > settled && rho[rho.size() - 1 - settled] - rho.back() < settled_part * -rho.back();
   };
   const modes::LowestQuotient least =
-      modes::lowest_quotient(mesh.comm, of, std::move(found.x), most_refinements, enough);  // -1 / lambda
+      modes::lowest_quotient(of, found.x, most_refinements, enough);  // -1 / lambda
   const double factor = -1 / least.value;
   return {.factor = factor,
           .growth = growth_of(body, body.unknowns_of(state.cell_u, state.face_u), least.x, factor),

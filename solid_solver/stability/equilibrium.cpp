@@ -11,7 +11,8 @@
 namespace couplet::solid {
 
 void EquilibriumWatch::see(const SolidBody& body, const SolidStepper& stepper, const SolidFields& fields) {
-  if (body.is_dynamic() || !body.equilibrium().has_tangent() || !body.rigid().empty() || is_told_) return;
+  if (body.is_dynamic() || !body.equilibrium().means().has_tangent || !body.rigid().empty() || is_told_)
+    return;
   const SolidState& now = stepper.trial();
   SoftMotion found = body.equilibrium().lowest_stiffness(
       stepper.last_solve().unknowns, now.known,
@@ -26,16 +27,14 @@ void EquilibriumWatch::see(const SolidBody& body, const SolidStepper& stepper, c
     return;
   }
   is_told_ = true;
-  std::string where = fmt::format("it was lost before t = {:g} s", now.time);
-  if (stiffness_ > 0) {
-    const double part = stiffness_ / (stiffness_ - stiffness);
-    const double lost = time_ + part * (now.time - time_);
-    const Vec3 then = load_ + part * (load - load_);
-    where = fmt::format("it was lost near t = {:.4g} s, between {:g} and {:g} s", lost, time_, now.time);
-    if (load.norm() > 0)
-      where += fmt::format(", at a total load of about {:.4g} N, {:.3g} of that of this step", then.norm(),
-                           then.norm() / load.norm());
-  }
+  const double part = stiffness_ / (stiffness_ - stiffness);
+  const double lost = time_ + part * (now.time - time_);
+  const Vec3 then = load_ + part * (load - load_);
+  std::string where =
+      fmt::format("it was lost near t = {:.4g} s, between {:g} and {:g} s", lost, time_, now.time);
+  if (load.norm() > 0)
+    where += fmt::format(", at a total load of about {:.4g} N, {:.3g} of that of this step", then.norm(),
+                         then.norm() / load.norm());
   log::finding(
       parallel::comm_rank(body.mesh().comm),
       {.id = "unstable-equilibrium",
@@ -49,12 +48,6 @@ void EquilibriumWatch::see(const SolidBody& body, const SolidStepper& stepper, c
        .advice =
            "a small lateral load or imperfection leads to the stable equilibrium; 'analysis: buckling' of "
            "the linear body gives load factors and shapes"});
-}
-
-void EquilibriumWatch::forget(const SolidBody& body) {
-  stiffness_ = 0;
-  softest_ = {};
-  if (const LoadPath* path = body.equilibrium().load_path()) limits_told_ = path->limits().size();
 }
 
 void EquilibriumWatch::follow(const SolidBody& body, const SolidFields& fields) {

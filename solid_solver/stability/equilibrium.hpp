@@ -20,13 +20,17 @@ class EquilibriumWatch {
   void follow(const SolidBody& body, const SolidFields& fields);
   /// At its end: whether the last equilibrium holds; the limit loads of the path in words.
   void finish(const SolidBody& body, std::vector<std::string>& sentences) const;
-  /// A restart: what was before is not known.
-  void forget(const SolidBody& body);
+  /// For checkpoints.
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(time_, stiffness_, load_, is_told_, limits_told_);
+    if (numbers.reads()) softest_ = {};
+  }
   /// Of the last step; under control of the load, which alone makes what is soft err more.
   const SoftMotion& softest() const { return softest_; }
 
  private:
-  double time_ = 0, stiffness_ = 1;  // of the last equilibrium that held; 0: not known
+  double time_ = 0, stiffness_ = 1;  // of the last equilibrium that held
   Vec3 load_ = Vec3::Zero();
   SoftMotion softest_;
   bool is_told_ = false;

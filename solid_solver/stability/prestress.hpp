@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/elasticity/prestress/stress_stiffness.hpp"
+#include "common/elasticity/finite/stress_stiffness.hpp"
 #include "solid_solver/body/solid_fields.hpp"
 
 namespace couplet::solid {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "common/log/timer.hpp"
+#include "common/log/progress.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::solid {

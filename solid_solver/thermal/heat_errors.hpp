@@ -7,7 +7,7 @@
 
 #include "common/coupling/error_parts.hpp"
 #include "common/mesh/mesh.hpp"
-#include "common/time/velocity_errors.hpp"
+#include "common/time/step_errors.hpp"
 #include "solid_solver/thermal/heat.hpp"
 
 namespace couplet::solid {

@@ -7,9 +7,16 @@
 #include <string>
 #include <vector>
 
+#include "common/coupling/error_parts.hpp"
+#include "common/coupling/participant.hpp"
+#include "common/elasticity/elastic_kernel.hpp"
+#include "common/elasticity/elasticity.hpp"
 #include "common/fv/expression.hpp"
 #include "common/fv/table.hpp"
-#include "solid_solver/thermal/effect.hpp"
+#include "common/io/fields/field_writer.hpp"
+#include "common/mesh/mesh.hpp"
+#include "solid_solver/effects/evidence.hpp"
+#include "solid_solver/parameters/parameters.hpp"
 #include "solid_solver/thermal/heat.hpp"
 #include "solid_solver/thermal/heat_errors.hpp"
 
@@ -30,34 +37,54 @@ double three_bulk(elastic::LameConstants lame, bool plane_stress);
 /// free body without stress, exactly.
 /// With thermoelastic coupling the strain rate of the step before gives the heat -3 K alpha T tr(d eps/dt)
 /// (2.27).
-class ThermalStrain final : public SolidEffect {
+///
+/// As for a Participant, only accept_step() changes the accepted state.
+class ThermalStrain {
  public:
   ThermalStrain(const mesh::Mesh& mesh, const elastic::ElasticOperator& elastic,
                 const SolidParameters& parameters);
 
-  void begin_step(const coupling::Step& step) override;
-  std::span<const elastic::LameConstants> stiffness() const override;
-  void stiffness_changed() override;
-  void add_loads(double t, const elastic::ElasticKernel& kernel, std::span<double> rhs) override;
-  std::vector<double> pressure(double t) override;
-  std::vector<double> expansion(double t) override;
-  void accept_step() override;
-  bool wants_temperature() const override { return given_; }
-  void set_interface(const std::vector<Vec3>& face_centres, const std::vector<Index>& faces) override;
-  void take_temperature(const std::vector<double>& faces) override;
-  bool wants_stress() const override { return coupled_; }
-  void take_stress(std::span<const Tensor3> stress) override;
-  void save(io::CheckpointWriter& file) const override;
-  void load(io::CheckpointReader& file) override;
-  void add_cell_stress(std::span<Tensor3> stress) const override;
-  void add_face_stress(Index first, std::span<Tensor3> stress) const override;
-  void add_fields(std::vector<io::OutputField>& fields) override;
-  void add_surface_fields(std::vector<io::OutputField>& fields) override;
-  void add_evidence(SolidEvidence& evidence) const override;
-  void judge(std::vector<std::string>& sentences) const override;
-  void collect_errors() override;
-  /// Of the temperature that is solved for, over its distance from the reference: the strain errs by as much.
-  coupling::ErrorParts error_parts() const override;
+  /// A step from t^n is tried: solves for its temperature. Throws SolveFailure.
+  void begin_step(const coupling::Step& step);
+  /// Elastic constants that the operator must get for the step now tried, one a local cell; empty: its own
+  /// hold. The same answer on all ranks.
+  std::span<const elastic::LameConstants> stiffness() const;
+  /// The operator has got other constants since the last call. Collective.
+  void stiffness_changed();
+  /// Adds the forces [N] at time t within the step to the rows of the kernel.
+  void add_loads(double t, const elastic::ElasticKernel& kernel, std::span<double> rhs);
+  /// The stress - p I it stands for at time t, p [Pa] per local face; empty: none.
+  std::vector<double> pressure(double t);
+  /// The strain of the free body at time t, one a local flux face, where the equilibrium takes it so (large strain):
+  /// add_loads() and the stresses have nothing of it then. Empty: none.
+  std::vector<double> expansion(double t);
+  void accept_step();
+  /// If it wants_temperature(), it gets the centres of this rank's faces of the interface once, and what was given at
+  /// these at the start of each solve (empty: nothing yet); begin_step() follows. Collective.
+  bool wants_temperature() const { return given_; }
+  void set_interface(const std::vector<Vec3>& face_centres, const std::vector<Index>& faces);
+  void take_temperature(const std::vector<double>& faces);
+  /// If it wants_stress(), it gets that of the owned cells after each accepted step [Pa].
+  bool wants_stress() const { return coupled_; }
+  void take_stress(std::span<const Tensor3> stress);
+  void save(io::CheckpointWriter& file) const;
+  void load(io::CheckpointReader& file);
+  /// Adds its part of the stress of owned cells at the accepted time [Pa].
+  void add_cell_stress(std::span<Tensor3> stress) const;
+  /// The same of the local faces first, first + 1, ...
+  void add_face_stress(Index first, std::span<Tensor3> stress) const;
+  /// Appends fields at the accepted time; their values live until the next call.
+  void add_fields(std::vector<io::OutputField>& fields);
+  /// The same of the boundary: of all local points, or (place "cells") of the boundary faces of owned cells. Collective.
+  void add_surface_fields(std::vector<io::OutputField>& fields);
+  /// Adds what it has seen, for the verdicts on what was left out. Collective.
+  void add_evidence(SolidEvidence& evidence) const;
+  /// For Participant::finish(), beside the verdicts of the cards.
+  void judge(std::vector<std::string>& sentences) const;
+  /// Before the first step, if the run is to end with an estimate of its error; else nothing is collected.
+  void collect_errors();
+  /// Of the temperature that is solved for, over its distance from the reference: the strain errs by as much. Collective.
+  coupling::ErrorParts error_parts() const;
 
   /// None: the temperature is prescribed.
   const Heat* heat() const { return heat_.get(); }

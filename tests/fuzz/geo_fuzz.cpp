@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Geometry files written against the allowlist: see README.md. gmsh is a script here that notes when it starts, and there is
-// no bubblewrap on the PATH: the allowlist alone must stop them.
+// Geometry files written against the sandbox of gmsh: see README.md.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -9,7 +8,7 @@
 #include <cstdlib>
 
 #include "common/base/error.hpp"
-#include "common/mesh/gmsh/geo_script.hpp"
+#include "common/mesh/gmsh/barrier.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
 #include "common/mesh/load.hpp"
 #include "tests/fuzz/crafted_geo.hpp"
@@ -32,35 +31,24 @@ class CraftedGeo : public testing::Test {
   void SetUp() override {
     top_ = fs::temp_directory_path() / fmt::format("couplet-crafted-{}", ::getpid());
     fs::remove_all(top_);
-    for (const char* name : {"case", "outside", "bin", "tmp"}) fs::create_directories(top_ / name);
-    write_file(outside() / "pwned.geo", "x = 1;\n");
+    for (const char* name : {"case", "outside", "tmp"}) fs::create_directories(top_ / name);
+    write_file(outside() / "pwned.geo", "Error(\"read elsewhere\");\n");
     fs::create_symlink(outside() / "pwned.geo", folder() / "link.geo");
     fs::create_directory_symlink(outside(), folder() / "linked");
     const std::string touch = "SystemCall \"touch " + (outside() / "pwned").string() + "\";\n";
     for (const char* name : {"program.py", "views.pos", "options.opt", "other.geo_unrolled", "fake.msh",
                              "fake.vtk", "packed.gz"})
       write_file(folder() / name, touch);
-    path_ = std::getenv("PATH");
-    write_file(top_ / "bin/gmsh", fmt::format("#!/bin/sh\necho started >> {}\nPATH={}\nexec gmsh \"$@\"\n",
-                                              (top_ / "starts").string(), path_));
-    fs::permissions(top_ / "bin/gmsh", fs::perms::owner_all);
-    setenv("PATH", (top_ / "bin").c_str(), 1);
     setenv("TMPDIR", (top_ / "tmp").c_str(), 1);
     unsetenv("COUPLET_ALLOW_COMMANDS");
   }
   void TearDown() override {
-    setenv("PATH", path_.c_str(), 1);
     unsetenv("TMPDIR");
     fs::remove_all(top_);
   }
 
   fs::path folder() const { return top_ / "case"; }
   fs::path outside() const { return top_ / "outside"; }
-  bool was_started() {
-    const bool started = fs::exists(top_ / "starts");
-    fs::remove(top_ / "starts");
-    return started;
-  }
   /// What is in the folder for what must not be touched, and in those for temporary files.
   std::vector<std::string> strangers() const {
     std::vector<std::string> found;
@@ -70,57 +58,56 @@ class CraftedGeo : public testing::Test {
       if (entry.path().filename().string().find("pwned") != std::string::npos) found.push_back(entry.path());
     return found;
   }
-  /// Why it is refused; "" if gmsh got it, whatever it thought of it.
-  std::string refusal(const std::string& text) const {
+  /// What is said of it; "" if it is meshed.
+  std::string complaint(const std::string& text) const {
     write_file(folder() / "a.geo", text);
     try {
-      mesh_geo(folder() / "a.geo", 2);
+      fs::remove(mesh_geo(folder() / "a.geo", 2));
     } catch (const Error& error) {
-      const std::string what = error.what();
-      return what.starts_with("gmsh ") ? "" : what;
+      return error.what();
     }
     return "";
   }
+  void expect_no_harm(const std::string& text) const {
+    EXPECT_EQ(complaint(text).find("read elsewhere"), std::string::npos) << text;
+    EXPECT_EQ(strangers(), std::vector<std::string>{"pwned.geo"}) << text;
+  }
 
   fs::path top_;
-  std::string path_;
 };
 
-TEST_F(CraftedGeo, files_are_refused_before_gmsh_starts_or_do_no_harm) {
+TEST_F(CraftedGeo, files_do_no_harm_however_they_are_disguised) {
+  if (!Barrier::is_possible()) GTEST_SKIP() << "this kernel has no Landlock";
   const std::vector<std::string> harm = payloads(outside());
   Dice dice(seed());
-  std::size_t refused = 0, let_through = 0;
   double slowest = 0;
   for (std::size_t i = 0; i < count(); ++i) {
     const std::string text = (dice.one_in(2) ? square : "") + disguise(harm[i % harm.size()], folder(), dice);
     const auto start = std::chrono::steady_clock::now();
-    const std::string why = refusal(text);
+    expect_no_harm(text);
     slowest =
         std::max(slowest, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-    const bool started = was_started();
-    EXPECT_EQ(started, why.empty()) << text << "\n" << why;
-    const bool is_cut_short = why.starts_with("The line");  // a last line without a newline
-    EXPECT_TRUE(why.empty() || is_cut_short || why.find("--allow-commands") != std::string::npos)
-        << text << "\n"
-        << why;
-    ++(why.empty() ? let_through : refused);
-    EXPECT_EQ(strangers(), std::vector<std::string>{"pwned.geo"}) << text;
     ASSERT_FALSE(HasFailure()) << "case " << i;
   }
-  EXPECT_GE(refused, count() * 3 / 4);
   EXPECT_LT(slowest, double(longest()));
-  RecordProperty("tried", int(refused + let_through));
-  RecordProperty("refused", int(refused));
-  RecordProperty("let_through", int(let_through));
+  RecordProperty("tried", int(count()));
   RecordProperty("slowest", fmt::format("{:.3f}", slowest));
 }
 
-TEST_F(CraftedGeo, every_payload_as_it_is_is_refused) {
-  for (const std::string& payload : payloads(outside())) {
-    EXPECT_NE(refusal(square + payload + "\n"), "") << payload;
-    EXPECT_FALSE(was_started()) << payload;
-  }
-  EXPECT_EQ(strangers(), std::vector<std::string>{"pwned.geo"});
+TEST_F(CraftedGeo, every_payload_as_it_is_does_no_harm) {
+  if (!Barrier::is_possible()) GTEST_SKIP() << "this kernel has no Landlock";
+  for (const std::string& payload : payloads(outside())) expect_no_harm(square + payload + "\n");
+}
+
+TEST_F(CraftedGeo, a_command_or_a_file_elsewhere_is_an_error_with_what_to_do) {
+  if (!Barrier::is_possible()) GTEST_SKIP() << "this kernel has no Landlock";
+  const std::vector<std::string> all = payloads(outside());
+  for (const std::string& payload :
+       {all[0], all[5], all[12], std::string("Include \"../outside/pwned.geo\";")})
+    EXPECT_NE(complaint(square + payload + "\n").find("start with --allow-commands"), std::string::npos)
+        << payload;
+  EXPECT_EQ(complaint(square + "nonsense;\n").find("--allow-commands"), std::string::npos)
+      << "another mistake";
 }
 
 /// The payloads are none of straw: gmsh does what they say if the user lets it.
@@ -128,35 +115,31 @@ TEST_F(CraftedGeo, a_trusted_case_may_do_all_of_it) {
   setenv("COUPLET_ALLOW_COMMANDS", "1", 1);
   const std::vector<std::string> all = payloads(outside());
   for (const std::string& payload : {all[0], all[5], all[7], all[14]}) {
-    refusal(square + payload + "\n");
-    EXPECT_TRUE(was_started());
+    complaint(square + payload + "\n");
     EXPECT_TRUE(fs::exists(outside() / "pwned")) << payload;
     fs::remove_all(outside() / "pwned");
   }
   unsetenv("COUPLET_ALLOW_COMMANDS");
 }
 
-/// All of gmsh's language that cases need, through gmsh: nothing of it is refused, nothing is written elsewhere.
-TEST_F(CraftedGeo, an_ordinary_geometry_is_let_through) {
+/// Much of gmsh's language that cases need.
+TEST_F(CraftedGeo, an_ordinary_geometry_is_meshed) {
   write_file(folder() / "sizes.geo",
              "h = 0.5; // size\nMacro corner\n  p = newp; Point(p) = {x, y, 0, h};\nReturn\n");
-  const std::string text = "\xEF\xBB\xBF// caf\xC3\xA9 \"quoted'\n";
-  EXPECT_NE(refusal(text + square), "") << "a byte order mark: gmsh does not read it either";
   EXPECT_EQ(
-      refusal(
+      complaint(
           "Include \"sizes.geo\";\r\n/* \" ' */ DefineConstant [ n = {4, Min 1, Max 9, Step 1, Name \"Mesh/n\"}, k = 2 ];\n"
-          "x = 0; y = 0; Call corner; For i In {1:3} If (i == 1) x = 1; EndIf\n If (i == 2) y = 1; EndIf\n"
-          "If (i == 3) x = 0; EndIf Call corner; EndFor\n"
-          "l() = {}; For i In {1:4}\n c = newl; Line(c) = {i, i % 4 + 1}; l() += c;\nEndFor\n"
+          "x = 0; y = 0; Call corner;\nFor i In {1:3}\n If (i == 1)\n x = 1;\n EndIf\n If (i == 2)\n y = 1;\n EndIf\n"
+          "If (i == 3)\n x = 0;\n EndIf\n Call corner;\nEndFor\n"
+          "l() = {};\nFor i In {1:4}\n c = newl; Line(c) = {i, i % 4 + 1}; l() += c;\nEndFor\n"
           "Curve Loop(1) = {l()}; Plane Surface(1) = {1}; Transfinite Curve {l(0), l(2)} = n + 1 Using Progression 1.1;\n"
           "Field[1] = Distance; Field[1].CurvesList = {1}; Field[2] = Threshold; Field[2].InField = 1;\n"
           "Field[2].SizeMin = 0.2; Field[2].SizeMax = h; Field[2].DistMin = 0; Field[2].DistMax = 1;\n"
           "Field[3] = MathEval; Field[3].F = \"0.3 + 0.1*x^2\"; Field[4] = Min; Field[4].FieldsList = {2, 3};\n"
           "Background Field = 4; Mesh.MeshSizeMin = 0.05; Geometry.Tolerance = 1e-8;\n"
           "Physical Curve(Sprintf(\"s%g\", 1)) = {l()}; Physical Surface(\"all\", 7) = {1};\n"
-          "Printf(\"n = %g of %5.2f %%\", n, k); MeshSize {:} = h; Characteristic Length { 1 } = 0.1;\n"),
+          "Printf(\"n = %g of %5.2f\", n, k); MeshSize {:} = h; Characteristic Length { 1 } = 0.1;\n"),
       "");
-  EXPECT_TRUE(was_started());
   EXPECT_EQ(strangers(), std::vector<std::string>{"pwned.geo"});
 }
 
@@ -168,33 +151,28 @@ TEST_F(CraftedGeo, options_beside_the_file_and_in_the_home_are_not_read) {
   for (const fs::path& file : {folder() / "a.geo.opt", top_ / "home/.gmshrc", top_ / "home/.gmsh-options"})
     write_file(file, touch);
   setenv("HOME", (top_ / "home").c_str(), 1);
-  EXPECT_EQ(refusal(square), "");
-  EXPECT_TRUE(was_started());
+  EXPECT_EQ(complaint(square), "");
   EXPECT_EQ(strangers(), std::vector<std::string>{"pwned.geo"});
   setenv("COUPLET_ALLOW_COMMANDS", "1", 1);
-  refusal(square + "SyncModel;\n");
+  complaint(square + "SyncModel;\n");
   EXPECT_TRUE(fs::exists(outside() / "pwned")) << "they do what they say in a case that is trusted";
   unsetenv("COUPLET_ALLOW_COMMANDS");
   setenv("HOME", home.c_str(), 1);
 }
 
-/// gmsh makes of the cleaned copy what it makes of the file itself: points, curves, their cells, names. All of the project's in the
-/// full run, every tenth in the quick one.
-TEST_F(CraftedGeo, the_cleaned_copy_is_meshed_as_the_file_itself) {
-  setenv("PATH", path_.c_str(), 1);
+/// gmsh makes in the sandbox what it makes outside: points, curves, their cells, names. All of the project's in the full run, every
+/// tenth in the quick one.
+TEST_F(CraftedGeo, the_sandbox_changes_no_mesh) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(COUPLET_SOURCE_DIR) / "configs"))
     if (entry.path().extension() == ".geo") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   for (std::size_t i = 0; i < files.size(); i += count() < 500 ? 10 : 1) {
-    const GeoScript script = read_geo(files[i]);
-    GmshInput cleaned{files[i], {}};
-    for (const auto& file : script.files) cleaned.files.push_back({file.original, file.name, file.text});
-    const auto mesh = [&](const GmshInput& input) {
-      run_gmsh({"-1"}, input, folder() / "same.0.msh", "mesh");
+    const auto mesh = [&](bool trusted) {
+      run_gmsh({"-1"}, files[i], trusted, folder() / "same.0.msh", "mesh");
       return read_file(folder() / "same.0.msh");
     };
-    EXPECT_EQ(mesh(cleaned), mesh({files[i], {}})) << files[i];
+    EXPECT_EQ(mesh(false), mesh(true)) << files[i];
   }
 }
 

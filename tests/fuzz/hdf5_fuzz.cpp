@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Crafted files of modes and checkpoints: refused with an Error, or read as something sound. See README.md.
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -174,15 +173,8 @@ std::set<std::string> tree(const fs::path& folder) {
   return all;
 }
 
-/// Of this process and of those that rehearsed [MB].
-double peak_of_all() {
-  rusage children{};
-  ::getrusage(RUSAGE_CHILDREN, &children);
-  return std::max(peak_memory(), double(children.ru_maxrss) / 1024);
-}
-
 struct Sums {
-  std::size_t tried = 0, refused = 0, crashed_apart = 0;
+  std::size_t tried = 0, refused = 0;
   double slowest = 0;
 };
 
@@ -198,7 +190,6 @@ Sums try_all(const fs::path& folder, const std::function<void()>& make, const st
     } catch (const Error& error) {
       ++sums.refused;
       const std::string text = error.what();
-      sums.crashed_apart += text.find("a trial read crashed") != std::string::npos;
       EXPECT_NE(text.find("'"), std::string::npos) << "no file is named: " << text;
     }
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
@@ -207,13 +198,12 @@ Sums try_all(const fs::path& folder, const std::function<void()>& make, const st
     if (::testing::Test::HasFailure()) break;
   }
   EXPECT_LT(sums.slowest, double(longest()));
-  EXPECT_LT(peak_of_all(), 1000);
+  EXPECT_LT(peak_memory(), 1000);
   EXPECT_GT(sums.refused, sums.tried / 3);
   ::testing::Test::RecordProperty("tried", int(sums.tried));
   ::testing::Test::RecordProperty("refused", int(sums.refused));
-  ::testing::Test::RecordProperty("crashed_apart", int(sums.crashed_apart));
   ::testing::Test::RecordProperty("slowest", fmt::format("{:.2f}", sums.slowest));
-  ::testing::Test::RecordProperty("megabytes", fmt::format("{:.0f}", peak_of_all()));
+  ::testing::Test::RecordProperty("megabytes", fmt::format("{:.0f}", peak_memory()));
   return sums;
 }
 

@@ -15,8 +15,8 @@
 #include "tests/fuzz/mutate.hpp"
 #include "tests/fuzz/table_samples.hpp"
 #include "tests/support/gzip.hpp"
-#include "thermocline/plant/flow_file.hpp"
-#include "thermocline/weather/weather_hours.hpp"
+#include "thermocline/plant/flow.hpp"
+#include "thermocline/weather/weather_file.hpp"
 
 namespace couplet::fuzz::table_fuzz {
 using namespace fv;

@@ -20,46 +20,6 @@ std::string weather_csv() {
   return text;
 }
 
-std::string weather_epw() {
-  std::string text = "LOCATION,Nowhere,-,XXX,test,000000,37.5,-5.25,0,100\n";
-  for (int i = 0; i < 7; ++i) text += "HEADER\n";
-  for (int h = 0; h < hours; ++h)
-    text += fmt::format(
-        "2005,1,{},{},0,s,{}.5,5,40,99000,0,0,300,0,{},0,0,0,0,0,180,2.5,0,0,9,9,9,9,0,0,0,0,0,0,0\n",
-        1 + h / 24, 1 + h % 24, h % 24, h % 24 == 12 ? 500 : 0);
-  return text;
-}
-
-std::string weather_sam() {
-  std::string text =
-      "Source,Location ID,Latitude,Longitude,Time Zone,Pressure Units\nNSRDB,1,40.01,-105.26,-7,mbar\n"
-      "Year,Month,Day,Hour,Minute,Temperature,Dew Point,DNI,Pressure,Wind Speed\n";
-  for (int h = 0; h < hours; ++h)
-    text +=
-        fmt::format("2003,1,{},{},30,{},-6,{},840,0.5\n", 1 + h / 24, h % 24, h % 24, h % 24 == 12 ? 960 : 0);
-  return text;
-}
-
-std::string weather_tmy3() {
-  std::string text =
-      "723815,\"DAGGETT\",CA,-8.0,34.850,-116.800,586\n"
-      "Date (MM/DD/YYYY),Time (HH:MM),DNI (W/m^2),Dry-bulb (C),Wspd (m/s),RHum (%),Pressure (mbar)\n";
-  for (int h = 0; h < hours; ++h)
-    text += fmt::format("01/0{}/1988,{:02d}:00,{},{},3,40,950\n", 1 + h / 24, 1 + h % 24,
-                        h % 24 == 12 ? 800 : 0, h % 24);
-  return text;
-}
-
-std::string weather_pvgis() {
-  std::string text =
-      "Latitude (decimal degrees): 37.3\nLongitude (decimal degrees): -3.2\nElevation (m): 1000\n"
-      "time(UTC),T2m,RH,G(h),Gb(n),Gd(h),IR(h),WS10m,WD10m,SP\n";
-  for (int h = 0; h < hours; ++h)
-    text += fmt::format("2007010{}:{:02d}00,{}.2,40,0,{},0,300,2.5,180,95000\n", 1 + h / 24, h % 24, h % 24,
-                        h % 24 == 12 ? 800 : 0);
-  return text + "\nT2m: 2-m air temperature (degree Celsius)\n";
-}
-
 const std::vector<std::string>& odd_cells() {
   static const std::vector<std::string> list{
       "",         "nan",      "inf",   "-inf",  "0,5",   "1.000,5", "1e999", "1e-999",     "x",
@@ -121,11 +81,7 @@ std::vector<std::string> samples() {
       "y [m],t,u,v\n0,0,1.5,0\n0,1,1,0\n1,0,1,0\n1,1,2,0\n",
       "time [h],mass-flow [kg/s],inlet-temperature [degC],stop-above [degC]\n0,-100,390,\n1.5,0,,\n2,50,290,300\n",
       "time [s],p [Pa]\n0.5,1\n1,2.5\n1.5,3\n2,4\n",
-      weather_csv(),
-      weather_epw(),
-      weather_sam(),
-      weather_tmy3(),
-      weather_pvgis()};
+      weather_csv()};
 }
 
 std::vector<std::string> odd_files() {

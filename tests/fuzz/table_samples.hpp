@@ -8,7 +8,7 @@
 
 namespace couplet::fuzz {
 
-/// One right file of each kind: tables, grids, flows, weather in its five formats, a series.
+/// One right file of each kind: tables, grids, flows, weather, a series.
 std::vector<std::string> samples();
 /// Files that nobody would write: no end of one thing, other formats.
 std::vector<std::string> odd_files();

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Units and magnitudes."""
-STEEL, E, RHO = "youngs-modulus: 210 GPa", "210 GPa", "density: 7850 kg/m^3"
+E, RHO = "210 GPa", "density: 7850 kg/m^3"
 MISTAKES = [
     ("no mistake: heat", "heat", [], "right", {"message": "the case that the others differ from", "run": True}),
     ("no mistake: tank", "tank", [], "right", {"message": "the case that the others differ from", "run": True}),

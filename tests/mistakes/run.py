@@ -12,7 +12,10 @@ import tempfile
 import table
 
 HERE = pathlib.Path(__file__).resolve().parent
-ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMPI_MCA_rmaps_base_oversubscribe="1")
+sys.path.insert(0, str(HERE.parent / "support"))
+from checks import COUPLED, mpmd  # noqa: E402
+
+os.environ["OMPI_MCA_rmaps_base_oversubscribe"] = "1"
 
 
 def prepare(folder, mistake):
@@ -31,10 +34,8 @@ def prepare(folder, mistake):
 def call(binaries, folder, mistake, more):
     words = [binaries / table.PROGRAMS[mistake.base], "case.yaml", *more]
     if mistake.base == "coupled" and mistake.run:
-        words = ["mpirun", "--oversubscribe"]
-        for program in ("coupler", "fluid_solver", "solid_solver", "mesh_mover"):
-            words += [":"] * (len(words) > 2) + ["-n", "1", binaries / program, "case.yaml", *more]
-    result = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=60, check=False, env=ENVIRONMENT)
+        words = mpmd([binaries / program, "case.yaml", *more] for program in COUPLED)
+    result = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=60, check=False)
     return result.returncode, result.stdout + result.stderr
 
 

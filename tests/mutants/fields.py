@@ -15,38 +15,38 @@ def _of(folder, names):
 FILES = {
     "face loops": [
         *_of("fluid_solver", "rates face_flux predictor projection pressure boundary turbulence viscous_solver placement immersed "
-                             "projection_bodies yielding_walls"),
-        *_of("solid_solver", "heat heat_boundaries cell_gradient stress finite_strain updated_lagrangian orthotropic mixed_form"),
-        *_of("common/elasticity", "face_stencil symmetric_faces symmetric_kernel symmetric_space elastic_faces elastic_kernel_corrected "
-                                  "elastic_kernel_thesis shared_edges finite_edges finite_kernel anisotropic joined_vertices "
+                             "yielding_walls absorbing compression upstream_volume"),
+        *_of("solid_solver", "heat heat_boundaries solid_fields stress finite_strain updated_lagrangian orthotropic mixed_form"),
+        *_of("common/elasticity", "face_terms symmetric_faces symmetric_kernel symmetric_space elasticity least_squares_kernel "
+                                  "shared_edges finite_edges finite_kernel anisotropic joined_vertices "
                                   "elastic_corrections vertex_constraints"),
         *_of("common/fv", "conduction face_gradient point_gradient vertex_interpolation vertex_weights prescribed_motion"),
-        *_of("mesh_mover", "laplacian pseudo_solid rotations affine curved_slide mover"),
-        *_of("thermocline", "bed_step bed_rows packed_bed tridiagonal melting_step grain_kernels grains column insulation shell ullage"),
+        *_of("mesh_mover", "laplacian pseudo_solid rotations moving_patches curved_slide mover"),
+        *_of("thermocline", "bed_step packed_bed numerics grains layers shell surroundings"),
     ],
     "maps": [
-        *_of("coupler", "map_local map_projection mapping sparse_map transfer search cavity_wall links conjugate_map "
-                        "corner_weights overlay slopes surface_rows"),
+        *_of("coupler", "mapping sparse_map transfer search cavity_wall links conjugate_map "
+                        "face_weights slopes surface_rows"),
         *_of("common/modes", "facing rigid_motion surface_parts modal_checks"),
         *_of("plate_modal", "skin midsurface share"),
     ],
     "ledgers": [
-        *_of("solid_solver", "ledger"), *_of("coupler", "mechanics balance watch_integrals"), *_of("fluid_solver", "energy_guard"),
-        *_of("plate_modal", "audit"), *_of("thermocline", "tank day_report"),
+        *_of("solid_solver", "ledger"), *_of("coupler", "mechanics watch_integrals"), *_of("fluid_solver", "energy_guard"),
+        *_of("plate_modal/diagnostics", "load mesh truncation"), *_of("thermocline", "tank report"),
     ],
     "loads": [
         *_of("fluid_solver", "loads turning_walls cavity rotating_frame"),
-        *_of("common/elasticity", "symmetric_forces follower_pressure finite_pressures"),
+        *_of("common/elasticity", "space_kernel follower_pressure"),
         *_of("plate_modal", "pressure_load contact"),
-        *_of("solid_solver", "thermal_strain solid_forces boundaries body_fields interface_data solid_interface"),
-        *_of("coupler", "volume_level"), *_of("thermocline", "mechanics wall_bending"),
+        *_of("solid_solver", "thermal_strain solid_forces boundaries solid_body interface_data solid_interface"),
+        *_of("coupler", "volume_level"), *_of("thermocline", "mechanics"),
     ],
     "scheme constants": [
-        *_of("common/time", "time_scheme step_errors velocity_errors amplification"),
-        *_of("fluid_solver", "step_size"), *_of("solid_solver", "stage stage_end"),
+        *_of("common/time", "time_scheme step_errors amplification"),
+        *_of("fluid_solver", "step_size"), *_of("solid_solver", "stage"),
         *_of("plate_modal", "oscillators kirchhoff plate_model"),
-        *_of("coupler", "relaxation accelerator quasi_newton secants growing_qr lag_estimate"),
-        *_of("thermocline", "closures flow pressure_loss properties"),
+        *_of("coupler", "relaxation accelerator quasi_newton secants growing_qr explicit_coupling"),
+        *_of("thermocline", "closures flow properties"),
     ],
 }
 

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <functional>
+#include "thermocline/bed/bed_parameters.hpp"
 
-#include "thermocline/bed/grain_kernels.hpp"
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+#include "common/base/error.hpp"
+#include "thermocline/bed/grains.hpp"
 #include "thermocline/bed/packed_bed.hpp"
 
 namespace couplet::thermocline {
@@ -15,8 +20,8 @@ void declare_closures(config::Section& s, ClosureParameters& p) {
             {"stagnant", Conduction::stagnant},
             {"constant", Conduction::constant}})
       .doc(
-          "axial conduction: 0.7 eps k + 0.5 Re Pr k; eps k; the stagnant bed of Zehner and Schluender with "
-          "dispersion; or given");
+          "axial conduction: 0.7 eps k + 0.5 Re Pr k; eps k; the stagnant bed of Zehner and Schluender "
+          "with dispersion; or given");
   s.value("conductivity", p.conductivity)
       .unit("W/(m K)")
       .plausible(1e-3, 1e4)
@@ -25,14 +30,10 @@ void declare_closures(config::Section& s, ClosureParameters& p) {
   s.choice("wall-film", p.wall_film,
            {{"beek", WallFilm::beek}, {"yagi-wakao", WallFilm::yagi_wakao}, {"constant", WallFilm::constant}})
       .doc("heat transfer between fluid and wall; the correlations add to 2 k0/d of the stagnant bed");
-  s.value("wall-coefficient", p.wall_coefficient)
-      .unit("W/(m^2 K)")
-      .plausible(1e-3, 1e7)
+  as_film(s.value("wall-coefficient", p.wall_coefficient))
       .not_negative()
       .doc("wall film coefficient, with wall-film: constant");
-  s.value("film-coefficient", p.film_coefficient)
-      .unit("W/(m^2 K)")
-      .plausible(1e-3, 1e7)
+  as_film(s.value("film-coefficient", p.film_coefficient))
       .not_negative()
       .doc("film between fluid and grains; 0: Nu = 2 + 1.1 Pr^(1/3) Re^0.6");
 }
@@ -44,25 +45,17 @@ std::string problem_of_profile(const BedParameters& p) {
 }
 
 void declare_layer(config::Section& s, BedLayer& l) {
-  s.value("height", l.height).unit("m").plausible(0.01, 100).positive().required().doc("height");
-  s.value("porosity", l.porosity)
-      .range(0.01, 1)
-      .required()
-      .doc(
-          "volume fraction of the fluid; 1: no "
-          "filler");
+  as_length(s.value("height", l.height)).positive().required().doc("height");
+  s.value("porosity", l.porosity).range(0.01, 1).required().doc("volume fraction of the fluid; 1: no filler");
   s.value("diameter", l.diameter)
       .unit("m")
       .plausible(1e-4, 1)
       .positive()
       .required()
       .doc("effective diameter of the grains");
-  s.optional_section<Filler>(
-      "filler", l.filler, [](config::Section& q, Filler& v) { declare(q, v); },
-      "grains of this layer, if different from those of the tank");
-  s.optional_section<Melting>(
-      "melting", l.melting, [](config::Section& q, Melting& v) { declare(q, v); },
-      "phase-change capsules with the density, specific heat and conductivity of 'filler'");
+  declare_section(s, "filler", l.filler, "grains of this layer, if different from those of the tank");
+  declare_section(s, "melting", l.melting,
+                  "phase-change capsules with the density, specific heat and conductivity of 'filler'");
   s.check(
       [&l] {
         return l.melting && l.porosity >= 1
@@ -73,22 +66,47 @@ void declare_layer(config::Section& s, BedLayer& l) {
 }
 
 void declare_start(config::Section& section, BedParameters& p) {
-  section.value("initial-temperature", p.initial_temperature)
-      .unit("K")
-      .plausible(70, 5000)
+  as_temperature(section.value("initial-temperature", p.initial_temperature))
       .positive()
       .doc("initial temperature of fluid and filler");
   section.value("profile-z", p.profile_z)
       .unit("m")
       .plausible(1e-4, 300)
       .doc("heights of an initial profile, instead of one temperature");
-  section.value("profile-temperature", p.profile_temperature)
-      .unit("K")
-      .plausible(70, 5000)
+  as_temperature(section.value("profile-temperature", p.profile_temperature))
       .doc("temperatures of the profile, piecewise linear");
 }
 
 }  // namespace
+
+BedGrid::BedGrid(const std::vector<BedLayer>& layers, int cells) {
+  if (cells < int(layers.size()))
+    throw Error("bed: {} cells are not enough for {} layers; each layer needs at least one.", cells,
+                layers.size());
+  for (const BedLayer& l : layers) height += l.height;
+  // Faces of the layers at the nearest face of the uniform grid, each layer with a cell at least.
+  std::vector<int> ends;
+  double below = 0;
+  const int n_layers = int(layers.size());
+  for (int l = 0; l < n_layers; ++l) {
+    below += layers[l].height;
+    const int least = (ends.empty() ? 0 : ends.back()) + 1, most = cells - (n_layers - 1 - l);
+    ends.push_back(l + 1 == n_layers ? cells
+                                     : std::clamp(int(std::lround(below / height * cells)), least, most));
+  }
+  z.resize(cells), dz.resize(cells), layer.resize(cells);
+  double bottom = 0;
+  for (int l = 0, first = 0; l < n_layers; first = ends[l++]) {
+    const int count = ends[l] - first;
+    runs.push_back({first, count, layers[l]});
+    for (int i = 0; i < count; ++i) {
+      dz[first + i] = layers[l].height / count;
+      z[first + i] = bottom + (i + 0.5) * dz[first + i];
+      layer[first + i] = l;
+    }
+    bottom += layers[l].height;
+  }
+}
 
 void declare(config::Section& section, BedParameters& p) {
   section.value("cells", p.cells)
@@ -103,13 +121,13 @@ void declare(config::Section& section, BedParameters& p) {
       .choice("advection", p.advection,
               {{"upwind", Advection::upwind}, {"tvd", Advection::tvd}, {"implicit", Advection::implicit}})
       .doc(
-          "upwind: explicit, first order, as in the thesis; tvd: explicit, second order; implicit: upwind, "
-          "any step");
+          "upwind: explicit, first order, as in the thesis; tvd: explicit, second order; implicit: "
+          "upwind, any step");
   section.value("courant", p.courant)
       .range(1e-4, 0.95)
       .doc(
-          "step of the bed over the time that the fluid takes through the cell with the least fluid; tvd: "
-          "at most 0.5");
+          "step of the bed over the time that the fluid takes through the cell with the least fluid; "
+          "tvd: at most 0.5");
   section.value("conducting-inlet", p.conducting_inlet)
       .doc("heat conduction through the inlet's face as well");
   section.value("mix-inversions", p.mix_inversions)

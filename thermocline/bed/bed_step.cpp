@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The time step of the packed bed.
+#include "thermocline/bed/packed_bed.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "thermocline/bed/grain_kernels.hpp"
-#include "thermocline/bed/packed_bed.hpp"
+#include "thermocline/bed/grains.hpp"
 
 namespace couplet::thermocline {
 namespace {
@@ -29,89 +29,81 @@ struct Range {
 }  // namespace
 
 GrainCells PackedBed::cells_of(const Operator& op, const BedGrid::Run& run) const {
-  return {op.rate.data(),           op.share.data(),        op.beta.data(),
-          op.heat.data(),           std::size_t(run.first), std::size_t(run.first + run.count),
-          std::size_t(grid_.size())};
+  return {op.rate.data(),
+          op.share.data(),
+          op.beta.data(),
+          op.heat.data(),
+          std::size_t(run.first),
+          std::size_t(run.first + run.count),
+          std::size_t(c_->grid.size())};
 }
 
 void PackedBed::solve(const Operator& op, double* fluid, const double* shells, double* to_shells,
                       const double* extra, bool sums_are_known) {
-  for (std::size_t r = 0; r < grid_.runs.size(); ++r) {
+  for (std::size_t r = 0; r < c_->grid.runs.size(); ++r) {
     if (sums_are_known)
-      gather_sums(cells_of(op, grid_.runs[r]), extra, fluid, sums_.data());
+      gather_sums(cells_of(op, c_->grid.runs[r]), extra, fluid, work_.sums.data());
     else
-      gather_grains(op.grains[r], cells_of(op, grid_.runs[r]), shells, extra, fluid, sums_.data());
+      gather_grains(op.grains[r], cells_of(op, c_->grid.runs[r]), shells, extra, fluid, work_.sums.data());
   }
   op.matrix.solve(fluid);
-  for (std::size_t r = 0; r < grid_.runs.size(); ++r)
-    scatter_grains(op.grains[r], cells_of(op, grid_.runs[r]), shells, fluid, to_shells, sums_.data());
+  for (std::size_t r = 0; r < c_->grid.runs.size(); ++r)
+    scatter_grains(op.grains[r], cells_of(op, c_->grid.runs[r]), shells, fluid, to_shells, work_.sums.data());
 }
 
 PackedBed::Stage PackedBed::explicit_terms(const double* t, double flux, double inlet, bool second_order) {
-  const int n = grid_.size();
+  const int n = c_->grid.size();
   Stage stage;
   stage.outlet = inlet;
   if (flux == 0) {
-    std::copy(source_.begin(), source_.end(), extra_.begin());
+    std::copy(source_.begin(), source_.end(), work_.extra.begin());
     return stage;
   }
   const bool up = flux > 0;
-  const double gc = flux * liquid_.specific_heat;
-  if (!second_order) {
-    const double* q = source_.data();
-    if (up) {
-      extra_[0] = q[0] + gc * (inlet - t[0]);
-      for (int i = 1; i < n; ++i) extra_[i] = q[i] + gc * (t[i - 1] - t[i]);
-    } else {
-      for (int i = 0; i + 1 < n; ++i) extra_[i] = q[i] + gc * (t[i] - t[i + 1]);
-      extra_[n - 1] = q[n - 1] + gc * (t[n - 1] - inlet);
-    }
-    stage.outlet = up ? t[n - 1] : t[0];
-    return stage;
-  }
-  double* face = face_.data();
+  const double gc = flux * c_->fluid.specific_heat;
   // Temperature that crosses face i (below cell i), from the side where the flow comes from.
-  if (up) {
-    for (int i = 1; i <= n; ++i) face[i] = t[i - 1];
-    for (int i = 2; i < n; ++i) face[i] += half_slope(t[i - 1] - t[i - 2], t[i] - t[i - 1]);
-    if (n > 1) face[1] += half_slope(2 * (t[0] - inlet), t[1] - t[0]);
-    face[0] = inlet;
-  } else {
-    for (int i = 0; i < n; ++i) face[i] = t[i];
-    for (int i = 1; i < n - 1; ++i) face[i] += half_slope(t[i] - t[i + 1], t[i - 1] - t[i]);
-    if (n > 1) face[n - 1] += half_slope(2 * (t[n - 1] - inlet), t[n - 2] - t[n - 1]);
-    face[n] = inlet;
+  double* face = work_.face.data();
+  std::copy_n(t, n, up ? face + 1 : face);
+  face[up ? 0 : n] = inlet;
+  if (second_order && n > 1) {
+    if (up) {
+      for (int i = 2; i < n; ++i) face[i] += half_slope(t[i - 1] - t[i - 2], t[i] - t[i - 1]);
+      face[1] += half_slope(2 * (t[0] - inlet), t[1] - t[0]);
+    } else {
+      for (int i = 1; i < n - 1; ++i) face[i] += half_slope(t[i] - t[i + 1], t[i - 1] - t[i]);
+      face[n - 1] += half_slope(2 * (t[n - 1] - inlet), t[n - 2] - t[n - 1]);
+    }
   }
-  for (int i = 0; i < n; ++i) extra_[i] = source_[i] + gc * (face[i] - face[i + 1]);
+  for (int i = 0; i < n; ++i) work_.extra[i] = source_[i] + gc * (face[i] - face[i + 1]);
   stage.outlet = up ? face[n] : face[0];
   return stage;
 }
 
 PackedBed::StepHeat PackedBed::first_order_step(const Operator& op, double flux, double inlet,
                                                 bool second_order) {
-  const int n = grid_.size();
+  const int n = c_->grid.size();
   Stage stage{inlet, 0};
   const double through_inlet = flux != 0 ? inlet_conductance(flux > 0) : 0;
   const int entry = flux > 0 ? 0 : n - 1, exit = flux > 0 ? n - 1 : 0;
-  if (advection_ == Advection::implicit) {
-    std::copy(source_.begin(), source_.end(), extra_.begin());
-    extra_[entry] += std::abs(flux) * liquid_.specific_heat * inlet;
+  if (c_->advection == Advection::implicit) {
+    std::copy(source_.begin(), source_.end(), work_.extra.begin());
+    work_.extra[entry] += std::abs(flux) * c_->fluid.specific_heat * inlet;
   } else {
     stage = explicit_terms(fluid_.data(), flux, inlet, second_order);
   }
-  extra_[entry] += through_inlet * inlet;
-  if (!melting_.empty()) {
-    solve_with_melting(op, extra_.data());
+  work_.extra[entry] += through_inlet * inlet;
+  if (!c_->melting.empty()) {
+    solve_with_melting(op, work_.extra.data());
   } else {
-    solve(op, fluid_.data(), shell_.data(), shell_.data(), extra_.data(), sums_of_ == op.number);
-    sums_of_ = op.number;
+    solve(op, fluid_.data(), shell_.data(), shell_.data(), work_.extra.data(), work_.sums_of == op.number);
+    work_.sums_of = op.number;
   }
-  if (advection_ == Advection::implicit && flux != 0) stage.outlet = fluid_[exit];
+  if (c_->advection == Advection::implicit && flux != 0) stage.outlet = fluid_[exit];
   stage.conducted = through_inlet * (inlet - fluid_[entry]);
   StepHeat heat;
   heat.outlet = stage.outlet;
-  heat.by_flow = area_ * prepared_.dt *
-                 (std::abs(flux) * liquid_.specific_heat * (inlet - stage.outlet) + stage.conducted);
+  heat.by_flow = c_->area * prepared_.dt *
+                 (std::abs(flux) * c_->fluid.specific_heat * (inlet - stage.outlet) + stage.conducted);
   return heat;
 }
 
@@ -127,73 +119,174 @@ PackedBed::StepHeat PackedBed::first_order_step(const Operator& op, double flux,
 /// hence u' = u + dt/2 (A(U1) + A(U2)) + (U1 - u + U2 - R2)/(2 gamma).
 bool PackedBed::second_order_step(double flux, double inlet, StepHeat& heat) {
   const std::size_t n = fluid_.size(), ns = shell_.size();
-  const double gamma = main_.tau / prepared_.dt, carry = (1 - 2 * gamma) / gamma, half = 0.5 / gamma;
+  const double gamma = prepared_.main.tau / prepared_.dt, carry = (1 - 2 * gamma) / gamma, half = 0.5 / gamma;
   const double through_inlet = flux != 0 ? inlet_conductance(flux > 0) : 0;
   const std::size_t entry = flux > 0 ? 0 : n - 1;
-  // What enters by conduction counts as part of L.
+  // Conduction through the inlet counts as part of L.
   const auto only_inlet = [&] {
-    std::fill(extra_.begin(), extra_.end(), 0.0);
-    extra_[entry] = through_inlet * inlet;
+    std::fill(work_.extra.begin(), work_.extra.end(), 0.0);
+    work_.extra[entry] = through_inlet * inlet;
   };
-  std::copy(fluid_.begin(), fluid_.end(), fluid1_.begin());
+  std::copy(fluid_.begin(), fluid_.end(), work_.fluid1.begin());
   only_inlet();
-  sums_of_ = 0;
-  solve(main_, fluid1_.data(), shell_.data(), shell1_.data(), extra_.data(), false);
-  const double conducted1 = through_inlet * (inlet - fluid1_[entry]);
-  const Stage first = explicit_terms(fluid1_.data(), flux, inlet, true);
-  // R2 in fluid2_, shell2_; fluid1_ becomes u' as far as it is known.
+  work_.sums_of = 0;
+  solve(prepared_.main, work_.fluid1.data(), shell_.data(), work_.shell1.data(), work_.extra.data(), false);
+  const double conducted1 = through_inlet * (inlet - work_.fluid1[entry]);
+  const Stage first = explicit_terms(work_.fluid1.data(), flux, inlet, true);
+  // R2 in work_.fluid2, work_.shell2; work_.fluid1 becomes u' as far as it is known.
   for (std::size_t i = 0; i < n; ++i) {
-    const double a = prepared_.dt / capacity_[i] * extra_[i], l = fluid1_[i] - fluid_[i];
-    fluid2_[i] = fluid_[i] + a + carry * l;
-    fluid1_[i] = fluid_[i] + 0.5 * a + half * (l - fluid2_[i]);
+    const double a = prepared_.dt / capacity_[i] * work_.extra[i], l = work_.fluid1[i] - fluid_[i];
+    work_.fluid2[i] = fluid_[i] + a + carry * l;
+    work_.fluid1[i] = fluid_[i] + 0.5 * a + half * (l - work_.fluid2[i]);
   }
-  for (std::size_t i = 0; i < ns; ++i) shell2_[i] = shell_[i] + carry * (shell1_[i] - shell_[i]);
+  for (std::size_t i = 0; i < ns; ++i) work_.shell2[i] = shell_[i] + carry * (work_.shell1[i] - shell_[i]);
   only_inlet();
-  solve(main_, fluid2_.data(), shell2_.data(), shell2_.data(), extra_.data(), false);
-  const double conducted2 = through_inlet * (inlet - fluid2_[entry]);
-  const Stage second = explicit_terms(fluid2_.data(), flux, inlet, true);
+  solve(prepared_.main, work_.fluid2.data(), work_.shell2.data(), work_.shell2.data(), work_.extra.data(),
+        false);
+  const double conducted2 = through_inlet * (inlet - work_.fluid2[entry]);
+  const Stage second = explicit_terms(work_.fluid2.data(), flux, inlet, true);
   Range before{flux != 0 ? inlet : fluid_[0], flux != 0 ? inlet : fluid_[0]};
   before.add(fluid_.data(), n);
   before.add(shell_.data(), ns);
   for (std::size_t i = 0; i < n; ++i)
-    fluid1_[i] += half * fluid2_[i] + 0.5 * prepared_.dt / capacity_[i] * extra_[i];
+    work_.fluid1[i] += half * work_.fluid2[i] + 0.5 * prepared_.dt / capacity_[i] * work_.extra[i];
   // u + (U1 - u + U2 - R2)/(2 gamma) with R2 = u + carry (U1 - u).
   const double of_u = 1 - half * (2 - carry), of_u1 = half * (1 - carry);
-  for (std::size_t i = 0; i < ns; ++i) shell1_[i] = of_u * shell_[i] + of_u1 * shell1_[i] + half * shell2_[i];
+  for (std::size_t i = 0; i < ns; ++i)
+    work_.shell1[i] = of_u * shell_[i] + of_u1 * work_.shell1[i] + half * work_.shell2[i];
   Range after{before.low, before.high};
-  after.add(fluid1_.data(), n);
-  after.add(shell1_.data(), ns);
+  after.add(work_.fluid1.data(), n);
+  after.add(work_.shell1.data(), ns);
   const double slack = 1e-9 * (before.high - before.low) + 1e-11 * before.high + source_rate_ * prepared_.dt;
   if (!(after.low >= before.low - slack && after.high <= before.high + slack)) return false;
-  fluid_.swap(fluid1_);
-  shell_.swap(shell1_);
+  fluid_.swap(work_.fluid1);
+  shell_.swap(work_.shell1);
   heat.outlet = 0.5 * (first.outlet + second.outlet);
   heat.by_flow =
-      area_ * prepared_.dt *
-      (std::abs(flux) * liquid_.specific_heat * (inlet - heat.outlet) + 0.5 * (conducted1 + conducted2));
+      c_->area * prepared_.dt *
+      (std::abs(flux) * c_->fluid.specific_heat * (inlet - heat.outlet) + 0.5 * (conducted1 + conducted2));
   return true;
 }
 
 PackedBed::StepHeat PackedBed::step(double mass_flow, double inlet) {
   // The matrix of the implicit scheme belongs to one flow.
-  const double flux = mass_flow / area_;
-  const bool other_inlet = conducting_inlet_ && ((flux > 0) != (prepared_.mass_flow > 0) ||
-                                                 (flux < 0) != (prepared_.mass_flow < 0));
-  if ((advection_ == Advection::implicit && mass_flow != prepared_.mass_flow) || other_inlet)
+  const double flux = mass_flow / c_->area;
+  const bool other_inlet = c_->conducting_inlet && ((flux > 0) != (prepared_.mass_flow > 0) ||
+                                                    (flux < 0) != (prepared_.mass_flow < 0));
+  if ((c_->advection == Advection::implicit && mass_flow != prepared_.mass_flow) || other_inlet)
     prepare(prepared_.dt, mass_flow);
   StepHeat heat;
-  if (advection_ != Advection::tvd) {
-    heat = first_order_step(main_, flux, inlet, false);
+  if (c_->advection != Advection::tvd) {
+    heat = first_order_step(prepared_.main, flux, inlet, false);
   } else if (!second_order_step(flux, inlet, heat)) {
-    if (!fallback_is_built_) build(fallback_, prepared_.dt);
-    fallback_is_built_ = true;
+    if (!prepared_.fallback_is_built) build(prepared_.fallback, prepared_.dt);
+    prepared_.fallback_is_built = true;
     ++fallbacks_;
-    heat = first_order_step(fallback_, flux, inlet, true);
+    heat = first_order_step(prepared_.fallback, flux, inlet, true);
   }
   double source = 0;
   for (const double s : source_) source += s;
-  heat.by_source = area_ * prepared_.dt * source;
+  heat.by_source = c_->area * prepared_.dt * source;
   return heat;
+}
+
+// Capsules that melt: Newton's method on the heat of each shell [swaminathan1993]. With h_m, T_m of the last pass
+// and c = dh/dT there,
+//   (h_m + c (T - T_m) - h^n)/tau = what flows in at T
+// is linear. h_m + c (T - T_m) is then exactly what flowed in, whatever the number of passes, and T_{m+1} the
+// temperature that belongs to it.
+
+/// Apparent capacity and right-hand side of each shell at its temperature of the last pass [J/(m^3 K)],
+/// [J/m^3].
+void PackedBed::linearise_melting(const BedGrid::Run& run, const PhaseChange& phase) {
+  const int n = c_->grid.size();
+  const double share = (1 - run.layer.porosity) / c_->shells;
+  for (int j = 0; j < c_->shells; ++j)
+    for (int i = run.first; i < run.first + run.count; ++i) {
+      const std::size_t k = std::size_t(j) * n + i;
+      const double c = phase.capacity(shell_[k]);
+      work_.melt.capacity[k] = share * c;
+      work_.melt.right[k] = share * (c * shell_[k] - phase.heat(shell_[k]) + phase.heat(work_.shell1[k]));
+    }
+}
+
+/// The elimination of GrainElimination with a capacity of each shell of each cell; adds to the fluid's rows.
+void PackedBed::eliminate_melting(const Operator& op, const BedGrid::Run& run, const Grains& grains,
+                                  const double* extra) {
+  const int n = c_->grid.size();
+  for (int i = run.first; i < run.first + run.count; ++i) {
+    double rest_inside = 1, inside = 0;  // 1 - beta and alpha of the shell further in
+    for (int j = c_->shells - 1; j >= 1; --j) {
+      const std::size_t k = std::size_t(j) * n + i;
+      const double outward = grains.between[j - 1], inward = j + 1 < c_->shells ? grains.between[j] : 0;
+      const double held = work_.melt.capacity[k] / op.tau + inward * rest_inside, diagonal = held + outward;
+      work_.melt.alpha[k] = inside = (work_.melt.right[k] / op.tau + inward * inside) / diagonal;
+      work_.melt.beta[k] = outward / diagonal;
+      rest_inside = held / diagonal;
+    }
+    const double between = c_->shells > 1 ? grains.between[0] : 0;
+    const double own = work_.melt.capacity[i] / op.tau + between * rest_inside;
+    const double g = grains.exchange(prepared_.film[i]), dz = c_->grid.dz[i];
+    work_.melt.alpha[i] = (work_.melt.right[i] / op.tau + between * inside) / (own + g);
+    work_.melt.beta[i] = g / (own + g);
+    work_.melt.diagonal[i] = work_.diagonal[i] - op.own_part[i] + own * work_.melt.beta[i] * dz;
+    fluid_[i] = op.rate[i] * fluid_[i] + extra[i] + g * dz * work_.melt.alpha[i];
+  }
+}
+
+/// Temperatures that belong to the heat that each shell got; by how much the linear ones were off at most
+/// [K].
+double PackedBed::settle_melting(const BedGrid::Run& run, const PhaseChange& phase) {
+  const int n = c_->grid.size();
+  const double share = (1 - run.layer.porosity) / c_->shells;
+  double worst = 0;
+  for (int i = run.first; i < run.first + run.count; ++i) {
+    double outside = fluid_[i];
+    for (int j = 0; j < c_->shells; ++j) {
+      const std::size_t k = std::size_t(j) * n + i;
+      outside = work_.melt.alpha[k] + work_.melt.beta[k] * outside;
+      // capacity T - right = h - h^n, per volume of the bed
+      const double heat =
+          phase.heat(work_.shell1[k]) + (work_.melt.capacity[k] * outside - work_.melt.right[k]) / share;
+      shell_[k] = phase.temperature(heat);
+      worst = std::max(worst, std::abs(shell_[k] - outside));
+    }
+  }
+  return worst;
+}
+
+void PackedBed::solve_with_melting(const Operator& op, const double* extra) {
+  constexpr int most_passes = 30;
+  constexpr double close = 1e-6;  // [K]
+  work_.fluid1 = fluid_, work_.shell1 = shell_;
+  for (int pass = 0; pass < most_passes; ++pass) {
+    fluid_ = work_.fluid1;
+    work_.melt.diagonal = work_.diagonal;
+    for (std::size_t r = 0; r < c_->grid.runs.size(); ++r) {
+      const BedGrid::Run& run = c_->grid.runs[r];
+      if (!c_->melting[r]) {
+        gather_grains(op.grains[r], cells_of(op, run), work_.shell1.data(), extra, fluid_.data(),
+                      work_.sums.data());
+        continue;
+      }
+      linearise_melting(run, *c_->melting[r]);
+      eliminate_melting(op, run, c_->grains[r], extra);
+    }
+    work_.melt.matrix.resize(c_->grid.size());
+    work_.melt.matrix.factorise(work_.lower.data(), work_.melt.diagonal.data(), work_.upper.data());
+    work_.melt.matrix.solve(fluid_.data());
+    double worst = 0;
+    for (std::size_t r = 0; r < c_->grid.runs.size(); ++r) {
+      const BedGrid::Run& run = c_->grid.runs[r];
+      if (c_->melting[r])
+        worst = std::max(worst, settle_melting(run, *c_->melting[r]));
+      else
+        scatter_grains(op.grains[r], cells_of(op, run), work_.shell1.data(), fluid_.data(), shell_.data(),
+                       work_.sums.data());
+    }
+    if (worst <= close) return;
+  }
+  ++fallbacks_;  // the books are right all the same
 }
 
 }  // namespace couplet::thermocline

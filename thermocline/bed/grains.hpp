@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "thermocline/material/properties.hpp"
@@ -41,5 +42,42 @@ struct GrainElimination {
   std::vector<double> weight;
   double own;
 };
+
+// The loops over cells of the elimination, vectorized over cells. Shells lie one after the other, `n` cells each.
+
+inline constexpr int most_shells = 100;
+
+/// Per cell of a layer: what the elimination needs and gives.
+struct GrainCells {
+  const double *rate, *share, *beta, *heat;
+  std::size_t first, last, n;
+};
+
+/// sum_j weight_j theta_j of the grains, and fluid := rate fluid + extra + heat sum. Chosen by the processor
+/// at run time; without fused operations, so that all processors give the same bits.
+void gather_grains(const GrainElimination& e, const GrainCells& c, const double* shells, const double* extra,
+                   double* fluid, double* sums);
+/// The latter part, with sums that scatter_grains() left.
+void gather_sums(const GrainCells& c, const double* extra, double* fluid, const double* sums);
+/// The shells at the new time from the fluid's temperature there and the sums before; `to` may be `shells`.
+/// `sums` are then those of the new shells.
+void scatter_grains(const GrainElimination& e, const GrainCells& c, const double* shells, const double* fluid,
+                    double* to, double* sums);
+
+// Rows of the matrix of the bed, loops over the cells of a layer without branches.
+
+struct ExchangeLayer {
+  double tau, own, area, surface;  ///< step [s]; of GrainElimination and Grains
+};
+struct ExchangeInput {
+  const double *capacity, *film, *dz;  ///< eps rho c dz [J/(m^2 K)], [W/(m^2 K)], [m]
+  std::size_t n;
+};
+struct ExchangeRows {
+  double *rate, *share, *beta, *heat,
+      *diagonal;  ///< as in PackedBed::Operator; what the diagonal begins with
+};
+/// Fluid against the eliminated grains, in layers with grains.
+void exchange_rows(const ExchangeLayer& layer, const ExchangeInput& in, const ExchangeRows& rows);
 
 }  // namespace couplet::thermocline

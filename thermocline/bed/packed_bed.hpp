@@ -1,39 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "thermocline/base/tridiagonal.hpp"
-#include "thermocline/bed/bed_grid.hpp"
+#include "thermocline/bed/bed_parameters.hpp"
 #include "thermocline/bed/closures.hpp"
-#include "thermocline/bed/grain_kernels.hpp"
 #include "thermocline/bed/grains.hpp"
-#include "thermocline/material/phase_change.hpp"
+#include "thermocline/material/numerics.hpp"
+#include "thermocline/material/properties.hpp"
 
 namespace couplet::thermocline {
-
-/// How the front is carried.
-enum class Advection {
-  upwind,    ///< explicit, first order, as the thesis: its numerical diffusion is G c dz (1 - Courant)/2
-  tvd,       ///< explicit, van Leer's limiter, second order in space and time, bounded
-  implicit,  ///< first-order upwind at the new time: any step, stays bounded
-};
-
-struct BedParameters {
-  int cells = 500;
-  std::vector<BedLayer> layers;  ///< from the bottom up
-  int shells = 5;                ///< in a grain
-  Advection advection = Advection::upwind;
-  double courant = 0.5;           ///< step over the advective limit; at most 0.5 for tvd, 1 for upwind
-  bool conducting_inlet = false;  ///< heat conduction through the inlet face too
-  bool mix_inversions = false;    ///< cold fluid above hot is mixed
-  ClosureParameters closures;
-  double initial_temperature = 293.15;                 ///< [K]
-  std::vector<double> profile_z, profile_temperature;  ///< or a profile, piecewise linear
-};
 
 /// Fluid and filler of the tank (5.7, 5.8), one-dimensional in z. One step of the fluid:
 ///   rho eps c dT/dt = d/dz(k_eff dT/dz) - G c dT/dz - h_v (T - T_surface) + source
@@ -41,21 +21,56 @@ struct BedParameters {
 /// cell by cell, what remains is tridiagonal. Coefficients are those at the start of a block of steps
 /// (prepare()).
 class PackedBed {
+  /// I - tau L with L conduction and exchange (and advection if implicit): matrix and grain factors.
+  struct Operator {
+    Operator(int name) : number(name) {}
+    int number;                // 1 the scheme's own, 2 the fallback's
+    double tau = 0;            // [s]
+    std::vector<double> rate;  // eps rho c dz/tau [W/(m^2 K)]
+    // With g = exchange(film) and sum_j weight_j theta_j of the grains as they were: theta_0 = share sum +
+    // beta T, and the fluid gets heat sum from them.
+    std::vector<double> share, beta, heat;  // 1/(own + g), g/(own + g), g dz/(own + g)
+    std::vector<double> own_part;           // what the grains add to the diagonal; where layers melt only
+    std::vector<GrainElimination> grains;
+    Tridiagonal matrix;
+  };
+
  public:
+  /// Constants of a run, shared by all copies of the bed.
+  struct Constants {
+    Constants(const BedParameters& parameters, const Fluid& fluid, const Filler& filler, double diameter);
+    BedGrid grid;
+    Fluid fluid;
+    double area;
+    int shells;
+    Advection advection;
+    double courant;
+    bool conducting_inlet;
+    // One per run of cells.
+    std::vector<LayerClosure> closures;
+    std::vector<Grains> grains;
+    std::vector<std::optional<PhaseChange>> melting;  // empty if no layer melts
+    std::vector<double> capacity;  // eps rho c dz of the cells with the fluid's constant density [J/(m^2 K)]
+    double heat_capacity = 0;      // [J/K]
+    double limit = std::numeric_limits<double>::infinity();  // smallest eps rho dz [kg/m^2]
+  };
+  /// Coefficients and matrices of the steps that follow prepare().
+  struct Prepared {
+    double dt = 0, mass_flow = 0;                  // [s], [kg/s]
+    std::vector<double> film, conductivity, wall;  // of each cell
+    Operator main{1}, fallback{2};
+    bool fallback_is_built = false;
+  };
   PackedBed(const BedParameters& parameters, const Fluid& fluid, const Filler& filler, double diameter);
 
-  const BedGrid& grid() const { return grid_; }
-  double area() const { return area_; }
-  int shells() const { return shells_; }
+  const BedGrid& grid() const { return c_->grid; }
+  double area() const { return c_->area; }
+  int shells() const { return c_->shells; }
 
   /// Largest step that the scheme takes at this flow [s]; infinity at rest or implicit.
   double largest_step(double mass_flow) const;
-  /// Steps of this length follow; film, conductivity and factorisation are made for this flow.
+  /// Steps of this length follow; film, conductivity and factorization are made for this flow.
   void prepare(double dt, double mass_flow);
-  /// For which step [s] and flow [kg/s].
-  struct Prepared {
-    double dt = 0, mass_flow = 0;
-  };
   const Prepared& prepared() const { return prepared_; }
   /// Heat given to the fluid of each cell by walls, ullage and ground during the following steps [W].
   void set_source(std::span<const double> source);
@@ -70,14 +85,14 @@ class PackedBed {
 
   /// Heat above a uniform temperature [J].
   double energy(double reference) const;
-  double heat_capacity() const { return heat_capacity_; }  ///< [J/K]; with the fluid's constant density
+  double heat_capacity() const { return c_->heat_capacity; }  ///< [J/K]; with the fluid's constant density
   /// Heat from one temperature to another, of fluid and filler [J].
   double heat_between(double cold, double hot) const;
   /// With a density that follows the temperature: closes the steps since prepare(), during which each cell
   /// kept the capacity it had at their begin. Its temperature becomes the one that belongs to the heat it
   /// got, hence no heat is lost. Steps between should be short against the passage of the front.
   void settle();
-  bool has_real_density() const { return liquid_.real_density; }
+  bool has_real_density() const { return c_->fluid.real_density; }
 
   std::span<const double> fluid() const { return fluid_; }
   double top() const { return fluid_.back(); }
@@ -86,56 +101,62 @@ class PackedBed {
   void filler_temperature(std::vector<double>& mean) const;
   /// Shell j of all cells, 0 at the surface [K].
   std::span<const double> shell(int j) const {
-    return {shell_.data() + std::size_t(j) * grid_.size(), fluid_.size()};
+    return {shell_.data() + std::size_t(j) * c_->grid.size(), fluid_.size()};
   }
   /// Fluid-wall coefficients of the prepared flow [W/(m^2 K)].
-  std::span<const double> wall_coefficient() const { return wall_; }
-  /// Those of a checkpoint: the walls use what the last steps used.
-  void set_wall_coefficient(std::span<const double> wall) { wall_.assign(wall.begin(), wall.end()); }
+  std::span<const double> wall_coefficient() const { return prepared_.wall; }
+  /// The step, the flow and the wall coefficients of the last steps, for resume().
+  template <class Self, class F>
+  static void visit_prepared(Self& self, F&& f) {
+    f("flow-of-closures", self.prepared_.dt, self.prepared_.mass_flow);
+    f("closures", self.prepared_.wall);
+  }
   double reynolds(int cell, double mass_flow) const;
 
   /// Mixes fluid where it is colder than the fluid below it; keeps its heat.
   void mix_inversions();
-  bool melts() const { return !melting_.empty(); }
+  bool melts() const { return !c_->melting.empty(); }
   /// Steps of the tvd scheme that were taken again at first order in time to stay within bounds; of a bed
   /// that melts, those whose iteration was cut short.
   long fallbacks() const { return fallbacks_; }
 
   /// Fluid and then the shells, cell by cell.
-  std::vector<double> state() const;
-  void restore(std::span<const double> state);
+  template <class Self, class F>
+  static void visit(Self& self, F&& f) {
+    f(self.fluid_, self.shell_);
+  }
+  /// Makes everything that follows from a state that was loaded.
+  void resume();
   void set_temperature(std::span<const double> temperature);
 
  private:
-  /// I - tau L with L conduction and exchange (and advection if implicit): matrix and grain factors.
-  struct Operator {
-    Operator(int name) : number(name) {}
-    int number;  // 1 the scheme's own, 2 the fallback's
-    double tau = 0;
-    std::vector<double> rate;  // eps rho c dz/tau [W/(m^2 K)]
-    // With g = exchange(film) and sum_j weight_j theta_j of the grains as they were: theta_0 = share sum +
-    // beta T, and the fluid gets heat sum from them.
-    std::vector<double> share, beta, heat;  // 1/(own + g), g/(own + g), g dz/(own + g)
-    std::vector<double> own_part;           // what the grains add to the diagonal; where layers melt only
-    std::vector<GrainElimination> grains;
-    Tridiagonal matrix;
-  };
   struct Stage {
     double outlet = 0,
            conducted = 0;  // temperature of what leaves; conduction through the inlet face [W/m^2]
   };
   void build(Operator& op, double tau);
-  /// Solves (I - tau L) x = (fluid, shells) + tau extra. `to_shells` may be `shells`. `sums_are_known`: sums_
+  /// Solves (I - tau L) x = (fluid, shells) + tau extra. `to_shells` may be `shells`. `sums_are_known`: work_.sums
   /// are those of `shells` with this operator, as the last step left them.
   void solve(const Operator& op, double* fluid, const double* shells, double* to_shells, const double* extra,
              bool sums_are_known);
   GrainCells cells_of(const Operator& op, const BedGrid::Run& run) const;
-  /// The same for a bed with layers that melt, in place.
+  /// Solves the step of a bed with layers that melt, in place.
   void solve_with_melting(const Operator& op, const double* extra);
   void linearise_melting(const BedGrid::Run& run, const PhaseChange& phase);
   void eliminate_melting(const Operator& op, const BedGrid::Run& run, const Grains& grains,
                          const double* extra);
   double settle_melting(const BedGrid::Run& run, const PhaseChange& phase);
+  /// Vectors that a step overwrites before it reads them, except `sums`.
+  struct Work {
+    std::vector<double> extra, face, fluid1, fluid2, shell1, shell2;
+    std::vector<double> sums;                                // of the shells, as the last step left them
+    int sums_of = 0;                                         // the operator that `sums` belong to; 0: to none
+    std::vector<double> lower, diagonal, upper, resistance;  // of a matrix being built
+    struct Melting {
+      std::vector<double> capacity, right, alpha, beta, diagonal;  // shells times cells; the last: cells
+      Tridiagonal matrix;
+    } melt;  // empty if no layer melts
+  };
   /// Advection and sources [W/m^2] of the fluid temperatures given.
   Stage explicit_terms(const double* fluid, double flux, double inlet, bool second_order);
   StepHeat first_order_step(const Operator& op, double flux, double inlet, bool second_order);
@@ -143,37 +164,17 @@ class PackedBed {
   double inlet_conductance(bool upward) const;
   void follow_density();
 
-  BedGrid grid_;
-  Fluid liquid_;
-  std::shared_ptr<const std::vector<LayerClosure>> closures_;  // large, and the same in all copies
-  std::vector<Grains> grains_;
-  double area_;
-  int shells_;
-  Advection advection_;
-  double courant_;
-  bool conducting_inlet_;
-  double heat_capacity_ = 0;
-  std::vector<double> capacity_;  // eps rho c dz [J/(m^2 K)]
-  double limit_;                  // smallest eps rho dz [kg/m^2]
-
-  Prepared prepared_;
-  Operator main_{1}, fallback_{2};
-  int sums_of_ = 0;  // the operator that sums_ belong to; 0: to none
-  bool fallback_is_built_ = false;
-  std::vector<double> fluid_, shell_;  // state
+  std::shared_ptr<const Constants> c_;
+  // State.
+  std::vector<double> fluid_, shell_;  // [K]; all cells of a shell one after the other
   std::vector<double> settled_;        // fluid that capacity_ belongs to; with a real density only
-  std::vector<double> source_, film_, conductivity_, wall_;
-  double source_rate_ = 0;  // largest |source|/capacity [K/s]
-  // Work space.
-  std::vector<double> extra_, face_, fluid1_, fluid2_, shell1_, shell2_, sums_;
-  std::vector<double> lower_, diagonal_, upper_, exchange_;  // of a matrix being built
+  std::vector<double> capacity_;       // eps rho c dz [J/(m^2 K)]
+  // Conditions of the following steps.
+  std::vector<double> source_;  // [W/m^2]
+  double source_rate_ = 0;      // largest |source|/capacity [K/s]
+  Prepared prepared_;
+  Work work_;
   long fallbacks_ = 0;
-  // Of layers that melt; empty without.
-  std::vector<std::optional<PhaseChange>> melting_;  // of each run of cells
-  struct MeltingWork {
-    std::vector<double> capacity, right, alpha, beta, diagonal;  // shells times cells; the last: cells
-    Tridiagonal matrix;
-  } melt_;
 };
 
 /// How much colder fluid is than the hottest fluid below it, at most [K], and where [m].
@@ -182,6 +183,28 @@ struct Inversion {
 };
 Inversion inversion_of(const PackedBed& bed);
 
-void declare(config::Section& section, BedParameters& parameters);
+/// Pump or fan that drives the flow through the bed.
+struct PumpParameters {
+  double efficiency = 0.7;  ///< of pump or fan with its motor
+};
+
+/// Ergun 1952, on the superficial mass flux G = rho u: rho dp/dz [Pa kg/m^4]
+///   150 mu G (1 - eps)^2/(eps^3 d^2) + 1.75 G^2 (1 - eps)/(eps^3 d)
+double ergun(const BedLayer& layer, double viscosity, double flux);
+
+struct PressureLoss {
+  double inlet = 0, outlet = 0;  ///< absolute for a gas; of a liquid above the outlet [Pa]
+  double loss() const { return inlet - outlet; }
+};
+/// Across the bed at fluid temperatures `temperature`, a value a cell [K]. For an ideal gas, whose pressure
+/// is that of the fluid where it leaves, p dp/dz = R T (...) is integrated exactly in each cell:
+///   p_in^2 = p_out^2 + 2 R T dz (...)
+PressureLoss pressure_loss(const BedGrid& grid, const Fluid& fluid, std::span<const double> temperature,
+                           double mass_flow, double area);
+
+/// Power that the pump (at the bed's cold end) takes [W]: m dp/(rho eta) for a liquid, isentropic compression
+/// m c T ((p_in/p_out)^(R/c) - 1)/eta for a gas.
+double pump_power(const PressureLoss& loss, const Fluid& fluid, double cold_end, double mass_flow,
+                  double efficiency);
 
 }  // namespace couplet::thermocline

@@ -12,7 +12,6 @@
 #include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
 #include "thermocline/judge/files.hpp"
-#include "thermocline/model/plausible.hpp"
 #include "thermocline/model/questions.hpp"
 #include "thermocline/model/tank.hpp"
 

@@ -3,7 +3,7 @@
 
 #include "common/base/error.hpp"
 #include "thermocline/model/questions.hpp"
-#include "thermocline/plant/flow_file.hpp"
+#include "thermocline/plant/flow.hpp"
 
 namespace couplet::thermocline {
 namespace {

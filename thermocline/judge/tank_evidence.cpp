@@ -6,7 +6,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "thermocline/judge/effect_cards.hpp"
+#include "thermocline/judge/effects.hpp"
 #include "thermocline/model/tank.hpp"
 
 namespace couplet::thermocline {
@@ -180,7 +180,7 @@ coupling::ErrorParts Tank::spread_profile() const {
   return parts;
 }
 
-std::vector<effects::EffectVerdict> Tank::audit() const {
+std::vector<log::Finding> Tank::effects() const {
   const TankModel& m = accepted_;
   Evidence evidence;
   if (m.setup().fluid.is_gas() && peak_flow_ > 0) evidence.largest_mach = largest_mach(m, peak_flow_);
@@ -218,7 +218,7 @@ std::vector<effects::EffectVerdict> Tank::audit() const {
   ElementParameters scene;
   scene.type = ElementParameters::Type::tank;
   scene.tank = m.setup().parameters;
-  return couplet::effects::audit(effect_cards(), scene, evidence);
+  return effect_findings(scene, evidence);
 }
 
 }  // namespace couplet::thermocline

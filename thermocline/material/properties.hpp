@@ -7,12 +7,34 @@
 #include <vector>
 
 #include "common/config/section.hpp"
-#include "thermocline/base/celsius.hpp"
-#include "thermocline/base/table.hpp"
+#include "thermocline/material/numerics.hpp"
 
 /// Materials of thesis table 5.1 with its misprints mended, the insulation and foundation materials of a
 /// tank, and materials of the user's own. Temperatures in K, everything in SI.
 namespace couplet::thermocline {
+
+// Unit and usual magnitudes of quantities that several elements have.
+inline config::Key& as_temperature(config::Key&& key) { return key.unit("K").plausible(70, 5000); }
+inline config::Key& as_difference(config::Key&& key) { return key.unit("K difference").plausible(0.1, 500); }
+inline config::Key& as_density(config::Key&& key) { return key.unit("kg/m^3").plausible(0.05, 25000); }
+inline config::Key& as_thickness(config::Key&& key) { return key.unit("m").plausible(1e-4, 30); }
+inline config::Key& as_length(config::Key&& key) { return key.unit("m").plausible(0.01, 100); }
+inline config::Key& as_step(config::Key&& key) { return key.unit("s").plausible(0.1, 1e5); }
+inline config::Key& as_specific_heat(config::Key&& key) { return key.unit("J/(kg K)").plausible(10, 1e5); }
+inline config::Key& as_conductivity(config::Key&& key) { return key.unit("W/(m K)").plausible(1e-3, 1e7); }
+inline config::Key& as_film(config::Key&& key) { return key.unit("W/(m^2 K)").plausible(1e-3, 1e7); }
+
+/// Declares a section by the `declare` of its parameters; one that may be absent for a std::optional.
+template <class T>
+void declare_section(config::Section& s, const char* name, T& value, const char* doc) {
+  s.section(
+      name, [&value](config::Section& q) { declare(q, value); }, doc);
+}
+template <class T>
+void declare_section(config::Section& s, const char* name, std::optional<T>& value, const char* doc) {
+  s.optional_section<T>(
+      name, value, [](config::Section& q, T& v) { declare(q, v); }, doc);
+}
 
 inline constexpr double gravity = 9.81;  // [m/s^2]
 
@@ -88,7 +110,7 @@ Fluid caloria_ht43();
 /// density at the reference temperature counts for the little heat that the pores hold, that of the moment
 /// for Ergun.
 Fluid air_at(double pressure, double reference_temperature, double specific_heat = 1075);
-/// What a kilogram of dry air takes from one temperature to another [J/kg], by the standard fit of its specific heat:
+/// Heat of a kilogram of dry air between two temperatures [J/kg], by the standard fit of its specific heat:
 /// what a run with a constant is judged by.
 double air_heat_between(double from, double to);
 Steel steel_a537();     // A537 class 2, 477-577 K
@@ -129,5 +151,31 @@ struct InsulatorParameters {
 };
 void declare(config::Section& section, InsulatorParameters& parameters);
 Insulator make_insulator(const InsulatorParameters& parameters);
+
+/// Heat of a grain's material over temperature, per volume of the material, with a range in which it melts:
+///   h(T) = rho c T + rho L clamp((T - T_low)/width, 0, 1)
+struct PhaseChange {
+  PhaseChange(const Filler& filler, const Melting& melting)
+      : solid(filler.volumetric()),
+        latent(filler.density * melting.latent_heat),
+        low(melting.temperature - melting.width / 2),
+        high(melting.temperature + melting.width / 2) {}
+
+  double solid, latent, low, high;  // [J/(m^3 K)], [J/m^3], [K]
+
+  /// Counted from T_low, so that no digits are lost [J/m^3].
+  double heat(double t) const {
+    const double sensible = solid * (t - low);
+    if (t <= low) return sensible;
+    return t >= high ? sensible + latent : sensible + latent * (t - low) / (high - low);
+  }
+  double temperature(double heat) const {
+    if (heat <= 0) return low + heat / solid;
+    const double full = solid * (high - low) + latent;
+    return heat >= full ? low + (heat - latent) / solid : low + (high - low) * heat / full;
+  }
+  /// Apparent capacity dh/dT [J/(m^3 K)].
+  double capacity(double t) const { return t > low && t < high ? solid + latent / (high - low) : solid; }
+};
 
 }  // namespace couplet::thermocline

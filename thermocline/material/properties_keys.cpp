@@ -10,7 +10,7 @@ namespace {
 
 void nothing(config::Section&) {}
 
-/// What is wrong with a column beside `temperature`.
+/// Returns why a column beside `temperature` is not valid, or nothing.
 std::string problem_of(const std::vector<double>& temperature, const std::vector<double>& values,
                        bool positive) {
   if (temperature.empty()) return "'temperature' is empty; give the temperatures of the values";
@@ -39,26 +39,12 @@ void declare_table(config::Section& s, const char* name, const char* unit, std::
 
 /// A fluid of constants and lists.
 void declare_custom(config::Section& s, FluidParameters& p) {
-  s.value("density", p.density)
-      .unit("kg/m^3")
-      .plausible(0.05, 25000)
-      .positive()
-      .required()
-      .doc("density, a constant");
-  s.value("specific-heat", p.specific_heat)
-      .unit("J/(kg K)")
-      .plausible(10, 1e5)
-      .positive()
-      .required()
-      .doc("a constant");
-  s.value("temperature", p.temperature)
-      .unit("K")
-      .plausible(70, 5000)
-      .required()
-      .doc("temperatures of the following lists");
+  as_density(s.value("density", p.density)).positive().required().doc("density, a constant");
+  as_specific_heat(s.value("specific-heat", p.specific_heat)).positive().required().doc("a constant");
+  as_temperature(s.value("temperature", p.temperature)).required().doc("temperatures of the following lists");
   declare_table(s, "conductivity", "W/(m K)", p.conductivity, p.temperature, "piecewise linear");
   declare_table(s, "viscosity", "Pa s", p.viscosity, p.temperature, "piecewise linear");
-  s.value("lowest", p.lowest).unit("K").plausible(70, 5000).doc("freezing point: below it a warning");
+  as_temperature(s.value("lowest", p.lowest)).doc("freezing point: below it a warning");
   s.value("highest", p.highest)
       .unit("K")
       .plausible(70, 1e4)
@@ -72,8 +58,8 @@ void declare(config::Section& section, FluidParameters& p) {
   const auto known = [&p](config::Section& s) {
     s.value("real-density", p.real_density)
         .doc(
-            "the density falls with temperature, in the heat of the pores and in the pressure on the wall; "
-            "otherwise it is the constant of thesis table 5.1");
+            "the density falls with temperature, in the heat of the pores and in the pressure on the "
+            "wall; otherwise it is the constant of thesis table 5.1");
   };
   const auto gas = [&p](config::Section& s) {
     s.value("pressure", p.pressure)
@@ -85,14 +71,14 @@ void declare(config::Section& section, FluidParameters& p) {
         .unit("K")
         .range(150, 1500)
         .doc(
-            "temperature of the density used for the heat in the pores; the pressure loss uses the actual "
-            "temperature");
+            "temperature of the density used for the heat in the pores; the pressure loss uses the "
+            "actual temperature");
     s.value("specific-heat", p.air_specific_heat)
         .unit("J/(kg K)")
         .range(900, 1400)
         .doc(
-            "constant; the default is that of air near 430 degC (it is 1007 at 50 degC, 1141 at 730 degC); "
-            "the run judges it");
+            "constant; the default is that of air near 430 degC (it is 1007 at 50 degC, 1141 at 730 "
+            "degC); the run judges it");
   };
   section.variant<Type>("type", p.type,
                         {{"solar-salt", Type::solar_salt, known},
@@ -105,21 +91,11 @@ void declare(config::Section& section, FluidParameters& p) {
 }
 
 void declare(config::Section& s, Filler& f) {
-  s.value("density", f.density)
-      .unit("kg/m^3")
-      .plausible(0.05, 25000)
+  as_density(s.value("density", f.density))
       .positive()
       .doc("density of the grains; the defaults are those of quartzite");
-  s.value("specific-heat", f.specific_heat)
-      .unit("J/(kg K)")
-      .plausible(10, 1e5)
-      .positive()
-      .doc("specific heat of the grains");
-  s.value("conductivity", f.conductivity)
-      .unit("W/(m K)")
-      .plausible(1e-3, 1e7)
-      .positive()
-      .doc("conductivity of the grains");
+  as_specific_heat(s.value("specific-heat", f.specific_heat)).positive().doc("specific heat of the grains");
+  as_conductivity(s.value("conductivity", f.conductivity)).positive().doc("conductivity of the grains");
   s.value("friction-angle", f.friction_angle)
       .unit("rad")
       .range(0.01, 1.5)
@@ -132,9 +108,7 @@ void declare(config::Section& s, Filler& f) {
 }
 
 void declare(config::Section& s, Melting& m) {
-  s.value("temperature", m.temperature)
-      .unit("K")
-      .plausible(70, 5000)
+  as_temperature(s.value("temperature", m.temperature))
       .positive()
       .required()
       .doc("middle of the melting range");
@@ -150,15 +124,13 @@ void declare(config::Section& s, Melting& m) {
 void declare(config::Section& section, SteelParameters& p) {
   using Type = SteelParameters::Type;
   const auto custom = [&p](config::Section& s) {
-    s.value("density", p.density).unit("kg/m^3").plausible(0.05, 25000).positive().doc("density");
+    as_density(s.value("density", p.density)).positive().doc("density");
     s.value("poissons-ratio", p.poissons_ratio).range(0, 0.499).doc("Poisson's ratio");
     s.value("highest", p.highest)
         .unit("K")
         .plausible(70, 1e4)
         .doc("maximum service temperature of the metal: above it a warning");
-    s.value("temperature", p.temperature)
-        .unit("K")
-        .plausible(70, 5000)
+    as_temperature(s.value("temperature", p.temperature))
         .required()
         .doc("temperatures of the following lists");
     declare_table(s, "specific-heat", "J/(kg K)", p.specific_heat, p.temperature, "piecewise linear");
@@ -177,19 +149,11 @@ void declare(config::Section& section, SteelParameters& p) {
 }
 
 void declare(config::Section& s, InsulatorParameters& p) {
-  s.value("density", p.density).unit("kg/m^3").plausible(0.05, 25000).positive().doc("density");
-  s.value("specific-heat", p.specific_heat)
-      .unit("J/(kg K)")
-      .plausible(10, 1e5)
-      .positive()
-      .doc("specific heat");
-  s.value("temperature", p.temperature)
-      .unit("K")
-      .plausible(70, 5000)
+  as_density(s.value("density", p.density)).positive().doc("density");
+  as_specific_heat(s.value("specific-heat", p.specific_heat)).positive().doc("specific heat");
+  as_temperature(s.value("temperature", p.temperature))
       .doc("temperatures of 'conductivity'; absent for a constant");
-  s.value("conductivity", p.conductivity)
-      .unit("W/(m K)")
-      .plausible(1e-3, 1e7)
+  as_conductivity(s.value("conductivity", p.conductivity))
       .doc("piecewise linear; absent: a wired mineral-wool mat, 0.040 at 50 degC to 0.163 at 500 degC");
   s.check(
       [&]() -> std::string {

@@ -7,6 +7,7 @@
 #include "common/base/error.hpp"
 
 namespace couplet::thermocline {
+
 std::vector<ColumnLayer> ground_layers(const GroundParameters& p) {
   std::vector<ColumnLayer> layers;
   double depth = 0;
@@ -28,11 +29,11 @@ TankSetup::TankSetup(const TankParameters& p)
   pressure = inner_pressure(*rings, grid, fluid, filler, p.ullage ? p.ullage->gas.gauge_pressure : 0);
 }
 
-TankModel::TankModel(std::shared_ptr<const TankSetup> setup, const AmbientSource& ambient)
+TankModel::TankModel(std::shared_ptr<const TankSetup> setup, const Weather& weather)
     : setup_(std::move(setup)),
       bed_(setup_->parameters.bed, setup_->fluid, setup_->filler, setup_->parameters.diameter) {
   const TankParameters& p = setup_->parameters;
-  const Ambient air = ambient.at(0);
+  const Ambient air = weather.at(0);
   const int n = bed_.grid().size();
   bed_.prepare(1, 0);
   reference_ = bed_.bottom();
@@ -73,7 +74,7 @@ TankModel::TankModel(std::shared_ptr<const TankSetup> setup, const AmbientSource
     }
   }
   if (p.ground) {
-    deep_temperature_ = p.ground->deep_temperature.value_or(ambient.mean_temperature());
+    deep_temperature_ = p.ground->deep_temperature.value_or(weather.mean_temperature());
     ground_.emplace(ground_layers(*p.ground), bed_.area());
     ground_->set_steady(bed_.bottom(), deep_temperature_);
   }
@@ -81,10 +82,46 @@ TankModel::TankModel(std::shared_ptr<const TankSetup> setup, const AmbientSource
   start_bed_ = bed_.energy(reference_);
 }
 
+template <class Self, class F>
+void TankModel::visit(Self& self, F&& f) {
+  f("bed", self.bed_);
+  if (self.shell_) f("shell", self.shell_->temperature()), f("owed-to-shell", self.owed_);
+  if (self.mechanics_) f("filler-mechanics", *self.mechanics_);
+  if (self.contact_) f("contact", *self.contact_);
+  if (self.insulation_) f("insulation", self.insulation_->temperature());
+  if (self.insulation_ || (self.setup_->parameters.elsewhere && self.shell_))
+    f("into-blanket", self.into_blanket_);
+  if (self.roof_) f("roof", self.roof_->temperature());
+  if (self.ground_) f("ground", self.ground_->temperature());
+  if (self.ullage_) f("ullage", *self.ullage_, self.from_liquid_, self.wall_to_ullage_);
+  PackedBed::visit_prepared(self.bed_, f);
+  auto& side = self.side_;
+  auto& soil = self.soil_;
+  auto& l = self.ledger_;
+  auto& worst = self.inversion_;
+  f("books", side.until, side.in, side.out, soil.until, soil.in, soil.out, l.flow, l.side, l.roof, l.ground,
+    l.bed, l.turnover, self.reference_, self.start_energy_, self.start_bed_, worst.depth, worst.z, worst.time,
+    self.coldest_, self.hottest_);
+}
+
+std::vector<std::pair<std::string, std::vector<double>>> TankModel::state() const {
+  std::vector<std::pair<std::string, std::vector<double>>> all;
+  visit(*this, [&](const char* name, const auto&... parts) { all.emplace_back(name, numbers_of(parts...)); });
+  return all;
+}
+
+void TankModel::restore(const std::function<std::vector<double>(const std::string&)>& read) {
+  visit(*this, [&](const char* name, auto&&... parts) { set_numbers(read(name), name, parts...); });
+  bed_.resume();
+  if (shell_) update_pressure();
+  if (contact_) contact_->finish();
+  update_stress();
+}
+
 double TankModel::energy(double t) const {
   double sum = bed_.energy(reference_);
   for (const double owed : owed_) sum -= owed;
-  // What is held is already in the insulation's or the ground's own temperatures until its step ends.
+  // A held flux is already in the temperatures of the insulation or the ground until its step ends.
   const auto ahead = [&](const Held& h) { return h.until > t ? (h.in - h.out) * (h.until - t) : 0; };
   if (shell_) sum += shell_->energy(reference_);
   if (insulation_) sum += insulation_->energy(reference_) - ahead(side_);
@@ -94,7 +131,7 @@ double TankModel::energy(double t) const {
   return sum;
 }
 
-void TankModel::advance(double t, double dt, FlowControl& control, const AmbientSource& ambient,
+void TankModel::advance(double t, double dt, FlowControl& control, const Weather& weather,
                         std::vector<BedStep>& steps, Speed& speed) {
   const double own = setup_->parameters.exchange_step, end = t + dt;
   const double longest = own > 0 ? std::min(own, dt) : dt;
@@ -102,7 +139,7 @@ void TankModel::advance(double t, double dt, FlowControl& control, const Ambient
   while (end - t > tiny) {
     const double rest = end - t, wanted = std::min(longest, stable_exchange());
     const double h =
-        exchange(t, rest / std::ceil(rest / wanted * (1 - 1e-9)), control, ambient, steps, speed);
+        exchange(t, rest / std::ceil(rest / wanted * (1 - 1e-9)), control, weather, steps, speed);
     t = end - (t + h) <= tiny ? end : t + h;
   }
   update_stress();
@@ -153,21 +190,22 @@ void TankModel::watch(double t) {
   if (*high > f.highest && !std::exchange(warned_hot_, true))
     warnings_.push_back(
         fmt::format("t = {:.6g} s: the {} is at {:.1f} degC at z = {:.3f} m, above its limit of {:.1f} "
-                    "degC, where it boils or decomposes. Lower the inlet temperature, or use another fluid.",
+                    "degC, where it boils or decomposes. Lower the inlet temperature, or use another "
+                    "fluid.",
                     t, f.name, *high - zero_celsius, place(high), f.highest - zero_celsius));
   if (*low < f.lowest && !std::exchange(warned_cold_, true))
     warnings_.push_back(
         fmt::format("t = {:.6g} s: the {} is at {:.1f} degC at z = {:.3f} m, below its limit of {:.1f} "
-                    "degC, where it freezes. Raise the inlet temperature, insulate the tank, or use another "
-                    "fluid.",
+                    "degC, where it freezes. Raise the inlet temperature, insulate the tank, or use "
+                    "another fluid.",
                     t, f.name, *low - zero_celsius, place(low), f.lowest - zero_celsius));
   const double slack = 0.1 * (f.known_to - f.known_from);
   const auto outside = *low < f.known_from - slack ? low : high;
   if ((*outside < f.known_from - slack || *outside > f.known_to + slack) &&
       !std::exchange(warned_fluid_, true))
     warnings_.push_back(fmt::format(
-        "t = {:.6g} s: the {} is at {:.1f} degC at z = {:.3f} m; its conductivity and viscosity are given "
-        "from {:.1f} to {:.1f} degC (fluid.temperature); the end values are used beyond.",
+        "t = {:.6g} s: the {} is at {:.1f} degC at z = {:.3f} m; its conductivity and viscosity are "
+        "given from {:.1f} to {:.1f} degC (fluid.temperature); the end values are used beyond.",
         t, f.name, celsius(*outside), place(outside), celsius(f.known_from), celsius(f.known_to)));
   if (shell_) watch_wall(t);
 }

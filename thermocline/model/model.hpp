@@ -8,15 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "thermocline/base/interfaces.hpp"
 #include "thermocline/model/parameters.hpp"
-#include "thermocline/wall/column.hpp"
+#include "thermocline/wall/layers.hpp"
 #include "thermocline/wall/mechanics.hpp"
-#include "thermocline/wall/wall_interface.hpp"
 
 namespace couplet::thermocline {
 
-/// What stays the same during a run.
+/// Constants of a run.
 struct TankSetup {
   TankSetup(const TankParameters& parameters);
   TankParameters parameters;
@@ -50,17 +48,17 @@ struct Ledger {
 };
 
 /// The elements of a tank and how they exchange heat. Explicit: over an exchange step each element sees the
-/// temperatures its neighbours had before; the lighter one computes the flux implicitly (insulation beside
+/// temperatures its neighbors had before; the lighter one computes the flux implicitly (insulation beside
 /// the shell, shell beside the bed, gas between surfaces), the heavier one gets just that heat, so nothing is
 /// lost between them. The bed divides the exchange step by its own limit; insulation and ground take longer
 /// steps of their own and hold their fluxes meanwhile. A value: copies are snapshots.
 class TankModel {
  public:
-  TankModel(std::shared_ptr<const TankSetup> setup, const AmbientSource& ambient);
+  TankModel(std::shared_ptr<const TankSetup> setup, const Weather& weather);
 
   /// From t to t + dt. Appends the steps of the bed.
-  void advance(double t, double dt, FlowControl& control, const AmbientSource& ambient,
-               std::vector<BedStep>& steps, Speed& speed);
+  void advance(double t, double dt, FlowControl& control, const Weather& weather, std::vector<BedStep>& steps,
+               Speed& speed);
 
   const TankSetup& setup() const { return *setup_; }
   const PackedBed& bed() const { return bed_; }
@@ -74,7 +72,7 @@ class TankModel {
   /// empty list leaves what was.
   void hold_side(std::span<const double> from_rings);
   void hold_bottom(double heat) { soil_.in = soil_.out = heat; }
-  /// Of the lowest cell against what lies below it [W/(m^2 K)], and the longest time [s] for which a flux
+  /// Coefficient between the lowest cell and the plate below it [W/(m^2 K)], and the longest time [s] for which a flux
   /// made from it may be held.
   double plate_coefficient() const;
   double stable_ground() const;
@@ -84,7 +82,7 @@ class TankModel {
   const Ledger& ledger() const { return ledger_; }
   /// Heat content of all elements at `t` above the temperature they started from [J].
   double energy(double t) const;
-  /// What the books of the whole tank, and of the bed alone, are off by since the start [J].
+  /// Errors of the energy balance of the tank, and of the bed alone, since the start [J].
   double imbalance(double t) const { return energy(t) - start_energy_ - (ledger_.flow - losses()); }
   double bed_imbalance() const { return bed_.energy(reference_) - start_bed_ - ledger_.bed; }
   double losses() const { return ledger_.side + ledger_.roof + ledger_.ground; }
@@ -103,10 +101,13 @@ class TankModel {
   void restore(const std::function<std::vector<double>(const std::string&)>& read);
 
  private:
+  /// Calls f with each name and its parts.
+  template <class Self, class F>
+  static void visit(Self& self, F&& f);
   struct Held {                         // a flux held until a time
     double until = 0, in = 0, out = 0;  // [s], [W]
   };
-  double exchange(double t, double longest, FlowControl& control, const AmbientSource& ambient,
+  double exchange(double t, double longest, FlowControl& control, const Weather& weather,
                   std::vector<BedStep>& steps, Speed& speed);
   double stable_exchange() const;
   double cell_capacity(int cell) const;
@@ -114,7 +115,7 @@ class TankModel {
   void step_ground(double t, double h);
   void step_ullage(double h, const Ambient& air);
   void step_shell(double h);
-  void step_bed(double t, double end, FlowControl& control, const AmbientSource& ambient,
+  void step_bed(double t, double end, FlowControl& control, const Weather& weather,
                 std::vector<BedStep>& steps, Speed& speed);
   void update_pressure();
   void update_stress();

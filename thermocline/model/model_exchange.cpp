@@ -57,10 +57,10 @@ double TankModel::stable_exchange() const {
   return step;
 }
 
-double TankModel::exchange(double t, double h, FlowControl& control, const AmbientSource& ambient,
+double TankModel::exchange(double t, double h, FlowControl& control, const Weather& weather,
                            std::vector<BedStep>& steps, Speed& speed) {
   const double tiny = 1e-9 * h;
-  const Ambient air = ambient.at(t + h / 2);
+  const Ambient air = weather.at(t + h / 2);
   if (insulation_) {
     const Stopwatch watch(speed, Element::insulation);
     if (side_.until <= t + tiny) step_insulation(t, h, air);
@@ -75,13 +75,13 @@ double TankModel::exchange(double t, double h, FlowControl& control, const Ambie
     const Stopwatch watch(speed, Element::ullage);
     step_ullage(h, air);
   }
-  // What the shell took in the step before: the wall sees the bed at the end of each step, so that both have
+  // Heat that the shell took in the step before: the wall sees the bed at the end of each step, so that both have
   // the same time when the filler meets the wall; the bed, far heavier, pays one step later.
   for (std::size_t i = 0; i < source_.size(); ++i) source_[i] = -owed_[i] / h;
   source_.back() -= from_liquid_;
   source_.front() -= soil_.in;
   bed_.set_source(source_);
-  step_bed(t, t + h, control, ambient, steps, speed);
+  step_bed(t, t + h, control, weather, steps, speed);
   if (shell_) {
     const Stopwatch watch(speed, Element::shell);
     step_shell(h);
@@ -202,7 +202,7 @@ void refuse_hopeless_flow(double mass_flow, double limit, double span) {
 
 }  // namespace
 
-void TankModel::step_bed(double t, double end, FlowControl& control, const AmbientSource& ambient,
+void TankModel::step_bed(double t, double end, FlowControl& control, const Weather& weather,
                          std::vector<BedStep>& steps, Speed& speed) {
   const double tiny = 1e-9 * (end - t);
   bool prepared = false;
@@ -212,7 +212,7 @@ void TankModel::step_bed(double t, double end, FlowControl& control, const Ambie
   while (end - t > tiny) {
     BedStep s;
     s.t = t;
-    s.ambient = ambient.at(t);
+    s.ambient = weather.at(t);
     s.flow = control.decide(t, bed_.top(), bed_.bottom(), s.ambient);
     const double m = s.flow.mass_flow, limit = bed_.largest_step(m), now = bed_.prepared().mass_flow;
     if (t > block - tiny) prepared = false, block = t + renewal;

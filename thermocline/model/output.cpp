@@ -8,35 +8,92 @@
 namespace couplet::thermocline {
 namespace {
 
-std::vector<std::string> monitored(const TankModel& model) {
-  std::vector<std::string> columns{
-      "time [s]",      "mass flow [kg/s]", "inlet [degC]",     "outlet [degC]",
-      "top [degC]",    "bottom [degC]",    "heat by flow [J]", "loss side [J]",
-      "loss roof [J]", "loss ground [J]",  "imbalance [J]",    "largest equivalent stress over yield [1]",
-      "at z [m]"};
-  if (model.setup().parameters.pump) columns.insert(columns.end(), {"pressure loss [Pa]", "pump [W]"});
-  return columns;
+/// Largest equivalent stress of a ring over its yield strength, and the height of that ring [m].
+std::pair<double, double> worst_stress(const TankModel& m) {
+  double worst = 0, place = 0;
+  const WallStress& s = m.stress();
+  for (std::size_t i = 0; i < s.equivalent.size(); ++i)
+    if (s.equivalent[i] > worst * s.yield[i])
+      worst = s.equivalent[i] / s.yield[i], place = m.setup().rings->z[i];
+  return {worst, place};
+}
+
+/// Temperature of what flows [degC]: at rest nothing comes in and nothing leaves.
+double flowing(const BedStep& step, double kelvin) {
+  return step.flow.mass_flow != 0 ? celsius(kelvin) : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// The value of a ring beside grains; 0 above them and without filler mechanics.
+template <class Values>
+double beside_grains(const TankModel& m, std::size_t ring, Values values) {
+  const auto of = [&](const auto& mechanics) {
+    return ring < mechanics.contact().size() ? double(values(mechanics)[ring]) : 0;
+  };
+  return m.contact() ? of(*m.contact()) : m.mechanics() ? of(*m.mechanics()) : 0;
 }
 
 }  // namespace
 
+std::vector<Quantity<TankOutputFiles::Moment>> TankOutputFiles::quantities_of(const TankModel& model) {
+  std::vector<Quantity<Moment>> all{
+      {"time [s]", [](const Moment& v) { return v.time; }},
+      {"mass flow [kg/s]", [](const Moment& v) { return v.last.flow.mass_flow; }},
+      {"inlet [degC]", [](const Moment& v) { return flowing(v.last, v.last.flow.inlet_temperature); }},
+      {"outlet [degC]", [](const Moment& v) { return flowing(v.last, v.last.outlet_temperature); }},
+      {"top [degC]", [](const Moment& v) { return celsius(v.m.bed().top()); }},
+      {"bottom [degC]", [](const Moment& v) { return celsius(v.m.bed().bottom()); }},
+      {"heat by flow [J]", [](const Moment& v) { return v.m.ledger().flow; }},
+      {"loss side [J]", [](const Moment& v) { return v.m.ledger().side; }},
+      {"loss roof [J]", [](const Moment& v) { return v.m.ledger().roof; }},
+      {"loss ground [J]", [](const Moment& v) { return v.m.ledger().ground; }},
+      {"imbalance [J]", [](const Moment& v) { return v.m.imbalance(v.time); }},
+      {"largest equivalent stress over yield [1]", [](const Moment& v) { return worst_stress(v.m).first; }},
+      {"at z [m]", [](const Moment& v) { return worst_stress(v.m).second; }}};
+  if (model.setup().parameters.pump) {
+    all.push_back({"pressure loss [Pa]", [](const Moment& v) { return v.last.pressure_loss; }});
+    all.push_back({"pump [W]", [](const Moment& v) { return v.last.pump_power; }});
+  }
+  return all;
+}
+
 TankOutputFiles::TankOutputFiles(const TankModel& model, const std::filesystem::path& folder,
                                  double restart_time)
-    : tank_(folder / "tank.csv", monitored(model), restart_time),
-      bed_(folder / "bed.csv", {"time [s]", "z [m]", "fluid [degC]", "filler [degC]"}, restart_time),
+    : tank_(folder / "tank.csv", quantities_of(model), restart_time),
+      bed_(folder / "bed.csv",
+           {{"time [s]", [](const Place& v) { return v.time; }},
+            {"z [m]", [](const Place& v) { return v.m.bed().grid().z[v.i]; }},
+            {"fluid [degC]", [](const Place& v) { return celsius(v.m.bed().fluid()[v.i]); }},
+            {"filler [degC]", [](const Place& v) { return celsius(v.filler[v.i]); }}},
+           restart_time),
       interval_(model.setup().parameters.output.monitor_interval) {
   if (model.shell())
-    wall_ = std::make_unique<io::Series>(
+    wall_.emplace(
         folder / "wall.csv",
-        std::vector<std::string>{"time [s]", "z [m]", "wall [degC]", "hoop stress [Pa]",
-                                 "equivalent stress [Pa]", "yield strength [Pa]", "filler pressure [Pa]",
-                                 "contact [0 active; 1 rigid; 2 passive]"},
+        std::vector<Quantity<Place>>{
+            {"time [s]", [](const Place& v) { return v.time; }},
+            {"z [m]", [](const Place& v) { return v.m.setup().rings->z[v.i]; }},
+            {"wall [degC]", [](const Place& v) { return celsius(v.m.shell()->temperature()[v.i]); }},
+            {"hoop stress [Pa]", [](const Place& v) { return v.m.stress().hoop[v.i]; }},
+            {"equivalent stress [Pa]", [](const Place& v) { return v.m.stress().equivalent[v.i]; }},
+            {"yield strength [Pa]", [](const Place& v) { return v.m.stress().yield[v.i]; }},
+            {"filler pressure [Pa]",
+             [](const Place& v) {
+               return beside_grains(v.m, v.i, [](const auto& mechanics) { return mechanics.lateral(); });
+             }},
+            {"contact [0 active; 1 rigid; 2 passive]",
+             [](const Place& v) {
+               return beside_grains(v.m, v.i, [](const auto& mechanics) { return mechanics.contact(); });
+             }}},
         restart_time);
   if (model.ground())
-    ground_ = std::make_unique<io::Series>(
-        folder / "ground.csv", std::vector<std::string>{"time [s]", "depth [m]", "temperature [degC]"},
+    ground_.emplace(
+        folder / "ground.csv",
+        std::vector<Quantity<Place>>{
+            {"time [s]", [](const Place& v) { return v.time; }},
+            {"depth [m]", [](const Place& v) { return v.m.ground()->centre()[v.i]; }},
+            {"temperature [degC]", [](const Place& v) { return celsius(v.m.ground()->temperature()[v.i]); }}},
         restart_time);
-  // A run that goes on writes where the one before would have.
+  // A continued run writes where the one before it would have.
   if (!std::isnan(restart_time)) next_ = after(restart_time);
 }
 
@@ -47,55 +104,18 @@ double TankOutputFiles::after(double time) const {
 void TankOutputFiles::monitor(const TankModel& model, double time, const BedStep& last) {
   if (time < next_ - 1e-9 * interval_) return;
   next_ = after(time);
-  double worst = 0, place = 0;
-  const WallStress& s = model.stress();
-  for (std::size_t i = 0; i < s.equivalent.size(); ++i)
-    if (s.equivalent[i] > worst * s.yield[i])
-      worst = s.equivalent[i] / s.yield[i], place = model.setup().rings->z[i];
-  const Ledger& l = model.ledger();
-  // At rest nothing comes in and nothing leaves.
-  const double none = std::numeric_limits<double>::quiet_NaN();
-  const bool flows = last.flow.mass_flow != 0;
-  std::vector<double> row{time,
-                          last.flow.mass_flow,
-                          flows ? celsius(last.flow.inlet_temperature) : none,
-                          flows ? celsius(last.outlet_temperature) : none,
-                          celsius(model.bed().top()),
-                          celsius(model.bed().bottom()),
-                          l.flow,
-                          l.side,
-                          l.roof,
-                          l.ground,
-                          model.imbalance(time),
-                          worst,
-                          place};
-  if (model.setup().parameters.pump) row.insert(row.end(), {last.pressure_loss, last.pump_power});
-  tank_.row(row);
+  tank_.row({model, time, last});
 }
 
 void TankOutputFiles::profiles(const TankModel& model, double time) {
   std::vector<double> filler;
   model.bed().filler_temperature(filler);
-  const BedGrid& grid = model.bed().grid();
-  for (int i = 0; i < grid.size(); ++i)
-    bed_.row(std::vector<double>{time, grid.z[i], celsius(model.bed().fluid()[i]), celsius(filler[i])});
-  if (wall_) {
-    const WallStress& s = model.stress();
-    std::span<const double> lateral;
-    std::span<const Contact> contact;
-    if (model.mechanics()) lateral = model.mechanics()->lateral(), contact = model.mechanics()->contact();
-    if (model.contact()) lateral = model.contact()->lateral(), contact = model.contact()->contact();
-    for (int i = 0; i < model.setup().rings->size(); ++i) {
-      const bool held = i < int(contact.size());
-      wall_->row(std::vector<double>{time, model.setup().rings->z[i],
-                                     celsius(model.shell()->temperature()[i]), s.hoop[i], s.equivalent[i],
-                                     s.yield[i], held ? lateral[i] : 0, held ? double(contact[i]) : 0});
-    }
-  }
-  if (ground_)
-    for (std::size_t i = 0; i < model.ground()->centre().size(); ++i)
-      ground_->row(
-          std::vector<double>{time, model.ground()->centre()[i], celsius(model.ground()->temperature()[i])});
+  const auto write = [&](QuantityFile<Place>& file, std::size_t places) {
+    for (std::size_t i = 0; i < places; ++i) file.row({model, time, i, filler});
+  };
+  write(bed_, filler.size());
+  if (wall_) write(*wall_, model.setup().rings->z.size());
+  if (ground_) write(*ground_, model.ground()->centre().size());
 }
 
 }  // namespace couplet::thermocline

@@ -2,15 +2,13 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
-#include <span>
+#include <optional>
 
-#include "common/io/series.hpp"
 #include "thermocline/model/model.hpp"
 
 namespace couplet::thermocline {
 
-/// tank.csv: a row a monitor interval. bed.csv, wall.csv, ground.csv: profiles, a row a cell, at output
+/// tank.csv: a row per monitor interval. bed.csv, wall.csv, ground.csv: profiles, a row per cell, at output
 /// times. Temperatures in degC.
 class TankOutputFiles {
  public:
@@ -19,11 +17,26 @@ class TankOutputFiles {
   void profiles(const TankModel& model, double time);
 
  private:
-  /// When the next row is due behind one at this time [s].
+  /// End of a step.
+  struct Moment {
+    const TankModel& m;
+    double time;
+    const BedStep& last;
+  };
+  /// Cell of the bed, ring of the wall or cell of the ground at an output time.
+  struct Place {
+    const TankModel& m;
+    double time;
+    std::size_t i;
+    std::span<const double> filler;  ///< mean temperature of the grains in the cells of the bed [K]
+  };
+  /// Time of the next row after one at this time [s].
   double after(double time) const;
+  static std::vector<Quantity<Moment>> quantities_of(const TankModel& model);
 
-  io::Series tank_, bed_;
-  std::unique_ptr<io::Series> wall_, ground_;
+  QuantityFile<Moment> tank_;
+  QuantityFile<Place> bed_;
+  std::optional<QuantityFile<Place>> wall_, ground_;
   double interval_, next_ = 0;
 };
 

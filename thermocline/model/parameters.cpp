@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "common/base/text.hpp"
-#include "thermocline/model/plausible.hpp"
 #include "thermocline/model/questions.hpp"
 
 namespace couplet::thermocline {
@@ -32,8 +31,8 @@ void check_together(config::Section& s, TankParameters& p) {
         return p.report && p.flow.type == FlowParameters::Type::plant && plant.hot > plant.cold &&
                        p.report->thickness_margin >= 0.5 * (plant.hot - plant.cold)
                    ? fmt::format(
-                         "thickness-margin is {:g} K, half of the difference between cold and hot ({:g} K) "
-                         "or more: nothing is left between the two critical temperatures",
+                         "thickness-margin is {:g} K, half of the difference between cold and hot ({:g} "
+                         "K) or more: nothing is left between the two critical temperatures",
                          p.report->thickness_margin, plant.hot - plant.cold)
                    : "";
       },
@@ -42,8 +41,7 @@ void check_together(config::Section& s, TankParameters& p) {
       [&p]() -> std::string {
         if (!p.elsewhere) return "";
         if (p.elsewhere->ground && p.ground)
-          return "specifies that the ground is elsewhere; remove "
-                 "'ground' here";
+          return "specifies that the ground is elsewhere; remove 'ground' here";
         if (p.elsewhere->insulation && p.insulation)
           return "specifies that the insulation is elsewhere; remove 'insulation' here";
         return p.elsewhere->insulation && !p.shell ? "requires a shell inside the insulation" : "";
@@ -78,12 +76,7 @@ void declare(config::Section& section, GroundParameters& p) {
       "layers", p.layers,
       [](config::Section& s, GroundLayer& l) {
         s.value("material", l.material).required().doc(base::join(foundation_materials()));
-        s.value("thickness", l.thickness)
-            .unit("m")
-            .plausible(1e-4, 30)
-            .positive()
-            .required()
-            .doc("thickness");
+        as_thickness(s.value("thickness", l.thickness)).positive().required().doc("thickness");
         s.check(
             [&l] {
               const auto known = foundation_materials();
@@ -99,7 +92,7 @@ void declare(config::Section& section, GroundParameters& p) {
       .plausible(1e-3, 10)
       .positive()
       .doc("maximum height of a cell next to the tank");
-  section.value("step", p.step).unit("s").plausible(0.1, 1e5).positive().doc("time step of the ground");
+  as_step(section.value("step", p.step)).positive().doc("time step of the ground");
   section.value("deep-temperature", p.deep_temperature)
       .unit("K")
       .range(200, 600)
@@ -110,39 +103,26 @@ void declare(config::Section& section, GroundParameters& p) {
 namespace {
 
 void declare_elements(config::Section& section, TankParameters& p) {
-  section.section(
-      "fluid", [&p](config::Section& s) { declare(s, p.fluid); }, "heat-transfer fluid");
-  section.section(
-      "filler", [&p](config::Section& s) { declare(s, p.filler); }, "grains of the bed; default: quartzite");
-  section.section(
-      "bed", [&p](config::Section& s) { declare(s, p.bed); }, "fluid and filler");
-  section.optional_section<ShellParameters>(
-      "shell", p.shell, [](config::Section& s, ShellParameters& v) { declare(s, v); }, "metal wall of rings");
+  declare_section(section, "fluid", p.fluid, "heat-transfer fluid");
+  declare_section(section, "filler", p.filler, "grains of the bed; default: quartzite");
+  declare_section(section, "bed", p.bed, "fluid and filler");
+  declare_section(section, "shell", p.shell, "metal wall of rings");
   section.optional_section<FillerMechanicsParameters>(
       "filler-mechanics", p.mechanics, [](config::Section&, FillerMechanicsParameters&) {},
       "the filler follows the wall outwards and resists inwards, between Rankine's active and passive states");
-  section.optional_section<ExternalWallParameters>(
-      "external-wall", p.external_wall, [](config::Section& s, ExternalWallParameters& v) { declare(s, v); },
+  declare_section(
+      section, "external-wall", p.external_wall,
       "another program computes the wall's stress: it receives temperature and pressure and gives its "
       "displacement");
-  section.optional_section<InsulationParameters>(
-      "insulation", p.insulation, [](config::Section& s, InsulationParameters& v) { declare(s, v); },
-      "blanket around the shell");
+  declare_section(section, "insulation", p.insulation, "blanket around the shell");
   section.optional_section<UllageSpace>(
       "ullage", p.ullage,
       [](config::Section& s, UllageSpace& v) {
-        s.value("height", v.height)
-            .unit("m")
-            .plausible(0.01, 100)
-            .positive()
-            .required()
-            .doc("between bed and roof");
+        as_length(s.value("height", v.height)).positive().required().doc("between bed and roof");
         declare(s, v.gas);
       },
       "gas and radiation between the bed and the roof");
-  section.optional_section<GroundParameters>(
-      "ground", p.ground, [](config::Section& s, GroundParameters& v) { declare(s, v); },
-      "foundation and soil under the tank");
+  declare_section(section, "ground", p.ground, "foundation and soil under the tank");
   section.optional_section<ElsewhereParameters>(
       "elsewhere", p.elsewhere,
       [](config::Section& s, ElsewhereParameters& v) {
@@ -161,9 +141,7 @@ void declare(config::Section& section, TankParameters& p) {
       .positive()
       .required()
       .doc("inner diameter of the tank");
-  section.value("exchange-step", p.exchange_step)
-      .unit("s")
-      .plausible(0.1, 1e5)
+  as_step(section.value("exchange-step", p.exchange_step))
       .not_negative()
       .doc("maximum time between heat exchanges of the elements; 0: once per step of the simulation");
   declare_elements(section, p);
@@ -176,8 +154,7 @@ void declare(config::Section& section, TankParameters& p) {
   section.optional_section<Present>(
       "ambient", p.ambient_given, [&p](config::Section& s, Present&) { declare(s, p.ambient); },
       "weather; absent: still air of 20 degC, no sun");
-  section.section(
-      "flow", [&p](config::Section& s) { declare(s, p.flow); }, "flow through the tank");
+  declare_section(section, "flow", p.flow, "flow through the tank");
   section.section(
       "output",
       [&p](config::Section& s) {
@@ -188,9 +165,8 @@ void declare(config::Section& section, TankParameters& p) {
             .doc("time between rows of tank.csv; 0: each step");
       },
       "profiles are written at the output interval of the simulation");
-  section.optional_section<ReportParameters>(
-      "report", p.report, [](config::Section& s, ReportParameters& r) { declare(s, r); },
-      "daily balance of plant and tank, and factors of safety; requires flow: {type: plant}");
+  declare_section(section, "report", p.report,
+                  "daily balance of plant and tank, and factors of safety; requires flow: {type: plant}");
   check_together(section, p);
 }
 

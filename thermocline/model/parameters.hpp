@@ -6,14 +6,13 @@
 #include <vector>
 
 #include "thermocline/bed/packed_bed.hpp"
-#include "thermocline/bed/pressure_loss.hpp"
-#include "thermocline/economics/day_report.hpp"
 #include "thermocline/plant/flow.hpp"
-#include "thermocline/wall/insulation.hpp"
+#include "thermocline/plant/report.hpp"
+#include "thermocline/wall/layers.hpp"
+#include "thermocline/wall/mechanics.hpp"
 #include "thermocline/wall/shell.hpp"
-#include "thermocline/wall/ullage.hpp"
-#include "thermocline/wall/wall_interface.hpp"
-#include "thermocline/weather/weather_parameters.hpp"
+#include "thermocline/wall/surroundings.hpp"
+#include "thermocline/weather/weather.hpp"
 
 namespace couplet::thermocline {
 
@@ -47,7 +46,7 @@ struct TankOutput {
   double monitor_interval = 0;  ///< [s]; 0: each step
 };
 
-/// What `participants.<name>` holds; each optional member is an effect.
+/// Keys of `participants.<name>`; each optional member is an effect.
 struct TankParameters {
   double diameter = 0;  ///< inner [m]
   double exchange_step =

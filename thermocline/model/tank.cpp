@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "common/base/error.hpp"
+#include "common/io/archive.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/finding.hpp"
 #include "common/log/log.hpp"
@@ -18,7 +19,7 @@ namespace couplet::thermocline {
 
 namespace {
 
-/// What the tank and its plant consist of.
+/// Parts of the tank and its plant that cost something.
 Inventory inventory_of(const TankSetup& setup) {
   const TankParameters& p = setup.parameters;
   const double area = 0.25 * std::numbers::pi * p.diameter * p.diameter;
@@ -59,8 +60,8 @@ Tank::Tank(const TankParameters& p, const app::ParticipantContext& context)
       comm_(context.comm) {
   if ((p.external_wall || p.elsewhere) && !context.coupled)
     throw Error(
-        "participants.{}.{}: no participant computes {} in a run of the tank alone. Start it together with "
-        "a coupler and {}, or remove this section.",
+        "participants.{}.{}: no participant computes {} in a run of the tank alone. Start it together "
+        "with a coupler and {}, or remove this section.",
         context.name, p.external_wall ? "external-wall" : "elsewhere", p.external_wall ? "the wall" : "them",
         p.external_wall ? "a solid_solver" : "a thermocline for each of these elements");
   if (p.external_wall)
@@ -72,31 +73,29 @@ Tank::Tank(const TankParameters& p, const app::ParticipantContext& context)
   if (p.insulation)
     require_sun(p.insulation->outside.solar_absorptance, *weather_,
                 fmt::format("participants.{}.insulation.solar-absorptance", context.name));
-  for (const std::string& sentence : weather_->doubts())
-    log::finding(parallel::comm_rank(comm_),
-                 {.id = "weather-data", .sentence = fmt::format("{}: {}", name_, sentence)});
+  report("weather-data", weather_->doubts());
   if (files_) {
     for (const std::string& sentence : weather_->warnings()) log::warn("{}", sentence);
     if (std::isnan(context.restart_time))
       for (const std::string& sentence : questions(p, accepted_)) log::warn("{}: {}", context.name, sentence);
   }
   const PlantParameters plant = dated(p.flow, *weather_).plant;
-  for (const std::string& sentence : Calendar(plant.calendar, plant.start).doubts())
-    log::finding(parallel::comm_rank(comm_),
-                 {.id = "calendar", .sentence = fmt::format("{}: {}", name_, sentence)});
+  report("calendar", Calendar(plant.calendar, plant.start).doubts());
   if (p.report) {
-    auto report = std::make_unique<DayReport>(
+    auto books = std::make_unique<DayReport>(
         *p.report, Plant(plant, make_fluid(p.fluid).specific_heat), *weather_,
         files_ ? context.output_folder : std::filesystem::path(), context.restart_time);
     const Inventory inventory = inventory_of(accepted_.setup());
-    report->take_stock(inventory);
+    books->take_stock(inventory);
     if (p.report->economics)
-      for (const std::string& sentence :
-           prices_for_nothing(*p.report->economics, inventory, p.pump.has_value()))
-        log::finding(parallel::comm_rank(comm_),
-                     {.id = "prices", .sentence = fmt::format("{}: {}", name_, sentence)});
-    add_observer(std::move(report));
+      report("prices", prices_for_nothing(*p.report->economics, inventory, p.pump.has_value()));
+    add_observer(std::move(books));
   }
+}
+
+void Tank::report(const char* id, const std::vector<std::string>& sentences) const {
+  for (const std::string& sentence : sentences)
+    log::finding(parallel::comm_rank(comm_), {.id = id, .sentence = fmt::format("{}: {}", name_, sentence)});
 }
 
 coupling::Interface Tank::initialise() {
@@ -134,7 +133,7 @@ double Tank::suggest_dt() {
   return elsewhere && elsewhere->ground ? accepted_.stable_ground() : std::numeric_limits<double>::infinity();
 }
 
-/// What others take, at the end of the step, on rank 0.
+/// Values that other participants take, at the end of the step, on rank 0.
 coupling::Exchange Tank::given() const {
   const TankParameters& p = accepted_.setup().parameters;
   coupling::Exchange out;
@@ -202,9 +201,7 @@ coupling::StepReport Tank::accept_step() {
     peak_flow_ = std::max(peak_flow_, std::abs(s.flow.mass_flow));
     peak_advance_ = std::max(peak_advance_, std::abs(s.flow.mass_flow) * s.dt);
   }
-  for (const std::string& sentence : accepted_.take_warnings())
-    log::finding(parallel::comm_rank(comm_),
-                 {.id = "tank-state", .sentence = fmt::format("{}: {}", name_, sentence)});
+  report("tank-state", accepted_.take_warnings());
   if (!observers_.empty()) {
     accepted_.bed().filler_temperature(filler_);
     const TankRecord r = record();
@@ -265,7 +262,12 @@ void Tank::save(io::CheckpointWriter& file) const {
   file.write_common("flow-control", control_state_);
   for (std::size_t i = 0; i < observers_.size(); ++i)
     file.write_common("observer-" + std::to_string(i), observers_[i]->state());
+  io::Archive archive(file);
+  const_cast<Tank*>(this)->visit_seen(archive);  // writing changes nothing
 }
+
+/// What the run has seen for its findings.
+void Tank::visit_seen(io::Archive& archive) { archive.common("seen", peak_flow_, peak_advance_, bending_); }
 
 void Tank::load(io::CheckpointReader& file) {
   accepted_.restore([&](const std::string& name) { return file.read_common(name); });
@@ -273,6 +275,8 @@ void Tank::load(io::CheckpointReader& file) {
   control_->restore(control_state_);
   for (std::size_t i = 0; i < observers_.size(); ++i)
     observers_[i]->restore(file.read_common("observer-" + std::to_string(i)));
+  io::Archive archive(file);
+  visit_seen(archive);
 }
 
 void Tank::write_output(double time, int) {

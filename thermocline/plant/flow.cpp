@@ -2,16 +2,20 @@
 #include "thermocline/plant/flow.hpp"
 
 #include <fmt/format.h>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
+#include <optional>
 
-#include "thermocline/base/celsius.hpp"
-#include "thermocline/plant/plant_control.hpp"
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+#include "common/base/units.hpp"
+#include "common/csv/csv_reader.hpp"
+#include "thermocline/material/numerics.hpp"
+#include "thermocline/material/properties.hpp"
 
 namespace couplet::thermocline {
-
 namespace {
 
 void declare_row(config::Section& s, ScheduleRow& r) {
@@ -21,19 +25,11 @@ void declare_row(config::Section& s, ScheduleRow& r) {
       .plausible(1e-6, 1e5)
       .required()
       .doc("upward (discharge) above 0, downward (charge) below 0");
-  s.value("inlet-temperature", r.inlet_temperature)
-      .unit("K")
-      .plausible(70, 5000)
+  as_temperature(s.value("inlet-temperature", r.inlet_temperature))
       .positive()
       .doc("temperature of the inflow");
-  s.value("stop-above", r.stop_above)
-      .unit("K")
-      .plausible(70, 5000)
-      .doc("the flow stops when the outlet is hotter");
-  s.value("stop-below", r.stop_below)
-      .unit("K")
-      .plausible(70, 5000)
-      .doc("the flow stops when the outlet is colder");
+  as_temperature(s.value("stop-above", r.stop_above)).doc("the flow stops when the outlet is hotter");
+  as_temperature(s.value("stop-below", r.stop_below)).doc("the flow stops when the outlet is colder");
   s.check(
       [&r] {
         return r.mass_flow == 0 || r.inlet_temperature > 0
@@ -74,6 +70,81 @@ void declare_schedule(config::Section& s, FlowParameters& p) {
         return problem_of_rows(p);
       },
       "rows");
+}
+
+struct FlowColumn {
+  const char *name, *unit, *example;
+  bool required;
+};
+constexpr std::array<FlowColumn, 5> known{{{"time", "s", "h", true},
+                                           {"mass-flow", "kg/s", "kg/s", true},
+                                           {"inlet-temperature", "K", "degC", true},
+                                           {"stop-above", "K", "degC", false},
+                                           {"stop-below", "K", "degC", false}}};
+
+/// The columns of one file and what turns their numbers into SI.
+class FlowColumns {
+ public:
+  FlowColumns(const std::vector<std::string>& head, const std::string& place) {
+    std::vector<std::string> names;
+    for (const FlowColumn& c : known) names.emplace_back(c.name);
+    for (std::size_t i = 0; i < head.size(); ++i) {
+      const csv::Heading heading = csv::heading_of(head[i]);
+      const auto found = std::find(names.begin(), names.end(), heading.name);
+      if (found == names.end())
+        throw Error("{}: unknown column '{}'. {}", place, head[i].substr(0, 80),
+                    base::did_you_mean(heading.name, names, "columns"));
+      const auto c = std::size_t(found - names.begin());
+      if (at_[c]) throw Error("{}: the column '{}' appears twice.", place, heading.name);
+      at_[c] = i;
+      unit_[c] = unit_of(known[c], heading.unit, place);
+    }
+    for (std::size_t c = 0; c < known.size(); ++c)
+      if (known[c].required && !at_[c])
+        throw Error("{}: the column '{}' is missing. A flow file has the columns {}.", place, known[c].name,
+                    base::join(names));
+  }
+
+  /// Value [SI] of a column in a row; nothing where it is empty.
+  std::optional<double> value(const csv::CsvReader& row, std::size_t c) const {
+    if (!at_[c] || row.cells()[*at_[c]].empty()) return {};
+    return row.number(*at_[c], known[c].name) * unit_[c].factor + unit_[c].offset;
+  }
+
+ private:
+  /// Heads without a unit would leave open whether 290 is in K or degC.
+  static base::Unit unit_of(const FlowColumn& column, const std::string& text, const std::string& place) {
+    if (text.empty())
+      throw Error("{}: the unit of the column '{}' is missing; write for example '{} [{}]'.", place,
+                  column.name, column.name, column.example);
+    const auto wanted = base::parse_unit(column.unit);
+    try {
+      const base::Unit unit = base::parse_unit(text);
+      if (unit.dimension == wanted.dimension) return unit;
+    } catch (const Error& error) {
+      throw Error("{}: column '{}': {}", place, column.name, error.what());
+    }
+    throw Error("{}: the unit '{}' of the column '{}' is not one of {}.", place, text, column.name,
+                column.unit);
+  }
+
+  std::array<std::optional<std::size_t>, known.size()> at_;
+  std::array<base::Unit, known.size()> unit_;
+};
+
+ScheduleRow row_of(const FlowColumns& columns, const csv::CsvReader& row) {
+  const std::string place = row.place();
+  std::array<std::optional<double>, known.size()> v;
+  for (std::size_t c = 0; c < known.size(); ++c) v[c] = columns.value(row, c);
+  for (const std::size_t c : {0, 1})
+    if (!v[c]) throw Error("{}: {} is empty.", place, known[c].name);
+  if (*v[0] < 0) throw Error("{}: time {:g} s is before the start.", place, *v[0]);
+  constexpr double coldest = 100, hottest = 3000;  // [K]
+  if (v[2] && !(*v[2] >= coldest && *v[2] <= hottest))
+    throw Error("{}: inlet-temperature is {:g} K; expected {:g} to {:g} K.", place, *v[2], coldest, hottest);
+  if (*v[1] != 0 && !v[2])
+    throw Error("{}: inlet-temperature is missing; specify the temperature of this inflow.", place);
+  return {*v[0], *v[1], v[2].value_or(0), v[3], v[4]};
 }
 
 }  // namespace
@@ -164,11 +235,42 @@ std::vector<std::string> Schedule::doubts() const {
       limits +=
           fmt::format("{} below {:g} degC", limits.empty() ? "" : " and", celsius(*rows_[i].stop_below));
     sentences.push_back(fmt::format(
-        "flow.rows[{}] never ran: it stops{}, and the outlet (the {} of the tank) was beyond that whenever "
-        "it started",
+        "flow.rows[{}] never ran: it stops{}, and the outlet (the {} of the tank) was beyond that "
+        "whenever it started",
         i, limits, rows_[i].mass_flow > 0 ? "top" : "bottom"));
   }
   return sentences;
+}
+
+std::vector<ScheduleRow> read_flow_file(const std::filesystem::path& file) {
+  csv::CsvReader reader(file, "flow file");
+  if (reader.names().empty())
+    throw Error("{}: the first line of a flow file must name its columns with units, such as 'time [h]'.",
+                file.string());
+  const FlowColumns columns(reader.names(), reader.place_of_names());
+  std::vector<ScheduleRow> rows;
+  while (reader.next()) {
+    rows.push_back(row_of(columns, reader));
+    if (rows.size() > 1 && rows.back().at <= rows[rows.size() - 2].at)
+      throw Error("{}: time {:g} s is not after that of the previous row, {:g} s.", reader.place(),
+                  rows.back().at, rows[rows.size() - 2].at);
+  }
+  if (rows.empty()) throw Error("{}: this flow file has no rows.", file.string());
+  return rows;
+}
+
+Flow PlantControl::decide(double t, double t_top, double t_bottom, const Ambient& ambient) {
+  const PlantFlows flows =
+      plant_.flows(plant_.field_heat(ambient.dni), t_top, t_bottom, mode_, plant_.load(t));
+  mode_ = flows.mode;
+  Flow flow;
+  flow.mode = static_cast<int>(mode_);
+  flow.mass_flow = flows.tank_flow;
+  flow.inlet_temperature = mode_ == PlantMode::charge ? plant_.parameters().hot : plant_.parameters().cold;
+  // At rest the bed could take long steps over sunrise.
+  constexpr double longest_without_a_look = 120;  // [s]
+  flow.until = std::min(t + longest_without_a_look, plant_.load_until(t));
+  return flow;
 }
 
 }  // namespace couplet::thermocline

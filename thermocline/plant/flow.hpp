@@ -1,18 +1,53 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "common/base/saved_numbers.hpp"
 #include "common/config/section.hpp"
-#include "thermocline/base/interfaces.hpp"
 #include "thermocline/plant/plant.hpp"
+#include "thermocline/weather/weather.hpp"
 
 namespace couplet::thermocline {
+
+/// Flow through the tank.
+struct Flow {
+  double mass_flow = 0;               ///< [kg/s]; > 0 upward: discharge, cold at the bottom; < 0: charge
+  double inlet_temperature = 293.15;  ///< of what enters, at the bottom or at the top [K]
+  int mode = 0;                       ///< a label of the control's own; comes back in BedStep
+  /// The decision holds until this time at most [s]; the bed then asks again. It asks before each of its
+  /// steps.
+  double until = std::numeric_limits<double>::infinity();
+};
+
+/// Decides on the flow at the start of each step of the bed. A control with a memory (charging, waiting, ...)
+/// hands it out and takes it back, so that a step of the simulation can be repeated.
+class FlowControl {
+ public:
+  virtual ~FlowControl() = default;
+  /// `t_top`, `t_bottom`: fluid temperature in the bed's top and bottom cell [K]; what flows out has it.
+  virtual Flow decide(double t, double t_top, double t_bottom, const Ambient& ambient) = 0;
+  virtual std::vector<double> state() const { return {}; }
+  virtual void restore(std::span<const double>) {}
+  /// At the end of a run: why what it did may not be what was meant. Sentences.
+  virtual std::vector<std::string> doubts() const { return {}; }
+};
+
+/// One step of the bed, from t to t + dt.
+struct BedStep {
+  double t = 0, dt = 0;           ///< [s]
+  Flow flow;                      ///< as decided at t
+  Ambient ambient;                ///< at t
+  double outlet_temperature = 0;  ///< mean of what left during the step [K]; the inlet's at rest
+  double pressure_loss = 0;       ///< across the bed [Pa]; 0 where nobody asked for it
+  double pump_power = 0;          ///< [W]
+};
 
 /// A flow from a given time on, until the next row.
 struct ScheduleRow {
@@ -33,7 +68,7 @@ struct FlowParameters {
   PlantParameters plant;
 };
 void declare(config::Section& section, FlowParameters& parameters);
-/// What is wrong with the rows of a schedule; empty: nothing.
+/// Returns why the rows of a schedule are not valid, or nothing.
 std::string problem_of_rows(const FlowParameters& parameters);
 /// `specific_heat` of the fluid [J/(kg K)].
 std::unique_ptr<FlowControl> make_flow_control(const FlowParameters& parameters, double specific_heat);
@@ -68,6 +103,27 @@ class Schedule final : public FlowControl {
   double current_ = -1;  // when the row in force began
   bool stopped_ = false;
   std::vector<bool> began_, flowed_;  // each row, in this run
+};
+
+/// Rows of a schedule from a CSV (may be compressed): '#' begins a comment, the first line names the columns with their
+/// units, in any order: "time [h],mass-flow [kg/s],inlet-temperature [degC]" and, where wanted, "stop-above [degC]",
+/// "stop-below [degC]", which may be empty in a row. A row holds until the next one. Throws Error with file:line.
+std::vector<ScheduleRow> read_flow_file(const std::filesystem::path& file);
+
+/// The plant decides what is pumped through the tank. Its memory is the process that runs.
+class PlantControl final : public FlowControl {
+ public:
+  explicit PlantControl(const Plant& plant) : plant_(plant) {}
+
+  Flow decide(double t, double t_top, double t_bottom, const Ambient& ambient) override;
+  std::vector<double> state() const override { return {double(mode_)}; }
+  void restore(std::span<const double> state) override {
+    mode_ = PlantMode(base::SavedNumbers(state, "mode of the plant").count(2));
+  }
+
+ private:
+  Plant plant_;
+  PlantMode mode_ = PlantMode::standby;
 };
 
 }  // namespace couplet::thermocline

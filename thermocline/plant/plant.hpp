@@ -1,12 +1,60 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "common/config/section.hpp"
-#include "thermocline/plant/calendar.hpp"
 
 namespace couplet::thermocline {
+
+/// On which days which load and tariff hold: one value, or 24 for the hours.
+struct CalendarRule {
+  std::vector<std::string> days;  ///< monday ... sunday, weekdays, weekend; empty: all of them
+  std::string from, to;           ///< MM-DD, both inclusive; `to` may lie in the next year; empty: all year
+  std::vector<double> load, tariff;
+};
+void declare(config::Section& section, CalendarRule& rule);
+
+/// First day of the run and period of its weather.
+struct CalendarStart {
+  std::string weekday;  ///< of the first day; needed where a rule names weekdays
+  int day = 0;          ///< first day of the weather, 0 for 01-01
+  int period = 365;     ///< days after which the weather begins again with that day
+};
+
+/// Empty, or what is wrong with values of a day: neither one nor 24, or (of a load) no share.
+std::string problem_of_day(const std::vector<double>& values, bool share);
+/// The value of the hour in which t lies [s].
+double at_hour(const std::vector<double>& values, double t);
+/// Returns true for the name of a weekday.
+bool is_weekday(const std::string& name);
+
+/// The first rule that holds and gives a load (a tariff) counts. Seasons follow the date of the
+/// weather, which may go round; weekdays go on evenly, a year of 365 days after the other.
+class Calendar {
+ public:
+  Calendar(const std::vector<CalendarRule>& rules, const CalendarStart& start);
+
+  /// Values of the day in which t lies [s]; nullptr where no rule gives any.
+  const std::vector<double>* load(double t) const;
+  const std::vector<double>* tariff(double t) const;
+  /// Rules that give nothing on any day, however long the run. Sentences.
+  std::vector<std::string> doubts() const;
+
+ private:
+  struct Rule {
+    unsigned weekdays = 0;  ///< bit 0: monday
+    bool has_season = false;
+    int from = 0, to = 0;  ///< days of the year
+    std::vector<double> load, tariff;
+  };
+  bool holds(const Rule& rule, long day) const;
+  const Rule* first(long day, std::vector<double> Rule::*values) const;
+
+  std::vector<Rule> rules_;
+  int weekday_, day_, period_;
+};
 
 /// Solar field, power block and the limits within which the store may work [thesis, section 5.2.1].
 struct PlantParameters {
@@ -17,7 +65,7 @@ struct PlantParameters {
   double hot = 0, cold = 0;       ///< design temperatures [K]
   double cut_off = 15;            ///< dT_CO [K]
   double restart = 10;            ///< dT_R [K]
-  /// What the cut-off looks at: the mixed temperature at the field's or the block's inlet (what the thesis's
+  /// Temperature that the cut-off uses: the mixed temperature at the field's or the block's inlet (what the thesis's
   /// text says), or what leaves the tank (what its tables follow); or one of them for charging and the other for
   /// discharging: field: mixed and outlet; block: outlet and mixed.
   enum class CutOffAt { mixed, outlet, field, block } cut_off_at = CutOffAt::mixed;
@@ -31,7 +79,7 @@ void declare(config::Section& section, PlantParameters& parameters);
 
 enum class PlantMode { standby, charge, discharge };
 
-/// What flows in the plant during one step.
+/// Flows in the plant during one step.
 struct PlantFlows {
   PlantMode mode = PlantMode::standby;
   double field_heat = 0;   ///< Q_SF: what the sun offers, mean over the step [W]
@@ -65,7 +113,6 @@ class Plant {
   double load(double t) const;
   double tariff(double t) const;
   double load_until(double t) const;
-  const Calendar& calendar() const { return calendar_; }
   const PlantParameters& parameters() const { return p_; }
   double specific_heat() const { return c_; }
 

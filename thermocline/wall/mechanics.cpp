@@ -8,6 +8,30 @@
 #include "common/base/error.hpp"
 
 namespace couplet::thermocline {
+namespace {
+
+/// Symmetric, positive definite, two diagonals on each side: L D L^T without pivots.
+struct Pentadiagonal {
+  std::vector<double> diagonal, next, second;  // a_ii, a_i,i+1, a_i,i+2
+  explicit Pentadiagonal(std::size_t n) : diagonal(n, 0.0), next(n, 0.0), second(n, 0.0) {}
+
+  void solve(std::vector<double>& x) {
+    const std::size_t n = diagonal.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const double d = diagonal[i], b = next[i] / d, c = second[i] / d;
+      if (i + 1 < n) diagonal[i + 1] -= b * next[i], next[i + 1] -= b * second[i], x[i + 1] -= b * x[i];
+      if (i + 2 < n) diagonal[i + 2] -= c * second[i], x[i + 2] -= c * x[i];
+      next[i] = b, second[i] = c;
+    }
+    for (std::size_t i = n; i-- > 0;) {
+      x[i] /= diagonal[i];
+      if (i + 1 < n) x[i] -= next[i] * x[i + 1];
+      if (i + 2 < n) x[i] -= second[i] * x[i + 2];
+    }
+  }
+};
+
+}  // namespace
 
 double rankine_active(const Filler& filler) {
   const double s = std::sin(filler.friction_angle);
@@ -35,36 +59,41 @@ InnerPressure inner_pressure(const Rings& rings, const BedGrid& bed, const Fluid
   return p;
 }
 
-FillerMechanics::FillerMechanics(const Rings& rings, const Steel& steel, const Filler& filler,
-                                 const InnerPressure& p, std::span<const double> wall,
-                                 std::span<const double> grains)
+FillerOnWall::FillerOnWall(const Rings& rings, const Steel& steel, const Filler& filler,
+                           const InnerPressure& p, std::span<const double> grains)
     : rings_(&rings),
       steel_(&steel),
       expansion_(filler.expansion),
       active_ratio_(rankine_active(filler)),
       grains_(grains.begin(), grains.end()) {
-  const int n = rings.size();
-  for (int i = 0; i < n; ++i) per_pressure_.push_back(rings.diameter / (2 * rings.thickness[i]));
-  for (auto* v : {&fluid_, &active_, &passive_}) v->resize(n);
+  for (auto* v : {&fluid_, &active_, &passive_, &hoop_, &lateral_}) v->assign(rings.size(), 0.0);
+  strain_.assign(rings.in_bed, 0.0), slip_.assign(rings.in_bed, 0.0);
+  contact_.assign(rings.in_bed, Contact::active);
   load(p);
-  strain_.assign(rings.in_bed, -1e3);  // far inside: the first update finds every ring active
-  hoop_.resize(n), lateral_.assign(n, 0.0), contact_.assign(rings.in_bed, Contact::active);
-  slip_.assign(rings.in_bed, 0.0);
-  update(wall, grains);
 }
 
-void FillerMechanics::load(const InnerPressure& p) {
+void FillerOnWall::load(const InnerPressure& p) {
   for (std::size_t i = 0; i < fluid_.size(); ++i) {
     fluid_[i] = p.fluid[i];
-    active_[i] = p.fluid[i] + active_ratio_ * p.vertical[i];
-    passive_[i] = p.fluid[i] + p.vertical[i] / active_ratio_;
+    active_[i] = active_ratio_ * p.vertical[i];
+    passive_[i] = p.vertical[i] / active_ratio_;
   }
+}
+
+FillerMechanics::FillerMechanics(const Rings& rings, const Steel& steel, const Filler& filler,
+                                 const InnerPressure& p, std::span<const double> wall,
+                                 std::span<const double> grains)
+    : FillerOnWall(rings, steel, filler, p, grains) {
+  for (int i = 0; i < rings.size(); ++i) per_pressure_.push_back(rings.diameter / (2 * rings.thickness[i]));
+  strain_.assign(rings.in_bed, -1e3);  // far inside: the first update finds every ring active
+  update(wall, grains);
 }
 
 void FillerMechanics::update(std::span<const double> wall, std::span<const double> grains) {
   for (int i = 0; i < rings_->in_bed; ++i) {
     const double e = steel_->youngs_modulus(wall[i]), free = steel_->thermal_strain(wall[i]);
-    const double lowest = active_[i] * per_pressure_[i], highest = passive_[i] * per_pressure_[i];
+    const double lowest = (fluid_[i] + active_[i]) * per_pressure_[i],
+                 highest = (fluid_[i] + passive_[i]) * per_pressure_[i];
     // (5.18) as D exp(alpha dT): printed as D (1 + alpha dT), which a cycle would leave smaller.
     strain_[i] += expansion_ * (grains[i] - grains_[i]);
     grains_[i] = grains[i];
@@ -84,35 +113,12 @@ void FillerMechanics::update(std::span<const double> wall, std::span<const doubl
     }
     lateral_[i] = hoop_[i] / per_pressure_[i] - fluid_[i];
   }
-  for (int i = rings_->in_bed; i < rings_->size(); ++i) hoop_[i] = active_[i] * per_pressure_[i];
+  for (int i = rings_->in_bed; i < rings_->size(); ++i)
+    hoop_[i] = (fluid_[i] + active_[i]) * per_pressure_[i];
 }
 
 int FillerMechanics::ever_passive() const {
   return int(std::count_if(slip_.begin(), slip_.end(), [](double s) { return s > 0; }));
-}
-
-std::vector<double> FillerMechanics::state() const {
-  std::vector<double> all(strain_);
-  all.insert(all.end(), grains_.begin(), grains_.end());
-  all.insert(all.end(), hoop_.begin(), hoop_.end());
-  all.insert(all.end(), lateral_.begin(), lateral_.end());
-  for (const Contact c : contact_) all.push_back(double(c));
-  all.insert(all.end(), slip_.begin(), slip_.end());
-  return all;
-}
-
-void FillerMechanics::restore(std::span<const double> state) {
-  const std::size_t bed = strain_.size(), grains = grains_.size(), all = hoop_.size();
-  if (state.size() != 3 * bed + grains + 2 * all)
-    throw Error("filler-mechanics: the checkpoint has another number of rings; run with the same cells.");
-  const double* from = state.data();
-  const auto take = [&](auto& to, std::size_t n) {
-    for (std::size_t i = 0; i < n; ++i) to[i] = from[i];
-    from += n;
-  };
-  take(strain_, bed), take(grains_, grains), take(hoop_, all), take(lateral_, all);
-  for (std::size_t i = 0; i < bed; ++i) contact_[i] = Contact(int(*from++));
-  take(slip_, bed);
 }
 
 std::vector<double> active_hoop(const Rings& rings, const Filler& filler, const InnerPressure& p) {
@@ -136,6 +142,108 @@ void wall_stress(const Rings& rings, const Steel& steel, const InnerPressure& pr
     out.equivalent[i] = std::sqrt(0.5 * ((t - z) * (t - z) + (z - r) * (z - r) + (r - t) * (r - t)));
     out.yield[i] = steel.yield_strength(temperature[i]);
   }
+}
+
+ContactMechanics::ContactMechanics(const Rings& rings, const Steel& steel, const Filler& filler,
+                                   const InnerPressure& p, std::span<const double> wall,
+                                   std::span<const double> grains)
+    : FillerOnWall(rings, steel, filler, p, grains),
+      total_(rings.size()),
+      given_wall_(wall.begin(), wall.end()) {
+  lateral_ = active_;
+  finish();
+}
+
+void ContactMechanics::finish() {
+  for (int i = 0; i < rings_->size(); ++i) {
+    total_[i] = fluid_[i] + lateral_[i];
+    hoop_[i] = total_[i] * rings_->diameter / (2 * rings_->thickness[i]);
+  }
+}
+
+void ContactMechanics::update(std::span<const double> radial, std::span<const double> wall,
+                              std::span<const double> grains) {
+  const double radius = rings_->diameter / 2;
+  for (int i = 0; i < rings_->in_bed; ++i) {
+    const double stiffness = steel_->youngs_modulus(wall[i]) * rings_->thickness[i] / radius;
+    const double free = steel_->thermal_strain(wall[i]);
+    const double strain =
+        radial.empty() ? total_[i] / stiffness + free
+                       : std::log1p(radial[i] / radius) + free - steel_->thermal_strain(given_wall_[i]);
+    if (!begun_) strain_[i] = strain;
+    strain_[i] += expansion_ * (grains[i] - grains_[i]);
+    grains_[i] = grains[i];
+    const double wanted = lateral_[i] + stiffness * (strain_[i] - strain);
+    lateral_[i] = std::clamp(wanted, active_[i], passive_[i]);
+    contact_[i] = wanted <= active_[i]    ? Contact::active
+                  : wanted >= passive_[i] ? Contact::passive
+                                          : Contact::rigid;
+    // Where the bound cuts the pressure, the filler ends where the wall will be under the bound.
+    strain_[i] -= (wanted - lateral_[i]) / stiffness;
+    slip_[i] += std::max(0.0, wanted - passive_[i]) / stiffness;
+  }
+  given_wall_.assign(wall.begin(), wall.end());
+  begun_ = begun_ || !radial.empty();
+  finish();
+}
+
+WallBending wall_bending(const Rings& rings, const Steel& steel, std::span<const double> hoop,
+                         std::span<const double> temperature) {
+  const std::size_t n = rings.z.size();
+  const double a = rings.diameter / 2, nu = steel.poissons_ratio;
+  std::vector<double> modulus(n), free(n), w(n), support(n), stiffness(n);
+  Pentadiagonal matrix(n);
+  const double start = steel.thermal_strain(temperature[0]);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double e = rings.thickness[i];
+    modulus[i] = steel.youngs_modulus(temperature[i]);
+    free[i] = steel.thermal_strain(temperature[i]) - start;
+    support[i] = modulus[i] * e / (a * a) * rings.dz[i];
+    stiffness[i] = modulus[i] * e * e * e / (12 * (1 - nu * nu));
+    matrix.diagonal[i] = support[i];
+    w[i] = support[i] * a * (hoop[i] / modulus[i] + free[i]);
+  }
+  // The least of 1/2 sum D (w'')^2 dz + 1/2 sum E e/a^2 (w - w_m)^2 dz; w'' at inner rings by three values.
+  struct Curvature {
+    double before, here, after;
+  };
+  std::vector<Curvature> curvature(n, {0, 0, 0});
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const double below = rings.z[i] - rings.z[i - 1], above = rings.z[i + 1] - rings.z[i],
+                 both = below + above;
+    const Curvature c{2 / (below * both), -2 / (below * above), 2 / (above * both)};
+    const double s = stiffness[i] * 0.5 * both;
+    curvature[i] = c;
+    matrix.diagonal[i - 1] += s * c.before * c.before, matrix.diagonal[i] += s * c.here * c.here;
+    matrix.diagonal[i + 1] += s * c.after * c.after;
+    matrix.next[i - 1] += s * c.before * c.here, matrix.next[i] += s * c.here * c.after;
+    matrix.second[i - 1] += s * c.before * c.after;
+  }
+  matrix.solve(w);
+  WallBending result{std::vector<double>(n), std::vector<double>(n, 0.0)};
+  for (std::size_t i = 0; i < n; ++i) {
+    result.hoop[i] = modulus[i] * (w[i] / a - free[i]);
+    if (i == 0 || i + 1 == n) continue;
+    const Curvature& c = curvature[i];
+    const double bent = c.before * w[i - 1] + c.here * w[i] + c.after * w[i + 1];
+    // Outwards curved (w'' > 0) the outer face is pressed.
+    result.axial[i] = -6 * stiffness[i] * bent / (rings.thickness[i] * rings.thickness[i]);
+  }
+  return result;
+}
+
+YieldShares yield_shares(const WallStress& stress, const WallBending& bent, double poissons_ratio) {
+  YieldShares shares;
+  for (std::size_t i = 0; i < stress.hoop.size(); ++i) {
+    shares.rings = std::max(shares.rings, stress.equivalent[i] / stress.yield[i]);
+    for (const double face : {-1.0, 1.0}) {
+      const double added = face * bent.axial[i], r = stress.radial[i];
+      const double t = bent.hoop[i] + poissons_ratio * added, z = stress.axial[i] + added;
+      const double equivalent = std::sqrt(0.5 * ((t - z) * (t - z) + (z - r) * (z - r) + (r - t) * (r - t)));
+      shares.shell = std::max(shares.shell, equivalent / stress.yield[i]);
+    }
+  }
+  return shares;
 }
 
 }  // namespace couplet::thermocline

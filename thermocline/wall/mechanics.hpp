@@ -8,7 +8,7 @@
 
 namespace couplet::thermocline {
 
-/// What presses on the wall from inside, at each ring [Pa].
+/// Pressures on the wall from inside, at each ring [Pa].
 struct InnerPressure {
   std::vector<double> fluid;     ///< p_f = p_ullage + rho_f g depth (5.13); the ullage's above the bed
   std::vector<double> vertical;  ///< p_v of the buoyant grains (5.14-5.16)
@@ -25,6 +25,31 @@ struct WallStress {
 
 enum class Contact { active, rigid, passive };
 
+/// Filler and wall, ring by ring: bounds of the filler's pressure, and what both models keep.
+class FillerOnWall {
+ public:
+  /// Sets another weight of fluid and grains, which holds from the next update on.
+  void load(const InnerPressure& pressure);
+  std::span<const double> hoop() const { return hoop_; }        ///< of the membrane [Pa]
+  std::span<const double> lateral() const { return lateral_; }  ///< p_s [Pa]
+  const std::vector<Contact>& contact() const { return contact_; }
+  /// Reduction of the filler's diameter by passive yielding so far, relative [1]; 0 where it never
+  /// yielded.
+  std::span<const double> slip() const { return slip_; }
+
+ protected:
+  FillerOnWall(const Rings& rings, const Steel& steel, const Filler& filler, const InnerPressure& pressure,
+               std::span<const double> grains);
+
+  const Rings* rings_;
+  const Steel* steel_;
+  double expansion_, active_ratio_;
+  std::vector<double> fluid_, active_, passive_;  // p_f, K_a p_v, p_v/K_a [Pa]
+  std::vector<double> strain_, slip_, grains_;    // of the filler [1], its temperature [K]
+  std::vector<double> hoop_, lateral_;
+  std::vector<Contact> contact_;
+};
+
 /// The filler as a rigid, perfectly plastic, cohesionless bulk (thesis figure 5.4). At each height:
 ///   active   the wall has moved away and the grains have slumped after it: p_s = K_a p_v (5.17)
 ///   rigid    the wall cannot shrink below the grains' diameter, which follows their own expansion (5.18)
@@ -32,37 +57,22 @@ enum class Contact { active, rigid, passive };
 /// Strains are logarithms of diameters, from the initial state. The wall's is e = sigma/E + integral of alpha
 /// dT, so in contact sigma = E (e_filler - integral of alpha dT), held between the active and the passive
 /// value.
-class FillerMechanics {
+class FillerMechanics : public FillerOnWall {
  public:
   /// The wall starts at these temperatures with the active load.
   FillerMechanics(const Rings& rings, const Steel& steel, const Filler& filler, const InnerPressure& pressure,
                   std::span<const double> wall, std::span<const double> grains);
 
   void update(std::span<const double> wall, std::span<const double> grains);
-  /// Another weight of fluid and grains from the next update on.
-  void load(const InnerPressure& pressure);
-  std::span<const double> hoop() const { return hoop_; }        ///< [Pa]
-  std::span<const double> lateral() const { return lateral_; }  ///< p_s [Pa]
-  const std::vector<Contact>& contact() const { return contact_; }
-  /// What passive yielding has taken from the filler's diameter so far, relative [1]; 0 where it never
-  /// yielded.
-  std::span<const double> slip() const { return slip_; }
   int ever_passive() const;  ///< rings that have yielded
-  /// Radius increase of the filler since the start, relative [1].
-  std::span<const double> filler_strain() const { return strain_; }
 
-  std::vector<double> state() const;
-  void restore(std::span<const double> state);
+  template <class Self, class F>
+  static void visit(Self& self, F&& f) {
+    f(self.strain_, self.grains_, self.hoop_, self.lateral_, self.contact_, self.slip_);
+  }
 
  private:
-  const Rings* rings_;
-  const Steel* steel_;
-  double expansion_, active_ratio_;
-  std::vector<double> per_pressure_;              // D/(2e) [1]
-  std::vector<double> fluid_, active_, passive_;  // p_f, p_f + K_a p_v, p_f + p_v/K_a [Pa]
-  std::vector<double> strain_, slip_, grains_;    // of the filler [1], its temperature [K]
-  std::vector<double> hoop_, lateral_;
-  std::vector<Contact> contact_;
+  std::vector<double> per_pressure_;  // D/(2e) [1]
 };
 
 /// Without filler mechanics the hoop stress is that of the fluid and the active load.
@@ -72,5 +82,57 @@ double rankine_active(const Filler& filler);
 /// All stresses from the hoop stress and the temperature of the rings.
 void wall_stress(const Rings& rings, const Steel& steel, const InnerPressure& pressure, double roof_pressure,
                  std::span<const double> hoop, std::span<const double> temperature, WallStress& out);
+
+/// The filler against a wall whose radius somebody else computes. Its radial strain e_w was computed at t^n
+/// under the pressure and the temperatures given then; at t^{n+1} under the same pressure it will be e_w' =
+/// e_w + change of the integral of alpha dT. The filler's pressure follows by relaxation with the stiffness
+/// of the ring, E e/R (pressure per strain):
+///   p_s := clamp(p_s + E e/R (e_s - e_w'), K_a p_v, p_v/K_a)
+/// and e_s follows the wall outside the rigid range, as in FillerMechanics. A membrane would answer exactly
+/// so; what bending spreads along z is corrected in the next step. The membrane is the stiffest answer a wall
+/// can give, so the iteration contracts for any shape of the load.
+class ContactMechanics : public FillerOnWall {
+ public:
+  ContactMechanics(const Rings& rings, const Steel& steel, const Filler& filler,
+                   const InnerPressure& pressure, std::span<const double> wall,
+                   std::span<const double> grains);
+
+  /// `radial`: the wall's displacement [m] at each ring under what was given last; empty: a membrane's.
+  /// `wall`, `grains`: temperatures at the end of the step, those that are given next.
+  void update(std::span<const double> radial, std::span<const double> wall, std::span<const double> grains);
+  std::span<const double> pressure() const { return total_; }  ///< p_f + p_s [Pa]
+
+  template <class Self, class F>
+  static void visit(Self& self, F&& f) {
+    f(self.begun_, self.strain_, self.slip_, self.grains_, self.lateral_, self.given_wall_, self.contact_);
+  }
+  /// Computes the pressure and the stress that follow from the state.
+  void finish();
+
+ private:
+  bool begun_ = false;  // has seen a displacement: strains are the wall's own from then on
+  std::vector<double> total_;
+  std::vector<double> given_wall_;  // temperatures under which the wall was last computed [K]
+};
+
+/// Stresses of the rings with bending: the wall as a thin axisymmetric shell [timoshenko1959, chapter
+/// 15]
+///   d2/dz2 (D d2w/dz2) + E e/a^2 (w - w_m) = 0,   D = E e^3/(12 (1 - nu^2)),
+/// w_m the radial displacement that each ring has by itself (its stress and its thermal expansion), ends
+/// free. The displacement is rounded off over 1/beta, beta^4 = 3 (1 - nu^2)/(a^2 e^2), and bends the wall: a
+/// step of dT in temperature makes an axial stress of 0.293 E alpha dT at both faces (nu = 0.3).
+struct WallBending {
+  std::vector<double> hoop;   ///< E (w/a - thermal strain), mean over the thickness [Pa]
+  std::vector<double> axial;  ///< at the outer face, 6 M/e^2; opposite at the inner [Pa]
+};
+WallBending wall_bending(const Rings& rings, const Steel& steel, std::span<const double> hoop,
+                         std::span<const double> temperature);
+
+/// Largest share of its yield strength that the equivalent stress of a ring has: without bending, and at the worse of both
+/// faces with it, where bending adds -+6 M/e^2 along z and nu times that along the circumference [1].
+struct YieldShares {
+  double rings = 0, shell = 0;
+};
+YieldShares yield_shares(const WallStress& stress, const WallBending& bent, double poissons_ratio);
 
 }  // namespace couplet::thermocline

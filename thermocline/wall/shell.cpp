@@ -5,18 +5,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/base/error.hpp"
+
 namespace couplet::thermocline {
 namespace {
-
-/// Half a ring's resistance from its conductivity, and the conductance between rings as lower and upper rows.
-[[gnu::target_clones("avx2", "default")]] void conduct(std::size_t n, const double* bare, double* resistance,
-                                                       double* a, double* c) {
-#pragma GCC ivdep
-  for (std::size_t i = 0; i < n; ++i) resistance[i] = bare[i] / resistance[i];
-#pragma GCC ivdep
-  for (std::size_t i = 0; i + 1 < n; ++i) c[i] = -1 / (resistance[i] + resistance[i + 1]);
-  for (std::size_t i = 0; i + 1 < n; ++i) a[i + 1] = c[i];
-}
 
 struct Row {
   const double *mass, *specific_heat, *a, *c, *temperature, *lost;
@@ -95,7 +87,8 @@ void Shell::step(double dt, std::span<const double> fluid, std::span<const doubl
   const double around = std::numbers::pi * rings.diameter;
   specific_heat_of_.values(temperature_.data(), specific_heat_.data(), n);
   conductivity_of_.values(temperature_.data(), resistance_.data(), n);
-  conduct(n, bare_.data(), resistance_.data(), a_.data(), c_.data());
+  for (int i = 0; i < n; ++i) resistance_[i] = bare_[i] / resistance_[i];
+  conduction_rows(n, resistance_.data(), a_.data(), c_.data());
   for (int i = 0; i < rings.in_bed; ++i) coupling_[i] = film[i] * around * rings.dz[i];
   // Twice, so that the specific heat is its mean over the step: what is stored is then exactly what came in.
   for (int pass = 0; pass < 2; ++pass) {
@@ -121,6 +114,96 @@ double Shell::energy(double reference) const {
     sum += steel_->density * std::numbers::pi * rings_->diameter * rings_->thickness[i] * rings_->dz[i] *
            (cp.integral(temperature_[i]) - cp.integral(reference));
   return sum;
+}
+
+void declare(config::Section& s, ExternalWallParameters& p) {
+  s.value("sections", p.sections)
+      .range(2, 100000)
+      .doc("number of faces along the wall, equal to that of the other program's inner surface");
+  s.value("angle", p.angle)
+      .unit("rad")
+      .range(1e-6, 3)
+      .doc("angle of the wedge that the other program computes");
+}
+
+WallInterface::WallInterface(const ExternalWallParameters& p, const Rings& rings)
+    : radius_(rings.diameter / 2),
+      angle_(p.angle),
+      height_(rings.z.back() + rings.dz.back() / 2),
+      sections_(p.sections),
+      ring_z_(rings.z),
+      ring_dz_(rings.dz) {}
+
+coupling::Interface WallInterface::describe() const {
+  coupling::Interface interface;
+  interface.dim = 3;
+  const double dz = height_ / sections_, half = angle_ / 2, width = 2 * radius_ * std::sin(half);
+  for (int k = 0; k <= sections_; ++k)
+    for (const double side : {-1.0, 1.0})
+      interface.vertices.emplace_back(radius_ * std::cos(half), side * radius_ * std::sin(half), k * dz);
+  for (int k = 0; k < sections_; ++k) {
+    interface.face_centres.emplace_back(radius_ * std::cos(half), 0, (k + 0.5) * dz);
+    interface.face_areas.emplace_back(width * dz, 0, 0);
+  }
+  return interface;
+}
+
+std::vector<double> WallInterface::to_sections(std::span<const double> rings) const {
+  const Table profile(ring_z_, {rings.begin(), rings.end()});
+  std::vector<double> values(sections_);
+  const double dz = height_ / sections_, from = ring_z_.front();
+  for (int k = 0; k < sections_; ++k) {
+    // The table is constant below its first ring; its integral counts from there.
+    const double low = k * dz, high = low + dz;
+    values[k] = high <= from ? profile(low) : (profile.integral(high) - profile.integral(low)) / dz;
+  }
+  return values;
+}
+
+std::vector<double> WallInterface::to_rings(std::span<const double> amounts) const {
+  std::vector<double> values(ring_z_.size());
+  const double dz = height_ / sections_;
+  for (std::size_t i = 0; i < ring_z_.size(); ++i) {
+    const double low = ring_z_[i] - ring_dz_[i] / 2, high = low + ring_dz_[i];
+    const int last = std::min(sections_ - 1, int(high / dz));
+    for (int k = std::max(0, int(low / dz)); k <= last; ++k)
+      values[i] += amounts[k] * std::max(0.0, std::min(high, (k + 1) * dz) - std::max(low, k * dz)) / dz;
+  }
+  return values;
+}
+
+std::vector<double> WallInterface::radial(std::span<const double> displacement) const {
+  if (displacement.size() != std::size_t(6 * (sections_ + 1)))
+    throw Error("The wall gave {} values of displacement, but its {} vertices need {}.", displacement.size(),
+                2 * (sections_ + 1), 6 * (sections_ + 1));
+  std::vector<double> z, u;
+  const double c = std::cos(angle_ / 2), s = std::sin(angle_ / 2);
+  for (int k = 0; k <= sections_; ++k) {
+    const double* d = displacement.data() + 6 * k;
+    z.push_back(k * height_ / sections_);
+    u.push_back(0.5 * ((d[0] * c - d[1] * s) + (d[3] * c + d[4] * s)));
+  }
+  const Table profile(std::move(z), std::move(u));
+  std::vector<double> values;
+  for (const double at : ring_z_) values.push_back(profile(at));
+  return values;
+}
+
+void declare(config::Section& section, ShellParameters& p) {
+  declare_section(section, "material", p.material, "metal of the shell");
+  section.list<Plate>(
+      "plates", p.plates,
+      [](config::Section& s, Plate& l) {
+        as_length(s.value("height", l.height)).positive().required().doc("height");
+        as_thickness(s.value("thickness", l.thickness)).positive().required().doc("thickness");
+      },
+      "from the bottom up; the last one continues to the top");
+  section.value("roof-pressure", p.roof_pressure)
+      .unit("Pa")
+      .plausible(1, 1e6)
+      .not_negative()
+      .doc("weight of the roof per roof area");
+  section.check([&p] { return p.plates.empty() ? "at least one plate is needed" : ""; }, "plates");
 }
 
 }  // namespace couplet::thermocline

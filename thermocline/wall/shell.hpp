@@ -4,8 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "thermocline/base/tridiagonal.hpp"
-#include "thermocline/bed/bed_grid.hpp"
+#include "common/coupling/participant.hpp"
+#include "thermocline/bed/bed_parameters.hpp"
+#include "thermocline/material/numerics.hpp"
 #include "thermocline/material/properties.hpp"
 
 namespace couplet::thermocline {
@@ -45,7 +46,8 @@ class Shell {
   /// [W].
   void step(double dt, std::span<const double> fluid, std::span<const double> film,
             std::span<const double> lost, std::vector<double>& from_bed);
-  std::span<const double> temperature() const { return temperature_; }
+  std::vector<double>& temperature() { return temperature_; }
+  const std::vector<double>& temperature() const { return temperature_; }
   void set_temperature(std::span<const double> temperature);
   /// Heat content above a temperature [J]: the heat that came in less what went out, exact over steps.
   double energy(double reference) const;
@@ -60,5 +62,37 @@ class Shell {
 };
 
 void declare(config::Section& section, ShellParameters& parameters);
+
+/// The wall as another program (a solid of its own) instead of the rings' membrane.
+struct ExternalWallParameters {
+  int sections = 400;   ///< along the height of the wall
+  double angle = 0.01;  ///< of the wedge of the wall that the other program computes [rad]
+};
+void declare(config::Section& section, ExternalWallParameters& parameters);
+
+/// The inner side of the wall as the coupler sees it: a strip of the cylinder, a face a section, symmetric
+/// about the plane y = 0; z from the tank's bottom. Gives at the faces
+///   temperature  K   of the ring (t^{n+1})
+///   pressure     Pa  fluid and filler, pushes outwards
+/// and takes `displacement` at the vertices, relative to the unloaded wall at the solid's reference
+/// temperature.
+class WallInterface {
+ public:
+  WallInterface(const ExternalWallParameters& parameters, const Rings& rings);
+  int sections() const { return sections_; }
+  coupling::Interface describe() const;  ///< places only
+
+  /// Mean of a ring quantity over each section.
+  std::vector<double> to_sections(std::span<const double> rings) const;
+  /// Radial displacement [m] of each ring from the displacement of the vertices (3 components each).
+  std::vector<double> radial(std::span<const double> displacement) const;
+  /// Amounts of the sections, shared out to the rings by height.
+  std::vector<double> to_rings(std::span<const double> amounts) const;
+
+ private:
+  double radius_, angle_, height_;
+  int sections_;
+  std::vector<double> ring_z_, ring_dz_;
+};
 
 }  // namespace couplet::thermocline

@@ -1,14 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "thermocline/base/interfaces.hpp"
-#include "thermocline/weather/weather_hours.hpp"
+#include "common/config/section.hpp"
+#include "thermocline/weather/made_days.hpp"
 
 namespace couplet::thermocline {
+
+/// The weather at one instant.
+struct Ambient {
+  double dni = 0;               ///< direct normal irradiance [W/m^2]
+  double temperature = 293.15;  ///< of the air [K]
+  double wind = 0;              ///< [m/s]
+  double humidity = 0.5;        ///< relative [1]
+  double pressure = 101325;     ///< of the air [Pa]
+  double sun_height = 0;        ///< sine of the sun's height above the horizon [1]; 0 where it is not known
+};
 
 /// Which days of the weather are lived through: from the day `from`, where t = 0 at 00:00, to the end of the
 /// day `to`, then `from` again. Days of the year, 0 for 01-01; `from` may lie after `to` (a winter). Without
@@ -20,26 +32,28 @@ struct WeatherPeriod {
 
 /// Hourly weather as functions of time. States are straight lines between the hourly moments, also where the
 /// period begins again. The irradiance is a straight line within each hour, of the hour's mean and a slope
-/// limited so that no value leaves the range of the neighbouring hours (monotonised central differences
+/// limited so that no value leaves the range of the neighboring hours (monotonized central differences
 /// [vanleer1977]): the energy of every hour is that of the file.
-class Weather final : public AmbientSource {
+class Weather {
  public:
   /// The simulation's clock is `shift_hours` ahead of the file's. Throws Error if a day of the period is not
   /// in the record.
   Weather(const WeatherHours& record, const WeatherPeriod& period, int shift_hours = 0);
 
-  Ambient at(double t) const override;
-  double mean_temperature() const override { return mean_temperature_; }  ///< of the whole record [K]
+  Ambient at(double t) const;
+  double mean_temperature() const {
+    return mean_temperature_;
+  }  ///< air of the whole record, which deep soil has [K]
   /// Direct normal irradiation between two times [J/m^2].
   double irradiation(double from, double to) const;
   /// It is known where the sun stands.
   bool has_site() const { return hours_.site.has_value(); }
   const std::string& source() const { return hours_.source; }
-  /// What was mended in the record, with file:line.
+  /// Gaps that were filled in the record, with file:line.
   const std::vector<std::string>& warnings() const { return hours_.warnings; }
   /// Why it may not be what was meant.
   const std::vector<std::string>& doubts() const { return hours_.doubts; }
-  /// Of the day in which t lies, as MM-DD.
+  /// Date of the day in which t lies, as MM-DD.
   std::string date(double t) const;
 
   int first_day() const { return first_day_; }                                ///< of the year, 0 for 01-01
@@ -57,5 +71,40 @@ class Weather final : public AmbientSource {
   std::vector<double> slope_;      ///< of the irradiance over each hour [W/m^2 per hour]
   std::vector<double> cumulated_;  ///< irradiation before each hour [J/m^2], one more than hours
 };
+
+enum class WeatherKind { constant, file, clear_sky, smooth_days };
+
+/// Where on earth a weather file belongs, for files that do not say it.
+struct SiteParameters {
+  double latitude = 0, longitude = 0;  ///< [deg], north and east positive
+  double time_zone = 0;                ///< hours that the file's clock is ahead of Greenwich
+};
+void declare(config::Section& section, SiteParameters& site);
+
+/// Keys of the section `ambient`.
+struct WeatherParameters {
+  WeatherKind kind = WeatherKind::constant;
+  std::string file;
+  std::optional<SiteParameters> site;
+  ClearSky sky;
+  SmoothDays smooth;
+  double shift_hours = 0;  ///< by which the clock of the simulation is ahead of that of the file
+  bool mean_days = false;
+  std::string from = "01-01", to;  ///< dates MM-DD; empty: the whole year
+  Ambient constant;
+};
+void declare(config::Section& section, WeatherParameters& parameters);
+
+/// Reads or makes it. Throws Error.
+std::unique_ptr<Weather> make_weather(const WeatherParameters& parameters,
+                                      const std::filesystem::path& case_folder);
+
+/// Returns the record with each hour's irradiance replaced by the mean over that hour of all days of its month
+/// (of the record), as tables of average days give it. The energy of every month stays.
+WeatherHours with_mean_days(WeatherHours record);
+
+/// Reasons to doubt the sun of a record with a site: irradiance while the sun is below the horizon, a clock far
+/// from that of the longitude. Sentences.
+std::vector<std::string> doubts_about_sun(const WeatherHours& record);
 
 }  // namespace couplet::thermocline

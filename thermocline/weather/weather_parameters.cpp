@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "thermocline/weather/weather_parameters.hpp"
+#include "thermocline/weather/weather.hpp"
 
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "thermocline/base/celsius.hpp"
-#include "thermocline/weather/weather_date.hpp"
+#include "thermocline/material/numerics.hpp"
+#include "thermocline/material/properties.hpp"
 
 namespace couplet::thermocline {
 namespace {
@@ -33,27 +33,20 @@ void declare_file(config::Section& s, WeatherParameters& p) {
   s.value("file", p.file)
       .required()
       .doc(
-          "hourly weather: EnergyPlus (EPW), SAM or NSRDB, TMY3, the typical year of PVGIS (CSV), or a CSV "
-          "with the columns hour (of the year, from 0), dni_W_m2 (mean of the hour), T_degC, wind_m_s, "
-          "rh_pct, p_Pa; all may be compressed (.gz)");
+          "hourly weather: a CSV, plain or compressed, with the columns hour (of the year, from 0), "
+          "dni_W_m2 (mean of the hour), T_degC, wind_m_s, rh_pct, p_Pa; 'couplet weather FILE' makes it "
+          "of EPW, SAM, NSRDB, TMY3, PVGIS and other tables");
   s.value("shift", p.shift_hours)
       .range(-12, 12)
-      .doc(
-          "whole hours by which the simulation's clock is ahead of the file's; absent: 0, except for PVGIS, "
-          "whose clock is UTC, which is shifted to the local standard time of its longitude");
-  s.check(
-      [&p] {
-        return !p.shift_hours || *p.shift_hours == std::floor(*p.shift_hours) ? ""
-                                                                              : "is a whole number of hours";
-      },
-      "shift");
+      .doc("whole hours by which the simulation's clock is ahead of the file's");
+  s.check([&p] { return p.shift_hours == std::floor(p.shift_hours) ? "" : "is a whole number of hours"; },
+          "shift");
   s.choice("days", p.mean_days, {{"as-recorded", false}, {"monthly-mean", true}})
       .doc(
           "monthly-mean: each hour has the mean irradiance of that hour in its month, as in tables of "
           "average days");
-  s.optional_section<SiteParameters>(
-      "site", p.site, [](config::Section& q, SiteParameters& site) { declare(q, site); },
-      "for files without a location, to determine the sun's height (solar-absorptance)");
+  declare_section(s, "site", p.site,
+                  "for files without a location, to determine the sun's height (solar-absorptance)");
   declare_period(s, p);
 }
 
@@ -129,16 +122,15 @@ WeatherHours constant_year(const WeatherParameters& p) {
 WeatherHours record_of(const WeatherParameters& p, const std::filesystem::path& case_folder) {
   if (p.kind == WeatherKind::file) {
     WeatherHours record = read_weather(case_folder / p.file);
-    constexpr double hour = 3600, seconds_a_degree = 240;  // the earth turns by 15 degrees an hour
+    constexpr double hour = 3600;
     if (p.site) {
-      const WeatherHours::Site given{p.site->latitude,
-                                     p.site->longitude * seconds_a_degree - p.site->time_zone * hour};
+      const WeatherHours::Site given = site_of(p.site->latitude, p.site->longitude, p.site->time_zone);
       constexpr double close = 0.1, close_time = 360;  // [deg], [s]
       if (record.site && (std::abs(given.latitude - record.site->latitude) > close ||
                           std::abs(given.solar_ahead - record.site->solar_ahead) > close_time))
         record.doubts.push_back(fmt::format(
-            "{}: 'site' (latitude {:g} deg, solar time {:+.2f} h against the clock) replaces the file's own "
-            "(latitude {:g} deg, {:+.2f} h)",
+            "{}: 'site' (latitude {:g} deg, solar time {:+.2f} h against the clock) replaces the file's "
+            "own (latitude {:g} deg, {:+.2f} h)",
             record.source, given.latitude, given.solar_ahead / hour, record.site->latitude,
             record.site->solar_ahead / hour));
       record.site = given;
@@ -179,15 +171,9 @@ void declare(config::Section& section, WeatherParameters& p) {
 }
 
 std::unique_ptr<Weather> make_weather(const WeatherParameters& p, const std::filesystem::path& case_folder) {
-  WeatherHours record = record_of(p, case_folder);
-  const int shift = int(p.shift_hours.value_or(record.local_ahead));
-  if (record.local_ahead != 0)
-    record.warnings.push_back(fmt::format(
-        "{}: its clock is UTC; the simulation's is {:+d} h ahead of it{}", record.source, shift,
-        p.shift_hours ? " (ambient.shift)" : ", local standard time of its longitude; 'shift: 0' keeps UTC"));
   WeatherPeriod period{day_of_year(p.from), {}};
   if (!p.to.empty()) period.to = day_of_year(p.to);
-  return std::make_unique<Weather>(record, period, shift);
+  return std::make_unique<Weather>(record_of(p, case_folder), period, int(p.shift_hours));
 }
 
 }  // namespace couplet::thermocline

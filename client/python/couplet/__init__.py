@@ -19,8 +19,7 @@ choose()  # before anybody starts MPI
 
 _PLACES = {
     "participant": ("Client",),
-    "series": ("FieldSeries", "WIDTH", "extrema", "find_series", "passes_a_step"),
-    "surfaces": ("Surface", "find_surface", "surface_names"),
+    "series": ("FieldSeries", "Surface", "WIDTH", "extrema", "find_series", "find_surface", "surface_names"),
     "runs": ("Case", "Results", "RunFailed", "Wrong", "read_csv", "run"),
 }
 __getattr__ = lazy.names(__name__, _PLACES)

@@ -4,4 +4,4 @@ import sys
 
 from couplet.command import main
 
-sys.exit(main(["couplet", *sys.argv[1:]]))
+sys.exit(main(sys.argv))

@@ -6,8 +6,7 @@ import pathlib
 import numpy as np
 
 from couplet.runs.case import Wrong, expect
-from couplet.series import SHAPES, find_series
-from couplet.surfaces import find_surface, surface_names
+from couplet.series import SHAPES, find_series, find_surface, surface_names
 
 # Faces of a cell by its number of points, as positions in the cell (VTK order).
 FACES = {4: ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3)), 5: ((0, 1, 2, 3), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)),
@@ -43,7 +42,7 @@ def surface_of(folder, patch):
 
 def values_of(series, i, name, component):
     """One number per cell: a component, or the magnitude of a vector; of points the mean over the cell."""
-    expect(name in series.names(i), f"no field '{name}'; fields: {', '.join(series.names(i))}")
+    expect(name in series.names(i), f"there is no field '{name}'; there are: {', '.join(series.names(i))}")
     field = np.asarray(series.field(i, name), float)
     field = field[:, None] if field.ndim == 1 else field
     if component is None:
@@ -125,58 +124,57 @@ def label_of(series, i, name, component):
     return f"{name}{f' {component}' if component else ''} [{unit or '-'}]"
 
 
-def draw_surface(folder, name, patch, picture=None, at=None, component=None, warp=1.0, dpi=110):
-    """Draws a field on a patch (`output.surfaces`) at one output: in 2-D over the arc length, in 3-D on its faces."""
+def new_figure(width, height, dpi):
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
+    return plt.figure(figsize=(width, height), dpi=dpi, constrained_layout=True)
+
+
+def saved(figure, title, picture):
+    """Names the first axes, writes the picture; gives its path."""
+    import matplotlib.pyplot as plt
+    figure.axes[0].set_title(title, fontsize=10)
+    figure.savefig(picture)
+    plt.close(figure)
+    return pathlib.Path(picture)
+
+
+def output_near(series, at):
+    expect(series.steps, f"{series.file.filename}: there is no output in it yet")
+    return len(series.times) - 1 if at is None else series.nearest(at)
+
+
+def draw_surface(folder, name, patch, picture=None, at=None, component=None, warp=1.0, dpi=110):
+    """Draws a field on a patch (`output.surfaces`) at one output: in 2-D over the arc length, in 3-D on its faces."""
     surface = surface_of(pathlib.Path(folder), patch)
-    expect(surface.steps, f"{surface.file.filename}: there is no output in it yet")
-    i = len(surface.times) - 1 if at is None else surface.nearest(at)
-    values = values_of(surface, i, name, component)
-    plane = surface.is_plane()
-    figure = plt.figure(figsize=(8, 4 if plane else 6), dpi=dpi, constrained_layout=True)
-    label = label_of(surface, i, name, component)
+    i = output_near(surface, at)
+    values, label, plane = values_of(surface, i, name, component), label_of(surface, i, name, component), surface.is_plane()
+    figure = new_figure(8, 4 if plane else 6, dpi)
     if plane:
         along(figure, places_of(surface, i, 0, name), surface, values, i).set_ylabel(label)
     else:
         faces = [(list(map(int, face)), number) for number, face in enumerate(surface.cells)]
         scale = in_space(figure, places_of(surface, i, warp, name), surface, values, faces)
         figure.colorbar(scale, ax=figure.axes[0], shrink=0.8, label=label)
-    figure.axes[0].set_title(f"{patch}, t = {surface.times[i]:.4g} s", fontsize=10)
-    picture = pathlib.Path(picture or pathlib.Path(surface.file.filename).with_name(f"{surface.name}-{name}.png"))
-    figure.savefig(picture)
-    plt.close(figure)
-    return picture
+    return saved(figure, f"{patch}, t = {surface.times[i]:.4g} s", picture or pathlib.Path(surface.file.filename).with_name(f"{surface.name}-{name}.png"))
 
 
 def draw(folder, name, picture=None, at=None, component=None, warp=1.0, dpi=110):
     """Draws a field of one output (the last, or the nearest to the time `at`); gives the picture's name."""
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
     series = series_of(pathlib.Path(folder), name)
-    i = len(series.times) - 1 if at is None else series.nearest(at)
+    i = output_near(series, at)
     values, points = values_of(series, i, name, component), places_of(series, i, warp, name)
-    flat = points.shape[1] == 2 or np.ptp(series.reference()[:, 2]) == 0
-    size = np.ptp(points, axis=0)
-    figure = plt.figure(figsize=(8, min(8, max(2.4, 1.2 + 7 * size[1] / size[0])) if flat else 6), dpi=dpi, constrained_layout=True)
+    flat, size = series.is_flat(), np.ptp(points, axis=0)
+    figure = new_figure(8, min(8, max(2.4, 1.2 + 7 * size[1] / size[0])) if flat else 6, dpi)
     drawn = (in_plane if flat else in_space)(figure, points, series, values)
     figure.colorbar(drawn, ax=figure.axes[0], shrink=0.8, label=label_of(series, i, name, component))
-    figure.axes[0].set_title(f"t = {series.times[i]:.4g} s", fontsize=10)
-    picture = pathlib.Path(picture or pathlib.Path(series.file.filename).with_name(f"{name}.png"))
-    figure.savefig(picture)
-    plt.close(figure)
-    return picture
+    return saved(figure, f"t = {series.times[i]:.4g} s", picture or pathlib.Path(series.file.filename).with_name(f"{name}.png"))
 
 
 def draw_mode(folder, number, picture=None, dpi=110):
     """Draws a mode of modes.h5 (docs/formats.md) on the surface, its largest displacement a tenth of the size; gives the picture's name."""
     import h5py
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
     file = next((f for f in (pathlib.Path(folder) / "modes.h5", *sorted(pathlib.Path(folder).glob("*/modes.h5"))) if f.exists()), None)
     expect(file, f"{folder}: there is no modes.h5 in it")
     with h5py.File(file) as modes:
@@ -184,18 +182,9 @@ def draw_mode(folder, number, picture=None, dpi=110):
         expect(1 <= number <= len(frequency), f"--mode {number}: there are {len(frequency)}")
         points, ends, corners = (modes[f"surface/{name}"][...] for name in ("vertices", "face-offset", "face-vertex"))
         shape = modes["shape/vertices"][...][:, number - 1].reshape(-1, 3)
-    size, length = np.ptp(points, axis=0).max(), np.linalg.norm(shape, axis=1)
-    moved = points + 0.1 * size / length.max() * shape
-    faces = [corners[a:b].astype(int) for a, b in zip(ends[:-1].astype(int), ends[1:].astype(int))]
-    colours = plt.get_cmap("viridis")(np.array([length[f].mean() for f in faces]) / length.max())
-    figure = plt.figure(figsize=(8, 6), dpi=dpi, constrained_layout=True)
-    axes = figure.add_subplot(projection="3d")
-    axes.add_collection3d(Poly3DCollection([moved[f] for f in faces], facecolors=colours, edgecolors=(0, 0, 0, 0.15), linewidths=0.2))
-    low, high = moved.min(axis=0), moved.max(axis=0)
-    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]), xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
-    axes.set_box_aspect(np.maximum(high - low, 0.05 * size))
-    axes.set_title(f"mode {number}: {frequency[number - 1]:.4g} Hz", fontsize=10)
-    picture = pathlib.Path(picture or file.with_name(f"mode-{number}.png"))
-    figure.savefig(picture)
-    plt.close(figure)
-    return picture
+    length = np.linalg.norm(shape, axis=1)
+    moved = points + 0.1 * np.ptp(points, axis=0).max() / length.max() * shape
+    faces = [(corners[a:b].astype(int), k) for k, (a, b) in enumerate(zip(ends[:-1].astype(int), ends[1:].astype(int)))]
+    figure = new_figure(8, 6, dpi)
+    in_space(figure, moved, None, np.array([length[f].mean() for f, _ in faces]) / length.max(), faces)
+    return saved(figure, f"mode {number}: {frequency[number - 1]:.4g} Hz", picture or file.with_name(f"mode-{number}.png"))

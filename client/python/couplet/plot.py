@@ -2,7 +2,10 @@
 """Pictures of what a run wrote: monitors, lines and planes, residuals; of a case the picture that its section `plot` declares. Columns of one
 unit share a diagram. A line is drawn over the way along it, a plane as a map of each column, residuals over all coupling
 iterations. Prints the name of each picture."""
+import os
 import pathlib
+import shlex
+import subprocess
 import sys
 
 import matplotlib
@@ -11,8 +14,10 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
+from couplet import places
 from couplet.plots.sources import columns_of
-from couplet.runs.case import Wrong, expect
+from couplet.runs.case import Case, Wrong, expect
+from couplet.runs.job import output_of
 
 PLACES = ("along [-]", "up [-]", "x [m]", "y [m]", "z [m]")
 MOST_LINES = 12  # with names of their own
@@ -130,6 +135,30 @@ def draw(file, options):
     print(picture)
 
 
+def of_case(file, options):
+    """The picture of a case: what its section `plot` declares, or what its own plot.py draws. Draws it; gives the exit code, or None where there are only the monitors of its run, which options.files then names."""
+    case = Case(file)
+    out = options.out or output_of(case, ())
+    expect(not options.film or "plot" in case.data, f"--film: {case.file} has no section plot with a map")
+    if options.film:
+        from couplet.plots.film import film
+        folder, file = film(case, out, options.low, options.high)
+        print(f"frames: {folder}", f"film: {file}" if file else "film: none, ffmpeg is not installed", sep="\n")
+        return 0
+    if "plot" in case.data:
+        from couplet.plots.draw import draw
+        print(f"picture: {draw(case, out, options.picture)}")
+        return 0
+    if case.has_picture:
+        expect(options.out is None, f"--out: {case.file.parent / 'plot.py'} looks for the run where the case puts it")
+        paths = [str(places.PACKAGE.parent), *filter(None, [os.environ.get("PYTHONPATH")])]
+        return subprocess.run([sys.executable, case.file.parent / "plot.py", *([options.picture] if options.picture else [])],
+                              env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)}).returncode
+    expect(out.is_dir(), f"{out}: there is no such folder; run the case first: couplet run {shlex.quote(str(file))}")
+    options.files = [out]
+    return None
+
+
 def declare(parser):
     parser.add_argument("files", nargs="+", type=pathlib.Path, metavar="FILE", help="a monitor, a sample-*.csv or residuals.csv, a folder with such files below it, or CASE.yaml or its folder: its section plot (docs/plots.md), else the plot.py beside it, else all files of its run")
     parser.add_argument("--out", type=pathlib.Path, metavar="FOLDER", help="of CASE.yaml: the output folder of the run (the one that the case names)")
@@ -159,7 +188,6 @@ def run(options):
         return 0
     if options.files[0].suffix in (".yaml", ".yml") or (options.files[0] / "case.yaml").is_file():
         expect(len(options.files) == 1, "one case at a time")
-        from couplet.plots.case import of_case
         code = of_case(*options.files, options)
         if code is not None:
             return code

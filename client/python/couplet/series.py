@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads what a participant wrote: field series (HDF5)."""
+"""Reads the fields that a participant wrote (HDF5): in the volume, and on patches (surface-<patch>.h5 of `output.surfaces`)."""
 import pathlib
 
 import h5py
 import numpy as np
-
-from couplet.runs.results import read_csv
 
 WIDTH = {4: 3, 5: 4, 6: 4, 7: 5, 8: 6, 9: 8}  # points of a cell, by XDMF code
 
@@ -51,6 +49,11 @@ class FieldSeries:
         """Points of the undeformed mesh."""
         return self.file["mesh/coordinates"][...]
 
+    def is_flat(self):
+        """Whether the mesh is two-dimensional."""
+        points = self.reference()
+        return points.shape[1] == 2 or np.ptp(points[:, 2]) == 0
+
     def shares_of_points(self):
         """Volumes (2-D: areas) of the cells, dealt out evenly to their points."""
         shares = np.zeros(len(self.reference()))
@@ -66,7 +69,7 @@ class FieldSeries:
     def volumes(self):
         """Areas (2-D) of the cells in the undeformed mesh; in 3-D those of hulls, which for planar faces are the volumes."""
         points = self.reference()
-        if len(points[0]) == 2 or np.ptp(points[:, 2]) == 0:
+        if self.is_flat():
             found = []
             for cell in self.cells:
                 x, y = points[cell, 0], points[cell, 1]
@@ -102,6 +105,81 @@ def find_series(folder, name="*.h5"):
     raise FileNotFoundError(f"no field series in {folder}")
 
 
+class Surface(FieldSeries):
+    """One patch over time. Its cells are faces: two points each in 2-D, three or four in 3-D.
+
+    field(i, name) has one row per face, or per point for fields at points; 2-D vectors are padded to three components."""
+
+    def __init__(self, file):
+        super().__init__(file)
+        form = self.file.attrs.get("format")
+        if form not in (b"couplet surface", "couplet surface"):
+            raise ValueError(f"{file}: is no surface; its format is {form!r}")
+        self.name = pathlib.Path(file).stem.removeprefix("surface-")
+
+    def is_plane(self):
+        """2-D: the faces are edges, per metre of depth."""
+        return len(self.cells[0]) == 2
+
+    def places(self, i=-1):
+        """Centres of the faces [m]: means of their points."""
+        points = self.coordinates(i)
+        return np.array([points[face].mean(axis=0) for face in self.cells])
+
+    def areas(self, i=-1):
+        """Of the faces [m^2]; edges count as length times 1 m. Quadrilaterals: half the cross product of the diagonals (plane faces)."""
+        points = self.coordinates(i)
+        if self.is_plane():
+            return np.array([np.linalg.norm(points[b] - points[a]) for a, b in self.cells])
+        last = [(f[1], f[-1], f[0], f[2]) for f in self.cells]
+        ends = [(points[b] - points[d], points[c] - points[a]) if len(f) == 4 else (points[f[1]] - points[f[0]], points[f[2]] - points[f[0]])
+                for f, (b, d, a, c) in zip(self.cells, last)]
+        return np.array([0.5 * np.linalg.norm(np.cross(u, v)) for u, v in ends])
+
+    def integral(self, name, i=-1):
+        """Sum over the faces of the field times the area: of a traction [Pa] the force [N]; of points the mean over the face."""
+        field = np.asarray(self.field(i, name), float)
+        if self.is_at_points(i, name):
+            field = np.array([field[face].mean(axis=0) for face in self.cells])
+        return np.tensordot(self.areas(i), field, axes=1)
+
+    def chains(self, i=-1):
+        """[(numbers of the edges in order, their points in order)], 2-D: an open part from its end of the lowest number on, a
+        closed one from its point of the largest x on, both with the body to the same side as the edges have it."""
+        points, after = self.coordinates(i), {}
+        for number, (a, b) in enumerate(self.cells):
+            after.setdefault(int(a), []).append((number, int(b)))
+        ends = {int(b) for _, b in self.cells}
+        found = []
+        while after:
+            open_ends = [a for a in after if a not in ends]
+            at = min(open_ends) if open_ends else max(after, key=lambda a: (points[a][0], -a))
+            edges, corners = [], [at]
+            while at in after:
+                number, b = after[at].pop()
+                if not after[at]:
+                    del after[at]
+                edges.append(number)
+                corners.append(b)
+                at = b
+            found.append((np.array(edges), np.array(corners)))
+        return found
+
+
+def surface_names(folder):
+    """Patches with a surface in a participant's folder."""
+    return [file.stem.removeprefix("surface-") for file in sorted(pathlib.Path(folder).glob("surface-*.h5")) if h5py.is_hdf5(file)]
+
+
+def find_surface(folder, patch):
+    """The surface of a patch in a participant's folder."""
+    file = pathlib.Path(folder) / f"surface-{patch.replace('/', '_')}.h5"
+    if not file.exists():
+        there = surface_names(folder)
+        raise FileNotFoundError(f"{folder}: there is no surface '{patch}'; " + (f"there is: {', '.join(there)}" if there else "`output.surfaces` names what is written"))
+    return Surface(file)
+
+
 def extrema(t, y, window=0.15):
     """Local maxima and minima as (time, value, kind), each the top of a parabola through its three nearest samples and
     the largest (smallest) within `window` seconds either side; the end points do not count."""
@@ -116,9 +194,3 @@ def extrema(t, y, window=0.15):
                 if not found or kind != found[-1][2] or t[i] - found[-1][0] > window:
                     found.append((t[i] + shift, sign * (c + b * shift + a * shift * shift), kind))
     return sorted(found)
-
-
-def passes_a_step(folder):
-    """Mean number of passes of the coupling in a step, of a run's output folder."""
-    passes = read_csv(folder / "coupler" / "residuals.csv")
-    return len(passes["step"]) / len(set(passes["step"]))

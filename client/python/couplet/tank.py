@@ -95,7 +95,7 @@ def picture(case_folder, reference_diameter, title):
     """Draws out/<case>.png from out/study and gives its path."""
     study = pathlib.Path(case_folder) / "out" / "study"
     if not (study / "B" / "tank" / "summary.csv").exists():
-        raise SystemExit(f"There is nothing in {study}: run scripts/study {case_folder}/case.yaml first.")
+        raise SystemExit(f"There is nothing in {study}: run couplet study {case_folder}/case.yaml first.")
     figure, axes = plt.subplots(2, 2, figsize=(11, 8), layout="constrained")
     diameters(study, axes[0, 0], reference_diameter)
     stresses(study, axes[0, 1])

@@ -6,8 +6,6 @@
 #include <memory>
 
 #include "common/app/case/case_roles.hpp"
-#include "common/app/case/shared_seat.hpp"
-#include "common/app/case/wall_mass.hpp"
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/fv/expression.hpp"

@@ -7,14 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "common/app/case/check_files.hpp"
 #include "common/app/case/command_line.hpp"
-#include "common/app/case/problem_of_key.hpp"
 #include "common/app/case/roll_call.hpp"
 #include "common/app/loop/simulation.hpp"
 #include "common/config/load.hpp"
 #include "common/effects/card.hpp"
 #include "common/effects/choice.hpp"
-#include "common/effects/expected.hpp"
 
 namespace couplet::app {
 

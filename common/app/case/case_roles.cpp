@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/case/case_roles.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <optional>
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/base/units.hpp"
 #include "common/coupling/roles.hpp"
 
 namespace couplet::app {
@@ -144,6 +148,133 @@ class Cast {
 std::vector<std::string> problems_of_roles(const config::Document& document,
                                            const std::vector<Expected>& expected) {
   return Cast(document, expected).problems();
+}
+
+namespace {
+
+// A side that is wet alone has the whole mass, and where the fluid is heavy less converges better.
+constexpr double most = 3;
+
+/// In SI; none where the key is not there or cannot be read, which is reported elsewhere.
+std::optional<double> number(const config::Document& document, const std::string& key, const char* unit) {
+  const auto text = config::text_of(document, key);
+  if (!text) return {};
+  try {
+    return base::parse_quantity(*text, unit);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+/// Largest density times thickness of the plate and its zones [kg/m^2].
+double mass_of(const config::Document& document, const std::string& plate) {
+  const auto density = number(document, plate + ".material.density", "kg/m^3"),
+             thickness = number(document, plate + ".thickness", "m");
+  double largest = density.value_or(0) * thickness.value_or(0);
+  for (const std::string& zone : config::keys_of(document, plate + ".zones")) {
+    const std::string key = plate + ".zones." + zone;
+    const auto own_density = number(document, key + ".density", "kg/m^3"),
+               own_thickness = number(document, key + ".thickness", "m");
+    largest = std::max(
+        largest, own_density.value_or(density.value_or(0)) * own_thickness.value_or(thickness.value_or(0)));
+  }
+  return largest;
+}
+
+}  // namespace
+
+std::vector<std::string> doubts_of_wall_mass(const config::Document& document) {
+  const auto fluid = config::text_of(document, "coupling.fluid.participant"),
+             structure = config::text_of(document, "coupling.structure.participant");
+  if (!fluid || !structure) return {};
+  const std::string plate = "participants." + *structure;
+  if (config::text_of(document, plate + ".program") != "plate_modal") return {};
+  const double mass = mass_of(document, plate);
+  if (!(mass > 0)) return {};
+  std::vector<std::string> doubts;
+  const std::string walls = "participants." + *fluid + ".boundaries";
+  for (const std::string& patch : config::keys_of(document, walls)) {
+    const std::string key = fmt::format("{}.{}.surface-density", walls, patch);
+    if (const auto given = number(document, key, "kg/m^2"); given && *given > most * mass)
+      doubts.push_back(fmt::format(
+          "{}: {:.6g} kg/m^2, but the plate '{}' has {:.3g} kg/m^2, density times thickness: implausible; "
+          "check the number and its unit.",
+          config::where(document, key), *given, *structure, mass));
+  }
+  return doubts;
+}
+
+namespace {
+
+class Seat {
+ public:
+  Seat(config::Document& document, std::string contact)
+      : document_(document), contact_(std::move(contact)), keys_(config::keys_of(document, contact_)) {}
+
+  std::vector<std::string> problems() {
+    const auto fluid = config::text_of(document_, "coupling.fluid.participant");
+    const std::string gaps = fluid ? "participants." + *fluid + ".gaps" : "";
+    const std::vector<std::string> names =
+        fluid ? config::keys_of(document_, gaps) : std::vector<std::string>();
+    if (has("gap"))
+      take(*config::text_of(document_, contact_ + ".gap"), gaps, names);
+    else
+      look_beside(gaps, names);
+    return problems_;
+  }
+
+ private:
+  bool has(const char* key) const { return std::ranges::find(keys_, key) != keys_.end(); }
+  void say(const std::string& key, const std::string& what) {
+    problems_.push_back(fmt::format("{}: {}.", config::where(document_, contact_ + "." + key), what));
+  }
+
+  void take(const std::string& name, const std::string& gaps, const std::vector<std::string>& names) {
+    if (gaps.empty()) return say("gap", "it names a gap of the fluid, and no fluid is coupled");
+    if (std::ranges::find(names, name) == names.end())
+      return say("gap", "the fluid has no gap '" + name + "'. " + base::did_you_mean(name, names, "gaps"));
+    for (const char* key : {"height", "opening", "direction"})
+      if (has(key))
+        say(key, fmt::format("it is that of the gap '{}', where it stands already; remove it here", name));
+    if (!problems_.empty()) return;
+    const std::string gap = gaps + "." + name;
+    const auto height = config::text_of(document_, gap + ".height"),
+               opening = config::text_of(document_, gap + ".opening");
+    if (!height) return say("gap", fmt::format("the gap '{}' needs the 'height' of its seat", name));
+    set("height", '"' + *height + '"');
+    if (opening) set("opening", *opening);
+    const std::vector<std::string> direction = config::texts_of(document_, gap + ".direction");
+    if (!direction.empty()) set("direction", fmt::format("[{}]", fmt::join(direction, ", ")));
+  }
+
+  /// A gap that states its seat, and a contact beside it that states another.
+  void look_beside(const std::string& gaps, const std::vector<std::string>& names) {
+    for (const std::string& name : names)
+      if (config::text_of(document_, gaps + "." + name + ".height"))
+        return say("height",
+                   fmt::format("the gap '{0}' of the fluid states a seat as well: use 'gap: {0}' in "
+                               "place of 'height' here, or remove its 'height'",
+                               name));
+  }
+
+  void set(const char* key, const std::string& value) {
+    document_.set(fmt::format("{}.{}={}", contact_, key, value));
+  }
+
+  config::Document& document_;
+  const std::string contact_;
+  const std::vector<std::string> keys_;
+  std::vector<std::string> problems_;
+};
+
+}  // namespace
+
+std::vector<std::string> share_seats(config::Document& document) {
+  const auto structure = config::text_of(document, "coupling.structure.participant");
+  if (!structure) return {};
+  const std::string contact = "participants." + *structure + ".contact";
+  if (config::keys_of(document, contact).empty()) return {};
+  return Seat(document, contact).problems();
 }
 
 }  // namespace couplet::app

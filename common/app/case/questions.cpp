@@ -7,7 +7,6 @@
 #include <sstream>
 
 #include "common/app/case/check_files.hpp"
-#include "common/app/case/check_restart.hpp"
 #include "common/base/error.hpp"
 
 namespace couplet::app {

@@ -13,7 +13,6 @@
 #include "common/csv/cells.hpp"
 #include "common/io/cut/cut_mesh.hpp"
 #include "common/io/cut/load_mesh.hpp"
-#include "common/linalg/petsc_environment.hpp"
 #include "common/mesh/distributed/box_block.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
 #include "common/parallel/collective.hpp"
@@ -43,8 +42,9 @@ double peak_memory() {
 void cut(MPI_Comm comm, const Words& words) {
   if (parallel::comm_size(comm) > 1)
     throw Error("A mesh is cut by one process, which reads it as a whole. Start mesh_tool without mpirun.");
-  const mesh::MeshBlock block =
+  mesh::MeshBlock block =
       mesh::block_of(comm, mesh::read_mesh(words.file, words.dimension, words.parameters));
+  mesh::drop_unused_points(comm, block);
   io::write_cut_mesh(comm, block, words.output);
   std::printf("%s: %lld cells, patches %s\n", words.output.c_str(),
               static_cast<long long>(block.cells.size()), base::join(block.patches).c_str());
@@ -60,7 +60,6 @@ void box(MPI_Comm comm, const Words& words) {
 
 /// Opens a mesh as the programs do and tells what it took.
 void open(MPI_Comm comm, const Words& words) {
-  const auto petsc = linalg::petsc_environment(comm);
   const double start = MPI_Wtime(), before = peak_memory();
   const mesh::LoadedMesh loaded = io::load_mesh(comm, words.file, words.dimension, {}, {}, {}, words.solid);
   const double seconds = parallel::max(comm, MPI_Wtime() - start), after = peak_memory();

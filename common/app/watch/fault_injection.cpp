@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/coupling/wait.hpp"
-#include "common/log/life.hpp"
+#include "common/log/progress.hpp"
 
 namespace couplet::app {
 

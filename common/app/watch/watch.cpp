@@ -14,10 +14,8 @@
 #include <mutex>
 
 #include "common/app/watch/watch_board.hpp"
-#include "common/app/watch/watch_listener.hpp"
-#include "common/app/watch/watch_waits.hpp"
 #include "common/base/error.hpp"
-#include "common/log/life.hpp"
+#include "common/log/progress.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::app {

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+/// The page of shared memory by which the processes of a job on one machine watch over each other (see watch.hpp).
+
 #include <unistd.h>
 
 #include <atomic>
 #include <string_view>
+#include <vector>
 
 #include "common/app/watch/watch.hpp"
 
-/// The page of shared memory by which the processes of a job on one machine watch over each other (see watch.hpp).
 namespace couplet::app::watching {
 
 struct Slot {
@@ -86,5 +88,36 @@ double processor_seconds_of(int pid);
 void describe(Line& line, const Slot& slot, std::string_view fate);
 /// The first to come writes the line for all and ends its process, and by that the job.
 [[noreturn]] void end_job_with(const Line& line);
+
+/// From now on this process tells the others of waits that last, each a sign of life, and looks whether all of them
+/// wait: nobody is left then to send what any of them waits for, and the job ends with the names, whatever the hang
+/// timeout. Only where all processes of the job can be seen: a guest, or another machine, may be the one that works.
+void watch_waits();
+
+/// What one process notices of the others' silence, look by look.
+class Listener {
+ public:
+  explicit Listener(double patience);
+  /// Between two looks [s]: a 120th of the patience, 5 s at most.
+  double period() const { return period_; }
+
+  /// Ends the job if a process is silent: it is stopped, or nothing has been heard of it although it is not one that
+  /// waits. The coupler is named only if nobody else can be.
+  void look();
+
+ private:
+  /// Processor time of a process in work that gives no sign, and when it last went on.
+  struct Work {
+    double seconds = 0, since = 0;  // since 0: it does no such work
+  };
+  void hear(int i);
+  bool is_asleep(int i) const;
+  bool is_silent(int i) const;
+  void speak(bool any_asleep, bool any_busy) const;
+
+  double patience_, period_, last_look_, started_;
+  std::vector<double> asleep_since_;  // 0: awake
+  std::vector<Work> work_;
+};
 
 }  // namespace couplet::app::watching

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "common/elasticity/finite/finite_stretch.hpp"
-
 namespace couplet::elastic {
 namespace {
 

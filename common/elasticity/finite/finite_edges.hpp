@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "common/elasticity/finite/discrete_gradient.hpp"
+#include "common/elasticity/finite/finite_strain.hpp"
 #include "common/elasticity/symmetric/shared_edges.hpp"
 
 namespace couplet::elastic {
@@ -29,8 +29,9 @@ class FiniteEdges {
   FiniteEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
               std::span<const double> volume, std::span<const FiniteLaw* const> laws);
 
-  const std::array<Index, 3>& edges_of(std::size_t face) const { return edges_.edges_of(face); }
+  const SharedEdges& edges() const { return edges_; }
   double* at(Index edge) { return value_.data() + std::size_t(edge) * SharedEdges::gradient_stride; }
+  double* values() { return value_.data(); }
   void clear() { std::fill(value_.begin(), value_.end(), 0.0); }
   /// The sums become means over all ranks. Collective.
   void finish_means() { edges_.finish_gradients(value_); }

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "common/elasticity/finite/discrete_gradient.hpp"
 #include "common/elasticity/finite/finite_edges.hpp"
 #include "common/elasticity/finite/finite_sheet.hpp"
 #include "common/elasticity/finite/finite_strain.hpp"
+#include "common/elasticity/symmetric/shared_edges.hpp"
 #include "common/elasticity/symmetric/symmetric_blocks.hpp"
 
 /// Loops of FiniteKernel over faces of one material, four side by side.
@@ -26,7 +26,7 @@ struct FiniteBlock : BlockGeometry<D> {
 /// Faces of one material.
 template <int D>
 struct Group {
-  const FiniteLaw* law;
+  const FiniteLaw* law = nullptr;
   std::vector<FiniteBlock<D>> blocks;
   std::vector<State> states;
   std::vector<Start> start;   ///< of the step; empty: its stress is that of the states
@@ -36,6 +36,51 @@ struct Group {
   double own = 1;             ///< share of their energy that is not the edges'
   std::vector<std::array<std::array<Index, 3>, 4>> edges;  ///< of each block; empty: they share nothing
 };
+
+template <int D>
+std::vector<FiniteBlock<D>> make_finite_blocks(const mesh::Mesh& mesh, const ElasticOperator& rows,
+                                               std::span<const Index> faces) {
+  std::vector<FiniteBlock<D>> blocks((faces.size() + 3) / 4);
+  for (std::size_t i = 0; i < blocks.size() * 4; ++i) {
+    const bool is_filling = i >= faces.size();
+    const Index f = is_filling ? faces.back() : faces[i];
+    const std::size_t k = i % 4;
+    FiniteBlock<D>& block = blocks[i / 4];
+    const SymmetricFace<D> face = symmetric_face<D>(mesh, rows, f);
+    set_geometry<D>(mesh, face, f, k, is_filling, block);
+    const auto [here, there] = pyramids(mesh, rows.geometry(), f);
+    block.inverse[k] = is_filling ? 0 : face.inverse;
+    block.volume[k] = is_filling ? 0 : face.volume;
+    block.weight[k] = is_filling ? 0 : face.volume * face.inverse;
+    block.here[k] = is_filling ? 0 : here / face.volume;
+    block.there[k] = is_filling ? 0 : there / face.volume;
+    block.face[k] = is_filling ? -1 : f;
+  }
+  return blocks;
+}
+
+/// Collects this rank's flux faces with takes(f): those that share with `edges`, or the others if none are given.
+template <int D, class Takes>
+Group<D> make_group(const mesh::Mesh& mesh, const ElasticOperator& rows, const SharedFaces& shared,
+                    const SharedEdges* edges, const Takes& takes) {
+  Group<D> group;
+  const auto end = shared.faces.begin() + std::ptrdiff_t(shared.n_mine);
+  std::vector<Index> faces;
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    if (mesh.owner[f] >= mesh.cells.n_owned() || !takes(f)) continue;
+    if ((D == 3 && mesh.face_points[f].size() == 3) == (edges != nullptr)) faces.push_back(f);
+  }
+  group.blocks = make_finite_blocks<D>(mesh, rows, faces);
+  if (!edges) return group;
+  group.own = 1 - SharedEdges::share;
+  group.edges.resize(group.blocks.size());
+  for (std::size_t i = 0; i < group.edges.size() * 4; ++i) {
+    const Index f = faces[std::min(i, faces.size() - 1)];
+    const auto at = std::lower_bound(shared.faces.begin(), end, f) - shared.faces.begin();
+    group.edges[i / 4][i % 4] = edges->edges_of(std::size_t(at));
+  }
+  return group;
+}
 
 template <int D>
 [[gnu::always_inline]] inline void deformation(const BlockGeometry<D>& block, const double* inverse,
@@ -147,9 +192,9 @@ template <int D, bool HasSecond>
   }
 }
 
-/// t V / 3 (F - I), or its change, to the edges. `nodes` null: from the states.
+/// t V / 3 (F - I), or its change, to the edges, gradient_stride numbers each.
 template <int D>
-void to_edges(const Group<D>& group, const Values<D>& at, bool is_change, FiniteEdges& edges) {
+void to_edges(const Group<D>& group, const Values<D>& at, bool is_change, double* edges) {
   if constexpr (D == 3)
     for (std::size_t i = 0; i < group.edges.size(); ++i) {
       Four df[3][3];
@@ -159,20 +204,23 @@ void to_edges(const Group<D>& group, const Values<D>& at, bool is_change, Finite
         const double part = SharedEdges::share / 3 * group.blocks[i].volume[k];
         for (const Index e : group.edges[i][k])
           for (int a = 0; a < 3; ++a)
-            for (int b = 0; b < 3; ++b) edges.at(e)[a * 3 + b] += part * (df[a][b][k] - (a == b ? one : 0));
+            for (int b = 0; b < 3; ++b)
+              edges[std::size_t(e) * SharedEdges::gradient_stride + a * 3 + b] +=
+                  part * (df[a][b][k] - (a == b ? one : 0));
       }
     }
 }
 
 /// What the edges' stress does to the nodes.
 template <int D>
-void from_edges(const Group<D>& group, const Values<D>& at, FiniteEdges& edges) {
+void from_edges(const Group<D>& group, const Values<D>& at, const double* edges) {
   for (std::size_t i = 0; i < group.edges.size(); ++i) {
     Four p[3][3] = {};
     for (int k = 0; k < 4; ++k)
       for (const Index e : group.edges[i][k])
         for (int a = 0; a < 3; ++a)
-          for (int b = 0; b < 3; ++b) p[a][b][k] += edges.at(e)[a * 3 + b];
+          for (int b = 0; b < 3; ++b)
+            p[a][b][k] += edges[std::size_t(e) * SharedEdges::gradient_stride + a * 3 + b];
     push_stress<D>(group.blocks[i], p, SharedEdges::share / 3, at.forces, at.point_forces);
   }
 }

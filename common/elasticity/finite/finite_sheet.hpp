@@ -4,7 +4,6 @@
 #include <span>
 
 #include "common/elasticity/finite/finite_strain.hpp"
-#include "common/elasticity/finite/finite_stretch.hpp"
 
 /// Plane stress: the stretch l = F_33 across the sheet is the one that leaves P_33 = dW/dl = 0, found at each place by itself.
 /// In-plane forces are then those of W(F, l(F)), P of the whole F, and their derivative is condensed:

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "common/elasticity/elasticity.hpp"
-#include "common/linalg/multigrid/component_multigrid.hpp"
+#include "common/linalg/component_multigrid.hpp"
 
 namespace couplet::elastic {
 

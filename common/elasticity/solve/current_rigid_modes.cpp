@@ -7,7 +7,7 @@
 
 #include "common/elasticity/elastic_nodes.hpp"
 #include "common/elasticity/solve/rigid_coarse_space.hpp"
-#include "common/elasticity/symmetric/face_stencil.hpp"
+#include "common/elasticity/symmetric/face_terms.hpp"
 #include "common/fv/nodes.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -39,7 +39,9 @@ CurrentRigidModes::CurrentRigidModes(const mesh::Mesh& mesh, const ElasticOperat
       rows_(rows),
       modes_(mesh.dim == 2 ? 3 : 6),
       inertia_(std::move(node_inertia)),
-      number_(fv::number_nodes(mesh, rows.unknown_faces())) {
+      number_{fv::number_nodes(mesh, rows.unknown_faces()), {}} {
+  for (Index i = 0; i < n_node_places(mesh); ++i)
+    if (number_.node[i] >= 0) number_.node[i] = i;
   const mesh::Geometry& geometry = rows.geometry();
   const double share = double(mesh.cells.n_owned()) / double(mesh.cells.n_global());
   const int n_here = std::max(1, int(share * n_aggregates + 0.5));
@@ -95,9 +97,8 @@ void CurrentRigidModes::find_arms(const DeformedBody& body) {
 }
 
 /// V dE_m : C : dE_n between the modes of the aggregates that a face knows.
-template <int D>
 void CurrentRigidModes::add_faces(const DeformedBody& body, std::vector<double>& matrix) const {
-  FaceStencil stencil(mesh_, rows_, number_);
+  FaceTerms terms_of(mesh_, rows_, number_);
   const std::size_t n = centre_.size() * std::size_t(modes_);
   struct Part {
     Index aggregate;
@@ -106,20 +107,21 @@ void CurrentRigidModes::add_faces(const DeformedBody& body, std::vector<double>&
   std::vector<Part> parts;
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
     if (mesh_.owner[f] >= mesh_.cells.n_owned()) continue;
-    const SymmetricFace<D> face = symmetric_face<D>(mesh_, rows_, f);
-    const auto& terms = stencil.of<D>(face, f);
-    const Index first = aggregate_of(terms.front().node);
-    const auto same = [&](const FaceStencil::Term& t) { return aggregate_of(t.node) == first; };
+    const FaceRows face = symmetric_rows(mesh_, rows_, f);
+    const FaceTermList& terms = terms_of.of_face(face);
+    const Index first = aggregate_of(Index(terms.front().block));
+    const auto same = [&](const FaceTerm& t) { return aggregate_of(Index(t.block)) == first; };
     if (std::ranges::all_of(terms, same)) continue;
     parts.clear();
-    for (const FaceStencil::Term& t : terms) {
-      const Index a = aggregate_of(t.node);
+    for (const FaceTerm& t : terms) {
+      const auto node = Index(t.block);
+      const Index a = aggregate_of(node);
       auto part = std::ranges::find(parts, a, &Part::aggregate);
       if (part == parts.end()) part = parts.insert(parts.end(), {a, Block::Zero()});
-      const Vec3 arm = place(t.node, body) - centre_[a];
+      const Vec3 arm = place(node, body) - centre_[a];
       const Tensor3 pull = body.gradient[f].transpose() * t.turn;
       for (int m = 0; m < modes_; ++m) {
-        const Tensor3 e = pull * mode(m, D, arm) * t.b.transpose();
+        const Tensor3 e = pull * mode(m, mesh_.dim, arm) * t.b.transpose();
         const double root = std::sqrt(0.5);
         Eigen::Matrix<double, 6, 1> v;
         v << e(0, 0), e(1, 1), e(2, 2), root * (e(0, 1) + e(1, 0)), root * (e(1, 2) + e(2, 1)),
@@ -142,9 +144,8 @@ void CurrentRigidModes::add_faces(const DeformedBody& body, std::vector<double>&
 }
 
 /// S k of the springs on the mean motions of their faces, which they resist even where an aggregate carries out all of it.
-template <int D>
 void CurrentRigidModes::add_springs(const DeformedBody& body, std::vector<double>& matrix) const {
-  FaceStencil stencil(mesh_, rows_, number_);
+  FaceTerms terms_of(mesh_, rows_, number_);
   const std::size_t n = centre_.size() * std::size_t(modes_);
   for (const Index f : rows_.known_faces()) {
     const BoundaryRow& s = rows_.at(f);
@@ -152,11 +153,12 @@ void CurrentRigidModes::add_springs(const DeformedBody& body, std::vector<double
     const Tensor3 open = Tensor3::Identity() - s.known;
     const Tensor3 spring = geometry_.face_area[f].norm() * open * s.spring * open;
     std::map<Index, Eigen::Matrix<double, 3, 6>> motion;  // of the face by the modes of each aggregate
-    for (const FaceStencil::Term& t : stencil.of_mean<D>(f)) {
-      const Index a = aggregate_of(t.node);
+    for (const FaceTerm& t : terms_of.of_mean(f)) {
+      const auto node = Index(t.block);
+      const Index a = aggregate_of(node);
       auto& moves = motion.try_emplace(a, Eigen::Matrix<double, 3, 6>::Zero()).first->second;
       for (int m = 0; m < modes_; ++m)
-        moves.col(m) += t.b[0] * (t.turn * mode(m, D, place(t.node, body) - centre_[a]));
+        moves.col(m) += t.b[0] * (t.turn * mode(m, mesh_.dim, place(node, body) - centre_[a]));
     }
     for (const auto& [i, of_i] : motion)
       for (const auto& [j, of_j] : motion) {
@@ -191,10 +193,8 @@ void CurrentRigidModes::update(const DeformedBody& body) {
   find_arms(body);
   const Index n = static_cast<Index>(centre_.size()) * modes_;
   std::vector<double> matrix(std::size_t(n) * n, 0);
-  if (mesh_.dim == 2)
-    add_faces<2>(body, matrix), add_springs<2>(body, matrix);
-  else
-    add_faces<3>(body, matrix), add_springs<3>(body, matrix);
+  add_faces(body, matrix);
+  add_springs(body, matrix);
   add_inertia(matrix);
   sum_over_ranks(mesh_.comm, matrix);
   double largest = 0;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/elasticity/elasticity.hpp"
+#include "common/elasticity/symmetric/face_terms.hpp"
 #include "common/mesh/mesh.hpp"
 
 namespace couplet::elastic {
@@ -39,9 +40,7 @@ class CurrentRigidModes {
   Index aggregate_of(Index node) const;
   Vec3 place(Index node, const DeformedBody& body) const;
   Index unknown_node(std::size_t i) const;
-  template <int D>
   void add_faces(const DeformedBody& body, std::vector<double>& matrix) const;
-  template <int D>
   void add_springs(const DeformedBody& body, std::vector<double>& matrix) const;
   void add_inertia(std::vector<double>& matrix) const;
   Vec3 free_part(std::size_t i, const Vec3& v) const;
@@ -52,7 +51,7 @@ class CurrentRigidModes {
   const ElasticOperator& rows_;
   int modes_;
   std::vector<double> inertia_;
-  std::vector<GlobalIndex> number_;
+  Numbering number_;              // nodes by themselves; negative: known
   std::vector<Index> aggregate_;  // of each local cell, over all ranks
   std::vector<Vec3> centre_;      // of all aggregates, present places
   std::vector<Vec3> arm_;         // of the unknown nodes from their centres

@@ -135,10 +135,10 @@ void ElasticPreconditioner::add_true_diagonal(std::span<const double> node_inert
   }
 }
 
-void ElasticPreconditioner::smooth(std::span<const double> r, std::span<double> z) {
+/// u_B of the boundary faces from their own rows and the cells' part of z.
+void ElasticPreconditioner::solve_faces(std::span<const double> r, std::span<double> z) const {
   const int dim = mesh_->dim;
   const std::size_t n_cells = std::size_t(mesh_->cells.n_owned()) * dim;
-  cycle_(r.first(n_cells), z.first(n_cells), dim);
   for (std::size_t i = 0; i < face_rows_.size(); ++i) {
     const FaceRow& row = face_rows_[i];
     const double* own = r.data() + n_cells + i * dim;
@@ -151,6 +151,12 @@ void ElasticPreconditioner::smooth(std::span<const double> r, std::span<double> 
       z[n_cells + i * dim + a] = u;
     }
   }
+}
+
+void ElasticPreconditioner::smooth(std::span<const double> r, std::span<double> z) {
+  const std::size_t n_cells = std::size_t(mesh_->cells.n_owned()) * mesh_->dim;
+  cycle_(r.first(n_cells), z.first(n_cells), mesh_->dim);
+  solve_faces(r, z);
 }
 
 /// [1, C^T] before the cycle and [1; C] after it, and the diagonal of K added.
@@ -168,18 +174,7 @@ void ElasticPreconditioner::smooth_symmetric(std::span<const double> r, std::spa
       }
   }
   cycle_(gathered_, z.first(n_cells), dim);
-  for (std::size_t i = 0; i < face_rows_.size(); ++i) {
-    const FaceRow& row = face_rows_[i];
-    const double* own = r.data() + n_cells + i * dim;
-    const double* cell = z.data() + std::size_t(row.owner) * dim;
-    for (int a = 0; a < dim; ++a) {
-      double u = 0;
-      for (int b = 0; b < dim; ++b) u += row.inverse(a, b) * own[b] + row.cell(a, b) * cell[b];
-      if (row.twin_owner >= 0)
-        for (int b = 0; b < dim; ++b) u += row.other(a, b) * z[std::size_t(row.twin_owner) * dim + b];
-      z[n_cells + i * dim + a] = u;
-    }
-  }
+  solve_faces(r, z);
   for (std::size_t i = 0; i < n_cells; ++i) z[i] += inverse_diagonal_[i] * r[i];
 }
 

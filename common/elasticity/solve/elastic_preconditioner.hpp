@@ -8,7 +8,7 @@
 
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/elasticity/solve/rigid_coarse_space.hpp"
-#include "common/linalg/multigrid/component_multigrid.hpp"
+#include "common/linalg/component_multigrid.hpp"
 
 namespace couplet::elastic {
 
@@ -52,6 +52,7 @@ class ElasticPreconditioner {
   };
   void find_face_rows(double boundary_factor, std::span<const double> node_inertia);
   void add_true_diagonal(std::span<const double> node_inertia);
+  void solve_faces(std::span<const double> r, std::span<double> z) const;
   void smooth(std::span<const double> r, std::span<double> z);
   void smooth_symmetric(std::span<const double> r, std::span<double> z);
 

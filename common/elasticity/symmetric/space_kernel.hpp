@@ -54,8 +54,12 @@ class SpaceKernel : public ElasticKernel::Implementation {
  protected:
   /// Adds those of the stress to the forces of the space, of its displacement.
   virtual void internal_forces() = 0;
-  /// Adds those of a pressure [Pa] on the flux faces.
-  virtual void spread_pressure(std::span<const double> pressure) = 0;
+  /// A pressure [Pa] on the flux faces as three-cornered ones share it with their edges.
+  virtual std::vector<double> shared_pressure(std::span<const double> pressure) {
+    return {pressure.begin(), pressure.end()};
+  }
+  /// Adds the forces of a pressure on the flux faces.
+  void spread_pressure(std::span<const double> pressure);
 
   SymmetricSpace<D> space_;
 };

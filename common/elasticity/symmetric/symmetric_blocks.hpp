@@ -98,11 +98,11 @@ template <int D>
   }
 }
 
-/// H = (u_Q - u_P) S^T + sum_i (u_plus - u_minus) c_i^T, entry (k, j) of the displacement's component k.
+/// u_Q - u_P, then u_plus - u_minus, by components.
 template <int D>
-[[gnu::always_inline]] inline void stretch(const BlockGeometry<D>& block, const double* nodes,
-                                           const double* points, lanes::Lane<3> (&h)[D][D]) {
-  lanes::Lane<3> u[D][D], other[D];
+[[gnu::always_inline]] inline void differences(const BlockGeometry<D>& block, const double* nodes,
+                                               const double* points, lanes::Lane<3> (&u)[D][D]) {
+  lanes::Lane<3> other[D];
   gather<D>(nodes, block.to, u[0]);
   gather<D>(nodes, block.from, other);
   for (int a = 0; a < D; ++a) u[0][a] -= other[a];
@@ -111,11 +111,29 @@ template <int D>
     gather<D>(points, block.minus[i], other);
     for (int a = 0; a < D; ++a) u[i + 1][a] -= other[a];
   }
+}
+
+/// H = (u_Q - u_P) S^T + sum_i (u_plus - u_minus) c_i^T, entry (k, j) of the displacement's component k.
+template <int D>
+[[gnu::always_inline]] inline void stretch(const BlockGeometry<D>& block, const double* nodes,
+                                           const double* points, lanes::Lane<3> (&h)[D][D]) {
+  lanes::Lane<3> u[D][D];
+  differences<D>(block, nodes, points, u);
   for (int a = 0; a < D; ++a)
     for (int b = 0; b < D; ++b) {
       h[a][b] = u[0][a] * wide(block.vector[0][b]);
       for (int k = 1; k < D; ++k) h[a][b] += u[k][a] * wide(block.vector[k][b]);
     }
+}
+
+/// The forces that belong to difference k of differences().
+template <int D>
+[[gnu::always_inline]] inline void pull(const BlockGeometry<D>& block, int k,
+                                        const lanes::Lane<3> (&force)[D], double* nodes, double* points) {
+  if (k == 0)
+    scatter<D>(nodes, block.to, block.from, force);
+  else
+    scatter<D>(points, block.plus[k - 1], block.minus[k - 1], force);
 }
 
 /// The forces of a stress (times V / (S . d)) on nodes and points: dE/du.
@@ -128,10 +146,7 @@ template <int D>
       force[a] = stress[a][0] * wide(block.vector[k][0]);
       for (int b = 1; b < D; ++b) force[a] += stress[a][b] * wide(block.vector[k][b]);
     }
-    if (k == 0)
-      scatter<D>(nodes, block.to, block.from, force);
-    else
-      scatter<D>(points, block.plus[k - 1], block.minus[k - 1], force);
+    pull<D>(block, k, force, nodes, points);
   }
 }
 

@@ -16,11 +16,10 @@ class Sum {
       : mesh_(mesh),
         rows_(rows),
         without_(without),
-        gradient_(std::size_t(mesh.cells.n_local() + mesh.boundary.n_local()), Vec3::Zero()),
+        gradient_(std::size_t(n_node_places(mesh)), Vec3::Zero()),
         cells_(std::size_t(mesh.cells.n_local()) * diagonal_size, 0),
         boundary_(std::size_t(mesh.boundary.n_local()) * block_size, 0) {}
 
-  template <int D>
   void add_face(Index f);
   SymmetricDiagonal finish();
 
@@ -36,11 +35,6 @@ class Sum {
     for (std::size_t i = 0; i < nodes.size(); ++i) add(nodes[i], weights[i] * c);
   }
   void add_squares(double volume, const LameConstants& lame);
-  /// Of a cell whose mirror image moves as it does but for the way across the plane: G = -2 n (n . u) s^T.
-  void add_image(Index cell, const Vec3& s, double volume, const LameConstants& lame) {
-    for (int a = 0; a < 3; ++a)
-      cells_[std::size_t(cell) * diagonal_size + a] += 4 * volume * (lame.lambda + 2 * lame.mu) * s[a] * s[a];
-  }
 
   const mesh::Mesh& mesh_;
   const ElasticOperator& rows_;
@@ -50,26 +44,22 @@ class Sum {
   std::vector<double> cells_, boundary_;
 };
 
-template <int D>
 void Sum::add_face(Index f) {
-  const SymmetricFace<D> face = symmetric_face<D>(mesh_, rows_, f);
-  const auto scaled = [&](const std::array<double, D>& from, double factor) {
-    Vec3 b = Vec3::Zero();
-    for (int a = 0; a < D; ++a) b[a] = factor * from[a] * face.inverse;
-    return b;
-  };
-  const Index cell = mesh_.owner[f];
+  const FaceRows face = symmetric_rows(mesh_, rows_, f);
+  const Index first_point = n_node_places(mesh_);
   const bool mirrored = rows_.mirrored(f);
-  if (!mirrored) add(cell, scaled(face.area, -1));
-  if (f < mesh_.n_interior)
-    add(mesh_.neighbour[f], scaled(face.area, 1));
-  else if (mirrored)
-    add_image(cell, scaled(face.area, 1), face.volume, part_of_faces(rows_.lame(cell), without_));
-  else
-    add(mesh_.cells.n_local() + f - mesh_.n_interior, scaled(face.area, 1));
-  for (int i = 0; i < D - 1; ++i) {
-    add_vertex(face.plus[i], scaled(face.across[i], 1));
-    add_vertex(face.minus[i], scaled(face.across[i], -1));
+  for (const FaceRows::Row& row : face.all())
+    if (row.place >= first_point)
+      add_vertex(row.place - first_point, row.b);
+    else if (!mirrored)
+      add(row.place, row.b);
+  if (mirrored) {
+    // The mirror image moves as the cell does but for the way across the plane: G = -2 n (n . u) s^T.
+    const LameConstants lame = part_of_faces(rows_.lame(mesh_.owner[f]), without_);
+    const Vec3& s = face.row[1].b;
+    for (int a = 0; a < 3; ++a)
+      cells_[std::size_t(mesh_.owner[f]) * diagonal_size + a] +=
+          4 * face.volume * (lame.lambda + 2 * lame.mu) * s[a] * s[a];
   }
   add_squares(face.volume, part_of_faces(face_lame(mesh_, rows_, f), without_));
 }
@@ -117,13 +107,8 @@ SymmetricDiagonal Sum::finish() {
 SymmetricDiagonal symmetric_diagonal(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                      VolumeStrain without) {
   Sum sum(mesh, rows, without);
-  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
-    if (mesh.owner[f] >= mesh.cells.n_owned()) continue;  // its owner's rank adds it
-    if (mesh.dim == 2)
-      sum.add_face<2>(f);
-    else
-      sum.add_face<3>(f);
-  }
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f)
+    if (mesh.owner[f] < mesh.cells.n_owned()) sum.add_face(f);  // another one's rank adds it
   return sum.finish();
 }
 

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
 
 namespace couplet::elastic {
 namespace {
@@ -55,6 +56,92 @@ SymmetricFace<D> symmetric_face(const mesh::Mesh& mesh, const ElasticOperator& r
 
 template SymmetricFace<2> symmetric_face<2>(const mesh::Mesh&, const ElasticOperator&, Index);
 template SymmetricFace<3> symmetric_face<3>(const mesh::Mesh&, const ElasticOperator&, Index);
+
+namespace {
+
+Index node_across(const mesh::Mesh& mesh, Index f) {
+  return f < mesh.n_interior ? mesh.neighbour[f] : mesh.cells.n_local() + f - mesh.n_interior;
+}
+
+template <int D>
+FaceRows rows_of(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f) {
+  const SymmetricFace<D> face = symmetric_face<D>(mesh, rows, f);
+  FaceRows result{.row = {}, .n = 2 * D, .volume = face.volume};
+  const auto set = [&](int i, Index place, const std::array<double, D>& from, double sign) {
+    result.row[i] = {place, Vec3::Zero()};
+    for (int a = 0; a < D; ++a) result.row[i].b[a] = sign * from[a] * face.inverse;
+  };
+  const Index first_point = n_node_places(mesh);
+  set(0, mesh.owner[f], face.area, -1);
+  set(1, node_across(mesh, f), face.area, 1);
+  for (int i = 0; i < D - 1; ++i) {
+    set(2 + 2 * i, first_point + face.plus[i], face.across[i], 1);
+    set(3 + 2 * i, first_point + face.minus[i], face.across[i], -1);
+  }
+  return result;
+}
+
+double cross(const Vec3& a, const Vec3& b) { return a[0] * b[1] - a[1] * b[0]; }
+
+/// Twice the signed area.
+double twice_area(const Vec3& a, const Vec3& b, const Vec3& c) { return cross(b - a, c - a); }
+
+}  // namespace
+
+FaceRows symmetric_rows(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f) {
+  return mesh.dim == 2 ? rows_of<2>(mesh, rows, f) : rows_of<3>(mesh, rows, f);
+}
+
+double circumference(double radius) { return 2 * std::numbers::pi * radius; }
+
+FaceRows ring_rows(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f) {
+  const mesh::Geometry& geometry = rows.geometry();
+  const auto points = mesh.face_points[f];
+  const Index first_point = n_node_places(mesh);
+  const bool has_shear = !rows.mirrored(f);
+  // Around the quadrilateral: owner, first point, node across, second point, as places of the arrays.
+  const std::array<std::size_t, 4> around{0, 2, 1, 3};
+  std::array<Vec3, 4> x, b;
+  x[0] = geometry.cell_centre[mesh.owner[f]];
+  x[1] = f < mesh.n_interior ? Vec3(geometry.cell_centre[mesh.neighbour[f]] + mesh.shift(f))
+                             : geometry.face_centre[f];
+  x[2] = geometry.points[points[0]], x[3] = geometry.points[points[1]];
+  const double here = twice_area(x[0], x[2], x[1]), there = twice_area(x[0], x[1], x[3]),
+               whole = here + there, turn = whole > 0 ? 1 : -1;
+  const double area = 0.5 * std::abs(whole);
+  std::array<double, 4> mean{};  // weights of the value at the centroid
+  if (has_shear)
+    mean = {1. / 3, 1. / 3, here / (3 * whole), there / (3 * whole)};
+  else
+    mean = {1. / 3, 0, 1. / 3, 1. / 3};
+  double radius = 0;
+  for (std::size_t i = 0; i < 4; ++i) radius += mean[i] * x[i][0];
+  const double scale = 1 / (radius * area);
+  b.fill(Vec3::Zero());
+  const auto add_side = [&](std::size_t i, std::size_t j) {
+    const Vec3 side = turn * (x[j] - x[i]);
+    const double n[2] = {side[1], -side[0]};
+    for (Index a = 0; a < 2; ++a) {
+      b[i][a] += scale * n[a] * (2 * x[i][0] + x[j][0]) / 6;
+      b[j][a] += scale * n[a] * (x[i][0] + 2 * x[j][0]) / 6;
+    }
+  };
+  if (has_shear) {
+    for (std::size_t k = 0; k < 4; ++k) add_side(around[k], around[(k + 1) % 4]);
+  } else {
+    add_side(0, 2), add_side(2, 3), add_side(3, 0);
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    b[i][2] = mean[i] / radius;
+    b[i][0] -= b[i][2];
+  }
+  const std::array<Index, 4> place{mesh.owner[f], node_across(mesh, f), first_point + points[0],
+                                   first_point + points[1]};
+  FaceRows face{
+      .row = {}, .n = 4, .volume = circumference(radius) * area, .is_ring = true, .has_shear = has_shear};
+  for (std::size_t i = 0; i < 4; ++i) face.row[i] = {place[i], b[i]};
+  return face;
+}
 
 std::array<double, 4> point_shares(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f) {
   std::array<double, 4> shares{};

@@ -31,6 +31,42 @@ struct SymmetricFace {
 template <int D>
 SymmetricFace<D> symmetric_face(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f);
 
+/// The rows of a face: its gradient as a sum over nodes and points, G = sum_i u_i b_i^T.
+struct FaceRows {
+  struct Row {
+    Index place;  ///< local node (cells, then boundary faces), or n_node_places() + local point
+    Vec3 b;       ///< [1/m]; for a ring d/dr, d/dz, and the factor from radial displacement to hoop strain
+  };
+  std::array<Row, 6> row;  ///< the owner, the node across, then the points
+  int n;
+  double volume;          ///< weight of the face in the energy [m^3]; 2 pi r_m A for a ring
+  bool is_ring = false;   ///< of a body of revolution
+  bool has_shear = true;  ///< false at a symmetry plane or the axis of a ring: only the diagonal of G counts
+  std::span<const Row> all() const { return {row.data(), std::size_t(n)}; }
+};
+
+/// Number of local nodes: the place of point v is n_node_places() + v.
+inline Index n_node_places(const mesh::Mesh& mesh) { return mesh.cells.n_local() + mesh.boundary.n_local(); }
+
+/// Rows of a two- or three-dimensional face.
+FaceRows symmetric_rows(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f);
+
+/// Rows of a face of a body of revolution, x being the radius r and y the axis. Over the quadrilateral of the two nodes P, Q
+/// beside the face and its vertices, with values that are linear along its sides, Gauss's theorem says
+///   integral of r du/dz = sum of sides (int r u n_z),   integral of (r du/dr + u) = sum of sides (int r u n_r),
+/// and with u_m, the value at the centroid r_m of the quadrilateral, of area A,
+///   d u/dz = sum (int r u n_z) / (r_m A),   h = u_r / r = u_m / r_m,   du/dr + u_m / r_m = sum (int r u n_r) / (r_m A).
+/// Exact for linear fields; a constant stress with equal radial and hoop parts leaves no force inside, on any cells. At a
+/// plane of symmetry and at the axis the triangle of the cell with the vertices counts, where shear across is zero.
+FaceRows ring_rows(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f);
+
+inline FaceRows face_rows(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f) {
+  return is_axisymmetric(rows) ? ring_rows(mesh, rows, f) : symmetric_rows(mesh, rows, f);
+}
+
+/// 2 pi r [m]. Quantities of a two-dimensional scene are per unit depth; this factor makes them those of the whole ring.
+double circumference(double radius);
+
 /// Shares with which the points around a face, in their order, take what acts on it evenly: they add up to 1
 /// and their mean place is the face centre. By the triangles between the centre and the edges.
 std::array<double, 4> point_shares(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f);

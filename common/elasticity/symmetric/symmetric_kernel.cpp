@@ -6,58 +6,117 @@
 
 namespace couplet::elastic {
 
-// V / (S . d) sigma of four faces, and what it does to their nodes and points.
 template <int D>
-inline void SymmetricKernel<D>::faces_loop() {
-  const double *nodes = space_.nodes(), *points = space_.points();
-  double *force = space_.forces(), *point_force = space_.point_forces();
-  for (const FaceBlock<D>& block : blocks_) {
-    V h[D][D], stress[D][D];
-    blocks::stretch<D>(block, nodes, points, h);
-    if (elastic_.empty())
-      blocks::hooke<D>(block, h, stress);
-    else
-      blocks::elastic<D>(elastic_[std::size_t(&block - blocks_.data())], h, stress);
-    if (!volumes_.empty()) {
-      const V pressure = pressure_on(block, volumes_[std::size_t(&block - blocks_.data())]);
-      for (int a = 0; a < D; ++a) stress[a][a] += pressure;
-    }
-    blocks::push<D>(block, stress, force, point_force);
+SymmetricKernel<D>::SymmetricKernel(const mesh::Mesh& mesh, const ElasticOperator& rows)
+    : SpaceKernel<D>(mesh, rows), mesh_(mesh), geometry_(rows.geometry()), rows_(rows) {
+  const SharedFaces shared = shared_faces(mesh, rows);
+  std::vector<Index> others;
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f)
+    if (mesh.owner[f] < mesh.cells.n_owned() && (D == 2 || mesh.face_points[f].size() != 3))
+      others.push_back(f);
+  plain_ = make_group(std::move(others));
+  sharing_ = make_group({shared.faces.begin(), shared.faces.begin() + std::ptrdiff_t(shared.n_mine)});
+  if (parallel::any(mesh.comm, shared.n_mine > 0)) make_edges(shared);
+  if (!rows.volume_by_cells()) return;
+  pressure_.assign(space_.n_nodes(), 0);
+  const std::vector<double> volume = pyramid_volumes(mesh, geometry_);
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    bulk_.push_back(bulk_of_cells(rows.lame(c), rows.volume_strain()) / volume[c]);
+}
+
+template <int D>
+typename SymmetricKernel<D>::Group SymmetricKernel<D>::make_group(std::vector<Index> faces) const {
+  Group group{std::move(faces), {}, {}, {}};
+  if (!group.faces.empty()) group.blocks = make_blocks<D>(mesh_, rows_, group.faces);
+  group.elastic = make_elastic_blocks<D>(mesh_, rows_, group.faces);
+  if (!rows_.volume_by_cells()) return group;
+  group.volumes.resize(group.blocks.size());
+  for (std::size_t i = 0; i < group.volumes.size() * 4; ++i) {
+    VolumeBlock& block = group.volumes[i / 4];
+    block.from[i % 4] = block.to[i % 4] = 0;
+    if (i >= group.faces.size()) continue;
+    const auto [here, there] = pyramids(mesh_, geometry_, group.faces[i]);
+    const double inverse = symmetric_face<D>(mesh_, rows_, group.faces[i]).inverse;
+    block.from[i % 4] = here * inverse;
+    block.to[i % 4] = there * inverse;
+  }
+  return group;
+}
+
+template <int D>
+void SymmetricKernel<D>::make_edges(const SharedFaces& shared) {
+  edges_ = std::make_unique<SharedEdges>(mesh_, rows_, shared.faces, shared.volume);
+  shared_index_.assign(mesh_.n_flux_faces(), -1);
+  for (std::size_t i = 0; i < shared.faces.size(); ++i) shared_index_[shared.faces[i]] = Index(i);
+  shared_.resize(sharing_.blocks.size());
+  for (std::size_t i = 0; i < shared_.size() * 4; ++i) {
+    SharedBlock& block = shared_[i / 4];
+    const bool is_filling = i >= shared.n_mine;
+    block.edges[i % 4] = edges_->edges_of(is_filling ? 0 : i);
+    block.inverse[i % 4] = block.part[i % 4] = block.weight[i % 4] = 0;
+    if (is_filling) continue;
+    const SymmetricFace<D> face = symmetric_face<D>(mesh_, rows_, shared.faces[i]);
+    block.inverse[i % 4] = face.inverse;
+    block.part[i % 4] = SharedEdges::share * face.volume / 3;
+    block.weight[i % 4] = SharedEdges::share * face.volume * face.inverse / 3;
   }
 }
 
-/// (V_fP p_P + V_fQ p_Q) / (S . d), p being the mean stress of the cells.
+/// V / (S . d) sigma of a block of the group without the pressure of cells.
 template <int D>
-inline typename SymmetricKernel<D>::V SymmetricKernel<D>::pressure_on(const FaceBlock<D>& block,
-                                                                      const VolumeBlock& volume) const {
+inline void SymmetricKernel<D>::stress_of(const Group& group, const FaceBlock<D>& block, const V (&h)[D][D],
+                                          V (&stress)[D][D]) const {
+  if (group.elastic.empty())
+    blocks::hooke<D>(block, h, stress);
+  else
+    blocks::elastic<D>(group.elastic[std::size_t(&block - group.blocks.data())], h, stress);
+}
+
+/// Adds (V_fP p_P + V_fQ p_Q) / (S . d), p being the mean stress of the cells.
+template <int D>
+inline void SymmetricKernel<D>::add_pressure_of_cells(const Group& group, const FaceBlock<D>& block,
+                                                      V (&stress)[D][D]) const {
+  if (group.volumes.empty()) return;
+  const VolumeBlock& volume = group.volumes[std::size_t(&block - group.blocks.data())];
   double here[4], there[4];
   for (int k = 0; k < 4; ++k) {
     here[k] = pressure_[std::size_t(block.from[k])];
     there[k] = pressure_[std::size_t(block.to[k])];
   }
-  return blocks::wide(volume.from) * blocks::wide(here) + blocks::wide(volume.to) * blocks::wide(there);
+  const V pressure =
+      blocks::wide(volume.from) * blocks::wide(here) + blocks::wide(volume.to) * blocks::wide(there);
+  for (int a = 0; a < D; ++a) stress[a][a] += pressure;
+}
+
+// V / (S . d) sigma of four faces, and what it does to their nodes and points.
+template <int D>
+inline void SymmetricKernel<D>::faces_loop() {
+  const double *nodes = space_.nodes(), *points = space_.points();
+  double *force = space_.forces(), *point_force = space_.point_forces();
+  for (const FaceBlock<D>& block : plain_.blocks) {
+    V h[D][D], stress[D][D];
+    blocks::stretch<D>(block, nodes, points, h);
+    stress_of(plain_, block, h, stress);
+    add_pressure_of_cells(plain_, block, stress);
+    blocks::push<D>(block, stress, force, point_force);
+  }
 }
 
 /// V_fP tr e_f to the cells.
 template <int D>
-inline void SymmetricKernel<D>::add_volumes(const std::vector<FaceBlock<D>>& blocks,
-                                            const std::vector<VolumeBlock>& volumes) {
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    V h[D][D];
-    blocks::stretch<D>(blocks[i], space_.nodes(), space_.points(), h);
-    V trace = h[0][0];
-    for (int a = 1; a < D; ++a) trace += h[a][a];
-    for (int k = 0; k < 4; ++k) {
-      pressure_[std::size_t(blocks[i].from[k])] += volumes[i].from[k] * trace[k];
-      pressure_[std::size_t(blocks[i].to[k])] += volumes[i].to[k] * trace[k];
-    }
-  }
-}
-
-template <int D>
 inline void SymmetricKernel<D>::volumes_loop() {
-  add_volumes(blocks_, volumes_);
-  add_volumes(shared_blocks_, shared_volumes_);
+  for (const Group* group : {&plain_, &sharing_})
+    for (std::size_t i = 0; i < group->volumes.size(); ++i) {
+      const FaceBlock<D>& block = group->blocks[i];
+      V h[D][D];
+      blocks::stretch<D>(block, space_.nodes(), space_.points(), h);
+      V trace = h[0][0];
+      for (int a = 1; a < D; ++a) trace += h[a][a];
+      for (int k = 0; k < 4; ++k) {
+        pressure_[std::size_t(block.from[k])] += group->volumes[i].from[k] * trace[k];
+        pressure_[std::size_t(block.to[k])] += group->volumes[i].to[k] * trace[k];
+      }
+    }
 }
 
 // The faces' own part, kept, and t V / 3 e to the edges.
@@ -67,14 +126,11 @@ inline void SymmetricKernel<D>::shared_first_loop() {
     const double *nodes = space_.nodes(), *points = space_.points();
     constexpr int first[6] = {0, 1, 2, 0, 1, 0}, second[6] = {0, 1, 2, 1, 2, 2};
     const double own = 1 - SharedEdges::share;
-    for (std::size_t i = 0; i < shared_blocks_.size(); ++i) {
+    for (std::size_t i = 0; i < shared_.size(); ++i) {
       SharedBlock& shared = shared_[i];
       V h[D][D], stress[D][D];
-      blocks::stretch<D>(shared_blocks_[i], nodes, points, h);
-      if (shared_elastic_.empty())
-        blocks::hooke<D>(shared_blocks_[i], h, stress);
-      else
-        blocks::elastic<D>(shared_elastic_[i], h, stress);
+      blocks::stretch<D>(sharing_.blocks[i], nodes, points, h);
+      stress_of(sharing_, sharing_.blocks[i], h, stress);
       const V scale = blocks::wide(shared.inverse) * blocks::wide(shared.part) * 0.5;
       V strain[6];
       for (int k = 0; k < 6; ++k) {
@@ -100,7 +156,7 @@ inline void SymmetricKernel<D>::shared_second_loop() {
   if constexpr (D == 3) {
     double *force = space_.forces(), *point_force = space_.point_forces();
     constexpr int first[6] = {0, 1, 2, 0, 1, 0}, second[6] = {0, 1, 2, 1, 2, 2};
-    for (std::size_t i = 0; i < shared_blocks_.size(); ++i) {
+    for (std::size_t i = 0; i < shared_.size(); ++i) {
       const SharedBlock& shared = shared_[i];
       V stress[D][D];
       const V weight = blocks::wide(shared.weight);
@@ -112,11 +168,8 @@ inline void SymmetricKernel<D>::shared_second_loop() {
         stress[first[k]][second[k]] = blocks::wide(shared.stress[k]) + weight * of_edges;
         stress[second[k]][first[k]] = stress[first[k]][second[k]];
       }
-      if (!shared_volumes_.empty()) {
-        const V pressure = pressure_on(shared_blocks_[i], shared_volumes_[i]);
-        for (int a = 0; a < D; ++a) stress[a][a] += pressure;
-      }
-      blocks::push<D>(shared_blocks_[i], stress, force, point_force);
+      add_pressure_of_cells(sharing_, sharing_.blocks[i], stress);
+      blocks::push<D>(sharing_.blocks[i], stress, force, point_force);
     }
   }
 }
@@ -218,15 +271,6 @@ void SymmetricKernel<D>::face_gradients(std::span<const double> unknowns, std::s
   }
 }
 
-template class SymmetricKernel<2>;
-template class SymmetricKernel<3>;
-
-std::unique_ptr<ElasticKernel::Implementation> make_symmetric_kernel(const mesh::Mesh& mesh,
-                                                                     const ElasticOperator& rows) {
-  if (mesh.dim == 2) return std::make_unique<SymmetricKernel<2>>(mesh, rows);
-  return std::make_unique<SymmetricKernel<3>>(mesh, rows);
-}
-
 /// With the mean stresses of its cells as unknowns of their own.
 template <int D>
 void SymmetricKernel<D>::apply_mixed(std::span<const double> unknowns, std::span<const double> pressure,
@@ -246,10 +290,33 @@ void SymmetricKernel<D>::apply_mixed(std::span<const double> unknowns, std::span
   space_.take_rows(unknowns, {}, result);
 }
 
-template void SymmetricKernel<2>::apply_mixed(std::span<const double>, std::span<const double>, double,
-                                              std::span<double>, std::span<double>);
+/// Where the volume strain is that of the cells it takes no part in the sharing, nor does the pressure that acts on it.
+template <int D>
+std::vector<double> SymmetricKernel<D>::shared_pressure(std::span<const double> pressure) {
+  std::vector<double> result(pressure.begin(), pressure.end());
+  if (!edges_ || rows_.volume_by_cells()) return result;
+  edges_->clear();
+  for (std::size_t i = 0; i < sharing_.faces.size(); ++i)
+    for (const Index e : edges_->edges_of(i))
+      for (int a = 0; a < 3; ++a)
+        edges_->at(e)[a] += shared_[i / 4].part[i % 4] * pressure[sharing_.faces[i]];
+  edges_->finish_means();
+  for (std::size_t i = 0; i < sharing_.faces.size(); ++i) {
+    double of_edges = 0;
+    for (const Index e : edges_->edges_of(i)) of_edges += edges_->at(e)[0] / 3;
+    double& here = result[sharing_.faces[i]];
+    here = (1 - SharedEdges::share) * here + SharedEdges::share * of_edges;
+  }
+  return result;
+}
 
-template void SymmetricKernel<3>::apply_mixed(std::span<const double>, std::span<const double>, double,
-                                              std::span<double>, std::span<double>);
+template class SymmetricKernel<2>;
+template class SymmetricKernel<3>;
+
+std::unique_ptr<ElasticKernel::Implementation> make_symmetric_kernel(const mesh::Mesh& mesh,
+                                                                     const ElasticOperator& rows) {
+  if (mesh.dim == 2) return std::make_unique<SymmetricKernel<2>>(mesh, rows);
+  return std::make_unique<SymmetricKernel<3>>(mesh, rows);
+}
 
 }  // namespace couplet::elastic

@@ -53,30 +53,34 @@ class SymmetricKernel final : public SpaceKernel<D> {
   struct VolumeBlock {
     double from[4], to[4];
   };
-  std::vector<VolumeBlock> make_volumes(std::span<const Index> faces) const;
-  [[gnu::always_inline]] inline void add_volumes(const std::vector<FaceBlock<D>>& blocks,
-                                                 const std::vector<VolumeBlock>& volumes);
-  [[gnu::always_inline]] inline V pressure_on(const FaceBlock<D>& block, const VolumeBlock& volume) const;
-  void make_faces();
+  /// Faces that this rank computes, in blocks in their order.
+  struct Group {
+    std::vector<Index> faces;
+    std::vector<FaceBlock<D>> blocks;
+    std::vector<ElasticBlock<D>> elastic;  // empty: Hooke's isotropic law
+    std::vector<VolumeBlock> volumes;      // empty: the volume strain is the faces'
+  };
+  Group make_group(std::vector<Index> faces) const;
+  void make_edges(const SharedFaces& shared);
+  [[gnu::always_inline]] inline void stress_of(const Group& group, const FaceBlock<D>& block,
+                                               const V (&h)[D][D], V (&stress)[D][D]) const;
+  [[gnu::always_inline]] inline void add_pressure_of_cells(const Group& group, const FaceBlock<D>& block,
+                                                           V (&stress)[D][D]) const;
   void internal_forces() override;
   void forces_of_stress();
   std::span<double> sum_volumes();
   void find_pressures();
-  void spread_pressure(std::span<const double> pressure) override;
+  std::vector<double> shared_pressure(std::span<const double> pressure) override;
 
   const mesh::Mesh& mesh_;
   const mesh::Geometry& geometry_;
   const ElasticOperator& rows_;
   using SpaceKernel<D>::space_;
-  std::vector<Index> mine_;          // faces that this rank computes, in the order of the blocks
-  std::vector<Index> shared_mine_;   // those that share with their edges
+  Group plain_, sharing_;            // sharing_: with their edges
   std::vector<Index> shared_index_;  // of each flux face in edges_, -1: it shares nothing
-  std::vector<FaceBlock<D>> blocks_, shared_blocks_;
-  std::vector<SharedBlock> shared_;
+  std::vector<SharedBlock> shared_;  // of sharing_
   std::unique_ptr<SharedEdges> edges_;
-  std::vector<ElasticBlock<D>> elastic_, shared_elastic_;  // empty: Hooke's isotropic law
-  std::vector<VolumeBlock> volumes_, shared_volumes_;      // empty: the volume strain is the faces'
-  std::vector<double> pressure_, bulk_;                    // of nodes; K / V of owned cells [Pa/m^3]
+  std::vector<double> pressure_, bulk_;  // of nodes; K / V of owned cells [Pa/m^3]
 };
 
 }  // namespace couplet::elastic

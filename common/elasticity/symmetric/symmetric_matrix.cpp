@@ -1,107 +1,302 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "common/elasticity/elastic_nodes.hpp"
-#include "common/elasticity/symmetric/node_assembly.hpp"
-#include "common/elasticity/symmetric/symmetric_faces.hpp"
+#include "common/elasticity/symmetric/shared_edges.hpp"
 #include "common/elasticity/symmetric/symmetric_space.hpp"
+#include "common/fv/nodes.hpp"
+#include "common/parallel/collective.hpp"
 
 namespace couplet::elastic {
 namespace {
 
-/// V B_i^T C B_j, B_i making a strain of the displacement of a node.
-void add_anisotropic(NodeAssembly& to, const std::vector<FaceStencil::Term>& terms, double volume,
-                     const ElasticMatrix& matrix) {
-  using Strain = Eigen::Matrix<double, 6, 3>;
-  std::vector<Strain> of_node;
-  for (const FaceStencil::Term& t : terms) {
-    Strain b;
-    b << t.b[0], 0, 0, 0, t.b[1], 0, 0, 0, t.b[2], t.b[1], t.b[0], 0, 0, t.b[2], t.b[1], t.b[2], 0, t.b[0];
-    of_node.push_back(b * t.turn);
-  }
-  for (std::size_t i = 0; i < terms.size(); ++i) {
-    const Eigen::Matrix<double, 3, 6> left = volume * of_node[i].transpose() * matrix;
-    for (std::size_t j = 0; j < terms.size(); ++j)
-      to.add_block(terms[i].node, terms[j].node, left * of_node[j]);
-  }
+GradientStiffness stiffness_of(const LameConstants& lame) {
+  GradientStiffness c = GradientStiffness::Zero();
+  for (int k = 0; k < 3; ++k)
+    for (int a = 0; a < 3; ++a) {
+      c(3 * k + k, 3 * a + a) += lame.lambda;
+      c(3 * k + a, 3 * k + a) += lame.mu;
+      c(3 * k + a, 3 * a + k) += lame.mu;
+    }
+  return c;
 }
 
-// V [lambda b_i b_j^T + mu (b_i . b_j I + b_j b_i^T)] between each two nodes.
-template <int D>
-void add_face(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f, NodeAssembly& to) {
-  const mesh::Geometry& geometry = rows.geometry();
-  const SymmetricFace<D> face = symmetric_face<D>(mesh, rows, f);
-  const Tensor3 identity = Tensor3::Identity();
-  const std::vector<FaceStencil::Term>& terms = to.stencil().of<D>(face, f);
-  const LameConstants whole = face_lame(mesh, rows, f);
-  const auto [mu, lambda] = part_of_faces(whole, rows.volume_strain());
-  if (rows.volume_by_cells()) {
-    const auto [here, there] = pyramids(mesh, geometry, f);
-    for (const FaceStencil::Term& t : terms) {
-      to.add_volume_term(mesh.owner[f], t.node, here * (t.turn.transpose() * t.b));
-      if (f < mesh.n_interior)
-        to.add_volume_term(mesh.neighbour[f], t.node, there * (t.turn.transpose() * t.b));
+GradientStiffness stiffness_of(const ElasticMatrix& matrix) {
+  constexpr int strain[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+  GradientStiffness c;
+  for (int i = 0; i < 9; ++i)
+    for (int j = 0; j < 9; ++j) c(i, j) = matrix(strain[i / 3][i % 3], strain[j / 3][j % 3]);
+  return c;
+}
+
+/// I (x) sigma: the work of a stress that is there on the square of the displacement gradient.
+GradientStiffness stiffness_of_stress(const Tensor3& stress) {
+  GradientStiffness c = GradientStiffness::Zero();
+  for (int k = 0; k < 3; ++k) c.block<3, 3>(3 * k, 3 * k) = stress;
+  return c;
+}
+
+/// A term on its way to the rank that owns the edge.
+struct Sent {
+  GlobalIndex edge, block;
+  double b[3], turn[9];
+};
+
+/// The mean gradients of the owned edges, one list an edge (empty: of another rank). Collective.
+std::vector<FaceTermList> edge_terms(const mesh::Mesh& mesh, FaceTerms& terms, const SharedFaces& shared,
+                                     const SharedEdges& edges) {
+  std::vector<FaceTermList> result(edges.n_edges());
+  for (std::size_t i = 0; i < shared.n_mine; ++i) {
+    const FaceTermList& of_face = terms.of_face(shared.faces[i]);
+    for (const Index e : edges.edges_of(i)) {
+      const double part = SharedEdges::share * shared.volume[i] / 3 / edges.volume(e);
+      for (const FaceTerm& t : of_face) add_term(result[std::size_t(e)], {t.block, part * t.b, t.turn});
     }
   }
-  if (mesh.owner[f] >= mesh.cells.n_owned()) return;  // its owner's rank adds the rest
-  if (rows.is_anisotropic()) return add_anisotropic(to, terms, face.volume, face_matrix(mesh, rows, f));
-  for (const FaceStencil::Term& i : terms)
-    for (const FaceStencil::Term& j : terms) {
-      const Tensor3 block =
-          lambda * i.b * j.b.transpose() + mu * (i.b.dot(j.b) * identity + j.b * i.b.transpose());
-      to.add_block(i.node, j.node, face.volume * (i.turn.transpose() * block * j.turn));
+  std::vector<Sent> away;
+  for (Index e = 0; e < Index(edges.n_edges()); ++e) {
+    if (edges.is_owned(e)) continue;
+    for (const FaceTerm& t : result[std::size_t(e)]) {
+      Sent& s = away.emplace_back(Sent{edges.global(e), t.block, {}, {}});
+      for (int a = 0; a < 3; ++a) s.b[a] = t.b[a];
+      for (int a = 0; a < 9; ++a) s.turn[a] = t.turn(a / 3, a % 3);
     }
-}
-
-/// The same with the hoop strain, V B_i^T C B_j.
-void add_ring(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f, NodeAssembly& to) {
-  const AxisymmetricFace face = axisymmetric_face(mesh, rows, f);
-  const std::vector<FaceStencil::Term>& terms = to.stencil().of_revolution(face, f);
-  const LameConstants lame = face_lame(mesh, rows, f);
-  const double mu = face.volume * lame.mu, lambda = face.volume * lame.lambda,
-               shear = face.has_shear ? mu : 0;
-  for (const FaceStencil::Term& i : terms)
-    for (const FaceStencil::Term& j : terms) {
-      const double r = i.b[0] + i.b[2], z = i.b[1], other = j.b[0] + j.b[2];
-      Tensor3 block = Tensor3::Zero();
-      block(0, 0) = lambda * r * other + 2 * mu * (i.b[0] * j.b[0] + i.b[2] * j.b[2]) + shear * z * j.b[1];
-      block(0, 1) = lambda * r * j.b[1] + shear * z * j.b[0];
-      block(1, 0) = lambda * z * other + shear * i.b[0] * j.b[1];
-      block(1, 1) = (lambda + 2 * mu) * z * j.b[1] + shear * i.b[0] * j.b[0];
-      to.add_block(i.node, j.node, i.turn.transpose() * block * j.turn);
+    result[std::size_t(e)].clear();
+  }
+  for (const Sent& s : parallel::all_gather(mesh.comm, away)) {
+    const Index e = edges.owned_of(s.edge);
+    if (e < 0) continue;
+    Tensor3 turn;
+    for (int a = 0; a < 9; ++a) turn(a / 3, a % 3) = s.turn[a];
+    add_term(result[std::size_t(e)], {s.block, Vec3(s.b[0], s.b[1], s.b[2]), turn});
+  }
+  // On a symmetry plane the mean holds the mirror images, too.
+  for (const auto& [e, n] : edges.mirrors()) {
+    FaceTermList& of_edge = result[std::size_t(e)];
+    const Tensor3 mirror = Tensor3::Identity() - 2 * n * n.transpose();
+    const std::size_t before = of_edge.size();
+    for (std::size_t i = 0; i < before; ++i) {
+      of_edge[i].b *= 0.5;
+      of_edge.push_back({of_edge[i].block, mirror * of_edge[i].b, mirror * of_edge[i].turn});
     }
-}
-
-template <int D>
-void add_mass(const mesh::Mesh& mesh, const ElasticOperator& rows, std::span<const double> inertia,
-              NodeAssembly& to) {
-  SymmetricSpace<D> space(mesh, rows);
-  space.set_density(inertia);
-  to.add_mass(1, space);
+  }
+  return result;
 }
 
 }  // namespace
 
+Assembly::Assembly(const mesh::Mesh& mesh, const ElasticOperator& rows, const Numbering& number)
+    : mesh_(mesh), geometry_(rows.geometry()), rows_(rows), number_(number), terms_(mesh, rows, number) {
+  if (!number.point.empty()) slot_of_.reserve(std::size_t(mesh.n_flux_faces()) * (mesh.dim == 2 ? 8 : 40));
+}
+
+void Assembly::add(GlobalIndex i, GlobalIndex j, const Tensor3& block) {
+  const auto [at, is_new] = slot_of_.try_emplace(std::uint64_t(i) << 32 | std::uint32_t(j), pairs_.size());
+  if (is_new) {
+    pairs_.push_back({i, j});
+    blocks_.push_back(block);
+  } else {
+    blocks_[at->second] += block;
+  }
+}
+
+void Assembly::add(const FaceTermList& terms, const GradientStiffness& stiffness) {
+  const auto ends = [&](std::size_t i) {
+    return i + 1 == terms.size() || terms[i + 1].block != terms[i].block;
+  };
+  using Left = Eigen::Matrix<double, 3, 9>;
+  Left left = Left::Zero();
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    Left here;
+    for (int k = 0; k < 3; ++k) here.row(k) = terms[i].b.transpose() * stiffness.middleRows<3>(3 * k);
+    left += terms[i].turn.transpose() * here;
+    if (!ends(i)) continue;
+    Tensor3 block = Tensor3::Zero();
+    for (std::size_t j = 0; j < terms.size(); ++j) {
+      Tensor3 part;
+      for (int m = 0; m < 3; ++m) part.col(m) = left.middleCols<3>(3 * m) * terms[j].b;
+      block += part * terms[j].turn;
+      if (!ends(j)) continue;
+      add(terms[i].block, terms[j].block, block);
+      block.setZero();
+    }
+    left.setZero();
+  }
+}
+
+void Assembly::add_faces(const EnergyParts& parts, double own) {
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    if (mesh_.owner[f] >= mesh_.cells.n_owned()) continue;  // its owner's rank adds it
+    const FaceRows face = face_rows(mesh_, rows_, f);
+    GradientStiffness c = GradientStiffness::Zero();
+    if (parts.stiffness != 0)
+      c = parts.stiffness *
+          (rows_.is_anisotropic()
+               ? stiffness_of(face_matrix(mesh_, rows_, f))
+               : stiffness_of(part_of_faces(face_lame(mesh_, rows_, f), rows_.volume_strain())));
+    if (parts.stress != 0) c += parts.stress * stiffness_of_stress(parts.prestress->stress[std::size_t(f)]);
+    const bool shares = mesh_.dim == 3 && mesh_.face_points[f].size() == 3;
+    add(terms_.of_face(face), (shares ? own : 1) * face.volume * c);
+  }
+}
+
+void Assembly::add_edges(const EnergyParts& parts) {
+  const SharedFaces shared = shared_faces(mesh_, rows_);
+  if (!parallel::any(mesh_.comm, shared.n_mine > 0)) return;
+  SharedEdges edges(mesh_, rows_, shared.faces, shared.volume);
+  if (parts.stress != 0) find_edge_stresses(shared, parts.prestress->stress, edges);
+  const std::vector<FaceTermList> terms = edge_terms(mesh_, terms_, shared, edges);
+  for (Index e = 0; e < Index(edges.n_edges()); ++e) {
+    if (terms[std::size_t(e)].empty()) continue;
+    GradientStiffness c = GradientStiffness::Zero();
+    if (parts.stiffness != 0)
+      c = parts.stiffness *
+          (rows_.is_anisotropic() ? stiffness_of(edges.matrix(e)) : stiffness_of(edges.lame(e)));
+    if (parts.stress != 0) c += parts.stress * stiffness_of_stress(edge_tensor(edges, e));
+    add(terms[std::size_t(e)], edges.volume(e) * c);
+  }
+}
+
+void Assembly::add_volumes(const EnergyParts& parts) {
+  if (!rows_.volume_by_cells() || parts.stiffness == 0) return;
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f)
+    add_volume_terms(f, terms_.of_face(f), Tensor3::Identity());
+  const std::vector<double> volume = pyramid_volumes(mesh_, geometry_);
+  finish_volumes([&](Index c) {
+    return parts.stiffness * bulk_of_cells(rows_.lame(c), rows_.volume_strain()) / volume[std::size_t(c)];
+  });
+}
+
+void Assembly::add_volume_terms(Index f, const FaceTermList& terms, const Tensor3& cofactors) {
+  const auto [here, there] = pyramids(mesh_, geometry_, f);
+  const auto take = [&](Index cell, GlobalIndex block, const Vec3& g) {
+    if (cell < mesh_.cells.n_owned()) volume_of_[cell].push_back({block, g});
+  };
+  for (const FaceTerm& t : terms) {
+    const Vec3 g = t.turn.transpose() * (cofactors * t.b);
+    take(mesh_.owner[f], t.block, here * g);
+    if (f < mesh_.n_interior) take(mesh_.neighbour[f], t.block, there * g);
+  }
+}
+
+/// A block may stand there several times.
+void Assembly::add_squares(VolumeTerms& terms, double modulus) {
+  std::ranges::sort(terms, {}, &VolumeTerms::value_type::first);
+  VolumeTerms merged;
+  for (const auto& t : terms)
+    if (!merged.empty() && merged.back().first == t.first)
+      merged.back().second += t.second;
+    else
+      merged.push_back(t);
+  for (const auto& [i, g] : merged)
+    for (const auto& [j, h] : merged) add(i, j, modulus * g * h.transpose());
+}
+
+Tensor3 Assembly::open_part(Index node) const {
+  if (node < mesh_.cells.n_local()) return Tensor3::Identity();
+  return Tensor3::Identity() - rows_.at(node - mesh_.cells.n_local() + mesh_.n_interior).known;
+}
+
+void Assembly::add_supports() {
+  for (const Index f : rows_.known_faces()) {
+    const BoundaryRow& s = rows_.at(f);
+    if (s.fixed) continue;
+    const LameConstants lame = rows_.lame(mesh_.owner[f]);
+    const fv::FaceLine line = fv::face_line(mesh_, geometry_, f);
+    const GlobalIndex node = number_.node[node_of(f)];
+    add(node, node, (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn * s.known);
+    if (s.spring.isZero(0)) continue;
+    const Tensor3 open = Tensor3::Identity() - s.known,
+                  spring = geometry_.face_area[f].norm() * (open * s.spring * open);
+    const FaceTermList& mean = terms_.of_mean(f);
+    for (const FaceTerm& i : mean)
+      for (const FaceTerm& j : mean)
+        add(i.block, j.block, i.b[0] * j.b[0] * (i.turn.transpose() * spring * j.turn));
+  }
+}
+
+void Assembly::add_mass(double factor, std::span<const double> density) {
+  mesh_.dim == 2 ? add_lumped<2>(factor, density) : add_lumped<3>(factor, density);
+}
+
+template <int D>
+void Assembly::add_lumped(double factor, std::span<const double> density) {
+  SymmetricSpace<D> space(mesh_, rows_);
+  space.set_density(density);
+  for (Index i = 0; i < Index(number_.node.size()); ++i) {
+    const double mass = factor * space.node_mass()[std::size_t(i)];
+    if (number_.node[i] >= 0 && mass != 0) add(number_.node[i], number_.node[i], mass * open_part(i));
+  }
+  for (Index v = 0; v < mesh_.points.n_local(); ++v) {
+    const double mass = factor * space.point_mass()[std::size_t(v)];
+    if (mass == 0) continue;
+    const FaceTermList& terms = terms_.of_point(v);
+    for (const FaceTerm& i : terms)
+      for (const FaceTerm& j : terms)
+        add(i.block, j.block, mass * i.b[0] * j.b[0] * (i.turn.transpose() * j.turn));
+  }
+}
+
+void Assembly::add_diagonals(std::span<const double> of_nodes) {
+  const Index n_cells = mesh_.cells.n_owned();
+  for (std::size_t i = 0; i < of_nodes.size(); ++i) {
+    const bool is_cell = Index(i) < n_cells;
+    const Index node = is_cell ? Index(i) : node_of(rows_.unknown_faces()[i - std::size_t(n_cells)]);
+    add(number_.node[node], number_.node[node], of_nodes[i] * Tensor3::Identity());
+  }
+}
+
+void Assembly::add_places(double factor, std::span<const PlaceBlock> blocks) {
+  const Index n_nodes = n_node_places(mesh_);
+  const auto number = [&](Index place) {
+    return place < n_nodes ? number_.node[place] : number_.point[place - n_nodes];
+  };
+  const auto open = [&](Index place) {
+    return place < n_nodes ? open_part(place) : Tensor3(Tensor3::Identity());
+  };
+  for (const PlaceBlock& b : blocks)
+    if (number(b.i) >= 0 && number(b.j) >= 0)
+      add(number(b.i), number(b.j), factor * (open(b.i) * b.block * open(b.j)));
+}
+
+double Assembly::mean_diagonal() const {
+  double total = 0, count = 0;
+  for (std::size_t k = 0; k < pairs_.size(); ++k)
+    if (pairs_[k].first == pairs_[k].second) total += std::abs(blocks_[k](0, 0)), count += 1;
+  return parallel::sum(mesh_.comm, total) / std::max(1.0, parallel::sum(mesh_.comm, count));
+}
+
+linalg::SparseMatrix Assembly::matrix(std::size_t n_blocks) const {
+  const int dim = mesh_.dim;
+  std::vector<GlobalIndex> row, column;
+  std::vector<double> value;
+  for (auto* list : {&row, &column}) list->reserve(pairs_.size() * std::size_t(dim * dim));
+  value.reserve(pairs_.size() * std::size_t(dim * dim));
+  for (std::size_t k = 0; k < pairs_.size(); ++k)
+    for (int a = 0; a < dim; ++a)
+      for (int b = 0; b < dim; ++b) {
+        row.push_back(pairs_[k].first * dim + a);
+        column.push_back(pairs_[k].second * dim + b);
+        value.push_back(blocks_[k](a, b));
+      }
+  linalg::SparseMatrix result(mesh_.comm, GlobalIndex(n_blocks) * dim, std::move(row), std::move(column),
+                              dim);
+  result.fill(value);
+  return result;
+}
+
 linalg::SparseMatrix symmetric_matrix(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                       std::span<const double> inertia) {
-  const mesh::Geometry& geometry = rows.geometry();
-  NodeAssembly assembly(mesh, rows);
-  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
-    if (mesh.owner[f] >= mesh.cells.n_owned() && !rows.volume_by_cells()) continue;
-    if (is_axisymmetric(rows))
-      add_ring(mesh, rows, f, assembly);
-    else if (mesh.dim == 2)
-      add_face<2>(mesh, rows, f, assembly);
-    else
-      add_face<3>(mesh, rows, f, assembly);
-  }
-  const std::vector<double> volume = pyramid_volumes(mesh, geometry);
-  assembly.finish_volumes(
-      [&](Index c) { return bulk_of_cells(rows.lame(c), rows.volume_strain()) / volume[std::size_t(c)]; });
+  const Numbering number{fv::number_nodes(mesh, rows.unknown_faces()), {}};
+  Assembly assembly(mesh, rows, number);
+  assembly.add_faces({}, 1);
+  assembly.add_volumes({});
   assembly.add_supports();
-  if (!inertia.empty())
-    mesh.dim == 2 ? add_mass<2>(mesh, rows, inertia, assembly) : add_mass<3>(mesh, rows, inertia, assembly);
-  return assembly.matrix();
+  if (!inertia.empty()) assembly.add_mass(1, inertia);
+  return assembly.matrix(rows.n_unknowns() / std::size_t(mesh.dim));
 }
 
 }  // namespace couplet::elastic

@@ -1,7 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
 #include "common/elasticity/elasticity.hpp"
+#include "common/elasticity/symmetric/face_terms.hpp"
+#include "common/elasticity/symmetric/prestress.hpp"
 #include "common/linalg/matrix.hpp"
 
 namespace couplet::elastic {
@@ -12,5 +22,77 @@ namespace couplet::elastic {
 /// space some 90 nodes a row on hexahedra and 200 on tetrahedra: for small bodies. Collective.
 linalg::SparseMatrix symmetric_matrix(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                       std::span<const double> inertia);
+
+/// dP/dF or C, entry (3 k + a, 3 m + c): what the derivative c of component m does to the stress (k, a) [Pa].
+using GradientStiffness = Eigen::Matrix<double, 9, 9>;
+
+/// Weights of the parts of an assembled operator, stiffness K + mass M + stress K_sigma.
+struct EnergyParts {
+  double stiffness = 1;
+  double mass = 0;                       ///< [1/s^2]
+  std::span<const double> density{};     ///< per owned cell [kg/m^3]; for `mass`
+  double stress = 0;                     ///< weight of K_sigma, see StressStiffness
+  const Prestress* prestress = nullptr;  ///< for `stress`
+};
+
+/// Adds up blocks between unknowns, pair by pair, and makes a matrix of them. A face of a tetrahedron couples some sixty
+/// nodes, and each pair of nodes shares many faces: summed up here there is a fiftieth of the entries for PETSc to sort (a
+/// tenth of the time on 1000 tetrahedra).
+class Assembly {
+ public:
+  /// Keeps all arguments by reference. Numbers are below 2^32.
+  Assembly(const mesh::Mesh& mesh, const ElasticOperator& rows, const Numbering& number);
+
+  FaceTerms& terms() { return terms_; }
+  void add(GlobalIndex i, GlobalIndex j, const Tensor3& block);
+  /// Adds sum_ij T_i^T [b_i . stiffness . b_j] T_j for one gradient; `stiffness` includes the volume [N m].
+  void add(const FaceTermList& terms, const GradientStiffness& stiffness);
+  /// Adds stiffness and stress of the faces of owned cells; `own` is the share that triangles of a three-dimensional mesh
+  /// keep for themselves (the rest goes to their edges, see SharedEdges).
+  void add_faces(const EnergyParts& parts, double own);
+  /// Adds the share of the edges. Collective.
+  void add_edges(const EnergyParts& parts);
+  /// Adds the bulk modulus that acts on the volume strain of cells.
+  void add_volumes(const EnergyParts& parts);
+  /// Tells that V_P theta_P of the owned cells beside a face changes by V_fP cofactors b . u.
+  void add_volume_terms(Index f, const FaceTermList& terms, const Tensor3& cofactors);
+  /// Adds modulus(cell) g g^T for the terms collected by add_volume_terms().
+  template <class Modulus>
+  void finish_volumes(const Modulus& modulus) {
+    for (auto& [cell, terms] : volume_of_) add_squares(terms, modulus(cell));
+    volume_of_.clear();
+  }
+  /// Adds the rows of supports, and their springs on the mean displacement of a face.
+  void add_supports();
+  /// Adds the mass of the trial functions times `factor` [1/s^2].
+  void add_mass(double factor, std::span<const double> density);
+  /// Adds one value per unknown node to the diagonal; empty means none.
+  void add_diagonals(std::span<const double> of_nodes);
+  /// Adds blocks between places times `factor`.
+  void add_places(double factor, std::span<const PlaceBlock> blocks);
+  /// Mean of |first entry| of the diagonal blocks. Collective.
+  double mean_diagonal() const;
+  /// `n_blocks`: number of block rows of this rank. Collective.
+  linalg::SparseMatrix matrix(std::size_t n_blocks) const;
+
+ private:
+  using Pair = std::pair<GlobalIndex, GlobalIndex>;
+  using VolumeTerms = std::vector<std::pair<GlobalIndex, Vec3>>;
+  void add_squares(VolumeTerms& terms, double modulus);
+  template <int D>
+  void add_lumped(double factor, std::span<const double> density);
+  Index node_of(Index f) const { return mesh_.cells.n_local() + f - mesh_.n_interior; }
+  Tensor3 open_part(Index node) const;
+
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
+  const ElasticOperator& rows_;
+  const Numbering& number_;
+  FaceTerms terms_;
+  std::unordered_map<std::uint64_t, std::size_t> slot_of_;  // of a pair
+  std::vector<Pair> pairs_;
+  std::vector<Tensor3> blocks_;
+  std::map<Index, VolumeTerms> volume_of_;  // of cells
+};
 
 }  // namespace couplet::elastic

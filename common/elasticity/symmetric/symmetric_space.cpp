@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/elasticity/symmetric/symmetric_space.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 #include "common/base/processor_clones.hpp"
-#include "common/elasticity/symmetric/axisymmetric_faces.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -291,6 +292,96 @@ double SymmetricSpace<D>::work() const {
   for (std::size_t i = 0; i < point_force_.size(); i += stride)
     for (int a = 0; a < D; ++a) sum += point_force_[i + a] * points_[i + a];
   return sum;
+}
+
+// What holds a body at its patches: the forces that the trial functions leave where displacements are known.
+
+/// Of an entry of point_force_ or of force_; the face's node at a symmetry plane is the mirror image of the cell's centre.
+template <int D>
+Vec3 SymmetricSpace<D>::place_of(const double* force, bool moved) const {
+  const auto entry = [force](const std::vector<double>& all) { return Index((force - all.data()) / stride); };
+  if (force < force_.data() || force >= force_.data() + force_.size()) {
+    const Index v = entry(point_force_);
+    const Vec3& at = geometry_.points[v];
+    return moved ? Vec3(at + vector(points_.data() + std::size_t(v) * stride)) : at;
+  }
+  const Index node = entry(force_), f = mesh_.n_interior + node - mesh_.cells.n_local();
+  const bool is_cell = node < mesh_.cells.n_local();
+  Vec3 at = is_cell ? geometry_.cell_centre[node] : geometry_.face_centre[f];
+  if (!is_cell && rows_.mirrored(f)) {
+    const Vec3 n = geometry_.face_area[f].normalized(), &cell = geometry_.cell_centre[mesh_.owner[f]];
+    at = cell - 2 * n.dot(cell - at) * n;
+  }
+  return moved ? Vec3(at + vector(nodes_[node])) : at;
+}
+
+/// At the points, by the sources of what is known there and the symmetry planes. The nodes of a point on a symmetry plane lie
+/// to one side of it, so that their images hold the couple that its free force makes with its parts at the nodes.
+template <int D>
+void SymmetricSpace<D>::held_at_points(std::span<const Index> patch_of, bool moved,
+                                       std::vector<Wrench>& result) {
+  std::vector<std::vector<std::pair<Index, Vec3>>> planes(mesh_.points.n_local());
+  for (Index f = mesh_.n_interior; f < mesh_.n_faces(); ++f) {
+    if (!rows_.mirrored(f)) continue;
+    const Vec3 n = geometry_.face_area[f].normalized();
+    for (const Index v : mesh_.face_points[f]) {
+      const auto same = [&](const auto& plane) { return std::abs(plane.second.dot(n)) > 0.9994; };
+      if (std::ranges::none_of(planes[v], same)) planes[v].emplace_back(patch_of[f - mesh_.n_interior], n);
+    }
+  }
+  const VertexConstraints& constraints = rows_.constraints();
+  for (const Index v : vertices_.constrained) {
+    const Vec3 whole = vector(point_force(v)), at = place_of(point_force(v), moved);
+    Vec3 held = whole - constraints.free_part(v) * whole;
+    if (const Index column = constraints.column(v); column >= 0)
+      for (const auto& [face, share] : constraints.sources(column)) {
+        const Vec3 here = share.transpose() * whole;
+        result[patch_of[face]].add(here, at);
+        held -= here;
+      }
+    for (const auto& [patch, n] : planes[v]) {
+      result[patch].add(n.dot(held) * n, at);
+      held -= n.dot(held) * n;
+    }
+    const auto nodes = rows_.vertices().nodes(v);
+    if (planes[v].empty() || constraints.is_fixed(v) || nodes.empty()) continue;
+    const auto weights = rows_.vertices().weights(v);
+    Vec3 lever = at;
+    for (std::size_t i = 0; i < nodes.size(); ++i) lever -= weights[i] * place_of(force(nodes[i]), moved);
+    result[planes[v].front().first].moment += lever.cross(constraints.free_part(v) * whole);
+  }
+}
+
+/// dE/du of all that is held: at the points, at the faces' own nodes and at the mirror images of symmetry planes, whose forces go
+/// back to the cells mirrored, so that the plane takes the difference.
+template <int D>
+std::vector<Wrench> SymmetricSpace<D>::held(std::span<const double> known, bool moved) {
+  std::vector<Wrench> result(mesh_.patches.size());
+  const std::vector<Index> patch_of = mesh_.patch_of_boundary();
+  held_at_points(patch_of, moved, result);
+  // What the free part of the points' forces leaves at nodes that are held.
+  points_to_nodes();
+  for (Index b = 0; b < mesh_.boundary.n_local(); ++b) {
+    const Index f = mesh_.n_interior + b;
+    if (!rows_.at(f).held) continue;
+    const double* node = force(mesh_.cells.n_local() + b);
+    const Vec3 here = vector(node);
+    Wrench& patch = result[patch_of[b]];
+    if (!rows_.mirrored(f)) {
+      patch.add(rows_.at(f).known * here, place_of(node, moved));
+      continue;
+    }
+    const Vec3 n = geometry_.face_area[f].normalized();
+    Vec3 cell = geometry_.cell_centre[mesh_.owner[f]];
+    if (moved) cell += vector(nodes_[mesh_.owner[f]]);
+    patch.force += 2 * n.dot(here) * n;
+    patch.moment += place_of(node, moved).cross(here) - cell.cross(here - 2 * n.dot(here) * n);
+  }
+  for (const Index f : rows_.known_faces())
+    visit_spring(f, known, [&](double* where, const Vec3& pull) {
+      result[patch_of[f - mesh_.n_interior]].add(-pull, place_of(where, moved));
+    });
+  return result;
 }
 
 template class SymmetricSpace<2>;

@@ -37,6 +37,15 @@ class SymmetricSpace {
   void fill(std::span<const double> unknowns, std::span<const double> known);
   const double* nodes() const { return nodes_[0]; }
   const double* points() const { return points_.data(); }
+  /// Of a place, see FaceRows.
+  const double* value(Index place) const {
+    const auto n = Index(n_nodes());
+    return place < n ? nodes_[place] : points_.data() + std::size_t(place - n) * stride;
+  }
+  double* force_at(Index place) {
+    const auto n = Index(n_nodes());
+    return place < n ? force(place) : point_force(place - n);
+  }
   double* forces() { return force_.data(); }
   double* point_forces() { return point_force_.data(); }
   Index node_of_face(Index f) const { return mesh_.cells.n_local() + f - mesh_.n_interior; }

@@ -8,7 +8,6 @@
 
 #include "common/io/fields/xdmf.hpp"
 #include "common/io/hdf5_reader.hpp"
-#include "common/io/rehearse.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/parallel/global_order.hpp"
@@ -206,12 +205,6 @@ bool FieldWriter::State::continue_from(double restart_time) {
   if (there == 0) return false;
   std::string trouble;
   std::vector<std::string> dropped;
-  try {
-    if (parallel::comm_rank(mesh.comm) == 0) rehearse(file(), "output", [&] { read_index(restart_time); });
-  } catch (const Error& error) {
-    trouble = error.what();
-  }
-  hdf5::throw_together(mesh.comm, trouble);
   try {
     dropped = read_index(restart_time);
   } catch (const Error& error) {

@@ -8,10 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "common/io/fields/cell_part.hpp"
 #include "common/io/fields/field_choice.hpp"
-#include "common/io/fields/output_field.hpp"
-#include "common/io/fields/surface_mesh.hpp"
+#include "common/io/fields/mesh_part.hpp"
 #include "common/mesh/mesh.hpp"
 
 namespace couplet::io {

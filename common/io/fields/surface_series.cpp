@@ -9,7 +9,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
-#include "common/io/fields/surface_mesh.hpp"
+#include "common/io/fields/mesh_part.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::io {

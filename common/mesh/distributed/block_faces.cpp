@@ -7,7 +7,6 @@
 #include "common/base/error.hpp"
 #include "common/mesh/distributed/match_faces.hpp"
 #include "common/mesh/distributed/periodic_faces.hpp"
-#include "common/mesh/half_faces.hpp"
 #include "common/mesh/on_root.hpp"
 #include "common/mesh/topology.hpp"
 
@@ -44,14 +43,17 @@ class BlockFaces {
     number_boundary(matched.bounded, before);
     block_.element_points = {}, block_.element_offset = {0}, block_.element_patch = {};
     split_materials_of(matched.pairs);
-    fill_graph(matched.pairs);
+    if (parallel::comm_size(comm_) > 1)
+      fill_graph(matched.pairs);
+    else
+      graph_.within = std::move(within_);
     fill_records();
     return std::move(graph_);
   }
 
  private:
   /// Numbers of this block's points, as far as its cells use them, and cells turned right side out.
-  RawMesh local_cells() {
+  RawMesh oriented_cells() {
     CellList& cells = block_.cells;
     const PointNumbers numbers(cells.points);
     RawMesh raw;
@@ -63,7 +65,7 @@ class BlockFaces {
     raw.points = fetch(comm_, block_.point_shares, std::span<const Vec3>(block_.points), numbers.numbers());
     const double diagonal = block_.dim == 2 ? diagonal_of_all(comm_, block_.points) : 0;
     on_all(comm_, [&] {
-      if (cells.size() > 0) orient_cells(raw, first_cell_);
+      orient_cells(raw, first_cell_);
       if (block_.dim == 2) check_plane(raw.points, diagonal);
     });
     for (std::size_t i = 0; i < cells.points.size(); ++i)
@@ -85,12 +87,13 @@ class BlockFaces {
   }
 
   void match_within_block(GlobalIndex first_element) {
-    const RawMesh raw = local_cells();
+    const RawMesh raw = oriented_cells();
     material_of_zone_ = materials_of_zones();
-    HalfFaces halves(raw, false);
+    HalfFaces halves(raw);
+    within_.reserve(halves.size() / 2);
     // A face of three cells or more is refused here if they are all in this block, and else where the parts are put together.
     FaceFaults faults;
-    halves.for_each_face([&](std::span<const HalfFace> cells, std::span<const HalfFace>) {
+    halves.for_each_face([&](std::span<const HalfFace> cells) {
       if (cells.size() == 1) {
         sides_.push_back(side_of(cells[0]));
       } else if (cells.size() > 2) {
@@ -98,9 +101,9 @@ class BlockFaces {
                                    return face_of_many_cells(n, at);
                                  }});
       } else {
-        within_.emplace_back(cells[0].cell, cells[1].cell);
-        if (is_bonded(block_.cells.zone[cells[0].cell], block_.cells.zone[cells[1].cell]))
-          bonded_.push_back(make_pair(side_of(cells[0]), side_of(cells[1])));
+        const bool bonded = is_bonded(block_.cells.zone[cells[0].cell], block_.cells.zone[cells[1].cell]);
+        within_.push_back({cells[0].cell, cells[1].cell, static_cast<std::int8_t>(cells[0].face), bonded});
+        if (bonded) bonded_.push_back(make_pair(side_of(cells[0]), side_of(cells[1])));
       }
     });
     throw_face_faults(comm_, block_, faults);
@@ -126,7 +129,7 @@ class BlockFaces {
     PeriodicFaces found = find_periodic_faces(comm_, block_, bounded, first_element);
     graph_.translation = std::move(found.translation);
     for (const JoinedFace& f : found.joined) {
-      records_.push_back({f.cell, {f.face, 0, patch_of_joined(f.pair, f.side), f.other}});
+      records_.push_back({f.cell, {f.face, 0, FaceRecord::joined(f.pair, f.side), f.other}});
       if (f.cell != f.other) joined_.push_back({f.cell, f.other});
     }
     std::erase_if(bounded, [&](const BoundedCell& b) {
@@ -163,15 +166,15 @@ class BlockFaces {
 
   void fill_graph(const std::vector<FacePair>& pairs) {
     graph_.offset.assign(block_.cells.size() + 1, 0);
-    for (const auto& [a, b] : within_) ++graph_.offset[a + 1], ++graph_.offset[b + 1];
+    for (const auto& p : within_) ++graph_.offset[p.cell + 1], ++graph_.offset[p.other + 1];
     for (const FacePair& p : pairs) ++graph_.offset[p.cell - first_cell_ + 1];
     for (const auto& [cell, other] : joined_) ++graph_.offset[cell - first_cell_ + 1];
     std::partial_sum(graph_.offset.begin(), graph_.offset.end(), graph_.offset.begin());
     graph_.neighbours.resize(graph_.offset.back());
     std::vector<Index> next(graph_.offset.begin(), graph_.offset.end() - 1);
-    for (const auto& [a, b] : within_) {
-      graph_.neighbours[next[a]++] = first_cell_ + b;
-      graph_.neighbours[next[b]++] = first_cell_ + a;
+    for (const auto& p : within_) {
+      graph_.neighbours[next[p.cell]++] = first_cell_ + p.other;
+      graph_.neighbours[next[p.other]++] = first_cell_ + p.cell;
     }
     within_ = {};
     for (const FacePair& p : pairs) graph_.neighbours[next[p.cell - first_cell_]++] = p.other;
@@ -208,8 +211,8 @@ class BlockFaces {
   MeshBlock& block_;
   GlobalIndex first_cell_, n_boundary_ = 0;
   std::vector<int> material_of_zone_;
-  std::vector<FaceSide> sides_;                  // without another side in this block
-  std::vector<std::pair<Index, Index>> within_;  // cells of this block that share a face
+  std::vector<FaceSide> sides_;  // without another side in this block
+  std::vector<BlockGraph::Pair> within_;
   std::vector<std::array<GlobalIndex, 2>>
       joined_;                    // cells that share a periodic face, the first of this block
   std::vector<FacePair> bonded_;  // as the cell with the smaller number sees them

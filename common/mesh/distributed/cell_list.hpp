@@ -8,12 +8,19 @@
 
 namespace couplet::mesh {
 
-/// What one face of a cell is that no other cell shares, or that is bonded.
+/// A face of a cell that no other cell shares, or that is bonded or periodic.
 struct FaceRecord {
   std::int8_t face = 0;  ///< position among the faces of the cell's shape
   std::int8_t turn = 0;  ///< bonded: which of the cell's points of the face comes first
   int patch = 0;
   GlobalIndex number = 0;  ///< of the boundary face
+
+  // A periodic face has, in place of a patch, the pair of patches that it joins and which of the two it was on; its number is that
+  // of the cell beyond.
+  static int joined(int pair, int side) { return -1 - 2 * pair - side; }
+  bool is_joined() const { return patch < 0; }
+  int pair() const { return (-1 - patch) / 2; }
+  int side() const { return (-1 - patch) % 2; }
 };
 
 /// Cells with numbers of the mesh, as they travel from rank to rank.

@@ -15,8 +15,9 @@
 
 namespace couplet::mesh {
 
-/// This rank's block of a mesh of which no rank has the whole, as a file or a generator gives it: an even share of the
-/// points and of the cells by their numbers, and some boundary elements, those of rank 0 first.
+/// This rank's block of a mesh, as a file or a generator gives it: its share of the points and of the cells by their
+/// numbers, and some boundary elements, those of rank 0 first. A small mesh is a block of rank 0 with empty ones beside it; of
+/// a large one no rank has the whole.
 struct MeshBlock {
   int dim = 3;
   Shares point_shares, cell_shares;
@@ -25,7 +26,7 @@ struct MeshBlock {
   std::vector<GlobalIndex> element_points;
   std::vector<Index> element_offset{0};
   std::vector<int> element_patch;
-  // The same on all ranks, as in RawMesh.
+  // The same on all ranks, as in RawMesh:
   std::vector<std::string> zones, patches;
   std::vector<std::array<std::string, 2>> periodic;
   std::vector<std::vector<std::string>> materials;
@@ -40,16 +41,25 @@ struct MeshBlock {
   void push_element(int patch, std::span<const GlobalIndex> points_of_element);
 };
 
-/// The block of this rank of a mesh that every rank has as a whole.
-MeshBlock block_of(MPI_Comm comm, RawMesh raw);
+/// This rank's block of a mesh that the first `holders` ranks share out evenly, each of which has it as a whole. `raw` is
+/// that of rank 0 elsewhere only in `periodic`, `materials` and `find_wide_points`. Collective.
+MeshBlock block_of(MPI_Comm comm, const RawMesh& raw, int holders = 1);
+
+/// The same mesh as one piece, of a block that is all of it.
+RawMesh raw_of(MeshBlock block);
+
+/// Takes out the points that no cell and no boundary element has (a .msh may carry centers of circles); the order of the others
+/// stays, and they are shared out anew. Collective.
+void drop_unused_points(MPI_Comm comm, MeshBlock& block);
 
 /// From blocks to this rank's part: faces are matched, cells shared out by PT-Scotch and sent to their ranks, and what
-/// surrounds them fetched, all in parallel: no rank ever holds more than its block and its part with its surroundings.
-/// The parts are those that distribute() would give if it shared the cells out in the same way. `part`: the rank of each
-/// cell of the block, in place of PT-Scotch's. Collective.
+/// surrounds them fetched, all in parallel: no rank holds more than its block and its part with its surroundings.
+/// `part`: the rank of each cell of the block, in place of PT-Scotch's. Every boundary face must belong to exactly one patch;
+/// errors name the place. Collective.
 LoadedMesh distribute(MPI_Comm comm, MeshBlock block, std::span<const int> part = {});
 
-/// The same of a block of this file, all lengths times `scale`, checked and reported as load_mesh() does. Collective.
+/// The same of a block of this file, all lengths times `scale`, checked and reported. Throws Error with the name of the
+/// file. Collective.
 LoadedMesh load_block(MPI_Comm comm, MeshBlock block, const std::filesystem::path& file, double scale);
 
 }  // namespace couplet::mesh

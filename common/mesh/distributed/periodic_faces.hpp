@@ -18,15 +18,9 @@ struct PeriodicFaces {
   std::vector<Vec3> translation;   ///< of each pair, from its first patch to its second
 };
 
-/// Joins the faces of periodic patches, which meet by their centres at ranks that share out a direction among them. Throws the
-/// Error that join_periodic() throws. `first_element`: of this rank's block. Collective.
+/// Joins the faces of periodic patches, which meet by their centres at ranks that share out a direction among them. Throws
+/// Error naming the place of a face without a partner. `first_element`: of this rank's block. Collective.
 PeriodicFaces find_periodic_faces(MPI_Comm comm, const MeshBlock& block,
                                   const std::vector<BoundedCell>& bounded, GlobalIndex first_element);
-
-/// What a record of a cell says of a joined face in place of a patch; its `number` is the cell beyond.
-inline int patch_of_joined(int pair, int side) { return -1 - 2 * pair - side; }
-inline bool is_joined(int patch) { return patch < 0; }
-inline int pair_of(int patch) { return (-1 - patch) / 2; }
-inline int side_of(int patch) { return (-1 - patch) % 2; }
 
 }  // namespace couplet::mesh

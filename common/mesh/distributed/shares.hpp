@@ -11,14 +11,19 @@
 
 namespace couplet::mesh {
 
-/// Numbers 0 .. n - 1 in even shares, rank by rank: where what has a number stands while no rank owns it.
+/// Numbers 0 .. n - 1 in even shares, rank by rank, of the first `holders` ranks: where what has a number stands while
+/// no rank owns it.
 struct Shares {
   GlobalIndex n = 0;
   int ranks = 1;
-  GlobalIndex first(int rank) const { return n / ranks * rank + std::min<GlobalIndex>(rank, n % ranks); }
+  int holders = ranks;
+  GlobalIndex first(int rank) const {
+    rank = std::min(rank, holders);
+    return n / holders * rank + std::min<GlobalIndex>(rank, n % holders);
+  }
   GlobalIndex count(int rank) const { return first(rank + 1) - first(rank); }
   int rank_of(GlobalIndex i) const {
-    const GlobalIndex least = n / ranks, larger = n % ranks, in_larger = (least + 1) * larger;
+    const GlobalIndex least = n / holders, larger = n % holders, in_larger = (least + 1) * larger;
     return static_cast<int>(i < in_larger ? i / (least + 1) : larger + (i - in_larger) / least);
   }
 };

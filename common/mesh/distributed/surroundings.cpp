@@ -2,8 +2,7 @@
 #include "common/mesh/distributed/surroundings.hpp"
 
 #include <algorithm>
-
-#include "common/mesh/distributed/periodic_faces.hpp"
+#include <numeric>
 
 namespace couplet::mesh {
 namespace {
@@ -30,6 +29,7 @@ void sort_once(Shipments& shipments) {
 
 /// Sends own cells to other ranks and takes in, beside what is there, what comes. Collective.
 void exchange_cells(MPI_Comm comm, const Shipments& shipments, LocalCells& local) {
+  if (parallel::sum(comm, GlobalIndex(shipments.size())) == 0) return;
   const auto come = ship(comm, local.cells, shipments, [&](Index c) { return local.cells.id[c]; });
   CellList all = std::move(local.cells);
   std::vector<std::pair<GlobalIndex, int>> owners;
@@ -48,13 +48,52 @@ void exchange_cells(MPI_Comm comm, const Shipments& shipments, LocalCells& local
 
 }  // namespace
 
-CellList send_to_owners(MPI_Comm comm, const MeshBlock& block, std::span<const int> part) {
+PointDirectory::PointDirectory(MPI_Comm comm, const Shares& shares, const std::vector<GlobalIndex>& points)
+    : comm_(comm), shares_(shares), first_(shares.first(parallel::comm_rank(comm))) {
+  const auto told = parallel::exchange(comm, by_share(shares, points));
+  ranks_.offset.assign(std::size_t(shares.count(parallel::comm_rank(comm))) + 1, 0);
+  for (const GlobalIndex p : told.items) ++ranks_.offset[p - first_ + 1];
+  std::partial_sum(ranks_.offset.begin(), ranks_.offset.end(), ranks_.offset.begin());
+  ranks_.index.resize(told.items.size());
+  std::vector<Index> next(ranks_.offset.begin(), ranks_.offset.end() - 1);
+  for (int r = 0; r < shares.ranks; ++r)
+    for (const GlobalIndex p : told.of(r)) ranks_.index[next[p - first_]++] = r;
+}
+
+Csr PointDirectory::ranks_at(const std::vector<GlobalIndex>& points) const {
+  const auto asked = parallel::exchange(comm_, by_share(shares_, points));
+  std::vector<std::size_t> count;
+  for (int r = 0; r < shares_.ranks; ++r) {
+    count.push_back(0);
+    for (const GlobalIndex p : asked.of(r)) count.back() += 1 + ranks_[Index(p - first_)].size();
+  }
+  auto answers = parallel::make_parcels<Index>(count);
+  auto to = answers.items.begin();
+  for (const GlobalIndex p : asked.items) {
+    const auto ranks = ranks_[Index(p - first_)];
+    *to++ = static_cast<Index>(ranks.size());
+    to = std::copy(ranks.begin(), ranks.end(), to);
+  }
+  const std::vector<Index> told = std::move(parallel::exchange(comm_, answers).items);
+  Csr rows;
+  rows.offset.reserve(points.size() + 1);
+  for (auto at = told.begin(); at != told.end(); at += 1 + *at) rows.push_row({&*at + 1, std::size_t(*at)});
+  return rows;
+}
+
+CellList send_to_owners(MPI_Comm comm, MeshBlock& block, std::span<const int> part) {
+  if (parallel::comm_size(comm) == 1) {
+    block.cells.id.resize(block.cells.type.size());
+    std::iota(block.cells.id.begin(), block.cells.id.end(), 0);
+    return std::move(block.cells);
+  }
   Shipments shipments;
   for (Index c = 0; c < block.cells.size(); ++c) shipments.emplace_back(part[c], c);
   const GlobalIndex first = block.cell_shares.first(parallel::comm_rank(comm));
   CellList cells;
   // Blocks hold ascending numbers, rank by rank: what comes is in order.
   unpack(ship(comm, block.cells, shipments, [&](Index c) { return first + c; }).items, cells);
+  block.cells = {};
   return cells;
 }
 
@@ -62,13 +101,13 @@ std::vector<CellAcross> cells_across(MPI_Comm comm, const Shares& shares, std::s
                                      const CellList& own) {
   std::vector<GlobalIndex> beyond;
   for (const FaceRecord& r : own.records)
-    if (is_joined(r.patch)) beyond.push_back(r.number);
+    if (r.is_joined()) beyond.push_back(r.number);
   const PointNumbers numbers(beyond);
   const std::vector<int> rank = fetch(comm, shares, part, numbers.numbers());
   std::vector<CellAcross> across;
   for (Index c = 0; c < own.size(); ++c)
     for (const FaceRecord& r : own.records_of(c))
-      if (is_joined(r.patch)) across.push_back({c, rank[numbers.place(r.number)]});
+      if (r.is_joined()) across.push_back({c, rank[numbers.place(r.number)]});
   return across;
 }
 

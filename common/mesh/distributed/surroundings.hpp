@@ -2,9 +2,25 @@
 #pragma once
 
 #include "common/mesh/distributed/mesh_block.hpp"
-#include "common/mesh/distributed/point_directory.hpp"
+#include "common/mesh/distributed/shares.hpp"
+#include "common/mesh/mesh.hpp"
 
 namespace couplet::mesh {
+
+/// Which ranks have cells at which points, kept by each rank for the points of its share.
+class PointDirectory {
+ public:
+  /// `points`: of this rank's own cells, ascending. Collective.
+  PointDirectory(MPI_Comm comm, const Shares& shares, const std::vector<GlobalIndex>& points);
+  /// The ranks at each of these points, ascending both. Collective.
+  Csr ranks_at(const std::vector<GlobalIndex>& points) const;
+
+ private:
+  MPI_Comm comm_;
+  Shares shares_;
+  GlobalIndex first_;
+  Csr ranks_;
+};
 
 /// This rank's cells and copies of those around them.
 struct LocalCells {
@@ -12,8 +28,9 @@ struct LocalCells {
   std::vector<int> owner;  ///< rank that owns each
 };
 
-/// The cells of the blocks to the ranks that own them (`part`, of each cell of the block), in ascending order. Collective.
-CellList send_to_owners(MPI_Comm comm, const MeshBlock& block, std::span<const int> part);
+/// Sends the cells of the blocks, which are gone then, to the ranks that own them (`part`, of each cell of the block), in ascending
+/// order. Collective.
+CellList send_to_owners(MPI_Comm comm, MeshBlock& block, std::span<const int> part);
 
 /// Own cell `cell` and the rank of the one beyond its periodic face.
 struct CellAcross {

@@ -5,21 +5,61 @@
 #include <array>
 #include <cctype>
 #include <fstream>
+#include <set>
 #include <sstream>
+#include <string_view>
 
 #include "common/base/error.hpp"
-#include "common/mesh/gmsh/geo_check.hpp"
-#include "common/mesh/gmsh/geo_rewrite.hpp"
-#include "common/mesh/gmsh/geo_words.hpp"
 
 namespace couplet::mesh {
 namespace {
 
 namespace fs = std::filesystem;
-using Tokens = std::vector<GeoToken>;
 
-constexpr int deepest = 16;  // files that include files
+constexpr std::size_t deepest = 16;  // files that include files
 constexpr std::uintmax_t largest = 64 << 20;
+
+enum class Kind { word, text, symbol, end };
+struct Token {
+  Kind kind = Kind::end;
+  std::string_view text;  ///< of a quoted text: without the quotes
+  std::size_t line = 0;   ///< counts from 1
+
+  bool is(std::string_view symbol_or_word) const { return kind != Kind::text && text == symbol_or_word; }
+  bool is_word() const { return kind == Kind::word; }
+  bool is_text() const { return kind == Kind::text; }
+};
+using Tokens = std::vector<Token>;
+
+bool is_of_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+
+/// Words, quoted texts and other characters, each with its line, without blanks and comments. They point into `all`.
+Tokens tokens_of(std::string_view all) {
+  Tokens tokens;
+  std::size_t line = 1;
+  for (std::size_t at = 0; at < all.size();) {
+    const char c = all[at];
+    const std::string_view rest = all.substr(at);
+    std::size_t length = 1;
+    if (rest.starts_with("//")) {
+      length = std::min(rest.find('\n'), rest.size());
+    } else if (rest.starts_with("/*")) {
+      length = std::min(rest.find("*/", 2), rest.size() - 2) + 2;
+    } else if (c == '"' || c == '\'') {
+      length = std::min(rest.find(c, 1), rest.size() - 1) + 1;
+      tokens.push_back({Kind::text, rest.substr(1, std::max<std::size_t>(length, 2) - 2), line});
+    } else if (is_of_word(c)) {
+      while (length < rest.size() && is_of_word(rest[length])) ++length;
+      const bool is_number = std::isdigit(static_cast<unsigned char>(c)) != 0;
+      tokens.push_back({is_number ? Kind::symbol : Kind::word, rest.substr(0, length), line});
+    } else if (std::isspace(static_cast<unsigned char>(c)) == 0) {
+      tokens.push_back({Kind::symbol, rest.substr(0, 1), line});
+    }
+    line += std::size_t(std::ranges::count(rest.substr(0, length), '\n'));
+    at += length;
+  }
+  return tokens;
+}
 
 std::string read_file(const fs::path& file) {
   std::error_code ignored;
@@ -38,13 +78,13 @@ std::string read_file(const fs::path& file) {
 class Facts {
  public:
   Facts(GeoScript& script, Tokens tokens) : script_(script), tokens_(std::move(tokens)) {
-    tokens_.insert(tokens_.end(), 4, GeoToken{});
+    tokens_.insert(tokens_.end(), 4, Token{});
     for (std::size_t i = 0; i + 4 < tokens_.size(); ++i)
       if (tokens_[i].is_word()) statement(i);
   }
 
  private:
-  bool ends(std::size_t i) const { return tokens_[i].kind == GeoToken::Kind::end; }
+  bool ends(std::size_t i) const { return tokens_[i].kind == Kind::end; }
 
   void statement(std::size_t i) {
     const std::string_view word = tokens_[i].text;
@@ -74,7 +114,7 @@ class Facts {
   void constants(std::size_t i) {
     int open = 0;
     for (bool expected = true; !ends(i); ++i) {
-      const GeoToken& t = tokens_[i];
+      const Token& t = tokens_[i];
       if (t.is_word() && open == 0 && expected) script_.constants.emplace_back(t.text);
       expected = t.is(",") && open == 0;
       if (t.is("]") && open == 0) return;
@@ -108,91 +148,44 @@ class Scan {
  public:
   explicit Scan(GeoScript& script) : script_(script) {}
 
-  /// The name under which gmsh gets this file.
-  std::string geo(const fs::path& file, int depth) {
-    const std::size_t i = add(file, ".geo");
-    const std::string text = script_.files[i].text;
-    if (depth == 0) folder_ = fs::weakly_canonical(fs::absolute(file).parent_path());
+  void geo(const fs::path& file) {
+    const std::string text = add(file);
     find_lost(file, text);
-    const GeoTokens cut = cut_geo(text);
-    const GeoOffence offence = find_offence(cut);
-    if (!offence.what.empty()) danger(offence, file);
-    Facts(script_, cut.tokens);
-    open_.push_back(file);
-    const std::string rewritten = rewrite_geo(cut.tokens, [&](const std::string& name) {
-      return included(file.parent_path(), name, {{}, line_of(cut.tokens, name)}, depth);
-    });
+    const Tokens tokens = tokens_of(text);
+    Facts(script_, tokens);
+    open_.push_back(fs::weakly_canonical(file));
+    for (std::size_t i = 0; i + 2 < tokens.size(); ++i) {
+      if (!tokens[i].is("Include") && !tokens[i].is("Merge") && !tokens[i].is("ShapeFromFile")) continue;
+      const Token& name = tokens[i + (tokens[i + 1].is("(") ? 2 : 1)];
+      if (name.is_text())
+        include(file.parent_path() / name.text);
+      else if (script_.computed.empty())
+        script_.computed = fmt::format("line {} of '{}'", tokens[i].line, file.string());
+    }
     open_.pop_back();
-    script_.files[i].text = rewritten;
-    return script_.files[i].name;
   }
 
  private:
-  static std::size_t line_of(const Tokens& tokens, const std::string& name) {
-    for (const GeoToken& t : tokens)
-      if (t.is_text() && t.text == name) return t.line;
-    return 0;
-  }
-
-  std::size_t add(const fs::path& file, const std::string& kind) {
+  std::string add(const fs::path& file) {
     std::string text = read_file(file);
     script_.text += text;
     if (script_.text.size() > largest)
       throw Error("The geometry of '{}' is larger than {} MB.", file.string(), largest >> 20);
-    script_.files.push_back({file, fmt::format("{}{}", script_.files.size(), kind), std::move(text)});
-    return script_.files.size() - 1;
+    return text;
   }
 
-  std::string included(const fs::path& folder, const std::string& name, GeoOffence where, int depth) {
-    const fs::path file = folder / name;
-    const auto refuse = [&](const char* why) {
-      where.what = fmt::format("the file '{}' ({})", name, why);
-      danger(where, open_.back());
-      return std::string("refused.geo");
-    };
-    if (fs::path(name).is_absolute()) return refuse("an absolute path");
+  /// A file that is not there gmsh reports, if it gets there. Each is read once.
+  void include(const fs::path& file) {
     std::error_code ignored;
+    if (!fs::is_regular_file(file, ignored)) return;
     const fs::path real = fs::weakly_canonical(file, ignored);
-    const auto [end, rest] = std::mismatch(folder_.begin(), folder_.end(), real.begin(), real.end());
-    if (end != folder_.end()) return refuse("outside the folder of the case");
-    if (!fs::exists(file, ignored)) {  // gmsh will say it if it gets there
-      const std::string missing = fmt::format("{}.missing.geo", script_.files.size());
-      script_.files.push_back({file, missing, {}, false});
-      return missing;
-    }
-    if (!fs::is_regular_file(real, ignored)) return refuse("not a file");
-    if (const auto known = names_.find(real); known != names_.end() && !is_open(real)) return known->second;
-    if (depth >= deepest || is_open(real))
-      throw Error("The geometry file '{}' is included {} levels deep.", file.string(), depth + 1);
-    const std::string kind = file.extension().string();
-    std::string found;
-    if (kind == ".geo") {
-      found = geo(real, depth + 1);
-    } else if (is_mesh_or_shape(real, kind)) {
-      found = script_.files[add(real, kind)].name;
-    } else {
-      return refuse(
-          "not a .geo, .step, .stp, .brep, .iges, .igs, .stl or .unv file, nor a .msh that begins with "
-          "$MeshFormat");
-    }
-    return names_[real] = found;
-  }
-
-  bool is_open(const fs::path& real) const {
-    return std::any_of(open_.begin(), open_.end(), [&](const fs::path& o) {
-      std::error_code ignored;
-      return fs::weakly_canonical(o, ignored) == real;
-    });
-  }
-
-  /// gmsh reads these by the end of their name, and takes anything else for a script, .msh that is none, too.
-  static bool is_mesh_or_shape(const fs::path& file, const std::string& kind) {
-    for (const char* known : {".step", ".stp", ".brep", ".iges", ".igs", ".stl", ".unv"})
-      if (kind == known) return true;
-    std::ifstream in(file, std::ios::binary);
-    std::string head(12, '\0');
-    in.read(head.data(), 12);
-    return kind == ".msh" && (head == "$MeshFormat\n" || head == "$MeshFormat\r");
+    if (open_.size() >= deepest || std::ranges::find(open_, real) != open_.end())
+      throw Error("The geometry file '{}' is included {} levels deep.", file.string(), open_.size());
+    if (!known_.insert(real).second) return;
+    if (file.extension() == ".geo")
+      geo(real);
+    else
+      add(real);
   }
 
   /// Of a last line without a newline gmsh reads one statement and leaves out the others.
@@ -200,36 +193,22 @@ class Scan {
     const std::string_view last = text.substr(text.find_last_of('\n') + 1);
     const std::size_t first = last.find(';');
     if (!script_.lost.empty() || first == std::string_view::npos) return;
-    const GeoTokens rest = cut_geo(last.substr(first + 1));
-    if (rest.tokens.empty() && rest.doubt.empty()) return;
+    if (tokens_of(last.substr(first + 1)).empty()) return;
     script_.lost =
         fmt::format("line {} of '{}'", 1 + std::count(text.begin(), text.end(), '\n'), file.string());
   }
 
-  void danger(const GeoOffence& offence, const fs::path& file) {
-    if (script_.danger.empty())
-      script_.danger = fmt::format("{} in line {} of {}", offence.what, offence.line, file.string());
-  }
-
   GeoScript& script_;
-  fs::path folder_;  // of the case
-  std::map<fs::path, std::string> names_;
+  std::set<fs::path> known_;
   std::vector<fs::path> open_;
 };
 
 }  // namespace
 
-std::string GeoScript::refusal() const {
-  return fmt::format(
-      "The geometry has {}, which is not passed to gmsh, because a .geo can run commands and write files "
-      "with your permissions. {}. If you trust the case, start with --allow-commands.",
-      danger, geo_words::sentence);
-}
-
 GeoScript read_geo(const fs::path& file) {
   GeoScript script;
   script.groups.assign(4, std::vector<std::string>());
-  Scan(script).geo(file, 0);
+  Scan(script).geo(file);
   return script;
 }
 

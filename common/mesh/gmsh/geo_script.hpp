@@ -18,25 +18,15 @@ struct GeoScript {
   /// Names that a number of cells is made of, by Layers or Transfinite Curve. `whole`: as they are or with something
   /// added, so that only a whole number is meant.
   std::map<std::string, bool> counts;
-  /// What in it is not among the statements that gmsh gets: "'SystemCall' in line 3 of plate.geo"; empty if all is.
-  std::string danger;
-  /// One sentence about `danger` for a message: what is allowed, what to do.
-  std::string refusal() const;
-  /// What gmsh gets: the pieces of each file as they were looked at, without comments, under names of our own, the first is
-  /// that of the .geo itself; a merged mesh or CAD file as it is.
-  struct File {
-    std::filesystem::path original;
-    std::string name, text;
-    bool exists = true;  ///< false: gmsh will say so if it gets there
-  };
-  std::vector<File> files;
   /// A last line of which gmsh would leave out all but one statement: "line 3 of 'plate.geo'"; empty: there is none.
   std::string lost;
+  /// An Include or Merge whose name is computed, so that changes of its file are not seen: "line 3 of 'plate.geo'"; empty: there is none.
+  std::string computed;
   /// Names of the physical groups by dimension (0 to 3); nothing where one of them is computed.
   std::vector<std::optional<std::vector<std::string>>> groups;
 };
 
-/// Throws Error if a file cannot be read.
+/// Throws Error if a file cannot be read, or includes itself.
 GeoScript read_geo(const std::filesystem::path& file);
 
 }  // namespace couplet::mesh

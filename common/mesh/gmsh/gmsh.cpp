@@ -2,17 +2,16 @@
 #include "common/mesh/gmsh/gmsh.hpp"
 
 #include <unistd.h>
-
 #include <algorithm>
 #include <csignal>
 #include <fstream>
 #include <sstream>
+#include <string>
 
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
 #include "common/base/text.hpp"
 #include "common/log/log.hpp"
-#include "common/mesh/gmsh/mesh_cache.hpp"
 #include "common/mesh/gmsh/sandbox.hpp"
 
 namespace couplet::mesh {
@@ -37,31 +36,32 @@ std::string read_log(const fs::path& file) {
   return text;
 }
 
-/// Up to three different lines of gmsh's output that speak of errors, with the user's names of the files.
-std::string complaints(const std::string& output, const GmshInput& input, const fs::path& folder) {
+/// Up to three different lines of gmsh's output that speak of errors.
+std::string complaints(const std::string& output) {
   std::istringstream in(output);
   std::string line, found, last;
   for (int n = 0; n < 3 && std::getline(in, line);) {
     if (!line.starts_with("Error") || line == last || line.find("----") != std::string::npos) continue;
     last = line;
-    for (const GmshInput::File& file : input.files) {
-      const std::string own = (folder / file.name).string();
-      for (std::size_t at = line.find(own); at != std::string::npos; at = line.find(own, at + 1))
-        line.replace(at, own.size(), file.original.string());
-    }
     found += "\n  " + line;
     ++n;
   }
   return found;
 }
 
-void write_files(const GmshInput& input, const fs::path& folder) {
-  for (const GmshInput::File& file : input.files) {
-    std::ofstream out(folder / file.name, std::ios::binary);
-    out << file.text;
-    out.close();
-    if (!out) throw Error("Cannot write the file '{}'. Check the disk space.", (folder / file.name).string());
-  }
+/// Whether these may be complaints about what the sandbox forbids.
+bool is_of_sandbox(const std::string& errors) {
+  for (const char* words : {"open file", "system call", "socket", "directory"})
+    if (errors.find(words) != std::string::npos) return true;
+  return false;
+}
+
+/// A .geo of our own that includes it: gmsh would read the options in <source>.opt, too, if it were given the source itself.
+fs::path including(const fs::path& source, const fs::path& folder) {
+  if (source.extension() != ".geo") return source;
+  const fs::path own = folder / "main.geo";
+  std::ofstream(own) << fmt::format("Include \"{}\";\n", source.string());
+  return own;
 }
 
 std::string reason(const ProgramEnd& end) {
@@ -96,30 +96,69 @@ void put(const fs::path& mesh, const fs::path& result, const fs::path& source) {
   fs::rename(own, result);
 }
 
+constexpr std::string_view head = "$Comments\ncouplet ";
+
+std::string text_if_any(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+std::string seal_of(std::string_view text, const std::string& name) {
+  const std::size_t digest = base::stable_hash(fmt::format("{}\n{:016x}", name, base::stable_hash(text)));
+  return fmt::format("{}{:016x}\n$EndComments\n", head, digest);
+}
+
+/// Appends a digest of the file and of its `name` to a .msh 4.1, as a section that every reader passes over.
+void seal_cache(const std::filesystem::path& file, const std::string& name) {
+  const std::string seal = seal_of(text_if_any(file), name);
+  std::ofstream out(file, std::ios::binary | std::ios::app);
+  out << seal;
+  out.close();
+  if (!out) throw Error("Cannot write the mesh '{}'. Check the disk space.", file.string());
+}
+
 }  // namespace
 
-void run_gmsh(const std::vector<std::string>& options, const GmshInput& input, const fs::path& result,
-              const std::string& verb) {
+bool is_sound_cache(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file)) return false;
+  const std::string text = text_if_any(file);
+  const std::size_t at = text.rfind(head);
+  if (at != std::string::npos && std::string_view(text).substr(at) ==
+                                     seal_of(std::string_view(text).substr(0, at), file.filename().string()))
+    return true;
+  log::warn("The cached mesh '{}' is damaged, or not written by Couplet; it is regenerated.", file.string());
+  return false;
+}
+
+void run_gmsh(const std::vector<std::string>& options, const fs::path& source, bool trusted,
+              const fs::path& result, const std::string& verb) {
   if (access(fs::absolute(result).parent_path().c_str(), W_OK) != 0)
     throw Error(
         "The mesh of '{}' is written next to it, but that folder is not writable. Change the permissions, "
         "or create the .msh elsewhere and use that.",
-        input.source.string());
+        source.string());
   const OwnFolder folder;
-  const fs::path mesh = folder.path() / "mesh.msh", log = folder.path() / "gmsh.log";
+  const fs::path mesh = folder.path() / "mesh.msh", log = folder.path() / "gmsh.log",
+                 place = fs::canonical(fs::absolute(source).parent_path()),
+                 read = place / source.filename();  // a name that starts with '-' would be an option
   std::vector<std::string> command{"gmsh", "-nopopup", "-format", "msh41", "-v", "2"};
   command.insert(command.end(), options.begin(), options.end());
-  write_files(input, folder.path());
-  // Absolute: a name that starts with '-' would be an option.
-  const bool trusted = input.files.empty();
-  const fs::path read = trusted ? fs::absolute(input.source) : folder.path() / input.files.front().name;
-  command.insert(command.end(), {"-o", mesh.string(), read.string()});
-  const ProgramEnd end = trusted ? run_trusted(command, log) : run_in_sandbox(command, folder.path(), log);
-  const std::string errors = complaints(read_log(log), input, folder.path());
+  command.insert(command.end(), {"-o", mesh.string()});
+  command.push_back(trusted ? read.string() : including(read, folder.path()).string());
+  const ProgramEnd end = trusted ? run_trusted(command, log)
+                                 : run_in_sandbox(command, folder.path(), log, {place, fs::canonical(read)});
+  const std::string errors = complaints(read_log(log));
   if (end.code != 0 || !errors.empty() || !fs::is_regular_file(fs::symlink_status(mesh)))
-    throw Error("gmsh could not {} '{}' ({}).{}", verb, input.source.string(), reason(end), errors);
+    throw Error(
+        "gmsh could not {} '{}' ({}).{}{}", verb, source.string(), reason(end), errors,
+        trusted || !is_of_sandbox(errors)
+            ? ""
+            : "\nHere a geometry may neither run commands nor use files outside its folder. If it must and you "
+              "trust the case, start with --allow-commands.");
   seal_cache(mesh, result.filename().string());
-  put(mesh, result, input.source);
+  put(mesh, result, source);
 }
 
 // What gmsh does not know it would take for a script.
@@ -149,7 +188,7 @@ fs::path convert_mesh(const fs::path& file) {
   const fs::path result = file.parent_path() / (file.stem().string() + "." + hash + ".cache.msh");
   if (is_sound_cache(result)) return result;
   log::info("reading {} with gmsh", file.string());
-  run_gmsh({"-0"}, {file, {{file, "0" + kind, text}}}, result, "read");
+  run_gmsh({"-0"}, file, false, result, "read");
   return result;
 }
 

@@ -9,22 +9,15 @@
 
 namespace couplet::mesh {
 
-/// What gmsh is to read.
-struct GmshInput {
-  struct File {
-    std::filesystem::path original;
-    std::string name, text;  ///< as gmsh gets it
-  };
-  std::filesystem::path source;  ///< as the user knows it
-  /// Copies for gmsh's own folder, the first is the one to read. None: the source itself, which the user trusts.
-  std::vector<File> files;
-};
-
-/// Runs the gmsh program on `input` with these options; its .msh 4.1 gets the name `result` once it is whole. Several
-/// programs of a job may do so at the same time. `verb`: for messages, "mesh" or "read". Throws Error with gmsh's own
-/// complaints.
-void run_gmsh(const std::vector<std::string>& options, const GmshInput& input,
+/// Runs the gmsh program on the file `source` with these options; its .msh 4.1 gets the name `result` once it is whole. Several
+/// programs of a job may do so at the same time. `verb`: for messages, "mesh" or "read". In the sandbox gmsh reads only what is in the
+/// folder of the source; a trusted source has the user's rights. Throws Error with gmsh's own complaints.
+void run_gmsh(const std::vector<std::string>& options, const std::filesystem::path& source, bool trusted,
               const std::filesystem::path& result, const std::string& verb);
+
+/// Whether a cached mesh is as it was sealed under its name. One that is not (damaged, or of somebody else) is named in the
+/// log, and is to be made anew.
+bool is_sound_cache(const std::filesystem::path& file);
 
 /// A mesh of another program (.unv; .med and .cgns where the gmsh at hand was built with them) as .msh, kept beside it as
 /// <stem>.<hash>.cache.msh; groups become patches and zones. Throws Error for a format that gmsh does not read.

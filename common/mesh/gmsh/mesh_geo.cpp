@@ -8,9 +8,9 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/log/log.hpp"
+#include "common/mesh/gmsh/barrier.hpp"
 #include "common/mesh/gmsh/geo_script.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
-#include "common/mesh/gmsh/mesh_cache.hpp"
 #include "common/mesh/load.hpp"
 
 namespace couplet::mesh {
@@ -78,7 +78,16 @@ void refuse_empty(const std::filesystem::path& geo, const std::filesystem::path&
 std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim, const MeshParameters& parameters) {
   const GeoScript script = read_geo(geo);
   const bool trusted = std::getenv("COUPLET_ALLOW_COMMANDS") != nullptr;
-  if (!script.danger.empty() && !trusted) throw Error("{}", script.refusal());
+  if (!trusted && !Barrier::is_possible())
+    throw Error(
+        "A .geo can run commands and write files with your permissions, and this kernel has no Landlock to prevent "
+        "that. If you trust '{}', start with --allow-commands; or mesh it elsewhere and give the .msh.",
+        geo.string());
+  if (!script.computed.empty() && !trusted)
+    throw Error(
+        "The {} includes a file with a computed name, so that Couplet does not notice when that file changes. Write "
+        "the name as a text, or start with --allow-commands.",
+        script.computed);
   if (!script.lost.empty())
     throw Error(
         "The {} does not end with a newline; gmsh would read only one statement of such a last line and "
@@ -98,11 +107,7 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim, const 
   std::vector<std::string> options{fmt::format("-{}", dim)};
   options.insert(options.end(), numbers.begin(), numbers.end());
   log::info("meshing {} with gmsh", geo.string());
-  GmshInput input{geo, {}};
-  if (script.danger.empty())
-    for (const GeoScript::File& file : script.files)
-      if (file.exists) input.files.push_back({file.original, file.name, file.text});
-  run_gmsh(options, input, result, "mesh");
+  run_gmsh(options, geo, trusted, result, "mesh");
   refuse_empty(geo, result, dim);
   return result;
 }

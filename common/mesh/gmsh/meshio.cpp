@@ -103,7 +103,7 @@ RawMesh read_by_meshio(const fs::path& file) {
   const fs::path deck = folder.path() / "mesh.inp", log = folder.path() / "python.log";
   log::info("reading {} with meshio", file.string());
   const ProgramEnd end = run_in_sandbox({"python3", "-c", script, fs::absolute(file).string(), deck.string()},
-                                        folder.path(), log);
+                                        folder.path(), log, {fs::canonical(file)});
   if (end.code == no_module)
     throw Error(
         "The mesh '{}' is read with the Python module meshio, but python3 on the PATH lacks a module:{} "

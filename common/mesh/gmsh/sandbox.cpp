@@ -1,22 +1,128 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/gmsh/sandbox.hpp"
 
-#include <sys/stat.h>
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
-
+#include <algorithm>
+#include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
-#include <map>
+#include <filesystem>
+#include <fstream>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/log/log.hpp"
-#include "common/mesh/gmsh/child_process.hpp"
+#include "common/mesh/gmsh/barrier.hpp"
 
 namespace couplet::mesh {
 namespace {
+
+struct ChildProcess {
+  std::vector<std::string> command;      ///< the program with its whole path
+  std::vector<std::string> environment;  ///< "NAME=value"
+  std::filesystem::path folder;          ///< to work in; empty: as it is
+  std::filesystem::path output;
+  const Barrier* barrier = nullptr;  ///< around the program; nullptr: none
+};
+
+constexpr rlim_t hours = 3600;
+
+std::vector<char*> pointers(const std::vector<std::string>& words) {
+  std::vector<char*> result;
+  for (const std::string& word : words) result.push_back(const_cast<char*>(word.c_str()));
+  result.push_back(nullptr);
+  return result;
+}
+
+void limit(__rlimit_resource_t what, rlim_t most) {
+  rlimit now{};
+  if (getrlimit(what, &now) != 0) return;
+  now.rlim_cur = std::min(now.rlim_cur, most);
+  now.rlim_max = std::min(now.rlim_max, most);
+  setrlimit(what, &now);
+}
+
+/// What a child needs, made before the fork: between fork and exec only calls to the kernel are sound.
+struct Prepared {
+  std::vector<char*> arguments, environment;
+  std::string folder, output;
+  rlim_t memory = 0;
+  const Barrier* barrier = nullptr;
+  pid_t parent = 0;
+  int failures = -1;  // a pipe that exec closes
+};
+
+/// The step that failed goes to the parent as errno.
+[[noreturn]] void fail(int pipe) {
+  const int error = errno;
+  [[maybe_unused]] const auto n = write(pipe, &error, sizeof error);
+  _exit(127);
+}
+
+[[noreturn]] void be_child(const Prepared& p) {
+  // Of the thread that forked, not of the process: it waits, and so it is there as long as the child.
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != p.parent) _exit(127);
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_CPU, 4 * hours);
+  limit(RLIMIT_FSIZE, rlim_t(64) << 30);
+  limit(RLIMIT_AS, p.memory);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  for (const int signal : {SIGPIPE, SIGTERM, SIGINT, SIGHUP}) ::signal(signal, SIG_DFL);
+  const int in = open("/dev/null", O_RDONLY),
+            out = open(p.output.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW, 0600);
+  if (in < 0 || out < 0 || dup2(in, STDIN_FILENO) < 0 || dup2(out, STDOUT_FILENO) < 0 ||
+      dup2(out, STDERR_FILENO) < 0)
+    fail(p.failures);
+  if (!p.folder.empty() && chdir(p.folder.c_str()) != 0) fail(p.failures);
+  if (p.barrier != nullptr && !p.barrier->put_up()) fail(p.failures);
+  // Neither files nor sockets of this program. The pipe closes itself.
+  for (int fd = 3; fd < 4096; ++fd)
+    if (fd != p.failures) close(fd);
+  execve(p.arguments[0], p.arguments.data(), p.environment.data());
+  fail(p.failures);
+}
+
+/// Starts it and waits. It gets SIGKILL when the thread that called this ends, so that nothing is left behind by a program
+/// that is killed. Throws Error if it cannot be started.
+ProgramEnd run_child(const ChildProcess& child) {
+  Prepared p;
+  p.arguments = pointers(child.command);
+  p.environment = pointers(child.environment);
+  p.folder = child.folder.string();
+  p.output = child.output.string();
+  p.barrier = child.barrier;
+  p.memory = rlim_t(sysconf(_SC_PHYS_PAGES)) * rlim_t(sysconf(_SC_PAGESIZE));
+  p.parent = getpid();
+  std::array<int, 2> pipe{};
+  if (pipe2(pipe.data(), O_CLOEXEC) != 0) throw Error("Cannot create a pipe: {}.", std::strerror(errno));
+  p.failures = pipe[1];
+  const pid_t id = fork();
+  if (id == 0) be_child(p);
+  const int fork_error = errno;
+  close(pipe[1]);
+  int error = 0;
+  const bool failed = id > 0 && read(pipe[0], &error, sizeof error) == sizeof error;
+  close(pipe[0]);
+  if (id < 0) throw Error("Cannot start the program '{}': {}.", child.command[0], std::strerror(fork_error));
+  int status = 0;
+  while (waitpid(id, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (failed) throw Error("Cannot start the program '{}': {}.", child.command[0], std::strerror(error));
+  if (WIFEXITED(status)) return {WEXITSTATUS(status), 0};
+  return {-1, WIFSIGNALED(status) ? WTERMSIG(status) : 0};
+}
 
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
@@ -70,56 +176,45 @@ Words clean_environment(const fs::path& folder) {
   return kept;
 }
 
-struct Bubblewrap {
-  std::string program;
-  bool proc = true;  // with a /proc of its own, which some containers forbid
-};
-
-/// The command line up to the program: all of the disk to read, one folder to write, no network, an end with its parent.
-Words command_of(const Bubblewrap& b, const fs::path& folder) {
-  Words words{b.program,
-              "--die-with-parent",
-              "--new-session",
-              "--unshare-user",
-              "--unshare-ipc",
-              "--unshare-pid",
-              "--unshare-net",
-              "--unshare-uts",
-              "--ro-bind",
-              "/",
-              "/",
-              "--dev",
-              "/dev"};
-  if (b.proc) words.insert(words.end(), {"--proc", "/proc"});
-  words.insert(words.end(), {"--bind", folder.string(), folder.string(), "--chdir", folder.string()});
-  return words;
+/// What a program needs to start: the system's libraries, and what lies beside a program or an environment that is installed
+/// elsewhere. No file of the user's but these.
+std::vector<fs::path> of_the_system(const fs::path& program) {
+  std::vector<fs::path> paths{"/usr",
+                              "/lib",
+                              "/lib64",
+                              "/bin",
+                              "/sbin",
+                              "/opt",
+                              "/proc",
+                              "/sys/devices/system",
+                              "/dev/urandom",
+                              "/etc/python3",
+                              "/etc/ld.so.cache",
+                              "/etc/localtime"};
+  std::error_code ignored;
+  for (const fs::path& file : {program, fs::canonical(program, ignored)})
+    for (const fs::path& part : {file, file.parent_path().parent_path() / "lib"}) paths.push_back(part);
+  // A script of Python names the interpreter beside it.
+  if (const fs::path python = fs::canonical(program.parent_path() / "python3", ignored); !python.empty())
+    for (const fs::path& part : {python, python.parent_path().parent_path() / "lib"}) paths.push_back(part);
+  for (const char* folder : {"CONDA_PREFIX", "VIRTUAL_ENV", "PYTHONUSERBASE"})
+    if (const char* path = std::getenv(folder)) paths.emplace_back(path);
+  for (const char* list : {"PYTHONPATH", "LD_LIBRARY_PATH"})
+    if (const char* folders = std::getenv(list))
+      for (const std::string& path : base::split(folders, ':'))
+        if (!path.empty()) paths.emplace_back(path);
+  if (const char* home = std::getenv("HOME")) paths.push_back(fs::path(home) / ".local/lib");
+  return paths;
 }
 
-bool is_setuid(const std::string& file) {
-  struct stat status {};
-  return stat(file.c_str(), &status) == 0 && (status.st_mode & S_ISUID) != 0;
-}
-
-/// How bubblewrap starts here; nothing if it is not installed or does not start (namespaces of users may be forbidden).
-std::optional<Bubblewrap> find_bubblewrap(const fs::path& folder) {
-  const auto bwrap = on_path("bwrap"), probe = on_path("true");
-  if (!bwrap || !probe) {
-    log::info(
-        "gmsh runs without a sandbox, with resource limits only: bubblewrap (bwrap) is not installed "
-        "(Debian: apt install bubblewrap).");
-    return std::nullopt;
-  }
-  for (const bool proc : {true, false}) {
-    const Bubblewrap found{*bwrap, proc};
-    ChildProcess child{command_of(found, folder), clean_environment(folder), folder,
-                       folder / "probe.log",      !is_setuid(*bwrap),        false};
-    child.command.push_back(*probe);
-    if (run_child(child).code == 0) return found;
-  }
-  log::info(
-      "gmsh runs without a sandbox, with resource limits only: bubblewrap cannot start here (user "
-      "namespaces?).");
-  return std::nullopt;
+/// pyenv has scripts on the PATH that find the program by starting others, which is not possible in the sandbox.
+std::string behind_shim(const std::string& program, const fs::path& folder) {
+  const fs::path file = program, answer = folder / "shim.log";
+  if (file.parent_path().filename() != "shims") return program;
+  if (run_trusted({"pyenv", "which", file.filename().string()}, answer).code != 0) return program;
+  std::string found;
+  std::getline(std::ifstream(answer), found);
+  return found;
 }
 
 }  // namespace
@@ -137,25 +232,23 @@ OwnFolder::~OwnFolder() {
   fs::remove_all(path_, ignored);
 }
 
-ProgramEnd run_in_sandbox(const Words& command, const fs::path& folder, const fs::path& output) {
-  ChildProcess child{command, clean_environment(folder), folder, output, true, true};
-  child.command[0] = program_of(command);
-  // Tried, and said, once in a process; tests change the PATH.
-  static std::map<std::string, std::optional<Bubblewrap>> tried;
-  const char* path = std::getenv("PATH");
-  const auto [known, is_new] = tried.try_emplace(path != nullptr ? path : "");
-  if (is_new) known->second = find_bubblewrap(folder);
-  if (const auto& bubblewrap = known->second) {
-    const Words words = command_of(*bubblewrap, folder);
-    child.no_new_privileges = !is_setuid(bubblewrap->program);
-    child.no_processes = false;  // bubblewrap itself is one
-    child.command.insert(child.command.begin(), words.begin(), words.end());
+ProgramEnd run_in_sandbox(const Words& command, const fs::path& folder, const fs::path& output,
+                          std::vector<fs::path> readable) {
+  ChildProcess child{command, clean_environment(folder), folder, output};
+  child.command[0] = behind_shim(program_of(command), folder);
+  if (!Barrier::is_possible()) {
+    log::info("{} runs without a sandbox, with resource limits only: this kernel has no Landlock.",
+              command[0]);
+    return run_child(child);
   }
+  for (const fs::path& path : of_the_system(child.command[0])) readable.push_back(path);
+  const Barrier barrier(readable, folder);
+  child.barrier = &barrier;
   return run_child(child);
 }
 
 ProgramEnd run_trusted(const Words& command, const fs::path& output) {
-  ChildProcess child{command, environment_without_mpi(), {}, output, false, false};
+  ChildProcess child{command, environment_without_mpi(), {}, output};
   child.command[0] = program_of(command);
   return run_child(child);
 }

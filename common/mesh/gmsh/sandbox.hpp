@@ -27,10 +27,11 @@ struct ProgramEnd {
 
 /// Runs a program found on PATH, its output in `output`, and waits for it. It ends with the thread that started it, however
 /// that ends. Limits on memory, processor time and size of files. Its working directory, home and temporary folder are
-/// `folder`; where bubblewrap (the program bwrap) is installed and starts, it can write nowhere else, and has no network.
-/// Throws Error if it cannot be started.
+/// `folder`. Where the kernel has Landlock, it can write nowhere else, reads only `readable` and what it needs of the system, and
+/// starts no process; see Barrier. Throws Error if it cannot be started.
 ProgramEnd run_in_sandbox(const std::vector<std::string>& command, const std::filesystem::path& folder,
-                          const std::filesystem::path& output);
+                          const std::filesystem::path& output,
+                          std::vector<std::filesystem::path> readable = {});
 
 /// The same with the user's rights, environment and working directory, but for the limits and the end: for what the user
 /// trusts.

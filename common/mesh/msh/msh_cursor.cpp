@@ -1,16 +1,47 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <array>
-#include <charconv>
+#include "common/mesh/msh/msh_cursor.hpp"
 
-#include "common/mesh/msh/msh_file.hpp"
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
 
 namespace couplet::mesh {
 namespace {
 
+constexpr std::size_t window = 1 << 25;  // bytes, a multiple of the size of a page
+
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
 }  // namespace
+
+MshCursor::MshCursor(std::filesystem::path file) : file_(std::move(file)) {
+  const int fd = open(file_.c_str(), O_RDONLY | O_CLOEXEC);
+  struct stat status {};
+  void* data = MAP_FAILED;
+  if (fd >= 0 && fstat(fd, &status) == 0 && status.st_size > 0)
+    data = mmap(nullptr, std::size_t(status.st_size), PROT_READ, MAP_PRIVATE, fd, 0);
+  if (fd >= 0) close(fd);
+  if (fd < 0 || (data == MAP_FAILED && status.st_size > 0))
+    throw Error("Cannot open the mesh file '{}'. Check the path and the permissions.", file_.string());
+  if (status.st_size == 0) return;
+  text_ = {static_cast<const char*>(data), std::size_t(status.st_size)};
+  madvise(data, text_.size(), MADV_SEQUENTIAL);
+}
+
+MshCursor::~MshCursor() {
+  if (!text_.empty()) munmap(const_cast<char*>(text_.data()), text_.size());
+}
+
+void MshCursor::give_back_pages() {
+  const std::size_t end = at_ / window * window;
+  if (end <= given_back_) return;
+  madvise(const_cast<char*>(text_.data()) + given_back_, end - given_back_, MADV_DONTNEED);
+  given_back_ = end;
+}
 
 void MshCursor::fail(const std::string& what) const {
   const std::size_t at = std::min(at_, text_.size());
@@ -22,9 +53,15 @@ void MshCursor::fail(const std::string& what) const {
   throw Error("{}:{}: {}", file_.string(), 1 + std::count(text_.begin(), end, '\n'), what);
 }
 
+void MshCursor::go_to(std::size_t place, const std::string& section) {
+  at_ = place;
+  given_back_ = std::min(given_back_, at_ / window * window);
+  section_ = section;
+}
+
 std::string MshCursor::line() {
   const std::size_t end = std::min(text_.find('\n', at_), text_.size());
-  std::string result = text_.substr(at_, end - at_);
+  std::string result(text_.substr(at_, end - at_));
   at_ = std::min(end + 1, text_.size());
   while (!result.empty() && is_space(result.back())) result.pop_back();
   const auto first = std::find_if_not(result.begin(), result.end(), is_space);
@@ -43,7 +80,7 @@ std::string MshCursor::next_section() {
 
 void MshCursor::skip_section() {
   const std::size_t end = text_.find("$End" + section_, at_);
-  if (end == std::string::npos)
+  if (end == std::string_view::npos)
     fail(fmt::format("Section ${0} has no $End{0}. The file is incomplete.", section_));
   at_ = end;
   line();
@@ -63,8 +100,9 @@ std::string_view MshCursor::word() {
   while (!at_end() && is_space(text_[at_])) ++at_;
   const std::size_t first = at_;
   while (!at_end() && !is_space(text_[at_])) ++at_;
-  if (first == at_) fail("The file ends here in the middle of its data. It is incomplete.");
-  return std::string_view(text_).substr(first, at_ - first);
+  if (first == at_) fail(incomplete);
+  if (at_ - given_back_ > 2 * window) give_back_pages();
+  return text_.substr(first, at_ - first);
 }
 
 long MshCursor::text_integer() {
@@ -85,48 +123,30 @@ double MshCursor::text_real() {
   return value;
 }
 
-std::size_t MshCursor::count() {
-  const std::size_t n = size();
+void MshCursor::skip(std::size_t numbers, std::size_t bytes) {
+  if (!binary) {
+    for (; numbers > 0; --numbers) word();
+    return;
+  }
+  if (numbers > (text_.size() - at_) / bytes) {
+    at_ = text_.size();
+    fail(incomplete);
+  }
+  at_ += numbers * bytes;
+  give_back_pages();
+}
+
+std::size_t MshCursor::checked(std::size_t n) const {
   if (n > text_.size()) fail(fmt::format("{} entries do not fit into this file; the count is wrong.", n));
   return n;
 }
 
 std::string MshCursor::quoted() {
   const std::size_t first = text_.find('"', at_);
-  const std::size_t last = first == std::string::npos ? first : text_.find('"', first + 1);
-  if (last == std::string::npos) fail("Expected a name in quotation marks.");
+  const std::size_t last = first == std::string_view::npos ? first : text_.find('"', first + 1);
+  if (last == std::string_view::npos) fail("Expected a name in quotation marks.");
   at_ = last + 1;
-  return text_.substr(first + 1, last - first - 1);
-}
-
-void MshCursor::end_of_line() { line(); }
-
-const MshElementType* find_msh_type(int gmsh) {
-  static constexpr std::array<MshElementType, 8> types{{{1, 1, 2, "line"},
-                                                        {2, 2, 3, "triangle"},
-                                                        {3, 2, 4, "quadrilateral"},
-                                                        {4, 3, 4, "tetrahedron"},
-                                                        {5, 3, 8, "hexahedron"},
-                                                        {6, 3, 6, "prism"},
-                                                        {7, 3, 5, "pyramid"},
-                                                        {15, 0, 1, "point"}}};
-  const auto found = std::find_if(types.begin(), types.end(), [&](const auto& t) { return t.gmsh == gmsh; });
-  return found == types.end() ? nullptr : &*found;
-}
-
-const MshElementType& msh_type_or_fail(const MshCursor& cursor, int gmsh) {
-  if (const MshElementType* type = find_msh_type(gmsh)) return *type;
-  cursor.fail(fmt::format(
-      "Element type {} is not supported: expected a first-order line, triangle, quadrilateral, tetrahedron, "
-      "hexahedron, prism or pyramid. For curved elements, remesh with Mesh.ElementOrder = 1.",
-      gmsh));
-}
-
-Index point_or_fail(const MshCursor& cursor, const MshContent& content, std::size_t tag) {
-  const auto found = content.point_of_tag.find(tag);
-  if (found == content.point_of_tag.end())
-    cursor.fail(fmt::format("An element uses node {}, which is not in $Nodes.", tag));
-  return found->second;
+  return std::string(text_.substr(first + 1, last - first - 1));
 }
 
 }  // namespace couplet::mesh

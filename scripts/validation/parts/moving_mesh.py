@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures of meshes that move far and of bodies with prescribed motion."""
 import math
-import re
 
 import numpy as np
 
@@ -54,26 +53,6 @@ def plate(job, motion, method, chi, holds=True, form="incremental", volumes="cur
     return got, valid == holds
 
 
-def third(job, motion):
-    """The third method beside the two others, all from the reference mesh."""
-    least, said = {}, []
-    for method, chi in (("rotations", 0.5), ("laplacian", 1), ("pseudo-solid", 1)):
-        rows, valid, _ = move(job, f"{motion} {method} total {chi} reference", MOTIONS[motion], keys(method, "total", chi))
-        least[method] = rows["least scaled Jacobian [1]"][-1] if valid else -1
-        said.append(f"{method} " + (f"{least[method]:.3f}, edge ratio {rows['largest edge ratio [1]'][-1]:.2f}" if valid
-                                    else f"refused at {100 * rows['time [s]'][-1]:.0f} % of the way"))
-    best = max(least.values())
-    return "scaled Jacobian: " + "; ".join(said), 0 < best == least["rotations"]
-
-
-def f_ar(job):
-    values = {chi: move(job, f"shift by 0.5 pseudo-solid incremental {chi} current", MOTIONS["shift by 0.5"],
-                        keys("pseudo-solid", "incremental", chi, "current"))[0] for chi in (0, 1, 2)}
-    at = min(v["time [s]"][-1] for v in values.values())
-    got = {chi: float(v["largest f_AR [1]"][np.argmin(abs(v["time [s]"] - at))]) for chi, v in values.items()}
-    return f"at {at:.2f} of the way {got[0]:.2f} (chi 0), {got[1]:.2f} (1), {got[2]:.2f} (2)", got[1] < got[0] and got[2] < got[0]
-
-
 def last_displacement(folder):
     import h5py
     with h5py.File(next(folder.glob("*.h5"))) as file:
@@ -113,7 +92,7 @@ def in_space(job, mesh, boundaries, method, chi):
 
 def swinging(job, frame):
     motion = ['participants.fluid.motion={translation: ["-5/(2*pi)*sin(2*pi*0.2*t)", 0]}'] if frame else []
-    folder, _ = job.solve("oscillating-cylinder", ("simulation.time-step=0.02", *motion))
+    folder = job.alone("oscillating-cylinder", ("simulation.time-step=0.02", *motion)).folder
     return job.beside("configs/oscillating-cylinder/morison.py"), folder / "fluid"
 
 
@@ -134,17 +113,9 @@ def both_frames(job):
     return f"c_d {100 * gaps[0]:.1e} %, c_m {100 * gaps[1]:.1e} % apart", max(gaps) <= 0.01
 
 
-def least_squares(job):
-    module, folder = swinging(job, False)
-    drag, mass = module.fit(folder)[:2]
-    fourier = module.averages(folder)[0]
-    return (f"c_d {drag:.4f} ({100 * (drag / 2.09 - 1):+.1f} %), c_m {mass:.4f} by least squares; c_d {fourier:.4f} ({100 * (fourier / 2.09 - 1):+.1f} %) "
-            "by Fourier averages of the same force", abs(drag / 2.09 - 1) <= 0.02 and abs(mass / 1.45 - 1) <= 0.02)
-
-
 def pitching(job):
     """Two periods of a plate that pitches through +-60 degrees in a stream."""
-    folder, _ = job.solve("pitching-plate")
+    folder = job.alone("pitching-plate").folder
     rows = couplet.read_csv(folder / "fluid" / "coefficients.csv")
     t, lift = rows["time [s]"], rows["plate lift [-]"]
     done = bool(t[-1] > 16 - 1e-6 and np.isfinite(lift).all())
@@ -153,7 +124,7 @@ def pitching(job):
 
 def pinch(job, with_gap):
     more = () if with_gap else ("participants.fluid.gaps={}",)
-    folder, _ = job.solve("closing-gap", more)
+    folder = job.alone("closing-gap", more).folder
     return couplet.read_csv(folder / "fluid" / "balance.csv"), folder / "fluid"
 
 
@@ -169,21 +140,14 @@ def closes(job):
             f"and out the same to {leak:.1e} m^3/s", least < 0.0101 * 0.5 and cells[-1] == 0 and bool(t[-1] > 6 - 1e-6) and leak < 1e-6)
 
 
-def saves(job):
-    with_gap, without = pinch(job, True)[0], pinch(job, False)[0]
-    shut = [r["sub-steps [-]"][(r["time [s]"] > 2.9) & (r["time [s]"] < 3.5)].mean() for r in (with_gap, without)]
-    iterations = [r["pressure iterations so far [-]"][-1] for r in (with_gap, without)]
-    return f"{shut[0]:.1f} sub-steps per step while it is shut, {shut[1]:.1f} without; {iterations[0]:.0f} iterations of the pressure, {iterations[1]:.0f} without", None
-
-
 def cavity_5000(job):
     """Beside its own extrapolation from 64^2, 96^2 and 128^2."""
     module = job.beside("configs/cavity/extrema.py")
     ghia = {"u_min": -0.43643, "v_max": 0.43648, "v_min": -0.55408}
     found = {}
     for n in (64, 96, 128):
-        folder, _ = job.solve("cavity", (f"participants.fluid.mesh-parameters={{n: {n}, bump: 0.1}}", "participants.fluid.viscosity=2e-4",
-                                                         "simulation.end-time=400", "simulation.time-step=0.1", "simulation.output.interval=400"), timeout=14400)
+        folder = job.alone("cavity", (f"participants.fluid.mesh-parameters={{n: {n}, bump: 0.1}}", "participants.fluid.viscosity=2e-4",
+                                                         "simulation.end-time=400", "simulation.time-step=0.1", "simulation.output.interval=400"), timeout=14400).folder
         found[n] = module.extrema(folder / "fluid")
     limit = {k: found[128][k] + (found[128][k] - found[96][k]) / ((128 / 96) ** 2 - 1) for k in ghia}
     off = {k: found[128][k] / limit[k] - 1 for k in ghia}
@@ -198,34 +162,3 @@ def speed(job, n):
     fluid = seconds.pop("a step of the fluid")
     return (f"a step of the fluid {fluid:.3f} s; " + "; ".join(f"{k} {v / fluid:.2f} times that" for k, v in seconds.items()),
             seconds["laplacian, total"] < 1.5 * fluid and seconds["pseudo-solid, total"] < 5 * fluid)
-
-
-def instructions(job, n):
-    """The same in instructions (callgrind), which the load of a machine does not change: the equations alone, and whole steps of the mover."""
-    result = job.done([job.root / "benchmarks/mover", "--build", job.build, "--n", n, "--instructions"], timeout=3600)
-    rows = {line.split("|")[0].strip(): [float(v) for v in line.split("|")[1:]] for line in result.stdout.splitlines()[1:] if "|" in line}
-    pressure = rows.pop("a step of the fluid")[1]
-    return (f"the pressure equation {pressure:.0f} million; " + "; ".join(
-        f"{name} {equation / pressure:.2f} times that ({step / pressure:.2f} with geometry, guard and quality.csv)"
-        for name, (step, equation) in rows.items()),
-        rows["laplacian, total"][1] < 1.5 * pressure and rows["pseudo-solid, total"][1] < 5 * pressure)
-
-
-EFFECTS = r"couplet::(?:fluid::|fv::|mesh::)?(PrescribedMotion::\w+|swept_volumes|Gaps<2>::\w+|GapPockets<2>::\w+|Sample::\w+|PlaceSearch::\w+|PointValues<2>::\w+|Fluid<2>::place|set_turn)\b"
-
-
-def off_is_nothing(job):
-    """Functions of motion, gaps and samples that callgrind sees in two steps of the pinch valve, and in the same channel without the three."""
-    called = {}
-    for name, more in (("with", ()), ("without", ("participants.fluid.motion=null", "participants.fluid.gaps={}", "participants.fluid.output.samples={}",
-                                                  "participants.fluid.boundaries.lid={type: no-slip}"))):
-        folder = job.scratch / f"callgrind-{name}"
-        folder.mkdir()
-        command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/counts", job.build / "bin" / "fluid_solver",
-                   job.root / "configs/closing-gap/case.yaml"]
-        for key in (f"simulation.output.folder={folder}", "simulation.end-time=0.04", "simulation.time-step=0.02", *more):
-            command += ["--set", key]
-        job.done(command)
-        called[name] = set(re.findall(EFFECTS, (folder / "counts").read_text()))
-    return (f"{len(called['with'])} functions of motion, gaps and samples run with them, {len(called['without'])} without",
-            len(called["with"]) >= 8 and not called["without"])

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures of the modal plate: frequencies, statics, time, contact, energy, coupling with a fluid."""
 import re
-import shutil
 
 import numpy as np
 
@@ -12,7 +11,7 @@ TABLE_4_1 = [30.57, 129.3, 319.7, 980.6, 1039, 1545, 2039, 2288, 2702, 3738, 382
 
 # -- modes ------------------------------------------------------------------------------------------------------------
 def reed(job):
-    out, _ = job.solve("plate-reed")
+    out = job.alone("plate-reed").folder
     rows = couplet.read_csv(out / "reed" / "frequencies.csv")
     error = rows["frequency [Hz]"] / np.array(TABLE_4_1) - 1
     rms, worst = np.sqrt(np.mean(error ** 2)), np.abs(error).max()
@@ -83,19 +82,3 @@ def contact_in_flow(job):
 def restart_coupled(job):
     apart = max(map(float, re.findall(r"apart by (\S+) of", coupled_restart(job))))
     return f"apart by {apart:.1e} of the largest value", apart == 0
-
-
-def contact_costs_nothing(job):
-    """Functions of the contact that callgrind sees in a run with a seat and in the same run without."""
-    called = {}
-    for name in ("with", "without"):
-        folder = job.scratch / f"callgrind-{name}"
-        folder.mkdir()
-        text = (job.root / "tests/cli/wrong/plate.yaml").read_text()
-        (folder / "case.yaml").write_text(text if name == "with" else re.sub(r".*contact:.*\n?", "", text))
-        shutil.copy(job.root / "tests/cli/wrong/square.msh", folder)
-        job.done(["valgrind", "--tool=callgrind", "--callgrind-out-file=counts", job.build / "bin/plate_modal", "case.yaml"], cwd=folder)
-        called[name] = set(re.findall(r"couplet::plate::(Contact::\w+|seat_stiffness|Oscillators::solve_contact|PlateResults::write_contact)\(",
-                                      (folder / "counts").read_text()))
-    return f"{len(called['with'])} functions of the contact run with a seat, {len(called['without'])} without", \
-        len(called["with"]) >= 5 and not called["without"]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The search of scripts/study --optimise: on functions whose best is known, with failures, and what it says about a wrong section."""
+"""The search of scripts/couplet study --optimise: on functions whose best is known, with failures, and what it says about a wrong section."""
 import math
 import pathlib
 import sys
@@ -9,7 +9,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "client/python"))
 from couplet.runs import Case, Wrong  # noqa: E402
 from couplet.study import optimise  # noqa: E402
-from couplet.runs.warnings import warnings_of  # noqa: E402
+from couplet.runs.pool import warnings_of  # noqa: E402
 
 FUNCTIONS = {
     "valley": lambda x: 1 + 2 * (x[0] - .63) ** 2 + (x[1] - .31) ** 2 + .5 * (x[0] - .63) * (x[1] - .31),

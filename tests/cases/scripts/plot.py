@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""scripts/plot draws monitors, lines, planes and residuals, and says what is wrong with a file."""
+"""scripts/couplet plot draws monitors, lines, planes and residuals, and says what is wrong with a file."""
 import pathlib
 import subprocess
 import sys
@@ -15,7 +15,7 @@ def run(*arguments):
 
 
 def by_its_own_name(*arguments):
-    return subprocess.run([sys.executable, str(ROOT / "scripts/plot"), *map(str, arguments)], capture_output=True, text=True)
+    return subprocess.run([sys.executable, str(ROOT / "scripts/couplet"), "plot", *map(str, arguments)], capture_output=True, text=True)
 
 
 with tempfile.TemporaryDirectory() as name:

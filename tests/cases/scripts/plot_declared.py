@@ -156,7 +156,7 @@ with tempfile.TemporaryDirectory(prefix="a case with blanks ") as name:
     from couplet.plots.draw import polygons_of
     cubes = np.array([[x, y, z] for z in (0, 1, 2) for y in (0, 1) for x in (0, 1, 2)], float)
     bricks = [[a, a + 1, a + 4, a + 3, a + 6, a + 7, a + 10, a + 9] for layer in (0, 6) for a in (layer, layer + 1)]
-    block = argparse.Namespace(reference=lambda: cubes, cells=bricks)
+    block = argparse.Namespace(reference=lambda: cubes, cells=bricks, is_flat=lambda: False)
     for plane, wanted in (("z = 1", [2, 3]), ("z = 2", [2, 3]), ("y=0", [0, 1, 2, 3]), ("x = 1", [1, 3])):
         corners, cells, ways = polygons_of(block, cubes, plane, "")
         area = [0.5 * abs(np.dot(c[:, 0], np.roll(c[:, 1], 1)) - np.dot(c[:, 1], np.roll(c[:, 0], 1))) for c in corners]

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What scripts/study computes from its runs, on made-up programs whose error and cost are known: limits and orders, the Pareto
+"""What scripts/couplet study computes from its runs, on made-up programs whose error and cost are known: limits and orders, the Pareto
 front, and which part of an error dominates (study_prediction.py: --for-error)."""
 import pathlib
 import sys
@@ -10,19 +10,17 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "client/python"))
 from couplet.runs import Wrong  # noqa: E402
-from couplet.study import axes, convergence, dominance, expressions, quantities  # noqa: E402
-from made_up import MadeUp  # noqa: E402
+from couplet.study import axes, fits, quantities  # noqa: E402
 
 # -- limits, orders, fronts
 sizes = [8, 12, 20]
-limit = convergence.limit_of(sizes, [1 + 3 * n**-1.7 for n in sizes])
+limit = fits.limit_of(sizes, [1 + 3 * n**-1.7 for n in sizes])
 assert abs(limit.value - 1) < 1e-9 and abs(limit.order - 1.7) < 1e-9 and abs(limit.gci - 1.25 * 3 * 20**-1.7) < 1e-9
-assert abs(limit.size_for(limit.error(31)) - 31) < 1e-9
-assert convergence.limit_of(sizes, [1, 2, 1.5]) is None, "values that alternate have no limit"
-assert convergence.limit_of(sizes, [1, 1.1, 1.4]) is None, "changes that grow have no limit"
-assert convergence.limit_of(sizes[:2], [1, 2]) is None and convergence.limit_of(sizes, [1, 1, 1]) is None
-assert abs(convergence.slope([1, 2, 4], [3, 12, 48]) - 2) < 1e-12 and convergence.slope([1], [1]) is None
-assert convergence.pareto([(3, 1), (1, 2), (2, 3), (4, 0.5)]) == [(1, 2), (3, 1), (4, 0.5)]
+assert fits.limit_of(sizes, [1, 2, 1.5]) is None, "values that alternate have no limit"
+assert fits.limit_of(sizes, [1, 1.1, 1.4]) is None, "changes that grow have no limit"
+assert fits.limit_of(sizes[:2], [1, 2]) is None and fits.limit_of(sizes, [1, 1, 1]) is None
+assert abs(fits.slope([1, 2, 4], [3, 12, 48]) - 2) < 1e-12 and fits.slope([1], [1]) is None
+assert fits.pareto([(3, 1), (1, 2), (2, 3), (4, 0.5)]) == [(1, 2), (3, 1), (4, 0.5)]
 
 # -- sizes in settings: arithmetic and nothing else
 assert axes.filled("{a: <n>, b: <3*n/2>, dt: <=1.6/n>}", 5) == "{a: 5, b: 8, dt: 0.32}"
@@ -35,13 +33,13 @@ for text in ("<m>", "<__import__('os')>", "<n.real>", "<n/0>", "<9^9^9^9>", "<" 
 
 # -- an exact field: an expression of the place and the time, and no way from there to the rest of Python
 places = {"x": np.linspace(0, 1, 5), "t": 2.0, "pi": np.pi}
-assert np.allclose(expressions.evaluate("-sin(pi*x)*exp(-t)^2 + where(x > 0.5, 1, 0)", places, quantities.FUNCTIONS),
+assert np.allclose(axes.evaluate("-sin(pi*x)*exp(-t)^2 + where(x > 0.5, 1, 0)", places, quantities.FUNCTIONS),
                    -np.sin(np.pi * places["x"]) * np.exp(-4.0) + (places["x"] > 0.5))
 for text in ("().__class__.__base__.__subclasses__()", "sin.__globals__", "[c for c in ().__class__.__mro__]", "__import__('os').system('x')",
              "(lambda: 1)()", "x[0]", "'a'*9", "sin(x, out=x)", "sin(*[x])", "f'{x}'", "x if x else t", "(y := 1)", "9^9^9^9^9", "True", "1j", "x;t",
              "exec('1')", "x.tofile('pwned')", "open", "where(x > 0, 1, 0).tofile", "1 < x < 2", "x" * 3000, "-" * 1500 + "1", "", "{}"):
     try:
-        expressions.evaluate(text, places, quantities.FUNCTIONS)
+        axes.evaluate(text, places, quantities.FUNCTIONS)
     except ValueError:
         continue
     raise AssertionError(f"{text} was taken for an expression")
@@ -62,19 +60,4 @@ y = 2 * np.cos(2 * np.pi * (t - 0.3) / 1.7) + 1
 assert abs(quantities.reduced(t, y, "period") - 1.7) < 1e-4 and abs(quantities.reduced(t, y, "maximum") - 3) < 1e-6
 assert abs(quantities.reduced(t, y, "amplitude") - 2) < 1e-3 and abs(quantities.reduced(t, t, "mean") - 5) < 1e-9
 assert quantities.reduced(t, t, "2.5 s") == 2.5 and quantities.reduced(t, t, "last") == 10 and quantities.reduced(t, t, "first") == 0
-
-# -- what dominates: value = 1 + mesh + step + what the solver leaves, in turn the largest
-for worst in ("mesh", "step", "solver"):
-    part = {name: (1e-2 if name == worst else 1e-4) for name in ("mesh", "step", "solver")}
-    true = dict(part)
-
-    def value(s):
-        return 1 + part["mesh"] * (16 / float(s["n"]))**2 + part["step"] * (s["dt"] / 0.1)**2 - part["solver"] * s["tol"] / 1e-5
-    study = MadeUp(value, lambda s: 1.0, {})
-    study.axes.common = {}
-    found, _ = dominance.Dominance(study, {"mesh": {"size": 16, "set": {"n": "<n>"}}, "step": {"key": "dt", "value": 0.1},
-                                           "solver": {"key": "tol", "value": 1e-5, "tolerance": True}}).parts(study.quantities[0], print)
-    assert max(found, key=found.get) == worst and all(0.5 < found[k] / true[k] < 2 for k in true), (worst, found)
-    lines = dominance.sentences(found)
-    assert f"the {worst} dominates" in lines[1] and "would not help" in lines[1], lines
 print("ok")

@@ -20,7 +20,7 @@ for name in rows.known():
         assert "'inf'" not in str(row), (quantity, row)
     # A table without the rows that it had would lose what was measured.
     assert set(there) <= {b.quantity for b in read.bars}, (name, set(there) - {b.quantity for b in read.bars})
-assert len(rows.known()) >= 24
+assert len(rows.known()) >= 20
 
 
 def loaded(text):

@@ -11,6 +11,9 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import mpmd  # noqa: E402
+
 programs, configs, kind = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), sys.argv[3]
 
 
@@ -70,11 +73,8 @@ def together(members, folder, files):
     folder.mkdir(parents=True)
     for name, text in files.items():
         (folder / name).write_text(text)
-    line = ["mpirun", "--oversubscribe"]
-    for i, words in enumerate(members):
-        line += [":"] * (i > 0) + ["-n", "1", *map(str, words)]
     environment = {**os.environ, "PYTHONPATH": str(configs.parent / "client/python")}
-    done = subprocess.run(line, cwd=folder, env=environment, capture_output=True, text=True, timeout=600)
+    done = subprocess.run(mpmd(members), cwd=folder, env=environment, capture_output=True, text=True, timeout=600)
     if done.returncode not in (0, 4):
         sys.exit(f"FAILED: {folder} ended with exit code {done.returncode}\n{done.stdout[-1500:]}{done.stderr[-1500:]}")
     return json.loads((folder / "out/coupler/run.json").read_text())["errors"]

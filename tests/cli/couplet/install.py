@@ -88,11 +88,8 @@ def deb(folder, home):
         if program.name != "couplet":
             libraries = subprocess.run(["ldd", program], capture_output=True, text=True).stdout
             check(f"libraries of {program.name}", "not found" not in libraries and str(build) not in libraries and "libmpi" in libraries, libraries[:200])
-    # PETSc is loaded where it is used: not by each start of a program.
-    loaded = subprocess.run(["ldd", root / "bin/coupler"], capture_output=True, text=True).stdout
-    module = root / "lib/couplet/libcouplet_petsc.so"
-    behind = subprocess.run(["ldd", module if "libpetsc" not in loaded else root / "bin/coupler"], capture_output=True, text=True).stdout
-    check("libraries of PETSc", "not found" not in behind and str(build) not in behind and "libpetsc" in behind, behind[:200])
+    petsc = {p for p in ("coupler", "thermocline", "mesh_tool", "fluid_solver", "solid_solver") if "libpetsc" in subprocess.run(["ldd", root / "bin" / p], capture_output=True, text=True).stdout}
+    check("programs that solve are linked to PETSc, and no others", petsc == {"fluid_solver", "solid_solver"}, petsc)
     needs = subprocess.run(["dpkg-deb", "-f", package, "Depends"], capture_output=True, text=True).stdout
     check("the package names them", "libpetsc" in needs and "libslepc" in needs, needs)
     named = [f for f in root.rglob("*") if f.is_file() and str(build).encode() in f.read_bytes()]

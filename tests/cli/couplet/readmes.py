@@ -66,7 +66,7 @@ def in_copy(root):
 
 def may_stop(command, leader, said):
     """It is a study, or a program of ours has made a step; scripts that draw pictures come to their end."""
-    return command.startswith("scripts/") and not command.startswith(("scripts/plot", "scripts/couplet plot")) or at_work(leader) and re.search(r"\] t ?= ?[\d.e+-]+(/| s)", said.read_text(errors="replace")) is not None
+    return command.startswith("scripts/") and not command.startswith("scripts/couplet plot") or at_work(leader) and re.search(r"\] t ?= ?[\d.e+-]+(/| s)", said.read_text(errors="replace")) is not None
 
 
 def run(settings, command, root, home):

@@ -2,11 +2,15 @@
 """Runs small MPMD jobs of the coupler and the two toy participants, and checks how they end."""
 import concurrent.futures
 import os
+import pathlib
 import subprocess
 import sys
 import tempfile
 import threading
 import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import living  # noqa: E402
 
 MPIRUN = ["mpirun", "--oversubscribe"]
 PATIENCE = 120  # [s] with a whole job: a busy machine is no failure
@@ -39,8 +43,6 @@ class Suite:
         self.pool = concurrent.futures.ThreadPoolExecutor(at_once) if at_once > 1 else None
         self.begun = []
         programs = [os.path.abspath(p) for p in sys.argv[1:3]]
-        for name in ("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"):
-            os.environ.setdefault(name, "1")
         os.environ["PATH"] = os.pathsep.join(programs + [os.environ["PATH"]])
         self.failed = []
 
@@ -82,7 +84,7 @@ class Suite:
                 clock.join()
             start = deaths[0] if fault and deaths else time.monotonic()
             # The last of them may still be on their way out when mpirun returns.
-            while living_in_session(process.pid) and time.monotonic() - start < within:
+            while living(process.pid) and time.monotonic() - start < within:
                 time.sleep(0.05)
             seconds = time.monotonic() - start
             problems = []
@@ -91,8 +93,7 @@ class Suite:
             wrong_code = process.returncode == 0 if code is None else process.returncode != code
             if wrong_code:
                 problems.append(f"exit code {process.returncode}")
-            left = living_in_session(process.pid)
-            if left:
+            if left := living(process.pid):
                 problems.append(f"processes left: {left}")
             for line in lines:
                 if not any(line in printed for printed in output.splitlines()):
@@ -119,27 +120,11 @@ def watch(process, deaths):
     """Notes when the first process of the job that is not mpirun itself is gone."""
     seen = set()
     while process.poll() is None and not deaths:
-        living = set(living_in_session(process.pid)) - {process.pid}
-        if seen - living:
+        now = set(living(process.pid)) - {process.pid}
+        if seen - now:
             deaths.append(time.monotonic())
-        seen |= living
+        seen |= now
         time.sleep(0.01)
-
-
-def living_in_session(session):
-    """Processes of the job's session that are neither gone nor about to be."""
-    left = []
-    for entry in os.listdir("/proc"):
-        if not entry.isdigit():
-            continue
-        try:
-            with open(f"/proc/{entry}/stat", encoding="utf-8", errors="replace") as file:
-                fields = file.read().rpartition(")")[2].split()
-        except OSError:
-            continue
-        if int(fields[3]) == session and fields[0] not in "ZX":
-            left.append(int(entry))
-    return left
 
 
 def mpmd(*parts):

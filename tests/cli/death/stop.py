@@ -9,27 +9,21 @@ import sys
 import tempfile
 import time
 
-from jobs import PATIENCE, case_text, living_in_session, mpmd
+from jobs import PATIENCE, case_text, living, mpmd
 
 PROGRAMS = {"coupler": "coupler", "fluid": "toy_piston", "solid": "toy_spring"}
 failed = 0
 
 
 def start(folder, words):
-    environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+    environment = dict(os.environ)
     environment["PATH"] = os.pathsep.join([os.path.abspath(p) for p in sys.argv[1:3]] + [environment["PATH"]])
     return subprocess.Popen(words, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                             stderr=subprocess.STDOUT, text=True, start_new_session=True)
 
 
 def pid_of(process, program):
-    for pid in living_in_session(process.pid):
-        try:
-            if os.path.basename(os.readlink(f"/proc/{pid}/exe")) == program:
-                return pid
-        except OSError:
-            continue
-    return None
+    return next((pid for pid, name in living(process.pid).items() if name == program), None)
 
 
 def wait_for(file, process, size=3000):
@@ -102,7 +96,7 @@ with tempfile.TemporaryDirectory(prefix="couplet-stop-") as name:
         check(f"SIGTERM to {victim}: saved, code 3", code == 3 and "by a signal; the state is saved" in output, output)
         case(folder, "100 s", "\n  checkpoint: {keep: 3}")  # a change that is harmless
         code, output = end_of(start(folder, coupled("--restart", "out/checkpoints", "-q")))
-        check(f"... and it goes on to its end", code == 0, output)
+        check("... and it goes on to its end", code == 0, output)
         whole = top / (victim + "-whole")
         whole.mkdir()
         case(whole, "100 s")

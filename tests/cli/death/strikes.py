@@ -13,7 +13,7 @@ import sys
 import tempfile
 import time
 
-from jobs import PATIENCE, Suite, living_in_session, mpmd
+from jobs import PATIENCE, Suite, living, mpmd
 
 source, count = pathlib.Path(sys.argv[3]), int(sys.argv[4])
 draw = random.Random(int(sys.argv[5]) if len(sys.argv) > 5 else 1)
@@ -55,7 +55,7 @@ def name_of(pid):
 
 
 def with_names(session, program):
-    return [pid for pid in living_in_session(session) if name_of(pid) == program]
+    return [pid for pid, name in living(session).items() if name == program]
 
 
 def stats():
@@ -83,7 +83,7 @@ def alive(job, known):
     """Of the job's session and of its family as it was seen."""
     every = stats()
     left = {pid for pid, start in known.items() if pid in every and every[pid][2] == start and every[pid][0] not in "ZX"}
-    return left | set(living_in_session(job.pid))
+    return left | set(living(job.pid))
 
 
 def wait_until(condition, job):

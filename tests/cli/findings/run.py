@@ -9,11 +9,13 @@ import subprocess
 import sys
 import tempfile
 
+import yaml
+
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "client/python"))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[3] / place) for place in ("client/python", "scripts")]
 import scenes  # noqa: E402
-from checks import check, end  # noqa: E402
-from couplet.atlas import plant as atlas_plant  # noqa: E402
+from checks import check, end, mpmd  # noqa: E402
+import atlas  # noqa: E402
 
 LE1 = 92.66e6  # Pa, stress yy at D (NAFEMS); the other components are zero there
 programs, configs, kind = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3]
@@ -25,9 +27,8 @@ def run(program, case, *words, sets=()):
     with tempfile.TemporaryDirectory() as folder:
         names = [program] if isinstance(program, str) else program
         common = [str(case), *(f"--set={s}" for s in sets), f"--set=simulation.output.folder={folder}", *words]
-        line = [] if len(names) == 1 else ["mpirun", "--oversubscribe"]
-        for i, name in enumerate(names):
-            line += [":"] * (i > 0) + (["-n", "1"] if len(names) > 1 else []) + [str(programs / name), *common]
+        parts = [[programs / name, *common] for name in names]
+        line = mpmd(parts) if len(parts) > 1 else parts[0]
         done = subprocess.run(line, capture_output=True, text=True, timeout=280)
         reports = {f.parent.name: json.loads(f.read_text()) for f in pathlib.Path(folder).glob("*/run.json")}
     found = {name: {f["id"]: f for f in r["findings"]} for name, r in reports.items()}
@@ -134,7 +135,8 @@ def plant():
     """Few cells and the upwind scheme spread a front that the plant's control sees: half of the exergy is lost with 60 cells (atlas, tank-plant)."""
     def case(folder, advection):
         file = folder / "case.yaml"
-        file.write_text(atlas_plant.CASE.format(cells=60, advection=advection, margin=5, restart=3))
+        square = atlas.maps()["tank-plant"]
+        file.write_text(yaml.safe_dump(square.case(advection, square.names(advection, 60, 5))[0]))
         return file
     for advection, warned in (("upwind", True), ("tvd", False)):
         code, text, found = in_folder(lambda f: case(f, advection), "thermocline")  # noqa: B023

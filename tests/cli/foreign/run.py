@@ -96,10 +96,10 @@ with tempfile.TemporaryDirectory() as top:
         expect(f"the run on modes.h5, {how} {name} {n}", run(folder), [2], "modes.h5", words)
     for how, name, n, words in (("attribute", "version", 6, "contains 6 values (float64); expected one number"),
                                 ("attribute", "set", 500, "one fixed-length text"),
-                                ("table", "arrays/q", 900, "values"),
+                                ("table", "arrays/state", 900, "values"),
                                 ("table", "scalars/dt", 900, "900 rows"),
-                                ("table", "layout/q", 900, "layout/q"),
-                                ("external", "arrays/q", 1, "a link to another file")):
+                                ("table", "layout/state", 900, "layout/state"),
+                                ("external", "arrays/state", 1, "a link to another file")):
         folder = top / f"restart-{how}-{name.replace('/', '-')}"
         shutil.copytree(made, folder)
         spoiled(folder, f"out/checkpoints/{last.name}/p.h5", how, name, n)

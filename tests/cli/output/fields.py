@@ -5,12 +5,14 @@ compressed ones hold what those of the whole do.
 Usage: fields.py BIN CASES"""
 import pathlib
 import shutil
-import subprocess
 import sys
 import tempfile
 
 import h5py
 import numpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import require, said  # noqa: E402
 
 BIN, CASES = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 
@@ -19,9 +21,7 @@ def run(here, name, out, output, ranks=1):
     words = ["mpirun", "--oversubscribe", "-n", str(ranks), str(BIN / f"{name}_solver"), f"{name}.yaml", f"--set=simulation.output={{folder: {out}, interval: 0.25, {output}}}",
              f"--set=participants.{name}.output.surfaces=[bottom]", "--set=simulation.time-step=0.25",
              "--set=simulation.error-estimate=false"]
-    result = subprocess.run(words, cwd=here, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=100)
-    if result.returncode:
-        sys.exit(f"{name}, {output}: exit code {result.returncode}\n{result.stdout[-3000:]}")
+    said(words, 100, cwd=here)
     return here / out / name
 
 
@@ -33,12 +33,6 @@ def series(file):
         for step in data["steps"].values():
             found[round(float(step.attrs["time"]), 9)] = {f"{place}/{field}": dict(zip(ids[place], table[...])) for place in ids for field, table in step.get(place, {}).items()}
     return found
-
-
-def check(claim, holds, value=""):
-    print(f"{'ok' if holds else 'not ok'}  {claim}: {value}")
-    if not holds:
-        sys.exit(1)
 
 
 def same(part, whole):
@@ -53,13 +47,13 @@ with tempfile.TemporaryDirectory(prefix="couplet-fields-") as folder:
     for name in ("fluid", "solid"):
         whole = series(run(here, name, "whole", "steps: true") / f"{name}.h5")
         times = sorted(whole)
-        check(f"{name}: outputs", len(times) >= 5, times)
+        require(f"{name}: outputs", len(times) >= 5, times)
         every = run(here, name, "every", "every: 2")
-        check(f"{name}: each second output", sorted(series(every / f"{name}.h5")) == times[::2])
-        check(f"{name}: patches at each output", len(series(every / "surface-bottom.h5")) >= len(times) - 1)
+        require(f"{name}: each second output", sorted(series(every / f"{name}.h5")) == times[::2])
+        require(f"{name}: patches at each output", len(series(every / "surface-bottom.h5")) >= len(times) - 1)
         none = run(here, name, "none", "every: 0")
-        check(f"{name}: patches alone", not (none / f"{name}.h5").exists() and (none / "surface-bottom.h5").exists())
+        require(f"{name}: patches alone", not (none / f"{name}.h5").exists() and (none / "surface-bottom.h5").exists())
         for ranks in (1, 2):
             box = series(run(here, name, f"box-{ranks}", "box: {from: [0, 0, 0], to: [0.5, 0.5, 0]}, compression: 4", ranks) / f"{name}.h5")
             cells = [len(next(values for field, values in fields.items() if field.startswith("cells"))) for fields in (box[times[-1]], whole[times[-1]])]
-            check(f"{name}: a box, compressed, {ranks} rank(s)", sorted(box) == times and 0 < cells[0] < cells[1] and (ranks > 1 or same(box, whole)), cells)
+            require(f"{name}: a box, compressed, {ranks} rank(s)", sorted(box) == times and 0 < cells[0] < cells[1] and (ranks > 1 or same(box, whole)), cells)

@@ -11,34 +11,21 @@ import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
-from checks import check, end  # noqa: E402
+from checks import COUPLED, check, end, living, mpmd  # noqa: E402
 
 PROGRAMS, CONFIGS = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
 PATIENCE = 120
-FLAP = {"coupler": "coupler", "fluid": "fluid_solver", "solid": "solid_solver", "mover": "mesh_mover"}
 MESH = "{n_side: 20, n_tip: 2, growth: 1.35, wall_growth: 1.35, wall_cells: 5}"
 
 
-def process_of(session, program):
-    for entry in pathlib.Path("/proc").iterdir():
-        if entry.name.isdigit():
-            try:
-                if (entry / "stat").read_text().rpartition(")")[2].split()[3] == str(session) and os.path.basename(os.readlink(entry / "exe")) == program:
-                    return int(entry.name)
-            except OSError:
-                continue
-    return None
-
-
 def stop(words, program, out, reports):
-    environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     with open(out.parent / f"{out.name}.log", "w+", encoding="utf-8") as log:
-        job = subprocess.Popen([str(w) for w in words], env=environment, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT, start_new_session=True)
+        job = subprocess.Popen([str(w) for w in words], stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT, start_new_session=True)
         limit = time.monotonic() + PATIENCE
         steps = out / reports / "steps.csv"
         while job.poll() is None and time.monotonic() < limit and not (steps.exists() and steps.read_text().count("\n") > 3):
             time.sleep(0.02)
-        victim = process_of(job.pid, program)
+        victim = next((pid for pid, its_name in living(job.pid).items() if its_name == program), None)
         if victim:
             os.kill(victim, signal.SIGTERM)
         try:
@@ -60,9 +47,7 @@ with tempfile.TemporaryDirectory(prefix="couplet-stop-programs-") as name:
           "participants.fluid.mesh-parameters={n: 16}"], "fluid_solver", top / "alone", "fluid")
     for program in ("fluid_solver", "solid_solver", "mesh_mover", "coupler"):
         out = top / program
-        words = ["mpirun", "--oversubscribe"]
-        for i, each in enumerate(FLAP.values()):
-            words += [":"] * (i > 0) + ["-n", "1", PROGRAMS / each, CONFIGS / "perpendicular-flap/case.yaml", *long, "--set", f"simulation.output.folder={out}",
-                                         "--set", f"participants.fluid.mesh-parameters={MESH}", "--set", f"participants.mover.mesh-parameters={MESH}"]
-        stop(words, program, out, "fluid")
+        words = [*long, *(f"--set={s}" for s in (f"simulation.output.folder={out}", f"participants.fluid.mesh-parameters={MESH}",
+                                                 f"participants.mover.mesh-parameters={MESH}"))]
+        stop(mpmd([PROGRAMS / each, CONFIGS / "perpendicular-flap/case.yaml", *words] for each in COUPLED), program, out, "fluid")
 end()

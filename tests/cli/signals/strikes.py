@@ -8,7 +8,6 @@ Usage: strikes.py BIN CASE_FOLDER COUNT [SEED [END_TIME]] [--couplet]     --coup
 import os
 import pathlib
 import random
-import re
 import shutil
 import signal
 import subprocess
@@ -18,6 +17,9 @@ import time
 
 import h5py
 import numpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import living, mpmd  # noqa: E402
 
 COUPLET = "--couplet" in sys.argv
 if COUPLET:
@@ -35,30 +37,13 @@ def fields_of(pid):
         return file.read().rpartition(")")[2].split()
 
 
-def living_in_session(session):
-    left = {}
-    for entry in os.listdir("/proc"):
-        if entry.isdigit():
-            try:
-                fields = fields_of(entry)
-                if int(fields[3]) == session and fields[0] not in "ZX":
-                    left[int(entry)] = os.path.basename(os.readlink(f"/proc/{entry}/exe"))
-            except OSError:
-                continue
-    return left
-
-
 class Job:
     def __init__(self, binaries, folder, restart=False):
-        words = ["mpirun", "--oversubscribe"]
-        for i, program in enumerate(PROGRAMS.values()):
-            words += [":"] * (i > 0) + ["-n", "1", str(binaries / program), "case.yaml"]
-            words += [word for s in SETS for word in ("--set", s)] + (["--restart", "out/checkpoints"] if restart else [])
+        more = [word for s in SETS for word in ("--set", s)] + (["--restart", "out/checkpoints"] if restart else [])
+        words = mpmd([binaries / program, "case.yaml", *more] for program in PROGRAMS.values())
         if COUPLET:
-            words = [str(pathlib.Path(__file__).resolve().parents[3] / "scripts/couplet"), "run", "case.yaml", "--bin", str(binaries)]
-            words += [word for s in SETS for word in ("--set", s)] + (["--restart", "out/checkpoints"] if restart else [])
-        environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1",
-                           OPENBLAS_NUM_THREADS="1")
+            words = [str(pathlib.Path(__file__).resolve().parents[3] / "scripts/couplet"), "run", "case.yaml", "--bin", str(binaries), *more]
+        environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
         self.said = open(folder / "said", "w+", encoding="utf-8", errors="replace")
         self.start = time.monotonic()
         self.process = subprocess.Popen(words, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=self.said,
@@ -75,7 +60,7 @@ class Job:
                     continue
                 if int(fields[1]) == self.process.pid and fields[3] == entry:
                     self.sessions.add(int(entry))
-        return {pid: exe for session in self.sessions for pid, exe in living_in_session(session).items()}
+        return {pid: exe for session in self.sessions for pid, exe in living(session).items()}
 
     def victims(self):
         """{participant: pid}: the processes that run the programs themselves."""

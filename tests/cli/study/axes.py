@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""scripts/study by axes: every run is made once, whether the study is killed, started again or twice at once; a failed run is
+"""scripts/couplet study by axes: every run is made once, whether the study is killed, started again or twice at once; a failed run is
 a row with its reason; orders and extrapolations come out; the page needs nothing but itself. usage: axes.py BUILD"""
 import base64
 import csv
@@ -12,6 +12,9 @@ import subprocess
 import sys
 import tempfile
 import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import check  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 STUDY = """
@@ -27,13 +30,8 @@ study:
 """
 
 
-def check(claim, condition, detail=""):
-    print("ok    " if condition else "FAILED", claim, "" if condition else detail, flush=True)
-    return not condition
-
-
 def command(build, folder, *options):
-    return [ROOT / "scripts/study", folder / "case.yaml", f"--build={build}", *options]
+    return [ROOT / "scripts/couplet", "study", folder / "case.yaml", f"--build={build}", *options]
 
 
 def study(build, folder, *options):
@@ -113,7 +111,7 @@ def wrong(build, folder):
                        ("axes: {a: {key: b, values: [1]}}\n  quantities: {q: {prob: x}}", "unknown key 'prob'"),
                        ("axes: {a: {key: b, values: [1]}}\n  quantities: {q: {probe: x, reference: best}}", "expected a number, finest or richardson")):
         (folder / "wrong.yaml").write_text(f"case: case.yaml\nstudy:\n  {text}\n")
-        result = subprocess.run([ROOT / "scripts/study", folder / "wrong.yaml", f"--build={build}"], capture_output=True, text=True)
+        result = subprocess.run([ROOT / "scripts/couplet", "study", folder / "wrong.yaml", f"--build={build}"], capture_output=True, text=True)
         failed += check(f"said: {word}", result.returncode != 0 and word in result.stderr and "Traceback" not in result.stderr, result.stderr)
     return failed
 
@@ -140,7 +138,7 @@ def covered(build, folder):
     found = []
     for order in (axes, axes[::-1]):
         (place / "study.yaml").write_text("case: ../case.yaml\nstudy:\n  axes:\n" + "".join(f"    {a}\n" for a in order) + "  quantities: {tip: {probe: \"tip y [m]\"}}\n")
-        found.append(subprocess.run([ROOT / "scripts/study", place / "study.yaml", f"--build={build}", "--list"], capture_output=True, text=True))
+        found.append(subprocess.run([ROOT / "scripts/couplet", "study", place / "study.yaml", f"--build={build}", "--list"], capture_output=True, text=True))
     return check("a mapping that would replace another axis's key is refused", found[0].returncode != 0 and "'solution-method' of 'method' would replace" in
                  found[0].stderr + found[0].stdout and found[1].returncode == 0 and '"face-gradient": "thesis"' in found[1].stdout, str(found))
 

@@ -16,22 +16,19 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "client/python"))
 from couplet.peers import calculix, flow, race, solid, values  # noqa: E402
 from couplet.peers.results import write_solid  # noqa: E402
-from couplet.runs.case import Case  # noqa: E402
+from couplet.runs.case import Case, with_changes  # noqa: E402
 from couplet.runs.process import environment, launch  # noqa: E402
 from couplet.runs.results import read_csv  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import check  # noqa: E402
 
 STRESS = 92.66e6  # [Pa] sigma_yy at D, NAFEMS LE1
-
-
-def check(claim, condition, detail=""):
-    print("ok    " if condition else "FAILED", claim, "" if condition else detail, flush=True)
-    return not condition
 
 
 def data_of(name, **changes):
     case = Case(ROOT / "configs" / name / "case.yaml", ROOT)
     participant = next(iter(case.participants))
-    return case, participant, values.with_changes(case, {case.absolute(k.replace("__", "."), participant): v for k, v in changes.items()})
+    return case, participant, with_changes(case.data, {case.absolute(k.replace("__", "."), participant): v for k, v in changes.items()})
 
 
 def refusal(make):

@@ -12,14 +12,11 @@ sys.path.insert(0, str(ROOT / "client/python"))
 from couplet.study import pictures  # noqa: E402
 from couplet.study.axes import Point  # noqa: E402
 from couplet.study.table import Row  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import check  # noqa: E402
 
 LONG = "LE1, gradients, methods and cells: what each of the three face gradients costs on every kind of cell by every method that takes it"
 QUANTITY = types.SimpleNamespace(name="stress at D", given={})
-
-
-def check(claim, condition, detail=""):
-    print("ok    " if condition else "FAILED", claim, "" if condition else detail, flush=True)
-    return not condition
 
 
 def rows_of(methods, cells):

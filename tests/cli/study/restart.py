@@ -2,21 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """A tank with a plant that goes on from a checkpoint writes the same reports as one that ran through. usage: restart.py BIN"""
 import pathlib
-import subprocess
 import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT / "tests/cli/wrong")]
+sys.path[:0] = [str(ROOT / "tests/cli/wrong"), str(ROOT / "tests/support")]
 import plant_table
+from checks import said
 
 FILES = ("summary.csv", "days.csv", "plant.csv")
 
 
 def run(program, folder, *options):
-    result = subprocess.run([program, "case.yaml", *options], cwd=folder, capture_output=True, text=True)
-    if result.returncode != 0:
-        sys.exit(f"FAILED {' '.join(options)}: exit code {result.returncode}\n{result.stdout}{result.stderr}")
+    said([program, "case.yaml", *options], cwd=folder)
 
 
 def main(program):

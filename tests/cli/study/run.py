@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""scripts/study: its variants differ as told, its table is their summaries, and what is wrong is said. usage: run.py BUILD"""
+"""scripts/couplet study: its variants differ as told, its table is their summaries, and what is wrong is said. usage: run.py BUILD"""
 import csv
 import pathlib
 import subprocess
@@ -10,6 +10,9 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT / "tests/cli/wrong")]
 import plant_table
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import check  # noqa: E402
 
 STUDY = """
 study:
@@ -26,13 +29,8 @@ def study(build, folder, text, *options):
     (folder / "case.yaml").write_text((ROOT / "tests/cli/wrong/plant.yaml").read_text() + text)
     for name, content in plant_table.weather().items():
         (folder / name).write_text(content)
-    return subprocess.run([ROOT / "scripts/study", folder / "case.yaml", f"--build={build}", *options], capture_output=True,
+    return subprocess.run([ROOT / "scripts/couplet", "study", folder / "case.yaml", f"--build={build}", *options], capture_output=True,
                           text=True)
-
-
-def check(claim, condition, detail=""):
-    print("ok    " if condition else "FAILED", claim, "" if condition else detail)
-    return not condition
 
 
 def main(build):

@@ -3,23 +3,18 @@
 """A step that fails names its cause: where the coupling is unstable, the mesh that folds is what follows from it. Seven runs of a soft
 leaflet in water, and their neighbours: the same leaflet by the default scheme, and a motion that is too large for the mesh although
 the coupling is stable. Usage: run.py BIN MPIRUN... -- [quick | all]"""
-import os
 import pathlib
 import shutil
 import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import COUPLED, check, end, mpmd  # noqa: E402
+
 programs = pathlib.Path(sys.argv[1]).resolve()
 mpirun, what = sys.argv[2:sys.argv.index("--")], sys.argv[-1]
 here = pathlib.Path(__file__).resolve().parent
-failed = []
-
-
-def check(claim, holds, detail=""):
-    print(f"{'ok' if holds else 'not ok'}  {claim}  {detail}", flush=True)
-    if not holds:
-        failed.append(claim)
 
 
 def run(*sets):
@@ -27,10 +22,8 @@ def run(*sets):
     with tempfile.TemporaryDirectory() as folder:
         for name in ("case.yaml", "fluid.geo", "solid.geo"):
             shutil.copy(here / name, folder)
-        line = list(mpirun)
-        for program in ("coupler", "fluid_solver", "solid_solver", "mesh_mover"):
-            line += [*([":"] if len(line) > len(mpirun) else []), "-n", "1", str(programs / program), "case.yaml", *(w for s in sets for w in ("--set", s))]
-        done = subprocess.run(line, cwd=folder, capture_output=True, text=True, timeout=200, env=os.environ)
+        line = mpmd([[programs / program, "case.yaml", *(f"--set={s}" for s in sets)] for program in COUPLED], mpirun=mpirun)
+        done = subprocess.run(line, cwd=folder, capture_output=True, text=True, timeout=200)
         errors = [e for e in (done.stdout + done.stderr).splitlines() if "[coupler 0] error: " in e]
         return done.returncode, errors[-1].split("error: ", 1)[1] if errors else ""
 
@@ -56,5 +49,4 @@ check("the default scheme runs", code == 0 and not said, said[:200])
 # A heavy leaflet in a gas, which its weight lays flat: one pass a step is enough, the mesh is not.
 code, said = run("coupling.scheme=explicit", "participants.fluid.density=1", "participants.solid.gravity=[2000, 0]", "participants.mover.method=laplacian")
 check("a motion that is too large for the mesh: the mesh is named, and the coupling is not", code == 1 and "instability" not in said and "mesh motion" in said, said[:200])
-print(f"{len(failed)} checks failed" if failed else "all checks passed")
-sys.exit(1 if failed else 0)
+end()

@@ -9,6 +9,9 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import check, end, mpmd  # noqa: E402
+
 project, build = map(pathlib.Path, sys.argv[1:3])
 mpirun, what = sys.argv[3:sys.argv.index("--")], sys.argv[-1]
 here = project / "tests/coupling/client"
@@ -16,25 +19,15 @@ environment = dict(os.environ, PYTHONPATH=str(project / "client/python"))
 body_of = {"c++": [build / "bin/tests/spring_cylinder"], "c": [build / "bin/tests/spring_cylinder_c"],
            "python": ["/usr/bin/python3", project / "client/examples/spring_cylinder.py"]}
 parameters = ["body", "2", "0.1", "3", "0.05"]
-failed = []
-
-
-def check(claim, holds, detail=""):
-    print(f"{'ok' if holds else 'not ok'}  {claim}  {detail}", flush=True)
-    if not holds:
-        failed.append(claim)
 
 
 def run(folder, body, coupler_ranks=1, fluid_ranks=1, sets=(), restart=None, code=0):
     for name in ("case.yaml", "cylinder.geo"):
         shutil.copy(here / name, folder)
     extra = [*(f"--set={s}" for s in sets), *(["--restart", restart] if restart else [])]
-    command = list(mpirun)
-    for n, program in ((coupler_ranks, "coupler"), (fluid_ranks, "fluid_solver"), (1, "mesh_mover")):
-        command += ["-n", str(n), build / "bin" / program, "case.yaml", *extra, ":"]
-    command += ["-n", "1", *body, *parameters]
-    result = subprocess.run(list(map(str, command)), cwd=folder, capture_output=True, text=True, timeout=300,
-                            env=environment)
+    parts = [[build / "bin" / program, "case.yaml", *extra] for program in ("coupler", "fluid_solver", "mesh_mover")]
+    line = mpmd([*parts, [*body, *parameters]], (coupler_ranks, fluid_ranks), mpirun)
+    result = subprocess.run(line, cwd=folder, capture_output=True, text=True, timeout=300, env=environment)
     if result.returncode != code:
         print(result.stdout[-3000:], result.stderr[-3000:])
         check(f"exit code {code}", False, f"it is {result.returncode}")
@@ -156,13 +149,11 @@ def fenicsx():
 
     def coupled(folder, solid, end, *options):
         words = ["--set", f"simulation.end-time={end}", "--set", "simulation.checkpoint.interval=0.02", *options]
-        command = list(mpirun)
-        for program in ("coupler", "fluid_solver", "mesh_mover"):
-            command += ["-n", "1", build / "bin" / program, "case.yaml", *words, ":"]
-        command += ["-n", "1", *(solid or [build / "bin/solid_solver", "case.yaml", *words])]
+        parts = [[build / "bin" / program, "case.yaml", *words] for program in ("coupler", "fluid_solver", "mesh_mover")]
+        line = mpmd([*parts, solid or [build / "bin/solid_solver", "case.yaml", *words]], mpirun=mpirun)
         for file in ("case.yaml", "fluid.geo", "solid.geo"):
             shutil.copy(flap / file, folder)
-        done = subprocess.run(list(map(str, command)), cwd=folder, capture_output=True, text=True, timeout=600, env=environment)
+        done = subprocess.run(line, cwd=folder, capture_output=True, text=True, timeout=600, env=environment)
         if done.returncode:
             print(done.stdout[-3000:], done.stderr[-3000:])
         check("exit code 0", done.returncode == 0, str(done.returncode))
@@ -209,5 +200,4 @@ def tube():
 
 
 {"examples": examples, "install": install, "handshake": handshake, "fenicsx": fenicsx, "tube": tube}[what]()
-print(f"{len(failed)} checks failed" if failed else "all checks passed")
-sys.exit(1 if failed else 0)
+end()

@@ -15,6 +15,9 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import check, end, mpmd  # noqa: E402
+
 project, build = map(pathlib.Path, sys.argv[1:3])
 split = sys.argv.index("--")
 mpirun, what = sys.argv[3:split], sys.argv[split + 1]
@@ -28,13 +31,6 @@ if subprocess.run(["/usr/bin/python3", "-c", "import mpi4py, numpy"], capture_ou
     print("without Python: no mpi4py or numpy")
     del bodies["python"]
 parameters = ["body", "2", "0.1", "3", "0.05"]
-failed = []
-
-
-def check(claim, holds, detail=""):
-    print(f"{'ok' if holds else 'not ok'}  {claim}  {detail}", flush=True)
-    if not holds:
-        failed.append(claim)
 
 
 def words(*parts):
@@ -45,10 +41,8 @@ def job(folder, body, *sets):
     """The job with `body` as its last program."""
     for name in ("case.yaml", "cylinder.geo"):
         shutil.copy(here / name, folder)
-    line = list(mpirun)
-    for program in ("coupler", "fluid_solver", "mesh_mover"):
-        line += ["-n", "1", build / "bin" / program, "case.yaml", *(f"--set={s}" for s in sets), ":"]
-    return subprocess.Popen(words(*line, "-n", "1", *body), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment,
+    parts = [[build / "bin" / program, "case.yaml", *(f"--set={s}" for s in sets)] for program in ("coupler", "fluid_solver", "mesh_mover")]
+    return subprocess.Popen(mpmd([*parts, body], mpirun=mpirun), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment,
                             start_new_session=True)
 
 
@@ -61,7 +55,7 @@ def participant(folder, body, *more, **variables):
                             env={**apart, "COUPLET_JOIN": "body.relay", **variables}, start_new_session=True)
 
 
-def end(process, seconds=120):
+def result_of(process, seconds=120):
     """Exit code (None: it did not end) and what it said."""
     try:
         said, _ = process.communicate(timeout=seconds * slower)
@@ -116,13 +110,13 @@ def same():
     short = ["simulation.end-time=0.08"]
     for language, body in bodies.items():
         with tempfile.TemporaryDirectory() as folder:
-            end(job(folder, [*body, *parameters], *short))
+            result_of(job(folder, [*body, *parameters], *short))
             native = steps(folder)
         ways = ([], ["--listen", "tcp:lo"], *loop6) if language == "c++" else loop6 or ([],)
         for way in ways:
             with tempfile.TemporaryDirectory() as folder:
                 whole, guest = job(folder, relay(*way), *short), participant(folder, body)
-                codes = end(guest), end(whole)
+                codes = result_of(guest), result_of(whole)
                 check(f"{language}, {way or 'unix'}: both end well", [c for c, _ in codes] == [0, 0], str(codes) if any(c for c, _ in codes) else "")
                 check(f"{language}, {way or 'unix'}: the native client's values, bit for bit", len(native) == 4 and steps(folder) == native, str(steps(folder)[-1:]))
                 check("the address is taken away", not (pathlib.Path(folder) / "body.relay").exists())
@@ -137,7 +131,7 @@ def killed(body, who):
         victim = processes.pop(who)
         os.killpg(victim.pid, signal.SIGKILL)
         begin = time.monotonic()
-        code, said = end(*processes.values(), 30)
+        code, said = result_of(*processes.values(), 30)
         took = time.monotonic() - begin
         victim.communicate()
         return code, said, took
@@ -155,7 +149,7 @@ def lost():
             text = bodies["python"][1].read_text()
             broken.write_text(text.replace('if event == "solve":', 'if event == "solve":\n            1 / 0', 1))
             whole, guest = job(folder, relay(), "simulation.end-time=100"), participant(folder, ["/usr/bin/python3", broken])
-            (code, _), (job_code, said) = end(guest), end(whole, 30)
+            (code, _), (job_code, said) = result_of(guest), result_of(whole, 30)
             check("a participant that fails takes the job along", code != 0 and job_code not in (0, None), f"{code} {job_code}")
             check("with its reason", "participant 'body' ended before the job was over" in said, said[-300:])
 
@@ -221,24 +215,23 @@ def strangers(number):
             with connect(place):  # says nothing and stays: refused after a second
                 check(f"{number} greetings that are almost right: none is let in", noise(number, place, token) == 0)
             guest = participant(folder, bodies["c++"])
-            check("then the participant comes, and the job runs", (end(guest)[0], end(whole)[0]) == (0, 0) and len(steps(folder)) == 2)
+            check("then the participant comes, and the job runs", (result_of(guest)[0], result_of(whole)[0]) == (0, 0) and len(steps(folder)) == 2)
             if way == "unix":
                 check("the socket is taken away", not pathlib.Path(place[1]).parent.exists())
     for options, code, text in ((["--listen", "tcp:nowhere0"], 1, "no network interface 'nowhere0'"), (["--listen", "tcp6:nowhere0"], 1, "no network interface 'nowhere0' with an IPv6 address"), (["--listen", "udp"], 1, "expected unix, or tcp:INTERFACE"),
                                 (["--listen", "tcp:lo:70000"], 1, "is not a port"), (["--wait", "never"], 2, "expected seconds above 0"),
                                 (["--wait", "1"], 1, "nobody connected within 1 s"), (["--door"], 2, "unknown option '--door'")):
         with tempfile.TemporaryDirectory() as folder:
-            got, said = end(job(folder, relay(*options)), 60)
+            got, said = result_of(job(folder, relay(*options)), 60)
             check(f"{' '.join(options)}: exit code {code}, with its reason", got == code and text in said, f"{got} {said[-300:]}" if got != code or text not in said else "")
     with tempfile.TemporaryDirectory() as folder:
         for body in bodies.values():
-            code, said = end(participant(folder, body, COUPLET_JOIN_WAIT="0.5"))
+            code, said = result_of(participant(folder, body, COUPLET_JOIN_WAIT="0.5"))
             check("a participant without a relay ends", code not in (0, None) and "no relay of the job has written it" in said, said[-200:])
         (pathlib.Path(folder) / "body.relay").write_text("something else\n\n\n\n")
-        code, said = end(participant(folder, bodies["c++"]))
+        code, said = result_of(participant(folder, bodies["c++"]))
         check("a file that no relay has written is refused", code not in (0, None) and "was not written by a relay" in said, said[-200:])
 
 
 {"same": same, "lost": lost, "strangers": lambda: strangers(int(sys.argv[split + 2]))}[what]()
-print(f"{len(failed)} checks failed" if failed else "all checks passed")
-sys.exit(1 if failed else 0)
+end()

@@ -5,31 +5,26 @@ with one a step leave the same last state bit for bit, and so does one that goes
 Usage: checkpoints.py CONFIG_FOLDER BIN RANKS"""
 import pathlib
 import shutil
-import subprocess
 import sys
 import tempfile
 
 import h5py
 import numpy
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import COUPLED, mpmd, said  # noqa: E402
+
 STEPS, MIDDLE, STEP = 5, 3, 0.01
 SOURCE, BIN = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
 RANKS = sys.argv[3]
-PROGRAMS = {"coupler": "1", "fluid_solver": RANKS, "solid_solver": RANKS, "mesh_mover": RANKS}
 COUNTS = {"n_side = 80": "n_side = 20", "n_side = 160": "n_side = 40", "n_tip = 8": "n_tip = 4", "n_tip = 16": "n_tip = 8",
           "growth = 1.12; ": "growth = 1.25; ", "wall_cells = 10": "wall_cells = 5"}
 
 
 def run(folder, interval, restart=None):
-    words = ["mpirun", "--oversubscribe"]
-    for i, (program, ranks) in enumerate(PROGRAMS.items()):
-        words += [":"] * (i > 0) + ["-n", ranks, str(BIN / program), "case.yaml", f"--set=simulation.end-time={STEPS * STEP}",
-                                    f"--set=simulation.checkpoint={{interval: {interval}, keep: 100}}",
-                                    f"--set=simulation.output={{folder: {folder.name}, interval: 0}}"]
-        words += ["--restart", str(restart)] if restart else []
-    result = subprocess.run(words, cwd=folder.parent, capture_output=True, text=True, timeout=280)
-    if result.returncode:
-        sys.exit(f"exit code {result.returncode}\n{result.stdout[-3000:]}\n{result.stderr[-2000:]}")
+    words = [f"--set=simulation.end-time={STEPS * STEP}", f"--set=simulation.checkpoint={{interval: {interval}, keep: 100}}",
+             f"--set=simulation.output={{folder: {folder.name}, interval: 0}}", *(["--restart", restart] if restart else [])]
+    said(mpmd([[BIN / program, "case.yaml", *words] for program in COUPLED], (1, RANKS, RANKS, RANKS)), cwd=folder.parent)
     return folder
 
 

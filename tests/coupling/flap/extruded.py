@@ -3,11 +3,12 @@
 """The flap in 3-D, extruded with slip and symmetry sides, moves as the flap in 2-D does on the same cells. Not to
 round-off: the weights of the vertex interpolation know the distance across.
 Usage: extruded.py CONFIG_FOLDER BIN"""
-import os
 import pathlib
-import subprocess
 import sys
 import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import COUPLED, mpmd, said  # noqa: E402
 
 DEPTH, LAYERS, STEPS = 0.5, 2, 10
 COUNTS = {"n_side = 80": "n_side = 20", "n_side = 160": "n_side = 40", "n_tip = 8": "n_tip = 4", "n_tip = 16": "n_tip = 8",
@@ -56,12 +57,7 @@ def tips(folder, bin_folder):
     sets = [f"--set={s}" for s in (f"simulation.end-time={STEPS * 0.01}", "coupling.convergence.relative=1e-9",
                                    "coupling.convergence.max-iterations=100",
                                    "participants.fluid.pressure-tolerance=1e-11")]
-    command = ["mpirun", "--oversubscribe"]
-    for i, program in enumerate(("coupler", "fluid_solver", "solid_solver", "mesh_mover")):
-        command += [":"] * (i > 0) + ["-n", "1", str(bin_folder / program), "case.yaml", *sets]
-    result = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=250, env=os.environ)
-    if result.returncode != 0:
-        sys.exit(f"the run in {folder} ended with code {result.returncode}:\n{result.stdout[-2000:]}{result.stderr[-2000:]}")
+    said(mpmd([bin_folder / program, "case.yaml", *sets] for program in COUPLED), 250, cwd=folder)
     lines = (folder / "out/solid/probes.csv").read_text().splitlines()[1:]
     return [[float(v) for v in line.split(",")] for line in lines]
 

@@ -14,6 +14,9 @@ import tempfile
 import h5py
 import numpy
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import COUPLED, mpmd, require  # noqa: E402
+
 SOURCE, BIN = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
 FLUID_MESH = "mesh-parameters={n_side: 20, n_tip: 4, growth: 1.25, wall_cells: 5}"
 SETS = ("simulation.max-step-halvings=0", "simulation.output.interval=0", "participants.fluid.boundaries.inlet.ramp=0.4",
@@ -23,13 +26,11 @@ CHANGE = re.compile(r"t = (\S+) s: scheme: implicit from here on: (.*)")
 
 
 def launch(here, name, density, viscosity, step, steps, *sets, ranks=1, restart=None):
-    words = ["mpirun", "--oversubscribe"]
-    for i, program in enumerate(("coupler", "fluid_solver", "solid_solver", "mesh_mover")):
-        words += [":"] * (i > 0) + ["-n", str(ranks if i in (1, 2) else 1), str(BIN / program), "case.yaml"]
-        words += [f"--set={s}" for s in (*SETS, f"simulation.output.folder={name}", f"simulation.time-step={step}", f"simulation.end-time={steps * step}",
-                                         f"participants.solid.material.density={density}", f"participants.fluid.viscosity={viscosity}", *sets)]
-        words += ["--restart", str(restart)] if restart else []
-    return subprocess.run(words, cwd=here, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=280)
+    words = [f"--set={s}" for s in (*SETS, f"simulation.output.folder={name}", f"simulation.time-step={step}", f"simulation.end-time={steps * step}",
+                                    f"participants.solid.material.density={density}", f"participants.fluid.viscosity={viscosity}", *sets)]
+    words += ["--restart", restart] if restart else []
+    line = mpmd([[BIN / program, "case.yaml", *words] for program in COUPLED], (1, ranks, ranks))
+    return subprocess.run(line, cwd=here, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=280)
 
 
 def state(folder):
@@ -52,14 +53,8 @@ def zigzag(values):
     return float(numpy.sqrt(numpy.mean(numpy.diff(last, 3) ** 2) / numpy.mean(numpy.diff(last) ** 2)))
 
 
-def check(claim, holds, value=""):
-    print(f"{'ok' if holds else 'not ok'}  {claim}: {value}", flush=True)
-    if not holds:
-        sys.exit(1)
-
-
 def ended(claim, result):
-    check(claim, result.returncode == 0, f"exit code {result.returncode}\n{result.stdout[-2500:] if result.returncode else ''}")
+    require(claim, result.returncode == 0, f"exit code {result.returncode}\n{result.stdout[-2500:] if result.returncode else ''}")
     return CHANGE.search(result.stdout)
 
 
@@ -70,20 +65,20 @@ def main():
             shutil.copy(SOURCE / file, here)
 
         change = ended("1 kg/m^3, 10 Pa s runs", launch(here, "lightest", 1, 10, 0.01, 2))
-        check("its first failure is tried again, implicit", bool(change) and "the semi-implicit step failed" in change[2], change and change[0])
+        require("its first failure is tried again, implicit", bool(change) and "the semi-implicit step failed" in change[2], change and change[0])
         neighbour = launch(here, "neighbour", 1, 10, 0.01, 2, "coupling.scheme=semi-implicit")
-        check("the semi-implicit neighbour fails", neighbour.returncode != 0 and "did not converge" in neighbour.stdout, neighbour.returncode)
+        require("the semi-implicit neighbour fails", neighbour.returncode != 0 and "did not converge" in neighbour.stdout, neighbour.returncode)
 
-        check("3000 kg/m^3, 1 Pa s stays semi-implicit", ended("3000 kg/m^3, 1 Pa s runs", launch(here, "heavy", 3000, 1, 0.01, 8, *COARSE)) is None)
+        require("3000 kg/m^3, 1 Pa s stays semi-implicit", ended("3000 kg/m^3, 1 Pa s runs", launch(here, "heavy", 3000, 1, 0.01, 8, *COARSE)) is None)
 
         light = (1, 10, 0.0025)
         # Fields at step 12, too: what a participant learns from them is in its state.
         keep = (*COARSE, "simulation.checkpoint={interval: 0.01, keep: 99}", "simulation.output.interval=0.03")
         change = ended("1 kg/m^3, 10 Pa s runs in short steps", launch(here, "light", *light, 40, *keep))
-        check("its renewals change the scheme at the sixth step", bool(change) and "in 6 steps in a row" in change[2] and float(change[1]) == 0.015, change and change[0])
+        require("its renewals change the scheme at the sixth step", bool(change) and "in 6 steps in a row" in change[2] and float(change[1]) == 0.015, change and change[0])
         ended("the semi-implicit neighbour runs", launch(here, "swings", *light, 40, "coupling.scheme=semi-implicit", *keep))
         smooth, rough = zigzag(tip(here / "light")), zigzag(tip(here / "swings"))
-        check("it is smooth, where the neighbour oscillates", smooth < 0.05 and rough > 0.5, f"{smooth:.3f} and {rough:.3f}")
+        require("it is smooth, where the neighbour oscillates", smooth < 0.05 and rough > 0.5, f"{smooth:.3f} and {rough:.3f}")
         wanted = state(here / "light/checkpoints/step-00000012")
         for start in (4, 8):
             saved = here / f"from-{start}"
@@ -91,10 +86,10 @@ def main():
             ended(f"goes on from step {start}", launch(here, f"on-{start}", *light, 12, *keep, restart=saved))
             found = state(here / f"on-{start}/checkpoints/step-00000012")
             apart = [key for key in wanted if key not in found or not numpy.array_equal(wanted[key], found[key], equal_nan=True)]
-            check(f"from step {start} bit for bit", not apart and len(wanted) > 40, ", ".join(apart[:6]))
+            require(f"from step {start} bit for bit", not apart and len(wanted) > 40, ", ".join(apart[:6]))
         ended("on 2 ranks", launch(here, "ranks", *light, 12, *keep, ranks=2))
         one, two = tip(here / "light")[:12], tip(here / "ranks")
-        check("the same on 2 ranks", float(numpy.abs(one - two).max()) < 1e-4 * float(numpy.abs(one).max()), float(numpy.abs(one - two).max()))
+        require("the same on 2 ranks", float(numpy.abs(one - two).max()) < 1e-4 * float(numpy.abs(one).max()), float(numpy.abs(one - two).max()))
 
 
 main()

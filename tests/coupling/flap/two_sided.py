@@ -10,6 +10,9 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import COUPLED, mpmd, require  # noqa: E402
+
 SOURCE, BIN = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
 FLUID_MESH = "mesh-parameters={n_side: 20, n_tip: 4, growth: 1.25, wall_cells: 5}"
 SETS = ("simulation.end-time=0.05", "simulation.max-step-halvings=0", "simulation.output.interval=0", "simulation.checkpoint={interval: 0.01, keep: 9}",
@@ -20,22 +23,14 @@ SETS = ("simulation.end-time=0.05", "simulation.max-step-halvings=0", "simulatio
 
 
 def launch(here, name, *sets, ranks=1, restart=None):
-    words = ["mpirun", "--oversubscribe"]
-    for i, program in enumerate(("coupler", "fluid_solver", "solid_solver", "mesh_mover")):
-        words += [":"] * (i > 0) + ["-n", str(ranks if i in (1, 2) else 1), str(BIN / program), "case.yaml"]
-        words += [f"--set={s}" for s in (*SETS, f"simulation.output.folder={name}", *sets)] + (["--restart", restart] if restart else [])
-    return subprocess.run(words, cwd=here, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=280)
+    words = [f"--set={s}" for s in (*SETS, f"simulation.output.folder={name}", *sets)] + (["--restart", restart] if restart else [])
+    line = mpmd([[BIN / program, "case.yaml", *words] for program in COUPLED], (1, ranks, ranks))
+    return subprocess.run(line, cwd=here, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=280)
 
 
 def table(file):
     with open(file, encoding="utf-8") as text:
         return list(csv.reader(text))[1:]
-
-
-def check(claim, holds, value):
-    print(f"{'ok' if holds else 'not ok'}  {claim}: {value}", flush=True)
-    if not holds:
-        sys.exit(1)
 
 
 def main():
@@ -44,19 +39,19 @@ def main():
         for file in ("case.yaml", "fluid.geo", "solid.geo"):
             shutil.copy(SOURCE / file, here)
         together = launch(here, "together")
-        check("together: exit code", together.returncode == 0, f"{together.returncode}\n{together.stdout[-2000:] if together.returncode else ''}")
-        check("together: the log names the two sides", "Robin interface: 95 % of it lies opposite itself" in together.stdout, "")
+        require("together: exit code", together.returncode == 0, f"{together.returncode}\n{together.stdout[-2000:] if together.returncode else ''}")
+        require("together: the log names the two sides", "Robin interface: 95 % of it lies opposite itself" in together.stdout, "")
         passes = len(table(here / "together/coupler/residuals.csv")) / 5
-        check("together: at most 10 passes a step", passes <= 10, passes)
+        require("together: at most 10 passes a step", passes <= 10, passes)
         apart = launch(here, "apart", "participants.fluid.boundaries.flap.sides=apart")
-        check("apart: the coupling fails, by name", apart.returncode != 0 and "did not converge" in apart.stdout, apart.returncode)
+        require("apart: the coupling fails, by name", apart.returncode != 0 and "did not converge" in apart.stdout, apart.returncode)
         tips = table(here / "together/solid/probes.csv")
         launch(here, "ranks", ranks=2)
         gap = max(abs(float(a[1]) - float(b[1])) for a, b in zip(table(here / "ranks/solid/probes.csv"), tips)) / abs(float(tips[-1][1]))
-        check("fluid and solid on 2 ranks: tips apart", gap < 1e-4, gap)
+        require("fluid and solid on 2 ranks: tips apart", gap < 1e-4, gap)
         shutil.copytree(here / "together/checkpoints/step-00000003", here / "set")
         launch(here, "on", restart="set")
-        check("restart bit for bit", table(here / "on/solid/probes.csv")[-2:] == tips[-2:], tips[-1])
+        require("restart bit for bit", table(here / "on/solid/probes.csv")[-2:] == tips[-2:], tips[-1])
 
 
 main()

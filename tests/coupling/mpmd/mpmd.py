@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The coupler and the toy participants as one MPMD job: ranks, restart and step halving do not change the answer."""
 import os
-import subprocess
+import pathlib
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import check, end, mpmd, said  # noqa: E402
+
 os.environ["PATH"] = os.pathsep.join(sys.argv[1:3] + [os.environ["PATH"]])
-for name in ("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"):
-    os.environ.setdefault(name, "1")
 
 CASE = """\
 simulation:
@@ -24,24 +25,13 @@ coupling:
   structure: {participant: solid}
   convergence: {relative: 1e-9, max-iterations: 100}
 """
-failed = []
 
 
 def run(folder, ranks=(1, 1), sets=(), restart=None):
     with open(os.path.join(folder, "case.yaml"), "w", encoding="utf-8") as out:
         out.write(CASE)
-    words = ["mpirun", "--oversubscribe"]
-    for i, (n, program) in enumerate(((1, "coupler"), (ranks[0], "toy_piston"), (ranks[1], "toy_spring"))):
-        words += ([":"] if i else []) + ["-n", str(n), program, "case.yaml"]
-        for assignment in sets:
-            words += ["--set", assignment]
-        if restart:
-            words += ["--restart", restart]
-    done = subprocess.run(words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60)
-    if done.returncode != 0:
-        print(done.stdout)
-        raise SystemExit(f"exit code {done.returncode}")
-    return done.stdout
+    words = [*(f"--set={s}" for s in sets), *(["--restart", restart] if restart else [])]
+    return said(mpmd([[program, "case.yaml", *words] for program in ("coupler", "toy_piston", "toy_spring")], (1, *ranks)), 60, cwd=folder)
 
 
 def text(folder, file):
@@ -51,12 +41,6 @@ def text(folder, file):
 
 def rows(folder, file):
     return [[float(word) for word in line.split(",")] for line in text(folder, file).splitlines()[1:]]
-
-
-def check(claim, holds, detail=""):
-    print(f"{'ok' if holds else 'not ok'}  {claim}  {detail}", flush=True)
-    if not holds:
-        failed.append(claim)
 
 
 def difference(a, b):
@@ -99,5 +83,4 @@ with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as othe
     off = difference(halved, fine)
     check("a participant that fails above a step is followed by halving", off < 1e-7, f"difference {off:.1e}")
 
-print(f"{len(failed)} checks failed" if failed else "all checks passed")
-sys.exit(1 if failed else 0)
+end()

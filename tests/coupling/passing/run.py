@@ -7,7 +7,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
-from checks import check, end, last  # noqa: E402
+from checks import check, end, last, mpmd  # noqa: E402
 
 programs, case = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]) / "passing-cylinders/case.yaml"
 COARSE = "mesh-parameters={n: 12, fine: 2}"
@@ -20,11 +20,9 @@ def sets(settings):
 
 
 def job(folder, ranks, *settings, more=()):
-    words = ["mpirun", "--oversubscribe"]
-    for program, n in zip(("coupler", "fluid_solver", "mesh_mover"), (1, *ranks)):
-        words += [":"] * (program != "coupler") + ["-n", str(n), programs / program, case, *more,
-                                                   *sets((*SHORT, *MOVER, f"simulation.output.folder={folder}", *settings))]
-    return subprocess.run([str(w) for w in words], capture_output=True, text=True, timeout=120)
+    words = [*more, *sets((*SHORT, *MOVER, f"simulation.output.folder={folder}", *settings))]
+    line = mpmd([[programs / program, case, *words] for program in ("coupler", "fluid_solver", "mesh_mover")], (1, *ranks))
+    return subprocess.run(line, capture_output=True, text=True, timeout=120)
 
 
 def forces(folder):

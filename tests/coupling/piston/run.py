@@ -10,7 +10,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
-from checks import check, end, last  # noqa: E402
+from checks import COUPLED, check, end, last, mpmd  # noqa: E402
 
 programs, case = pathlib.Path(sys.argv[1]), pathlib.Path(__file__).parent / "case.yaml"
 HEIGHT, LENGTH = 0.4, 1.0
@@ -19,10 +19,8 @@ HEIGHT, LENGTH = 0.4, 1.0
 def run(ranks, *settings):
     """Displacement of the bar's face [m] and volume of the fluid [m^3] at the end; all passes and halvings."""
     with tempfile.TemporaryDirectory() as folder:
-        words = ["mpirun", "--oversubscribe"]
-        for program, n in zip(("coupler", "fluid_solver", "solid_solver", "mesh_mover"), (1, *ranks)):
-            words += [":"] * (program != "coupler") + ["-n", str(n), programs / program, case, f"--set=simulation.output.folder={folder}", *settings]
-        done = subprocess.run([str(w) for w in words], capture_output=True, text=True, timeout=250)
+        line = mpmd([[programs / program, case, f"--set=simulation.output.folder={folder}", *settings] for program in COUPLED], (1, *ranks))
+        done = subprocess.run(line, capture_output=True, text=True, timeout=250)
         if done.returncode:
             print(done.stdout[-2000:], done.stderr[-1000:])
             check(f"ranks {ranks}: exit code 0", False, done.returncode)
@@ -42,7 +40,7 @@ for ranks in ((1, 1, 2), (2, 1, 1), (3, 2, 3)):
 
 # rho_f L over rho_s times 1 m. Passes of ten steps with a pressure tolerance of 1e-9 were 34, 37 and 44. At 1000 rounding
 # decides (37 or 60, by the BLAS of the machine): of densities that differ by 1e-4 a third have failed steps, with a pressure tolerance of
-# 1e-9 as well, since each pass that shows the quasi-Newton method a new mode multiplies it by 1e4 (docs/validation/work-and-order.md).
+# 1e-9 as well, since each pass that shows the quasi-Newton method a new mode multiplies it by 1e4 (docs/validation/coupling-accuracy.md).
 DEFAULTS = ("--set=participants.fluid.pressure-tolerance=1e-6", "--set=coupling.convergence.relative=1e-5")
 for ratio, most in ((10, 36), (91, 40), (1000, 66)):
     moved, _, passes, halvings = run((1, 1, 1), f"--set=participants.fluid.density={1000 * ratio}", *DEFAULTS)

@@ -6,9 +6,11 @@ Usage: restart.py alone|coupled CONFIGS BIN"""
 import csv
 import pathlib
 import shutil
-import subprocess
 import sys
 import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import mpmd, said  # noqa: E402
 
 KIND, CONFIGS, BIN = sys.argv[1], *map(pathlib.Path, sys.argv[2:4])
 SEAT = "{height: -0.0202, direction: [-1, 0, 0], stiffness: 1e5}"
@@ -27,15 +29,9 @@ CASES = {
 
 
 def run(folder, programs, case, sets, restart=None, changes=()):
-    command = ["mpirun", "--oversubscribe"]
-    for i, program in enumerate(programs):
-        command += [":"] * (i > 0) + ["-n", "1", BIN / program, case, f"--set=simulation.output.folder={folder}"]
-        command += [f"--set={s}" for s in sets] + (["--restart", restart] if restart else [])
-        command += (["--restart-with-changes"] if changes else []) + [f"--set={s}" for s in changes]
-    result = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=500)
-    if result.returncode != 0:
-        sys.exit(f"{programs}: exit code {result.returncode}\n{result.stdout[-3000:]}\n{result.stderr[-2000:]}")
-    return result.stdout + result.stderr
+    words = [f"--set={s}" for s in (f"simulation.output.folder={folder}", *sets, *changes)]
+    words += (["--restart", restart] if restart else []) + (["--restart-with-changes"] if changes else [])
+    return said(mpmd([BIN / program, case, *words] for program in programs), 500)
 
 
 def main():

@@ -9,7 +9,7 @@
 
 #include "common/app/loop/step_loop.hpp"
 #include "common/base/error.hpp"
-#include "common/coupling/within_step.hpp"
+#include "common/coupling/sub_stepping.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
@@ -213,7 +213,7 @@ TEST(WithinStep, a_run_continues_bit_for_bit) {
   run.left = Tank{"left-level", "right-level", 1, 0, 0},
   run.right = Tank{"right-level", "left-level", 2, 0, 0};
   EXPECT_EQ(run(), wanted);
-  EXPECT_LT(run.passes, whole.passes);
+  EXPECT_EQ(run.passes, whole.passes) << "those before the restart count";
 }
 
 TEST(WithinStep, a_number_of_sub_steps_that_wavers_from_pass_to_pass_still_converges) {

@@ -12,18 +12,14 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import check, end, mpmd  # noqa: E402
+
 kind, project, programs, mpirun = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3]), sys.argv[4:]
 case, structure = {"plate": ("case.yaml", "plate_modal"), "modes": ("modes.yaml", "plate_modal"), "solid": ("solid.yaml", "solid_solver"),
                    "coarse-solid": ("solid.yaml", "solid_solver")}[kind]
 SEAT = -0.27e-3  # lift of the tip at which it lands [m]
 CHECKPOINTS = 0.25e-3  # [s]
-failed = []
-
-
-def check(claim, holds, detail=""):
-    print(f"{'ok' if holds else 'not ok'}  {claim}  {detail}", flush=True)
-    if not holds:
-        failed.append(claim)
 
 
 def run(top, name, end, ranks=(1, 1, 1, 1), restart=None):
@@ -32,10 +28,8 @@ def run(top, name, end, ranks=(1, 1, 1, 1), restart=None):
             'participants.fluid.boundaries.outlet.pressure="t<0.003?1000*sin(pi*t/0.003):0"']
     sets += [f"participants.{name}.mesh-parameters={{f: 0.5}}" for name in ("fluid", "mover", "reed")] if kind == "coarse-solid" else []
     sets += ["participants.reed.output.energies=true"] if structure == "solid_solver" else []
-    line = list(mpirun)
-    for n, program in zip(ranks, ("coupler", "fluid_solver", structure, "mesh_mover")):
-        line += [*([":"] if len(line) > len(mpirun) else []), "-n", str(n), str(programs / program), case, *(f"--set={word}" for word in sets),
-                 *(["--restart", restart] if restart else [])]
+    words = [case, *(f"--set={word}" for word in sets), *(["--restart", restart] if restart else [])]
+    line = mpmd([[programs / program, *words] for program in ("coupler", "fluid_solver", structure, "mesh_mover")], ranks, mpirun)
     done = subprocess.run(line, cwd=top, capture_output=True, text=True, timeout=280)
     said = done.stdout + done.stderr
     # 4: the run's own estimate finds so coarse a mesh not reliable.
@@ -89,5 +83,4 @@ with tempfile.TemporaryDirectory() as folder:
     t, z = columns(top, "ranks", "probes.csv", "tip z [m]")[-1]
     off = abs(z - dict(tip)[t]) / abs(SEAT)
     check("continued on two ranks: the same", off < 1e-6, f"{off:.1e} of the lift")
-print(f"{len(failed)} checks failed" if failed else "all checks passed")
-sys.exit(1 if failed else 0)
+end()

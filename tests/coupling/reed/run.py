@@ -9,24 +9,20 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import check, end, mpmd  # noqa: E402
+
 project, programs, mpirun = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3:]
-failed = []
 
 
-def check(claim, holds, detail=""):
-    print(f"{'ok' if holds else 'not ok'}  {claim}  {detail}", flush=True)
-    if not holds:
-        failed.append(claim)
+PROGRAMS = [programs / program for program in ("coupler", "fluid_solver", "plate_modal", "mesh_mover")]
 
 
 def run(top, name, end, ranks=(1, 1, 1, 1), restart=None):
     """Times and tip heights of a run."""
     words = ["case.yaml", f"--set=simulation.output.folder={name}", f"--set=simulation.end-time={end}", "--set=simulation.checkpoint.interval=2e-4",
              *(["--restart", restart] if restart else [])]
-    line = list(mpirun)
-    for n, program in zip(ranks, ("coupler", "fluid_solver", "plate_modal", "mesh_mover")):
-        line += [*([":"] if len(line) > len(mpirun) else []), "-n", str(n), str(programs / program), *words]
-    done = subprocess.run(line, cwd=top, capture_output=True, text=True, timeout=100)
+    done = subprocess.run(mpmd([[program, *words] for program in PROGRAMS], ranks, mpirun), cwd=top, capture_output=True, text=True, timeout=100)
     check(f"{name}: exit code 0, no step failed", done.returncode == 0 and " failed:" not in done.stdout + done.stderr, (done.stdout + done.stderr)[-400:] if done.returncode else "")
     with open(top / name / "reed/probes.csv", newline="") as rows:
         return [(float(r["time [s]"]), float(r["tip z [m]"])) for r in csv.DictReader(rows)]
@@ -34,11 +30,8 @@ def run(top, name, end, ranks=(1, 1, 1, 1), restart=None):
 
 def refused(top, claim, message, *sets, run_it=False):
     """These settings end with this message."""
-    programs_of = ("coupler", "fluid_solver", "plate_modal", "mesh_mover") if run_it else ("plate_modal",)
-    line = list(mpirun) if run_it else []
-    for i, program in enumerate(programs_of):
-        line += [*([":"] if i else []), *(["-n", "1"] if run_it else []), str(programs / program), "case.yaml",
-                 *(f"--set={word}" for word in sets), *([] if run_it else ["--check"])]
+    words = ["case.yaml", *(f"--set={word}" for word in sets)]
+    line = mpmd([[program, *words] for program in PROGRAMS], mpirun=mpirun) if run_it else [programs / "plate_modal", *words, "--check"]
     done = subprocess.run(line, cwd=top, capture_output=True, text=True, timeout=100)
     check(claim, done.returncode != 0 and message in done.stdout + done.stderr, (done.stdout + done.stderr)[-400:])
 
@@ -63,5 +56,4 @@ with tempfile.TemporaryDirectory() as folder:
     check("on 3 ranks of the fluid and of the mover: the same", len(ranks) == 4 and off < 1e-6, f"{off:.1e}")
     rest = run(top, "rest", 4e-4, restart="whole/checkpoints/step-00000004")
     check("restarted bit for bit", len(rest) == 4 and rest == whole[4:], str(rest[-1:]))
-print(f"{len(failed)} checks failed" if failed else "all checks passed")
-sys.exit(1 if failed else 0)
+end()

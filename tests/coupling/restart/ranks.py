@@ -7,12 +7,14 @@ compared as they are. Coarse meshes.
 Usage: ranks.py CASE CONFIGS BIN [--ranks 1,2,3]      CASE: flap, tube, fsi1"""
 import pathlib
 import shutil
-import subprocess
 import sys
 import tempfile
 
 import h5py
 import numpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import COUPLED, mpmd, said  # noqa: E402
 
 FLAP = {"n_side = 80": "n_side = 20", "n_side = 160": "n_side = 40", "n_tip = 8": "n_tip = 4", "n_tip = 16": "n_tip = 8",
         "growth = 1.12; ": "growth = 1.25; ", "wall_cells = 10": "wall_cells = 5"}
@@ -45,15 +47,10 @@ class Case:
     def run(self, out, ranks, steps, restart=None):
         """To the end of `steps`, with a checkpoint there, of which this gives the folder. Fields are written there by all runs: what a
         participant learns from them is in its state."""
-        words = ["mpirun", "--oversubscribe"]
-        for i, program in enumerate(("coupler", "fluid_solver", "solid_solver", "mesh_mover")):
-            words += [":"] * (i > 0) + ["-n", str(ranks), str(self.bin / program), self.file]
-            words += [f"--set={s}" for s in (*self.sets, f"simulation.end-time={steps * self.step}", "simulation.checkpoint.interval=0",
-                                            f"simulation.output={{folder: {out}, interval: {STEPS // 2 * self.step}}}")]
-            words += ["--restart", str(restart), "--restart-with-changes"] if restart else []
-        result = subprocess.run(words, cwd=self.here, capture_output=True, text=True, timeout=900)
-        if result.returncode:
-            sys.exit(f"{out}: exit code {result.returncode}\n{result.stdout[-3000:]}\n{result.stderr[-2000:]}")
+        words = [f"--set={s}" for s in (*self.sets, f"simulation.end-time={steps * self.step}", "simulation.checkpoint.interval=0",
+                                        f"simulation.output={{folder: {out}, interval: {STEPS // 2 * self.step}}}")]
+        words += ["--restart", restart, "--restart-with-changes"] if restart else []
+        said(mpmd([[self.bin / program, self.file, *words] for program in COUPLED], 4 * [ranks]), 900, cwd=self.here)
         return self.here / out / "checkpoints" / f"step-{steps:08d}"
 
 

@@ -2,7 +2,6 @@
 """Roles given to the wrong programs: refused by name before the first step, by --check too, or the right answer.
 Usage: roles.py BIN CONFIGS check | launch | flaps"""
 import itertools
-import os
 import pathlib
 import re
 import shutil
@@ -10,6 +9,10 @@ import subprocess
 import sys
 import tempfile
 import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+import checks  # noqa: E402
+from checks import check, end, mpmd  # noqa: E402
 
 binaries, configs = map(pathlib.Path, sys.argv[1:3])
 MPIRUN = ["mpirun", "--oversubscribe"]
@@ -24,16 +27,7 @@ COARSE = {"perpendicular-flap": {"participants.fluid.mesh-parameters": "{n_side:
                         "participants.front.mesh-parameters": "{n_side: 20, n_tip: 2}",
                         "participants.rear.mesh-parameters": "{x: 1, n_side: 20, n_tip: 2}"}}
 SHORT = {"simulation.end-time": "0.05 s", "simulation.output.interval": "1 s", "simulation.checkpoint.interval": "0 s"}
-for name in ("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"):
-    os.environ.setdefault(name, "1")
-failed = []
 counts = {"refused": 0, "right": 0}
-
-
-def check(claim, holds, detail=""):
-    print(f"{'ok' if holds else 'not ok'}  {claim}  {detail if not holds else ''}", flush=True)
-    if not holds:
-        failed.append(claim)
 
 
 def run(words, folder):
@@ -51,10 +45,7 @@ def options(sets):
 
 def job(folder, parts, sets):
     """`parts`: (program, participant) in the order of the launch line."""
-    words = list(MPIRUN)
-    for i, (program, participant) in enumerate(parts):
-        words += ([":"] if i else []) + ["-n", "1", binaries / program, "case.yaml", "--participant", participant, *options(sets)]
-    return run(words, folder)
+    return run(mpmd([binaries / program, "case.yaml", "--participant", participant, *options(sets)] for program, participant in parts), folder)
 
 
 def prepare(folder, case):
@@ -168,5 +159,5 @@ def two_flaps(folder):
 start = time.monotonic()
 with tempfile.TemporaryDirectory(prefix="couplet-roles-") as scratch:
     {"check": by_check, "launch": launched, "flaps": two_flaps}[sys.argv[3]](pathlib.Path(scratch))
-print(f"{counts['refused']} refused by name, {counts['right']} right, {len(failed)} failed in {time.monotonic() - start:.0f} s")
-sys.exit(1 if failed else 0)
+print(f"{counts['refused']} refused by name, {counts['right']} right, {len(checks.failed)} failed in {time.monotonic() - start:.0f} s")
+end()

@@ -7,13 +7,13 @@ import math
 import os
 import pathlib
 import shutil
-import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import mpmd, said  # noqa: E402
+
 os.environ["PATH"] = os.pathsep.join(sys.argv[1:3] + [os.environ["PATH"]])
-for name in ("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"):
-    os.environ.setdefault(name, "1")
 MU = 5 / (math.pi * math.tanh(0.1 * math.pi))
 HERE = pathlib.Path(__file__).resolve().parent
 # The growth that is measured here makes the answer useless otherwise.
@@ -25,14 +25,8 @@ def run(folder, inverse, *sets):
     """rho_s h / (rho_f mu_1) = inverse; gives the rows of residuals.csv and of the wall's motion."""
     for file in ("case.yaml", "channel.geo"):
         shutil.copy(HERE / file, folder)
-    sets = [f"participants.wall.surface-density={MU * inverse}", *sets]
-    words = ["mpirun", "--oversubscribe"]
-    for i, program in enumerate(("coupler", "fluid_solver", "toy_wall")):
-        words += [":"] * (i > 0) + ["-n", "1", program, "case.yaml", *(f"--set={s}" for s in sets), *(f"--accept={i}" for i in ACCEPTED)]
-    done = subprocess.run(words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=1200)
-    if done.returncode != 0:
-        print(done.stdout[-3000:])
-        raise SystemExit(f"exit code {done.returncode}")
+    words = [f"--set=participants.wall.surface-density={MU * inverse}", *(f"--set={s}" for s in sets), *(f"--accept={i}" for i in ACCEPTED)]
+    said(mpmd([program, "case.yaml", *words] for program in ("coupler", "fluid_solver", "toy_wall")), 1200, cwd=folder)
     return table(folder, "coupler/residuals.csv"), table(folder, "wall/mode.csv")
 
 

@@ -4,9 +4,11 @@
 Usage: run.py PROJECT BIN MPIRUN..."""
 import importlib.util
 import pathlib
-import subprocess
 import sys
 import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from checks import mpmd, said  # noqa: E402
 
 project, programs, mpirun = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3:]
 case = project / "configs/thermocline-solar-one-wall/case.yaml"
@@ -18,18 +20,12 @@ spec.loader.exec_module(module)
 with tempfile.TemporaryDirectory(prefix="couplet-tank-") as folder:
     folder = pathlib.Path(folder)
     alone = project / "configs/thermocline-solar-one/case.yaml"
-    subprocess.run([programs / "thermocline", alone, f"--set=simulation.output.folder={folder}/alone"], check=True,
-                   capture_output=True)
+    said([programs / "thermocline", alone, f"--set=simulation.output.folder={folder}/alone"])
     found = {}
     for ranks in ((1, 1), (2, 2)):
         out = folder / f"coupled-{ranks[0]}"
-        command = [*mpirun]
-        for n, program in zip((1, *ranks), ("coupler", "thermocline", "solid_solver")):
-            command += [":"] * (program != "coupler") + ["-n", str(n), programs / program, case,
-                                                         f"--set=simulation.output.folder={out}"]
-        result = subprocess.run([str(c) for c in command], capture_output=True, text=True)
-        if result.returncode:
-            sys.exit(result.stdout + result.stderr)
+        parts = [[programs / program, case, f"--set=simulation.output.folder={out}"] for program in ("coupler", "thermocline", "solid_solver")]
+        said(mpmd(parts, (1, *ranks), mpirun))
         found[ranks], _ = module.compare(out, folder / "alone/tank")
         print(ranks, found[ranks])
     one, more = found.values()

@@ -7,8 +7,8 @@
 #include <numeric>
 #include <random>
 
-#include "coupler/judge/balance.hpp"
 #include "coupler/mapping/links.hpp"
+#include "coupler/output/mechanics.hpp"
 #include "tests/coupling/support/surfaces.hpp"
 
 namespace couplet::conjugate_test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The weights of corners keep the moment of a force at a face's centre, wherever in the face that is.
-#include "coupler/mapping/corner_weights.hpp"
+#include "coupler/mapping/face_weights.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "common/app/loop/step_loop.hpp"
-#include "coupler/judge/balance.hpp"
+#include "coupler/output/mechanics.hpp"
 #include "tests/coupling/unit/foreign.hpp"
 
 namespace couplet::foreign_structure_test {

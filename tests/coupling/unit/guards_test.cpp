@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each guard fires on what it is for and keeps still beside it.
-#include "coupler/judge/guards.hpp"
+#include "coupler/diagnostics/guards.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,8 @@
 #include <functional>
 
 #include "common/base/error.hpp"
-#include "coupler/judge/places.hpp"
+#include "common/base/numbers.hpp"
+#include "coupler/mapping/surface_checks.hpp"
 
 namespace couplet::guards_test {
 using namespace coupling;
@@ -185,7 +186,7 @@ TEST(WorkGuard, work_is_judged_by_what_stays_not_by_what_went_to_and_fro) {
 TEST(WorkGuard, its_sums_go_through_a_checkpoint) {
   WorkGuard guard, other;
   for (int n = 0; n < 5; ++n) guard.accepted(n, 1.5 * n, Scheme::implicit);
-  other.restore(guard.totals());
+  base::from_numbers(base::to_numbers(guard), other, "work");
   EXPECT_EQ(other.verdict().text, guard.verdict().text);
 }
 

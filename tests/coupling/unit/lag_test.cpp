@@ -37,14 +37,10 @@ class Drag final : public tests::Passing<toy::Piston&> {
   double C_;
 };
 
-/// The spring, its way kept; steps shorter than `fails_below` fail.
+/// The spring, its way kept.
 class Watched final : public tests::Passing<toy::Spring> {
  public:
   Watched(const toy::SpringParameters& p, std::vector<double>& way) : Passing(MPI_COMM_SELF, p), way_(way) {}
-  void begin_step(const Step& step) override {
-    if (step.dt < fails_below) throw SolveFailure("dt is too short.");
-    inner.begin_step(step);
-  }
   Exchange solve(const Exchange& in) override {
     Exchange out = inner.solve(in);
     y_ = out.at("displacement")[1];
@@ -54,7 +50,6 @@ class Watched final : public tests::Passing<toy::Spring> {
     way_.push_back(y_);
     return inner.accept_step();
   }
-  double fails_below = 0;
 
  private:
   std::vector<double>& way_;
@@ -62,7 +57,7 @@ class Watched final : public tests::Passing<toy::Spring> {
 };
 
 struct LagRun {
-  double mu = 0.1, drag = 0, end = 10, dt = 0.05, fails_below = 0;  // mu: added mass over the structure's
+  double mu = 0.1, drag = 0, end = 10, dt = 0.05;  // mu: added mass over the structure's
   int order = 2;
   Scheme scheme = Scheme::explicit_;
   bool estimates = true;
@@ -86,7 +81,6 @@ struct LagRun {
     toy::Piston piston(context, fluid);
     Drag dragged(piston, drag);
     Watched spring({.mass = 0.5, .stiffness = (1 + mu) / 2}, way);
-    spring.fails_below = fails_below;
     coupler::CouplerChannels channels{std::make_unique<LocalChannel>("fluid", dragged),
                                       std::make_unique<LocalChannel>("solid", spring), nullptr};
     coupler::Coupler coupler(coupling, simulation, std::move(channels),
@@ -100,14 +94,13 @@ struct LagRun {
   }
   ~LagRun() { fs::remove_all(folder); }
 
-  /// The lower and the upper number of the sentence; NaN: none.
-  std::pair<double, double> told() const {
+  /// The number of the sentence; NaN: none.
+  double told() const {
     std::smatch found;
-    if (!std::regex_search(
-            text, found,
-            std::regex("the error of explicit coupling is between ([-+.e0-9]+) and ([-+.e0-9]+) of")))
-      return {std::nan(""), std::nan("")};
-    return {std::stod(found[1]), std::stod(found[2])};
+    if (!std::regex_search(text, found,
+                           std::regex("the error of explicit coupling is at most about ([-+.e0-9]+) of")))
+      return std::nan("");
+    return std::stod(found[1]);
   }
 };
 
@@ -116,7 +109,7 @@ struct Setting {
   int order;
 };
 
-TEST(LagEstimate, is_within_a_factor_of_two_of_what_explicit_coupling_leaves) {
+TEST(ExplicitLag, bounds_what_explicit_coupling_leaves) {
   // Added mass alone (errors of single steps cancel), drag alone (they add up), both; starts that jerk; a tenth of a
   // swing to eight swings; steps from 1/60 to 1/500 of a swing; motion that has died away to a tenth.
   const Setting settings[] = {{0.2, 0, 10, 0.1, 2},    {0.2, 0, 10, 0.0125, 2}, {0.2, 0, 50, 0.05, 2},
@@ -135,31 +128,26 @@ TEST(LagEstimate, is_within_a_factor_of_two_of_what_explicit_coupling_leaves) {
       size = std::max(size, std::abs(lags.way[i]));
       if (4 * i >= 3 * lags.way.size()) error = std::max(error, std::abs(lags.way[i] - true_.way[i]));
     }
-    const auto [least, most] = lags.told();
-    const double ratio = least / (error / size);
-    EXPECT_TRUE(ratio > 0.5 && ratio < 2)
-        << "mu " << s.mu << " drag " << s.drag << " end " << s.end << " dt " << s.dt << " order " << s.order
-        << ": told " << least << ", true " << error / size;
-    EXPECT_GE(most, 0.9 * error / size);
+    EXPECT_GE(lags.told(), 0.9 * error / size)
+        << "mu " << s.mu << " drag " << s.drag << " end " << s.end << " dt " << s.dt << " order " << s.order;
+    if (s.mu == 0)  // errors of single steps add up
+      EXPECT_LE(lags.told(), 20 * error / size);
     EXPECT_EQ(true_.text.find("the error of explicit coupling"), std::string::npos);
   }
 }
 
-TEST(LagEstimate, is_said_to_be_unknown_where_no_step_could_be_looked_at) {
+TEST(ExplicitLag, is_said_to_be_unknown_where_no_step_could_be_looked_at) {
   LagRun shorter{.end = 0.15};
   shorter();
-  EXPECT_TRUE(std::isnan(shorter.told().first)) << shorter.text;
+  EXPECT_TRUE(std::isnan(shorter.told())) << shorter.text;
   EXPECT_THAT(shorter.text,
               testing::HasSubstr("the error of explicit coupling is unknown (no step was examined"));
-  LagRun fails{.end = 1, .fails_below = 0.04};  // halves of 0.05
-  fails();
-  EXPECT_THAT(fails.text, testing::HasSubstr("the error of explicit coupling is unknown"));
   LagRun off{.end = 1, .estimates = false};
   off();
   EXPECT_EQ(off.text.find("the error of explicit coupling"), std::string::npos);
 }
 
-TEST(LagEstimate, changes_nothing_and_continues_over_a_restart_bit_for_bit) {
+TEST(ExplicitLag, changes_nothing_and_continues_over_a_restart_bit_for_bit) {
   LagRun whole{.drag = 0.1, .end = 2}, off{.drag = 0.1, .end = 2, .estimates = false},
       first{.drag = 0.1, .end = 1};
   whole();
@@ -173,7 +161,7 @@ TEST(LagEstimate, changes_nothing_and_continues_over_a_restart_bit_for_bit) {
   second();
   EXPECT_EQ(second.way, std::vector(whole.way.begin() + 20, whole.way.end()));
   EXPECT_EQ(second.told(), whole.told());
-  EXPECT_FALSE(std::isnan(whole.told().first));
+  EXPECT_FALSE(std::isnan(whole.told()));
 }
 
 }  // namespace

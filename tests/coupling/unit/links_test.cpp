@@ -5,11 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "common/base/error.hpp"
-#include "coupler/exchange/role_checks.hpp"
-#include "coupler/judge/audit.hpp"
-#include "coupler/judge/balance.hpp"
-#include "coupler/judge/mechanics.hpp"
-#include "coupler/judge/places.hpp"
+#include "coupler/exchange/start_checks.hpp"
+#include "coupler/mapping/surface_checks.hpp"
+#include "coupler/output/mechanics.hpp"
 
 namespace couplet::links_test {
 using namespace coupling;
@@ -56,21 +54,6 @@ std::string message(const F& f) {
     return error.what();
   }
   return "";
-}
-
-TEST(CouplingAudit, forces_that_nobody_takes_are_compared_with_those_taken) {
-  const std::vector<Exchange> given{{{"pressure-force", {0, 3, 0, 4}}, {"viscous-force", {0.1, 0, 0, 0}}},
-                                    {}};
-  const auto seen = [&](const Interface& structure) {
-    const std::vector<Side> sides{side("fluid", fluid()), side("solid", structure)};
-    CouplingAudit audit(MPI_COMM_SELF, sides, {MPI_COMM_SELF, sides, {}});
-    audit.loads(given);
-    return audit.evidence().lost_load;
-  };
-  Interface pressed = solid();
-  pressed.takes = {load.front()};
-  EXPECT_DOUBLE_EQ(seen(pressed), 0.1 / 5);
-  EXPECT_TRUE(std::isnan(seen(solid())));
 }
 
 TEST(Links, motion_goes_to_the_fluid_and_load_to_the_structure) {

@@ -7,8 +7,7 @@
 #include <random>
 
 #include "common/base/error.hpp"
-#include "coupler/mapping/map_local.hpp"
-#include "coupler/mapping/map_projection.hpp"
+#include "coupler/mapping/sparse_map.hpp"
 #include "tests/coupling/support/surfaces.hpp"
 
 namespace couplet::map_test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the faces of the other side cover of a face, and who gets what none covers.
-#include "coupler/mapping/overlay.hpp"
+#include "coupler/mapping/conjugate_map.hpp"
 
 #include <gtest/gtest.h>
 

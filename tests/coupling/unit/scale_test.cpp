@@ -6,8 +6,8 @@
 #include <ctime>
 
 #include "common/base/error.hpp"
-#include "coupler/judge/mechanics.hpp"
-#include "coupler/judge/places.hpp"
+#include "coupler/mapping/surface_checks.hpp"
+#include "coupler/output/mechanics.hpp"
 
 namespace couplet::scale_test {
 using namespace coupling;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is judged before the first step, and in the first ten: roles, sizes of surfaces, structures that stand still.
+// What is judged before the first step: roles and sizes of surfaces.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,8 +8,7 @@
 #include "common/base/error.hpp"
 #include "common/coupling/roles.hpp"
 #include "common/log/finding.hpp"
-#include "coupler/judge/still_guard.hpp"
-#include "coupler/judge/surfaces.hpp"
+#include "coupler/mapping/surface_checks.hpp"
 #include "tests/coupling/support/surfaces.hpp"
 
 namespace couplet::start_checks_test {
@@ -160,32 +159,6 @@ TEST(Surfaces, who_follows_the_motion_and_gives_no_load_may_cover_a_part) {
   };
   EXPECT_EQ(doubts({{"temperature", "K", Place::faces, 1}}), 0);
   EXPECT_EQ(doubts({{"magnetic-force", "N", Place::faces}}), 1);
-}
-
-TEST(StillGuard, ten_steps_of_load_without_motion_are_flagged_once) {
-  const std::vector<Side> sides{side("fluid", tests::flap(2, 1, -1), motion, loads),
-                                side("solid", tests::flap(2, 1, 1), loads, motion)};
-  const std::size_t vertices = sides[1].interface.vertices.size(),
-                    faces = sides[1].interface.face_centres.size();
-  /// Findings over 25 steps; from `from` on it moves by `motion`.
-  const auto findings = [&](double load, double way, int from) {
-    StillGuard guard(MPI_COMM_SELF, sides);
-    std::vector<std::string> all;
-    for (int n = 0; n < 25; ++n) {
-      std::vector<Exchange> given(2), taken(2);
-      given[1]["displacement"].assign(2 * vertices, n >= from ? way : 0.);
-      taken[1]["pressure-force"].assign(2 * faces, load);
-      for (const std::string& one : guard.accepted(given, taken)) all.push_back(one);
-    }
-    return all;
-  };
-  ASSERT_EQ(findings(3, 0, 0).size(), 1u);
-  EXPECT_THAT(findings(3, 0, 0)[0],
-              HasSubstr("'solid': 0 m at every interface vertex for 10 steps under a load of up "
-                        "to 3 N per face"));
-  EXPECT_EQ(findings(0, 0, 0).size(), 0u) << "nothing pushes";
-  EXPECT_EQ(findings(3, 1e-15, 9).size(), 0u) << "it moves in the tenth step, by however little";
-  EXPECT_EQ(findings(3, 1e-15, 10).size(), 1u);
 }
 
 }  // namespace

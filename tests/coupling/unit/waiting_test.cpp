@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/output/waiting.hpp"
+#include "coupler/output/monitor.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -85,13 +85,6 @@ TEST(AddedMass, explicit_coupling_measures_the_mass_ratio_and_doubts_itself_beyo
   }
 }
 
-TEST(AddedMass, is_looked_at_seldom) {
-  std::vector<GlobalIndex> due;
-  for (GlobalIndex n = 0; n <= 1000; ++n)
-    if (CouplingAudit::looks_at(n)) due.push_back(n);
-  EXPECT_EQ(due, (std::vector<GlobalIndex>{4, 16, 64, 256}));
-}
-
 /// Explicit coupling, w = v^n: m (v^{n+1} - v^n) = - rho mu (v^n - v^{n-1}), so the increments of the
 /// velocity grow by r a step, whatever the step.
 TEST(AddedMass, explicit_coupling_grows_by_the_mass_ratio_each_step) {

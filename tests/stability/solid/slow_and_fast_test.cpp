@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Steps far below and far above what the cells ask for. Mechanism: a scheme without damping keeps what the operator makes, and
 // an operator that is not symmetric makes energy on leaning cells, a little each step; a damping scheme must not make any where
-// the step resolves nothing. Here over thousands of steps; 1e5 and 1e4 of them are rows of `scripts/validate effects-and-stability`.
+// the step resolves nothing. Here over thousands of steps; 1e5 and 1e4 of them are rows of `scripts/validate stability`.
 #include <gtest/gtest.h>
 
 #include "swing.hpp"

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/app/loop/halving_causes.hpp"
+#include "common/app/loop/step_loop.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <unistd.h>
 
 #include <filesystem>
-
-#include "common/app/loop/step_loop.hpp"
 
 namespace couplet::halving_causes_test {
 using namespace app;

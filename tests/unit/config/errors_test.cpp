@@ -27,7 +27,7 @@ const Case cases[] = {
     {"Load: 5", "3:1: Load: unknown key. Did you mean 'load'?"},
     {"quantities: {drag: {}}",
      "3:1: quantities: unknown key. Quantities of this program (a force, a value at a probe, an extreme) belong to the section 'study: "
-     "{quantities: ...}' of the case; 'scripts/study CASE --quantities' estimates their errors by differences of coarser runs (docs/studies.md)."},
+     "{quantities: ...}' of the case; 'couplet study CASE --quantities' estimates their errors by differences of coarser runs (docs/studies.md)."},
     {"density: 5",
      "3:1: density: unknown key. Valid keys: mesh, analysis, material, interval, temperature, relaxation, "
      "iterations, "

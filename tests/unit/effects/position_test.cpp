@@ -28,14 +28,4 @@ TEST(Position, of_a_run_is_the_nearest_to_each_limit_that_it_has_been) {
   EXPECT_EQ(kept[1].value, 0.3);
 }
 
-TEST(Position, is_read_from_verdicts_whose_number_is_the_axis_of_a_map) {
-  const std::vector<EffectVerdict> verdicts{
-      {.effect = "resolved grains", .number = 8, .threshold = 20, .sentence = {}},
-      {.effect = "gravity", .number = 8, .threshold = 20, .sentence = {}}};
-  const std::vector<Coordinate> found = coordinates_of(verdicts);
-  ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(found[0].map, "tank-biot");
-  EXPECT_EQ(found[0].used(), 0.4);
-}
-
 }  // namespace couplet::effects::position_test

@@ -27,7 +27,8 @@ class CutMesh : public ::testing::Test {
     return box;
   }();
   void SetUp() override {
-    io::write_cut_mesh(MPI_COMM_WORLD, mesh::block_of(MPI_COMM_WORLD, raw), file);
+    io::write_cut_mesh(MPI_COMM_WORLD,
+                       mesh::block_of(MPI_COMM_WORLD, raw, parallel::comm_size(MPI_COMM_WORLD)), file);
     MPI_Barrier(MPI_COMM_WORLD);
   }
   std::string error_of_opening() const {
@@ -47,7 +48,7 @@ class CutMesh : public ::testing::Test {
 };
 
 TEST_F(CutMesh, gives_each_rank_the_block_that_was_written) {
-  const mesh::MeshBlock written = mesh::block_of(MPI_COMM_WORLD, raw),
+  const mesh::MeshBlock written = mesh::block_of(MPI_COMM_WORLD, raw, parallel::comm_size(MPI_COMM_WORLD)),
                         read = io::read_cut_mesh(MPI_COMM_WORLD, file);
   EXPECT_EQ(read.points, written.points);
   EXPECT_EQ(read.cells.type, written.cells.type);

@@ -10,7 +10,7 @@
 
 #include "common/base/error.hpp"
 #include "common/linalg/acceleration.hpp"
-#include "common/linalg/multigrid/component_multigrid.hpp"
+#include "common/linalg/component_multigrid.hpp"
 #include "common/linalg/residual_projection.hpp"
 #include "common/parallel/collective.hpp"
 

@@ -11,7 +11,6 @@
 
 #include "common/base/error.hpp"
 #include "common/log/progress.hpp"
-#include "common/log/timer.hpp"
 
 namespace couplet::log_test {
 namespace {

@@ -20,7 +20,10 @@ using namespace mesh;
 using namespace parallel;
 namespace {
 
-/// The rank of each cell of this rank's block as the serial path has shared them out.
+/// An even share of a mesh that every rank has.
+MeshBlock even_block(const RawMesh& raw) { return block_of(MPI_COMM_WORLD, raw, comm_size(MPI_COMM_WORLD)); }
+
+/// The rank of each cell of this rank's block as they are shared out in `mesh`.
 std::vector<int> part_of_block(const Mesh& mesh, const MeshBlock& block) {
   std::vector<GlobalIndex> own(mesh.cell_id.begin(), mesh.cell_id.begin() + mesh.cells.n_owned());
   std::vector<GlobalIndex> ranks(own.size(), comm_rank(mesh.comm));
@@ -79,10 +82,10 @@ void expect_same(const LoadedMesh& a, const LoadedMesh& b) {
   }
 }
 
-/// Through both paths, the cells shared out alike.
+/// From rank 0 alone and from even blocks, the cells shared out alike.
 void expect_same_by_blocks(const RawMesh& raw) {
   const LoadedMesh whole = distribute(MPI_COMM_WORLD, raw);
-  MeshBlock block = block_of(MPI_COMM_WORLD, raw);
+  MeshBlock block = even_block(raw);
   const std::vector<int> part = part_of_block(whole.mesh, block);
   expect_same(distribute(MPI_COMM_WORLD, std::move(block), part), whole);
 }
@@ -115,7 +118,7 @@ class Blocks : public ::testing::TestWithParam<test::Box> {};
 INSTANTIATE_TEST_SUITE_P(Boxes, Blocks, ::testing::ValuesIn(test::boxes()),
                          [](const auto& info) { return info.param.name; });
 
-TEST_P(Blocks, give_the_parts_that_the_whole_mesh_gives_bit_for_bit) {
+TEST_P(Blocks, give_the_parts_that_rank_0_alone_gives_bit_for_bit) {
   expect_same_by_blocks(test::distorted_box(GetParam().cells));
 }
 
@@ -146,14 +149,14 @@ TEST(BlocksShared, that_are_periodic_in_every_direction_give_the_same_faces_down
     RawMesh raw = make_box(BoxCells::hexahedra, {n, 4, 3}, test::lower, test::upper);
     raw.periodic = {{"xmin", "xmax"}, {"ymax", "ymin"}, {"zmin", "zmax"}};
     expect_same_by_blocks(raw);
-    EXPECT_NO_THROW(distribute(MPI_COMM_WORLD, block_of(MPI_COMM_WORLD, raw)));
+    EXPECT_NO_THROW(distribute(MPI_COMM_WORLD, even_block(raw)));
   }
 }
 
 TEST_P(Blocks, shared_out_in_parallel_fill_the_box_with_every_cell_owned_once) {
   const RawMesh raw = make_box(GetParam().cells, {12, 10, 8}, test::lower, test::upper);
   const LoadedMesh alone = distribute(MPI_COMM_SELF, raw);
-  const auto [mesh, geometry] = distribute(MPI_COMM_WORLD, block_of(MPI_COMM_WORLD, raw));
+  const auto [mesh, geometry] = distribute(MPI_COMM_WORLD, even_block(raw));
   EXPECT_EQ(identity_of(mesh), identity_of(alone.mesh));
   double volume = 0;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += geometry.volume[c];
@@ -166,7 +169,7 @@ TEST(BlocksShared, of_a_box_made_in_parallel_are_those_of_the_whole_box) {
   for (const bool tetrahedra : {false, true}) {
     const RawMesh raw = make_box(tetrahedra ? BoxCells::tetrahedra : BoxCells::hexahedra, {5, 4, 3},
                                  test::lower, test::upper);
-    const MeshBlock cut = block_of(MPI_COMM_WORLD, raw),
+    const MeshBlock cut = even_block(raw),
                     made = box_block(MPI_COMM_WORLD, {tetrahedra, {5, 4, 3}, test::lower, test::upper});
     EXPECT_EQ(made.points, cut.points);
     EXPECT_EQ(made.cells.type, cut.cells.type);
@@ -180,22 +183,22 @@ TEST(BlocksShared, of_a_box_made_in_parallel_are_those_of_the_whole_box) {
 
 TEST(BlocksShared, alike_in_every_call) {
   const RawMesh raw = make_box(BoxCells::tetrahedra, {10, 9, 8}, Vec3::Zero(), Vec3::Ones());
-  const auto share = [&] { return distribute(MPI_COMM_WORLD, block_of(MPI_COMM_WORLD, raw)).mesh.cell_id; };
+  const auto share = [&] { return distribute(MPI_COMM_WORLD, even_block(raw)).mesh.cell_id; };
   const auto first = share();
   EXPECT_EQ(share(), first);
   EXPECT_EQ(share(), first);
 }
 
-/// The words of both paths about the same mistake.
+/// The words about the same mistake, found on rank 0 alone and in even blocks.
 void expect_same_error(const RawMesh& raw, const std::string& words) {
   const std::string whole = test::error_of([&] { distribute(MPI_COMM_WORLD, raw); });
   EXPECT_THAT(whole, ::testing::HasSubstr(words));
-  EXPECT_EQ(test::error_of([&] { distribute(MPI_COMM_WORLD, block_of(MPI_COMM_WORLD, raw)); }), whole);
+  EXPECT_EQ(test::error_of([&] { distribute(MPI_COMM_WORLD, even_block(raw)); }), whole);
 }
 
 RawMesh box() { return make_box(BoxCells::hexahedra, {3, 3, 3}, Vec3::Zero(), Vec3(3, 3, 3)); }
 
-TEST(BlocksOfWrongMeshes, are_refused_in_the_words_of_the_whole_mesh) {
+TEST(BlocksOfWrongMeshes, are_refused_in_the_words_of_rank_0_alone) {
   RawMesh raw = box();
   raw.boundary_points = {};
   for (Index e = 0; e + 4 < Index(raw.boundary_patch.size()); ++e)
@@ -255,7 +258,7 @@ TEST(BlocksOfWrongMeshes, of_a_face_that_three_cells_share_are_refused_wherever_
       raw.boundary_points.push_row(std::vector<Index>{cell[0], cell[1], cell[3]});
       raw.boundary_patch.push_back(0);
     }
-    EXPECT_THAT(test::error_of([&] { distribute(MPI_COMM_WORLD, block_of(MPI_COMM_WORLD, raw)); }),
+    EXPECT_THAT(test::error_of([&] { distribute(MPI_COMM_WORLD, even_block(raw)); }),
                 is_in_a_patch ? wrong_in_a_patch : many_cells);
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/msh/msh_block.hpp"
+#include "common/mesh/msh/read_msh.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,6 +14,8 @@ namespace couplet::msh_block_test {
 using namespace mesh;
 using namespace parallel;
 namespace {
+
+using ::testing::HasSubstr;
 
 /// One file for all ranks, written by rank 0.
 class MshBlocks : public ::testing::Test {
@@ -42,28 +44,27 @@ std::string text_of(const std::filesystem::path& file) {
 
 void expect_as_whole(const std::filesystem::path& file) {
   SCOPED_TRACE(file.string());
-  const std::optional<MeshBlock> read = read_msh_block(MPI_COMM_WORLD, file);
-  ASSERT_TRUE(read);
-  const MeshBlock cut = block_of(MPI_COMM_WORLD, read_msh(file));
-  EXPECT_EQ(read->dim, cut.dim);
-  EXPECT_EQ(read->points, cut.points);
-  EXPECT_EQ(read->point_shares.n, cut.point_shares.n);
-  EXPECT_EQ(read->cell_shares.n, cut.cell_shares.n);
-  EXPECT_EQ(read->cells.type, cut.cells.type);
-  EXPECT_EQ(read->cells.points, cut.cells.points);
-  EXPECT_EQ(read->cells.point_offset, cut.cells.point_offset);
-  EXPECT_EQ(read->cells.zone, cut.cells.zone);
-  EXPECT_EQ(read->element_points, cut.element_points);
-  EXPECT_EQ(read->element_offset, cut.element_offset);
-  EXPECT_EQ(read->element_patch, cut.element_patch);
-  EXPECT_EQ(read->zones, cut.zones);
-  EXPECT_EQ(read->patches, cut.patches);
+  const MeshBlock read = read_msh_block(MPI_COMM_WORLD, file, comm_size(MPI_COMM_WORLD));
+  const MeshBlock cut = block_of(MPI_COMM_WORLD, read_msh(file), comm_size(MPI_COMM_WORLD));
+  EXPECT_EQ(read.dim, cut.dim);
+  EXPECT_EQ(read.points, cut.points);
+  EXPECT_EQ(read.point_shares.n, cut.point_shares.n);
+  EXPECT_EQ(read.cell_shares.n, cut.cell_shares.n);
+  EXPECT_EQ(read.cells.type, cut.cells.type);
+  EXPECT_EQ(read.cells.points, cut.cells.points);
+  EXPECT_EQ(read.cells.point_offset, cut.cells.point_offset);
+  EXPECT_EQ(read.cells.zone, cut.cells.zone);
+  EXPECT_EQ(read.element_points, cut.element_points);
+  EXPECT_EQ(read.element_offset, cut.element_offset);
+  EXPECT_EQ(read.element_patch, cut.element_patch);
+  EXPECT_EQ(read.zones, cut.zones);
+  EXPECT_EQ(read.patches, cut.patches);
 }
 
 TEST_F(MshBlocks, are_those_of_the_whole_mesh) {
-  for (const char* name :
-       {"plane_41_ascii.msh", "plane_41_binary.msh", "solid_41_ascii.msh", "solid_41_binary.msh"})
-    expect_as_whole(test::data / name);
+  for (const std::string name : {"plane_", "solid_"})
+    for (const char* kind : {"22_ascii", "22_binary", "41_ascii", "41_binary"})
+      expect_as_whole(test::data / (name + kind + ".msh"));
 }
 
 // Nodes 8, 7, then 1 to 3 and 5; 7 belongs to nothing. The line along the bottom is in two groups.
@@ -77,22 +78,21 @@ const std::string drawn =
 
 TEST_F(MshBlocks, with_scattered_numbers_and_points_that_nothing_has) { expect_as_whole(write(drawn)); }
 
-TEST_F(MshBlocks, are_left_to_the_whole_reader_where_it_alone_can_tell) {
-  const auto is_read = [](const std::filesystem::path& file) {
-    return read_msh_block(MPI_COMM_WORLD, file).has_value();
+TEST_F(MshBlocks, of_a_damaged_file_are_refused_on_all_ranks_in_the_same_words) {
+  const auto error = [](const std::filesystem::path& file) {
+    return test::error_of([&] { read_msh_block(MPI_COMM_WORLD, file, comm_size(MPI_COMM_WORLD)); });
   };
-  EXPECT_FALSE(is_read(test::data / "solid_22_binary.msh"));
-  for (const char* name : {"solid_41_ascii.msh", "solid_41_binary.msh"}) {
+  for (const char* name : {"solid_41_ascii.msh", "solid_41_binary.msh", "solid_22_binary.msh"}) {
     const std::string text = text_of(test::data / name);
-    EXPECT_FALSE(is_read(write(text.substr(0, text.size() / 2)))) << name;
-    EXPECT_FALSE(is_read(write(text.substr(0, text.size() - 40)))) << name;
+    for (const std::size_t cut : {text.size() / 2, std::size_t(40)})
+      EXPECT_THAT(error(write(text.substr(0, text.size() - cut))), HasSubstr("incomplete")) << name;
   }
   std::string unknown = drawn;
   unknown.replace(unknown.find("8 8 1 5\n"), 8, "8 8 1 6\n");
-  EXPECT_FALSE(is_read(write(unknown))) << "node 6 is not there";
+  EXPECT_THAT(error(write(unknown)), HasSubstr(":45: An element uses node 6, which is not in $Nodes."));
   std::string twice = drawn;
   twice.replace(twice.find("\n7\n0 1 0"), 3, "\n5\n");
-  EXPECT_FALSE(is_read(write(twice))) << "node 5 is there twice";
+  EXPECT_THAT(error(write(twice)), HasSubstr("Duplicate node 5."));
 }
 
 }  // namespace

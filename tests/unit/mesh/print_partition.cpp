@@ -6,14 +6,12 @@
 #include <cstdio>
 #include <vector>
 
-#include "common/linalg/petsc_environment.hpp"
 #include "common/mesh/partition.hpp"
 
 int main(int argc, char** argv) {
   using couplet::Index;
   MPI_Init(&argc, &argv);
   {
-    const couplet::linalg::PetscEnvironment petsc(MPI_COMM_WORLD);
     constexpr Index n = 40;
     std::vector<Index> first, second;
     const auto at = [](Index i, Index j, Index k) { return i + n * (j + n * k); };
@@ -25,7 +23,9 @@ int main(int argc, char** argv) {
           second.insert(second.end(), {at(i + 1, j, k), at(k, i + 1, j), at(j, k, i + 1)});
         }
     std::uint64_t hash = 0;
-    for (const int part : couplet::mesh::partition(couplet::mesh::make_graph(n * n * n, first, second), 3))
+    const couplet::mesh::Csr graph = couplet::mesh::make_graph(n * n * n, first, second);
+    const std::vector<couplet::GlobalIndex> neighbours(graph.index.begin(), graph.index.end());
+    for (const int part : couplet::mesh::partition(MPI_COMM_SELF, graph.offset, neighbours, 3))
       hash = hash * 31 + static_cast<std::uint64_t>(part);
     std::printf("%llu\n", static_cast<unsigned long long>(hash));
   }

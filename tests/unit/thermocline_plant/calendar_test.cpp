@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Load and tariff by weekday and season.
-#include "thermocline/plant/calendar.hpp"
+#include "thermocline/plant/plant.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/unit/thermocline_plant/support.hpp"
-#include "thermocline/plant/plant.hpp"
-#include "thermocline/weather/weather_date.hpp"
+#include "thermocline/weather/weather_file.hpp"
 
 namespace couplet::thermocline::calendar_test {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "thermocline/weather/clear_sky.hpp"
+#include "thermocline/weather/made_days.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "thermocline/weather/weather_date.hpp"
+#include "thermocline/weather/weather_file.hpp"
 
 namespace couplet::thermocline::clear_sky_test {
 namespace {

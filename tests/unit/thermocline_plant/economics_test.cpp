@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Load and tariff by the hour, levelised cost by hand.
-#include "thermocline/economics/economics.hpp"
+#include "thermocline/plant/report.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,8 @@
 #include <cmath>
 #include <map>
 
-#include "thermocline/economics/day_report.hpp"
-#include "thermocline/plant/plant_control.hpp"
-#include "thermocline/weather/weather_parameters.hpp"
+#include "thermocline/plant/flow.hpp"
+#include "thermocline/weather/weather.hpp"
 
 namespace couplet::thermocline::economics_test {
 namespace {

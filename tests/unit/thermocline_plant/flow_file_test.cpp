@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Schedules: from a file, and found as fast as they are long.
-#include "thermocline/plant/flow_file.hpp"
+#include "thermocline/plant/flow.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 
 #include "common/base/error.hpp"
 #include "tests/support/own_folder.hpp"
-#include "thermocline/base/celsius.hpp"
+#include "thermocline/material/numerics.hpp"
 
 namespace couplet::thermocline::flow_file_test {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tests/unit/thermocline_plant/support.hpp"
-#include "thermocline/plant/plant_control.hpp"
+#include "thermocline/plant/flow.hpp"
 
 namespace couplet::thermocline::plant_test {
 namespace {

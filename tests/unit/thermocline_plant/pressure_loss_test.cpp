@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ergun's equation: a liquid by hand, a gas whose density changes along the bed against quadrature.
-#include "thermocline/bed/pressure_loss.hpp"
+#include "thermocline/bed/packed_bed.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

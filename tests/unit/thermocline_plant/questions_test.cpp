@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "common/base/error.hpp"
-#include "thermocline/model/plausible.hpp"
 
 namespace couplet::thermocline::questions_test {
 namespace {

@@ -7,9 +7,8 @@
 #include "common/base/error.hpp"
 #include "common/io/series.hpp"
 #include "tests/unit/thermocline_plant/support.hpp"
-#include "thermocline/bed/thickness.hpp"
-#include "thermocline/economics/day_report.hpp"
-#include "thermocline/weather/weather_parameters.hpp"
+#include "thermocline/plant/report.hpp"
+#include "thermocline/weather/weather.hpp"
 
 namespace couplet::thermocline::report_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "thermocline/weather/smooth_days.hpp"
+#include "thermocline/weather/made_days.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,7 @@
 #include <numeric>
 
 #include "common/base/error.hpp"
-#include "thermocline/weather/clear_sky.hpp"
-#include "thermocline/weather/weather_date.hpp"
+#include "thermocline/weather/weather_file.hpp"
 
 namespace couplet::thermocline::smooth_days_test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "common/config/load.hpp"
 #include "thermocline/model/model.hpp"
-#include "thermocline/weather/weather_parameters.hpp"
+#include "thermocline/weather/weather.hpp"
 
 namespace couplet::thermocline::table_5_3_test {
 namespace {

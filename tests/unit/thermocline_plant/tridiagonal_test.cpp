@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Three diagonals: against products with the solution, for every size and for rows that hardly store anything.
-#include "thermocline/base/tridiagonal.hpp"
+#include "thermocline/material/numerics.hpp"
 
 #include <gtest/gtest.h>
 

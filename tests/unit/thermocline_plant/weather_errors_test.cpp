@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -10,7 +11,7 @@
 
 #include "common/base/error.hpp"
 #include "tests/unit/thermocline_plant/support.hpp"
-#include "thermocline/weather/weather_hours.hpp"
+#include "thermocline/weather/weather.hpp"
 
 namespace couplet::thermocline::weather_errors_test {
 namespace {
@@ -120,8 +121,10 @@ TEST_F(WeatherFile, what_is_wrong_is_said_with_file_and_line) {
 }
 
 TEST_F(WeatherFile, a_wrong_head_is_said) {
-  EXPECT_EQ(complaint(write("w.csv", "hour,dni_W_m2,T_degC,wind,rh_pct,p_Pa\n0,0,0,0,0,0\n")),
-            "w.csv:1: unknown column 'wind'. Did you mean 'wind_m_s'?");
+  EXPECT_EQ(
+      complaint(write("w.csv", "hour,dni_W_m2,T_degC,wind,rh_pct,p_Pa\n0,0,0,0,0,0\n")),
+      "w.csv:1: unknown column 'wind'. Did you mean 'wind_m_s'? 'couplet weather' converts tables with other "
+      "column names.");
   EXPECT_EQ(complaint(write("w.csv", "hour,dni_W_m2,T_degC,rh_pct,p_Pa\n")),
             "w.csv:1: the column 'wind_m_s' is missing. A weather file has the columns dni_W_m2, T_degC, "
             "wind_m_s, rh_pct, p_Pa, hour.");
@@ -143,72 +146,111 @@ TEST_F(WeatherFile, a_damaged_compressed_file_is_refused) {
       "Copy or compress it again.");
 }
 
-/// A day as EPW: the first record is line 9.
-std::string epw(const std::function<std::string(int, std::string)>& edit) {
-  std::string text = "LOCATION,Nowhere,-,XXX,test,000000,37.5,-5.25,0,100\n";
-  for (int i = 0; i < 7; ++i) text += "HEADER\n";
-  for (int h = 1; h <= 24; ++h) {
-    const int dni = h > 6 && h < 19 ? 500 : 0;
-    text += edit(
-        h,
-        fmt::format(
-            "2005,3,1,{},0,source,{}.5,5,40,99000,0,0,300,0,{},0,0,0,0,0,180,2.5,0,0,9,9,9,9,0,0,0,0,0,0,0\n",
-            h, h, dni));
-  }
-  return text;
-}
-
-TEST_F(WeatherFile, an_epw_file_is_read) {
-  const WeatherHours record = read_weather(write("right.epw", epw(same)));
-  EXPECT_EQ(record.first_day, 59);
-  EXPECT_EQ(record.days(), 1);
-  EXPECT_EQ(record.temperature[0], 1.5);  // at 01:00, the end of the first hour
-  EXPECT_EQ(record.state_offset, 3600);
-  EXPECT_EQ(record.dni[6], 500);  // from 06:00 to 07:00
-  EXPECT_EQ(record.dni[5], 0);
-  EXPECT_EQ(record.wind[3], 2.5);
-  EXPECT_EQ(record.pressure[3], 99000);
-  ASSERT_TRUE(record.site.has_value());
-  EXPECT_EQ(record.site->latitude, 37.5);
-  EXPECT_EQ(record.site->solar_ahead, -5.25 * 240);
-}
-
 /// Rows that decimal commas make longer are not read as others.
 TEST_F(WeatherFile, values_beyond_the_last_column_are_refused) {
-  const auto with_comma = [](int h, std::string line) {
-    return h == 4 ? line.replace(line.find(",40,99000"), 9, ",40,5,99000") : line;
-  };
-  EXPECT_EQ(
-      complaint(write("w.epw", epw(with_comma))),
-      "w.epw:12: 36 values, but the file has 35 columns. If commas are decimal commas, use decimal points.");
   EXPECT_EQ(
       complaint(write("w.csv",
                       csv([](int h, std::string line) { return h == 5 ? "5,0,15,5,3,40,99000\n" : line; }))),
       "w.csv:8: 7 values, but the file has 6 columns. If commas are decimal commas, use decimal points.");
 }
 
-TEST_F(WeatherFile, missing_codes_of_epw_are_gaps) {
-  const WeatherHours record =
-      read_weather(write("code.epw", epw([](int h, std::string line) {
-                           return h == 9 ? line.replace(line.find(",9.5,"), 5, ",99.9,") : line;
-                         })));
-  EXPECT_DOUBLE_EQ(record.temperature[8], 9.5);
-  ASSERT_EQ(record.warnings.size(), 1u);
-  EXPECT_THAT(record.warnings[0],
-              testing::HasSubstr("code.epw:17: the air temperature [degC] is missing for 1 hour from here"));
+TEST_F(WeatherFile, says_where_the_site_is_and_when_the_states_hold) {
+  const std::string site = "# latitude: 37.5\n# longitude: -5.25\n#time-zone:1\n";
+  const WeatherHours w =
+      read_weather(write("w.csv", "# note: from a tower\n# states-at: 3600\n" + site + csv(same)));
+  EXPECT_EQ(w.state_offset, 3600);
+  ASSERT_TRUE(w.site.has_value());
+  EXPECT_EQ(w.site->latitude, 37.5);
+  EXPECT_EQ(w.site->solar_ahead, -5.25 * 240 - 3600);
+  const WeatherHours plain = read_weather(write("w.csv", csv(same)));
+  EXPECT_EQ(plain.state_offset, 1800) << "the middle of the hour";
+  EXPECT_FALSE(plain.site.has_value());
+  EXPECT_EQ(complaint(write("w.csv", "# latitude: 137.5\n" + csv(same))),
+            "w.csv:1: latitude is 137.5; it must be from -90 to 90.");
+  EXPECT_EQ(complaint(write("w.csv", "# latitude: 37.5\n" + csv(same))),
+            "w.csv: a line '# longitude: ...' is missing; a location has latitude, longitude and time-zone.");
+  EXPECT_EQ(complaint(write("w.csv", "# latitude: south\n" + csv(same))),
+            "w.csv:1: 'south' is not a number; expected latitude here.");
 }
 
-TEST_F(WeatherFile, what_is_wrong_in_an_epw_file_is_said_with_the_line) {
-  EXPECT_EQ(
-      complaint(write("w.epw", "hour,dni\n")),
-      "w.epw:1: this is not an EPW file: it must start with a line LOCATION,... and have 8 header lines.");
-  EXPECT_EQ(complaint(write(
-                "w.epw", epw([](int h, std::string line) { return h == 4 ? "2005,3,1,25,0,s,1\n" : line; }))),
-            "w.epw:12: 7 columns; an EPW record has 35.");
-  EXPECT_EQ(complaint(write("w.epw", epw([](int h, std::string line) {
-                              return h == 4 ? line.replace(0, 9, "2005,3,32,") : line;
-                            }))),
-            "w.epw:12: '03-32' is not a date: month 3 of a year of 365 days has 31 days.");
+TEST_F(WeatherFile, another_format_is_refused_with_the_command_that_converts_it) {
+  for (const std::string text :
+       {"LOCATION,Nowhere,-,XXX,test,000000,37.5,-5.25,0,100\nHEADER\n",
+        "Latitude (decimal degrees): 45.000\nLongitude (decimal degrees): 8.000\n",
+        "Source,Latitude,Longitude,Time Zone\nNSRDB,40,-105,-7\nYear,Month,Day,Hour\n",
+        "723170,\"GREENSBORO\",NC,-5.0,36.1,-79.95,273\nDate (MM/DD/YYYY),Time (HH:MM)\n"}) {
+    const std::string said = complaint(write("site.epw.gz", text));
+    EXPECT_THAT(said, testing::StartsWith("site.epw.gz:1: this is not the CSV of a thermocline")) << text;
+    EXPECT_THAT(said, testing::EndsWith("couplet weather '" + (folder_ / "site.epw.gz").string() + "' -o '" +
+                                        (folder_ / "site_weather.csv").string() + "'"));
+  }
+}
+
+TEST_F(WeatherFile, a_year_may_begin_in_july) {
+  const auto year = [&](int first) {
+    std::string text = "hour,dni_W_m2,T_degC,wind_m_s,rh_pct,p_Pa\n";
+    for (int i = 0; i < 8760; ++i) {
+      const int h = (first + i) % 8760;
+      text += fmt::format("{},{},{},1,40,90000\n", h, h % 24 == 12 ? 700 : 0, h % 50);
+    }
+    return read_weather(write("y.csv", text));
+  };
+  const WeatherHours july = year(181 * 24), january = year(0);
+  EXPECT_EQ(july.first_day, 0);
+  EXPECT_EQ(july.temperature, january.temperature);
+  EXPECT_EQ(july.dni, january.dni);
+}
+
+/// Two days of a winter near Boulder, with sun from 9 to 15.
+TEST_F(WeatherFile, a_sun_at_night_is_doubted) {
+  const auto doubts = [&](const std::string& zone, std::optional<SiteParameters> site = {}) {
+    WeatherParameters p;
+    p.kind = WeatherKind::file;
+    p.site = site;
+    p.file = write("w.csv", "# latitude: 40.01\n# longitude: -105.26\n# time-zone: " + zone + "\n" +
+                                csv(
+                                    [](int h, std::string) {
+                                      const int dni = h % 24 >= 9 && h % 24 < 15 ? 500 : 0;
+                                      return fmt::format("{},{},5,3,40,84000\n", h, dni);
+                                    },
+                                    48));
+    return make_weather(p, ".")->doubts();
+  };
+  EXPECT_THAT(doubts("-7"), testing::IsEmpty());
+  const auto other = doubts("5");
+  ASSERT_EQ(other.size(), 2u);
+  EXPECT_THAT(other[0], testing::HasSubstr("solar time of its longitude is 12.0 h behind its time zone"));
+  EXPECT_THAT(other[1],
+              testing::HasSubstr("100 % of the irradiation is in hours with the sun below the horizon"));
+  EXPECT_THAT(doubts("-7", SiteParameters{40.01, -105.26, -7}), testing::IsEmpty());
+  const auto moved = doubts("-7", SiteParameters{37, -105.26, -7});
+  ASSERT_EQ(moved.size(), 1u);
+  EXPECT_THAT(moved[0], testing::HasSubstr("'site' (latitude 37 deg"));
+}
+
+TEST_F(WeatherFile, other_units_and_separators_are_told_by_what_they_give) {
+  const auto days = [&](double noon, double humidity, int count) {
+    return csv(
+        [&](int h, std::string) {
+          return fmt::format("{},{},10,1,{},90000\n", h, h % 24 == 12 ? noon : 0, humidity);
+        },
+        24 * count);
+  };
+  EXPECT_THAT(complaint(write("w.csv", days(0.96, 40, 1))), testing::HasSubstr("not kW/m^2"));
+  EXPECT_THAT(complaint(write("w.csv", days(3.4, 40, 1))), testing::HasSubstr("is 3.4: too low for the sun"));
+  EXPECT_THAT(complaint(write("w.csv", days(500, 0.4, 1))), testing::HasSubstr("expected percent"));
+  EXPECT_EQ(complaint(write("w.csv", "\xEF\xBB\xBF" + days(500, 40, 1))), "nothing") << "a byte order mark";
+  std::string own = days(500, 40, 1);
+  std::replace(own.begin(), own.end(), ',', ';');
+  EXPECT_THAT(complaint(write("w.csv", own)),
+              testing::HasSubstr("w.csv:2: the columns are separated by ';'"));
+  WeatherParameters p;
+  p.kind = WeatherKind::file;
+  for (const double sun : {0, 600}) {
+    p.file = write("w.csv", days(sun, 40, 20));
+    EXPECT_THAT(make_weather(p, ".")->doubts(), testing::SizeIs(sun > 0 ? 0 : 1))
+        << "20 days without any sun";
+  }
 }
 
 }  // namespace

@@ -8,9 +8,8 @@
 
 #include "common/base/error.hpp"
 #include "tests/unit/thermocline_plant/support.hpp"
-#include "thermocline/weather/clear_sky.hpp"
-#include "thermocline/weather/weather_date.hpp"
-#include "thermocline/weather/weather_parameters.hpp"
+#include "thermocline/weather/made_days.hpp"
+#include "thermocline/weather/weather_file.hpp"
 
 namespace couplet::thermocline::weather_test {
 namespace {

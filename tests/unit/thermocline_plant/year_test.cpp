@@ -8,8 +8,8 @@
 #include <fstream>
 
 #include "tests/unit/thermocline_plant/support.hpp"
-#include "thermocline/economics/day_report.hpp"
-#include "thermocline/weather/weather_parameters.hpp"
+#include "thermocline/plant/report.hpp"
+#include "thermocline/weather/weather.hpp"
 
 namespace couplet::thermocline::year_test {
 namespace {

@@ -144,29 +144,30 @@ struct Loaded {
   explicit Loaded(BoxCells cells)
       : flow(cells),
         parameters(LinearFlow<D>::walls()),
-        work{flow.mesh, flow.geometry.points, flow.boundary_, parameters, 1.3, 0.4 / 1.3} {
+        scene{flow.mesh, flow.geometry.points, flow.boundary_, parameters, parameters.properties()} {
     for (std::size_t i = 0; i < flow.geometry.points.size(); ++i) {
       const Vec3& x = flow.geometry.points[i];
       after.push_back(x + 0.1 * Vec3(x.x() * x.y(), 0.5 * x.x() - x.y(), D == 3 ? 0.3 * x.x() * x.z() : 0));
     }
     from.placement = flow.at;
-    work.step.dt = 0.01;
-    work.step.to = make_placement<D>(flow.mesh, after);
-    work.w.assign(flow.u_boundary.size(), Vec<D>::Zero());
-    work.viscous_flux = work.w;
+    step.dt = 0.01;
+    step.to = make_placement<D>(flow.mesh, after);
+    projected.w.assign(flow.u_boundary.size(), Vec<D>::Zero());
+    prediction.w = prediction.viscous_flux = projected.w;
   }
   void set_pressure(double level, const Vec<D>& slope) {
-    work.p.clear();
-    for (Index c = 0; c < flow.mesh.cells.n_local(); ++c)
-      work.p.push_back(level + slope.dot(work.step.to->centre[c]));
-    work.p_boundary.clear();
-    for (const Vec3& x : work.step.to->boundary_centre)
-      work.p_boundary.push_back(level + slope.dot(x.template head<D>()));
+    projected.boundary.clear();
+    for (const Vec3& x : step.to->boundary_centre)
+      projected.boundary.push_back(level + slope.dot(x.template head<D>()));
   }
   LinearFlow<D> flow;
   FluidParameters parameters;
   std::vector<Vec3> after;
-  StepWork<D> work;
+  Scene<D> scene;
+  Step<D> step;
+  Prediction<D> prediction;
+  Projected<D> projected;
+  Loads<D> loads;
   State<D> from;
 };
 
@@ -174,18 +175,17 @@ struct Loaded {
 // area half way.
 TEST(FaceLoops, load_of_a_uniform_pressure_works_by_the_volume_that_its_walls_sweep) {
   Loaded<2> c(BoxCells::quadrilaterals);
-  Loads<2> loads(c.work);
   c.set_pressure(250, Vec<2>::Zero());
-  loads.set_forces(c.from);
+  c.loads.set(c.scene, c.step, c.prediction, c.projected, c.from);
   double done = 0, volume = 0;
-  for (std::size_t b = 0; b < c.work.w.size(); ++b) {
+  for (std::size_t b = 0; b < c.projected.w.size(); ++b) {
     const Index f = c.flow.mesh.n_interior + Index(b);
     Vec3 moved = Vec3::Zero();
     for (const Index v : c.flow.mesh.face_points[f]) moved += (c.after[v] - c.flow.geometry.points[v]) / 2;
-    done += loads.pressure_force()[b].dot(moved.head<2>());
+    done += c.loads.pressure[b].dot(moved.head<2>());
   }
   for (Index k = 0; k < c.flow.mesh.cells.n_owned(); ++k)
-    volume += c.work.step.to->volume[k] - c.flow.at->volume[k];
+    volume += c.step.to->volume[k] - c.flow.at->volume[k];
   done = parallel::sum(MPI_COMM_WORLD, done), volume = parallel::sum(MPI_COMM_WORLD, volume);
   EXPECT_GT(std::abs(volume), 0.02);
   EXPECT_NEAR(done, 250 * volume, 1e-10);
@@ -194,15 +194,14 @@ TEST(FaceLoops, load_of_a_uniform_pressure_works_by_the_volume_that_its_walls_sw
 template <int D>
 void check_linear_pressure(BoxCells cells) {
   Loaded<D> c(cells);
-  Loads<D> loads(c.work);
   const Vec<D> slope = Vec<D>::LinSpaced(30, -70);
   c.set_pressure(250, slope);
-  loads.set_forces(c.from);
-  for (std::size_t b = 0; b < c.work.w.size(); ++b) {
+  c.loads.set(c.scene, c.step, c.prediction, c.projected, c.from);
+  for (std::size_t b = 0; b < c.projected.w.size(); ++b) {
     const Index f = c.flow.mesh.n_interior + Index(b);
-    const double p = 250 + slope.dot(c.work.step.to->boundary_centre[b].template head<D>());
-    const Vec<D> wanted = p * (c.flow.at->area[f] + c.work.step.to->area[f]) / 2;
-    EXPECT_LT((loads.pressure_force()[b] - wanted).norm(), 1e-9 * wanted.norm());
+    const double p = 250 + slope.dot(c.step.to->boundary_centre[b].template head<D>());
+    const Vec<D> wanted = p * (c.flow.at->area[f] + c.step.to->area[f]) / 2;
+    EXPECT_LT((c.loads.pressure[b] - wanted).norm(), 1e-9 * wanted.norm());
   }
 }
 
@@ -217,33 +216,30 @@ TEST(FaceLoops, load_is_the_momentum_flux_and_follows_the_velocity_of_the_wall) 
   FluidParameters sliding = LinearFlow<2>::walls();
   all_sides(sliding, 2, boundary(BoundaryType::interface));
   const Boundary<2> given(c.flow.mesh, c.flow.geometry, sliding);
-  StepWork<2> work{c.flow.mesh, c.flow.geometry.points, given, sliding, 1.3, 0.4 / 1.3};
-  work.step = c.work.step;
-  Loads<2> loads(work);
+  const Scene<2> scene{c.flow.mesh, c.flow.geometry.points, given, sliding, sliding.properties()};
   const Vec<2> guess(0.3, -0.2), later(0.5, 0.4);
-  wall_flux<2>(c.flow.mesh, *work.step.to, 0.4, c.flow.u, Vectors<2>(c.flow.u_boundary.size(), guess),
-               work.viscous_flux);
-  const Vectors<2> predicted = work.viscous_flux;
+  Vectors<2>& predicted = c.prediction.viscous_flux;
+  wall_flux<2>(c.flow.mesh, *c.step.to, 0.4, c.flow.u, Vectors<2>(c.flow.u_boundary.size(), guess),
+               predicted);
   for (std::size_t b = 0; b < predicted.size(); ++b) {
     const Index f = c.flow.mesh.n_interior + Index(b);
     const Vec<2> slip = c.flow.u[c.flow.mesh.owner[f]] - guess;
-    EXPECT_LT((predicted[b] - 0.4 * work.step.to->conductance[f] * slip).norm(), 1e-12);
+    EXPECT_LT((predicted[b] - 0.4 * c.step.to->conductance[f] * slip).norm(), 1e-12);
   }
-  work.p_boundary.assign(predicted.size(), 250);
+  c.projected.boundary.assign(predicted.size(), 250);
+  c.prediction.w.assign(predicted.size(), guess);
+  c.projected.w.assign(predicted.size(), later);
   for (const double weight : {0., 0.5, 0.5625}) {
-    work.viscous_flux = predicted;
-    work.w.assign(predicted.size(), guess);
-    loads.remember_prediction(weight);
-    work.w.assign(predicted.size(), later);
-    loads.set_forces(c.from);
+    c.prediction.weight = weight;
+    c.loads.set(scene, c.step, c.prediction, c.projected, c.from);
     for (std::size_t b = 0; b < predicted.size(); ++b) {
       const Index f = c.flow.mesh.n_interior + Index(b);
-      const Vec<2> n = work.step.to->area[f].normalized(), c_ = later - guess;
+      const Vec<2> n = c.step.to->area[f].normalized(), c_ = later - guess;
       const Vec<2> wanted =
-          predicted[b] - weight * 0.4 * work.step.to->conductance[f] * (c_ + 3 * c_.dot(n) * n);
-      const Vec<2> pressure = 125 * (c.flow.at->area[f] + work.step.to->area[f]);
-      EXPECT_LT((loads.viscous_force()[b] + loads.pressure_force()[b] - pressure - wanted).norm(), 1e-11);
-      EXPECT_NEAR(loads.viscous_force()[b].dot(n), 0, 1e-12);
+          predicted[b] - weight * 0.4 * c.step.to->conductance[f] * (c_ + 3 * c_.dot(n) * n);
+      const Vec<2> pressure = 125 * (c.flow.at->area[f] + c.step.to->area[f]);
+      EXPECT_LT((c.loads.viscous[b] + c.loads.pressure[b] - pressure - wanted).norm(), 1e-11);
+      EXPECT_NEAR(c.loads.viscous[b].dot(n), 0, 1e-12);
     }
   }
 }

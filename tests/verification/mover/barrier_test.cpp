@@ -10,8 +10,7 @@
 #include "common/base/error.hpp"
 #include "common/mesh/load.hpp"
 #include "mesh_mover/barrier/barrier_motion.hpp"
-#include "mesh_mover/barrier/distortion.hpp"
-#include "mesh_mover/barrier/feasible_step.hpp"
+#include "mesh_mover/barrier/barrier_system.hpp"
 #include "plate_case.hpp"
 #include "tests/support/saved_state.hpp"
 

@@ -186,7 +186,6 @@ class Direct {
 };
 
 TEST(PlateDynamics, fifteen_modes_follow_direct_integration_of_the_same_plate) {
-  const modes::SlepcEnvironment slepc;
   const PlateModel plate = make_plate(square(8), {{"xmin", Support::clamped}});
   const modes::EigenModes modes = plate.modes(15);
   const double dt = 2 * std::numbers::pi / lambdas(modes)[0] / 100;

@@ -39,7 +39,6 @@ class PlateFrequencies : public ::testing::TestWithParam<Reference> {
 };
 
 TEST_P(PlateFrequencies, are_within_half_a_percent_and_converge_at_second_order) {
-  const SlepcEnvironment slepc;
   const std::vector<double> coarse = errors(16), fine = errors(32);
   double worst = 0, sum_coarse = 0, sum_fine = 0;
   for (std::size_t i = 0; i < fine.size(); ++i) {
@@ -99,7 +98,6 @@ INSTANTIATE_TEST_SUITE_P(Plates, PlateFrequencies,
                          [](const auto& info) { return std::string(info.param.name); });
 
 TEST(PlateModes, are_mass_normalised_and_orthogonal) {
-  const SlepcEnvironment slepc;
   const PlateModel plate = make_plate(square(12), all_edges(Support::clamped));
   const EigenModes modes = plate.modes(10);
   double worst = 0;
@@ -117,14 +115,12 @@ TEST(PlateModes, are_mass_normalised_and_orthogonal) {
 }
 
 TEST(PlateModes, a_free_plate_has_three_rigid_motions_and_no_more) {
-  const SlepcEnvironment slepc;
   const std::vector<double> values = make_plate(square(8), {}).modes(5).eigenvalue;
   for (int i = 0; i < 3; ++i) EXPECT_LT(std::abs(values[i]), 1e-6);
   EXPECT_GT(values[3], 100);
 }
 
 TEST(PlateModes, both_members_of_a_pair_are_found_and_a_cut_pair_is_noticed) {
-  const SlepcEnvironment slepc;
   const PlateModel plate = make_plate(square(12, BoxCells::quadrilaterals), all_edges(Support::clamped));
   EXPECT_TRUE(cuts_a_group(plate.modes(2), 1e-3));
   EXPECT_FALSE(cuts_a_group(plate.modes(3), 1e-3));
@@ -133,7 +129,6 @@ TEST(PlateModes, both_members_of_a_pair_are_found_and_a_cut_pair_is_noticed) {
 }
 
 TEST(PlateModes, more_modes_than_unknowns_are_refused) {
-  const SlepcEnvironment slepc;
   const PlateModel plate = make_plate(square(1), all_edges(Support::clamped));
   EXPECT_THROW(plate.modes(13), Error);
 }

@@ -11,10 +11,10 @@
 #include "common/modes/modes_file.hpp"
 #include "plate_modal/model/build_model.hpp"
 #include "plate_modal/structure.hpp"
+#include "tests/support/observed_run.hpp"
 #include "tests/verification/plate/plates.hpp"
 
 namespace couplet::plate::guards_test {
-using namespace effects;
 using namespace mesh;
 namespace {
 
@@ -31,28 +31,14 @@ Parameters plate_held(const std::map<std::string, Support>& held = {}) {
   return p;
 }
 
-std::vector<EffectVerdict> verdicts(const Parameters& p, int steps, double dt,
-                                    const RawMesh& raw = square(6)) {
-  Structure plate(p, PlateContext{}, &raw);
-  plate.initialise();
-  for (int i = 0; i < steps; ++i) {
-    plate.begin_step({.time = i * dt,
-                      .dt = dt,
-                      .scheme = coupling::Scheme::standalone,
-                      .number = i,
-                      .is_last = i + 1 == steps});
-    plate.solve({});
-    plate.accept_step();
-  }
-  return plate.audit();
-}
+struct Found : log::Finding {
+  bool sound() const { return severity == base::Severity::note; }
+};
 
-/// The verdict of that name; a test fails where there is none.
-EffectVerdict find(const std::vector<EffectVerdict>& all, const std::string& effect) {
-  for (const EffectVerdict& v : all)
-    if (v.effect == effect) return v;
-  ADD_FAILURE() << "no verdict '" << effect << "'";
-  return {};
+/// Finding about this effect at the end of a run.
+Found find(const std::string& id, const Parameters& p, int steps, double dt, const RawMesh& raw = square(6)) {
+  Structure plate(p, PlateContext{}, &raw);
+  return {support::observe(plate, steps, dt).finding(id)};
 }
 
 std::string message_of(auto&& act) {
@@ -68,15 +54,72 @@ TEST(PlateGuards, a_plate_on_a_hinge_may_fall_but_not_turn_far) {
   Parameters p = plate_held({{"xmin", Support::simply_supported}});
   p.gravity = {0, 0, -9.81};
   // Its rotation is 3 g / (2 L) t^2 / 2.
-  const EffectVerdict little = find(verdicts(p, 10, 0.01), "large rotation");
+  const Found little = find("large-rotation", p, 10, 0.01);
   EXPECT_NEAR(little.number, 0.75 * 9.81 * 0.01, 0.002);
   EXPECT_TRUE(little.sound());
-  const EffectVerdict far = find(verdicts(p, 10, 0.05), "large rotation");
+  const Found far = find("large-rotation", p, 10, 0.05);
   EXPECT_NEAR(far.number, 0.75 * 9.81 * 0.25, 0.04);
   EXPECT_FALSE(far.sound());
   // A free plate that falls does not turn.
   p.boundaries["xmin"].support = Support::free;
-  EXPECT_LT(find(verdicts(p, 10, 0.05), "large rotation").number, 1e-6);
+  EXPECT_LT(find("large-rotation", p, 10, 0.05).number, 1e-6);
+}
+
+/// A clamped plate that a load in time presses onto a seat.
+Parameters pressed_onto_a_seat() {
+  const Support c = Support::clamped;
+  Parameters p = plate_held({{"xmin", c}, {"xmax", c}, {"ymin", c}, {"ymax", c}});
+  p.load.emplace().upper.emplace().text = "2000 * (1 + x) * sin(2 * pi * 20 * t)^2";
+  p.contact.emplace().height.text = "-0.0026";
+  p.contact->stiffness = 1e6;
+  return p;
+}
+
+TEST(PlateGuards, a_resumed_run_ends_with_the_findings_of_the_unbroken_one) {
+  const RawMesh raw = square(6);
+  Structure one(pressed_onto_a_seat(), PlateContext{}, &raw),
+      two(pressed_onto_a_seat(), PlateContext{}, &raw), three(pressed_onto_a_seat(), PlateContext{}, &raw);
+  const auto whole = support::observe(one, 200, 1e-3);
+  support::ObservedRun first(two), resumed(three);
+  first.advance(123, 1e-3, false);
+  resumed.resume(first);
+  resumed.advance(77, 1e-3);
+  const auto &expected = whole.diagnostics().findings(), &found = resumed.diagnostics().findings();
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_EQ(found[i].id, expected[i].id);
+    EXPECT_EQ(found[i].number, expected[i].number) << found[i].id;
+    EXPECT_EQ(found[i].sentence, expected[i].sentence);
+  }
+  EXPECT_EQ(resumed.sentences(), whole.sentences());
+  EXPECT_EQ(resumed.diagnostics().errors().text(), whole.diagnostics().errors().text());
+}
+
+// The limits up to which something neglected is justified, or something that the scene has is adequate.
+TEST(PlateGuards, limits_are_those_of_the_documents) {
+  const Parameters p = pressed_onto_a_seat();
+  const RawMesh raw = square(6);
+  Structure plate(p, PlateContext{}, &raw);
+  const auto run = support::observe(plate, 200, 1e-3);
+  for (const auto& [id, limit] : {std::pair{"large-rotation", 0.25},
+                                  {"motion-in-the-plane", 0.01},
+                                  {"stretch-of-the-mid-surface", 0.5},
+                                  {"shear-and-rotary-inertia", 0.1},
+                                  {"deflection-beyond-the-modes", 0.05},
+                                  {"load-faster-than-the-modes", 2. / 3},
+                                  {"load-within-a-face", 0.05},
+                                  {"mesh-that-resolves-the-modes", 0.1}}) {
+    EXPECT_EQ(run.finding(id).limit, limit) << id;
+    EXPECT_TRUE(run.finding(id).effect.ends_with("neglected")) << id;
+  }
+  for (const auto& [id, limit] : {std::pair{"balance-of-the-energies", 0.01},
+                                  {"step-that-resolves-the-modes", 0.1},
+                                  {"step-near-a-resonance", 0.1},
+                                  {"step-that-resolves-the-load", 0.1},
+                                  {"step-that-resolves-the-contact", 0.1}}) {
+    EXPECT_EQ(run.finding(id).limit, limit) << id;
+    EXPECT_FALSE(run.finding(id).effect.ends_with("neglected")) << id;
+  }
 }
 
 TEST(PlateGuards, all_rigid_motions_are_kept_or_none) {
@@ -99,15 +142,15 @@ TEST(PlateGuards, all_rigid_motions_are_kept_or_none) {
 TEST(PlateGuards, what_moves_a_plate_in_its_plane_is_not_answered_with_nothing) {
   Parameters p = plate_held();
   p.gravity = {9.81, 0, 0};
-  EXPECT_FALSE(find(verdicts(p, 1, 0.01), "motion in the plane").sound());
+  EXPECT_FALSE(find("motion-in-the-plane", p, 1, 0.01).sound());
   p.gravity = {0, 0, -9.81};
-  EXPECT_TRUE(find(verdicts(p, 1, 0.01), "motion in the plane").sound());
+  EXPECT_TRUE(find("motion-in-the-plane", p, 1, 0.01).sound());
   p.initial_velocity = Vec3(0, 1, 1);
-  EXPECT_NEAR(find(verdicts(p, 1, 0.01), "motion in the plane").number, std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(find("motion-in-the-plane", p, 1, 0.01).number, std::sqrt(0.5), 1e-12);
   // The weight along a plate that is held rests on its supports.
   p = plate_held({{"xmin", Support::clamped}});
   p.gravity = {9.81, 0, 0};
-  EXPECT_TRUE(find(verdicts(p, 1, 0.01), "motion in the plane").sound());
+  EXPECT_TRUE(find("motion-in-the-plane", p, 1, 0.01).sound());
 }
 
 /// A clamped plate under a load beside one corner, static.
@@ -122,12 +165,12 @@ Parameters pressed(int modes) {
 
 TEST(PlateGuards, a_static_deflection_is_judged_by_itself_and_not_by_its_modes) {
   // The first mode alone is even about the middle and sees nothing of the load.
-  const std::vector<EffectVerdict> few = verdicts(pressed(1), 1, 1), many = verdicts(pressed(20), 1, 1);
-  EXPECT_GT(find(few, "stretch of the mid-surface").number, 0.01);
-  EXPECT_NEAR(find(few, "stretch of the mid-surface").number, find(many, "stretch of the mid-surface").number,
-              1e-9);
-  EXPECT_FALSE(find(few, "deflection beyond the modes").sound());
-  EXPECT_TRUE(find(many, "deflection beyond the modes").sound());
+  const auto few = [](const char* id) { return find(id, pressed(1), 1, 1); };
+  const auto many = [](const char* id) { return find(id, pressed(20), 1, 1); };
+  EXPECT_GT(few("stretch-of-the-mid-surface").number, 0.01);
+  EXPECT_NEAR(few("stretch-of-the-mid-surface").number, many("stretch-of-the-mid-surface").number, 1e-9);
+  EXPECT_FALSE(few("deflection-beyond-the-modes").sound());
+  EXPECT_TRUE(many("deflection-beyond-the-modes").sound());
 }
 
 TEST(PlateGuards, modes_left_out_are_missed_in_a_dynamic_run) {
@@ -136,7 +179,7 @@ TEST(PlateGuards, modes_left_out_are_missed_in_a_dynamic_run) {
   const auto share = [&](int number, const char* load) {
     p.number = number;
     p.load.emplace().lower.emplace().text = load;
-    return find(verdicts(p, 4, 1e-3, square(12)), "deflection beyond the modes");
+    return find("deflection-beyond-the-modes", p, 4, 1e-3, square(12));
   };
   // Mode (2, 2) is the fourth.
   const char* fourth = "100 * sin(2 * pi * x) * sin(2 * pi * y) * sin(100 * t)";
@@ -155,12 +198,12 @@ TEST(PlateGuards, the_energy_of_an_initial_velocity_is_kept_or_missed) {
   p.initial_velocity = Vec3(0, 0, 1);
   p.number = 1;
   // The first mode has (8 / pi^2)^2 of the mass.
-  const EffectVerdict one = find(verdicts(p, 1, 1e-3, square(12)), "initial velocity beyond the modes");
+  const Found one = find("initial-velocity-beyond-the-modes", p, 1, 1e-3, square(12));
   EXPECT_NEAR(one.number, 1 - 64 / std::pow(std::numbers::pi, 4), 0.01);
   EXPECT_FALSE(one.sound());
   p = plate_held();
   p.initial_velocity = Vec3(0, 0, 1);
-  EXPECT_LT(find(verdicts(p, 1, 1e-3), "initial velocity beyond the modes").number, 1e-6);
+  EXPECT_LT(find("initial-velocity-beyond-the-modes", p, 1, 1e-3).number, 1e-6);
 }
 
 TEST(PlateGuards, a_load_between_the_middles_of_the_faces_is_missed) {
@@ -170,7 +213,7 @@ TEST(PlateGuards, a_load_between_the_middles_of_the_faces_is_missed) {
     p.analysis = analysis;
     const auto within = [&](const char* load) {
       p.load.emplace().upper.emplace().text = load;
-      return find(verdicts(p, 1, 1e-3), "load within a face");
+      return find("load-within-a-face", p, 1, 1e-3);
     };
     // About a point of the mesh, nearer than the middles around it.
     EXPECT_FALSE(within("(x - 0.5)^2 + (y - 0.5)^2 < 0.05^2 ? 1000 : 0").sound());
@@ -186,8 +229,8 @@ TEST(PlateGuards, a_mesh_of_one_cell_across_is_no_mesh) {
   p.analysis = Parameters::Analysis::static_;
   p.load.emplace().upper.emplace().text = "100";
   const auto gap = [&](int nx, int ny) {
-    return find(verdicts(p, 1, 1, make_box(BoxCells::triangles, {nx, ny, 1}, Vec3::Zero(), Vec3(1, 1, 0))),
-                "mesh that resolves the modes");
+    return find("mesh-that-resolves-the-modes", p, 1, 1,
+                make_box(BoxCells::triangles, {nx, ny, 1}, Vec3::Zero(), Vec3(1, 1, 0)));
   };
   EXPECT_FALSE(gap(40, 1).sound());
   EXPECT_FALSE(gap(40, 2).sound());
@@ -278,33 +321,23 @@ TEST(PlateGuards, a_modal_analysis_has_no_load_that_could_be_lost) {
   p.load.emplace().upper.emplace().text = "100*t";
   p.analysis = Parameters::Analysis::modal;
   Structure plate(p, PlateContext{}, &raw);
-  plate.initialise();
-  for (const EffectVerdict& v : plate.audit()) EXPECT_NE(v.effect, "load between the faces or steps");
+  EXPECT_THAT(support::observe(plate, 1, 1).doubts(),
+              testing::Not(testing::Contains("load-between-the-faces-or-steps")));
 }
 
-/// Effects of the loads of which a run of ten steps of 0.01 s says that they are unsound, in its midst and at its end.
+/// Doubts about the loads of ten steps of 0.01 s, after `told_at` of them or (-1) at the end of the run.
 std::vector<std::string> doubts(const Parameters& p, int told_at, const std::filesystem::path& folder = {}) {
   const RawMesh raw = square(4);
   PlateContext context;
   context.case_folder = folder;
   Structure plate(p, context, p.modes_file ? nullptr : &raw);
-  plate.initialise();
-  std::vector<std::string> unsound;
-  const auto look = [&] {
-    for (const EffectVerdict& v : plate.audit())
-      if ((v.effect == "load between the faces or steps" || v.effect == "load that moves no mode") &&
-          !v.sound())
-        unsound.push_back(v.effect);
-  };
-  for (int i = 0; i < 10; ++i) {
-    plate.begin_step({.time = 0.01 * i, .dt = 0.01, .number = i});
-    plate.solve({});
-    plate.accept_step();
-    if (told_at == i) look();
-  }
-  plate.finish();
-  if (told_at < 0) look();
-  return unsound;
+  support::ObservedRun run(plate);
+  run.advance(told_at < 0 ? 10 : told_at, 0.01, told_at < 0);
+  std::vector<std::string> ids = run.doubts();
+  std::erase_if(ids, [](const std::string& id) {
+    return id != "load-between-the-faces-or-steps" && id != "load-that-moves-no-mode";
+  });
+  return ids;
 }
 
 TEST(PlateGuards, a_load_is_lost_if_it_is_0_in_no_step_and_not_before_the_end) {
@@ -312,11 +345,11 @@ TEST(PlateGuards, a_load_is_lost_if_it_is_0_in_no_step_and_not_before_the_end) {
     Parameters p = plate_held({{"xmin", Support::clamped}});
     p.analysis = analysis;
     p.load.emplace().lower.emplace().text = "t > 0.06 ? 1 : 0";
-    EXPECT_EQ(doubts(p, 0), std::vector<std::string>{});
+    EXPECT_EQ(doubts(p, 1), std::vector<std::string>{});
     EXPECT_EQ(doubts(p, -1), std::vector<std::string>{});
     p.load->lower->text = "t > 1 ? 1 : 0";
-    EXPECT_EQ(doubts(p, 0), std::vector<std::string>{});
-    EXPECT_EQ(doubts(p, -1), std::vector<std::string>{"load between the faces or steps"});
+    EXPECT_EQ(doubts(p, 1), std::vector<std::string>{});
+    EXPECT_EQ(doubts(p, -1), std::vector<std::string>{"load-between-the-faces-or-steps"});
   }
 }
 
@@ -326,10 +359,10 @@ TEST(PlateGuards, a_load_without_a_part_in_any_mode_is_told) {
     p.analysis = analysis;
     p.load.emplace().upper.emplace().text = "1 + x";
     EXPECT_EQ(doubts(p, -1), std::vector<std::string>{});
-    EXPECT_EQ(doubts(p, 3), std::vector<std::string>{});
+    EXPECT_EQ(doubts(p, 4), std::vector<std::string>{});
     p.load->lower = p.load->upper;  // they cancel
-    EXPECT_EQ(doubts(p, 3), std::vector<std::string>{});
-    EXPECT_EQ(doubts(p, -1), std::vector<std::string>{"load that moves no mode"});
+    EXPECT_EQ(doubts(p, 4), std::vector<std::string>{});
+    EXPECT_EQ(doubts(p, -1), std::vector<std::string>{"load-that-moves-no-mode"});
   }
   // A plate that stands: by a file of modes its rims look up, and the bending does not move them so.
   const std::filesystem::path folder =
@@ -346,7 +379,7 @@ TEST(PlateGuards, a_load_without_a_part_in_any_mode_is_told) {
   p.output.fields = false;
   for (const auto analysis : {Parameters::Analysis::dynamic, Parameters::Analysis::static_}) {
     p.analysis = analysis;
-    EXPECT_EQ(doubts(p, -1, folder), std::vector<std::string>{"load that moves no mode"});
+    EXPECT_EQ(doubts(p, -1, folder), std::vector<std::string>{"load-that-moves-no-mode"});
   }
   std::filesystem::remove_all(folder);
 }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether the time step resolves what moves: verdicts that fire where the answer is wrong, and are silent where it is
 // right. The right answers are closed forms.
-#include "plate_modal/motion/resolution.hpp"
+#include "plate_modal/diagnostics/motion.hpp"
 
 #include <gtest/gtest.h>
 
-#include "plate_modal/effect_cards.hpp"
+#include "common/base/numbers.hpp"
 #include "plate_modal/structure.hpp"
+#include "tests/support/observed_run.hpp"
 #include "tests/verification/plate/bounce.hpp"
 #include "tests/verification/plate/plates.hpp"
 
@@ -18,7 +19,7 @@ using namespace test;
 constexpr double pi = std::numbers::pi;
 
 struct Driven {
-  StepEvidence evidence;
+  Motion::Evidence evidence;
   double largest = 0;  ///< displacement of the first mode in the second half
 };
 
@@ -31,7 +32,7 @@ Driven drive(const std::vector<double>& omega, double damping_ratio, double dt, 
   for (const double w : omega) damping.push_back(2 * damping_ratio * w);
   q[0] = start;
   Oscillators modes(omega, damping, zero, {scheme}, nullptr);
-  Resolution seen(omega);
+  Motion seen(omega);
   ModalState now = modes.start(q, zero), next = now;
   Driven result;
   const int steps = int(std::lround(time / dt));
@@ -48,9 +49,20 @@ Driven drive(const std::vector<double>& omega, double damping_ratio, double dt, 
 
 const auto none = [](double) { return 0.0; };
 
+/// A clamped square plate under a pressure.
+Parameters clamped(const std::string& pressure) {
+  Parameters p;
+  p.material = {1000, 1e9, 0.3};
+  p.thickness = 0.01;
+  p.number = 6;
+  for (const char* patch : {"xmin", "xmax", "ymin", "ymax"}) p.boundaries[patch].support = Support::clamped;
+  p.load.emplace().lower.emplace().text = pressure;
+  return p;
+}
+
 TEST(PlateResolution, a_free_swing_counts_as_coarse_below_ten_steps_a_period) {
   for (const double steps : {1.3, 3., 9.}) {
-    const StepEvidence e = drive({2 * pi}, 0, 1 / steps, 30, none, TimeScheme::trapezoidal, 1).evidence;
+    const Motion::Evidence e = drive({2 * pi}, 0, 1 / steps, 30, none, TimeScheme::trapezoidal, 1).evidence;
     EXPECT_NEAR(e.coarse_share, 1, 0.15) << steps;
     EXPECT_EQ(e.coarse_mode, 1);
     EXPECT_NEAR(e.steps_a_period, steps, 1e-9);
@@ -72,7 +84,7 @@ TEST(PlateResolution, the_swing_of_steps_of_many_periods_is_seen) {
 TEST(PlateResolution, a_load_that_stays_beside_one_that_swings_drives_no_resonance) {
   // The first mode has the load that stays alone, to rounding.
   Oscillators modes({2 * pi, 30.}, {0, 0}, {0, 0}, {TimeScheme::trapezoidal}, nullptr);
-  Resolution seen(std::vector<double>{2 * pi, 30.});
+  Motion seen(std::vector<double>{2 * pi, 30.});
   const std::vector<double> zero{0, 0};
   ModalState now = modes.start(zero, zero), next = now;
   for (int i = 0; i < 2000; ++i) {
@@ -92,7 +104,7 @@ TEST(PlateResolution, a_load_that_stays_beside_one_that_swings_drives_no_resonan
 TEST(PlateResolution, stiff_modes_that_follow_a_slow_load_may_have_any_step) {
   const auto slow = [](double t) { return std::pow(std::sin(2 * pi * t / 40), 2); };
   for (const TimeScheme scheme : {TimeScheme::trapezoidal, TimeScheme::bathe}) {
-    const StepEvidence e = drive({2 * pi, 60, 900}, 0, 0.5, 40, slow, scheme).evidence;
+    const Motion::Evidence e = drive({2 * pi, 60, 900}, 0, 0.5, 40, slow, scheme).evidence;
     EXPECT_GE(e.coarse_share, 0) << name(scheme);
     EXPECT_LT(e.coarse_share, 0.1) << name(scheme);
   }
@@ -101,7 +113,7 @@ TEST(PlateResolution, stiff_modes_that_follow_a_slow_load_may_have_any_step) {
 }
 
 TEST(PlateResolution, high_modes_without_share_in_the_answer_do_not_matter) {
-  const StepEvidence e = drive({2 * pi, 200, 900}, 0, 0.02, 10, [](double) { return 1.; }).evidence;
+  const Motion::Evidence e = drive({2 * pi, 200, 900}, 0, 0.02, 10, [](double) { return 1.; }).evidence;
   EXPECT_GT(e.coarse_share, 0);
   EXPECT_LT(e.coarse_share, 0.01);
   EXPECT_LT(e.last_mode_omega, 100);
@@ -130,7 +142,7 @@ TEST(PlateResolution, near_a_resonance_the_error_of_the_answer_is_foreseen) {
 TEST(PlateResolution, the_frequency_of_a_load_is_seen) {
   const std::vector<double> omega{2 * pi, 60};
   for (const double f : {0.3, 2., 9.}) {
-    const StepEvidence e =
+    const Motion::Evidence e =
         drive(omega, 0.01, 0.004, 40, [&](double t) { return 3 + std::sin(2 * pi * f * t); }).evidence;
     EXPECT_NEAR(e.load_omega / (2 * pi * f), 1, 0.05) << f;
     EXPECT_DOUBLE_EQ(e.load_over_last, e.load_omega / 60);
@@ -145,118 +157,103 @@ TEST(PlateResolution, the_frequency_of_a_load_is_seen) {
   EXPECT_NEAR(seen([](double t) { return std::sin(2 * pi * t) > 0 ? 1. : 0.; }), 2 * pi, 0.2);
 }
 
-// 3 t^2 Pa on 1 m^2 over a step of 1 s: 3/4 in the middle, 1 - 1/(4 n^2) as the mean of n samples.
+// 3 t^2 Pa over a step of 1 s: 3/4 in the middle, 1 - 1/(4 n^2) as the mean of n samples.
 TEST(PlateResolution, what_a_step_misses_of_a_load_is_its_mean_less_its_middle) {
-  const Share share(MPI_COMM_SELF, block());
-  Load load;
-  load.lower.emplace().text = "3 * t^2";
-  const PressureLoad::Seen seen = PressureLoad(share, load, Vec3::UnitZ()).seen(0, 1, 8);
-  EXPECT_NEAR(seen.apart, std::pow(1 - 1. / 256 - 0.75, 2), 1e-12);
-  EXPECT_NEAR(seen.size, 9. / 5, 0.03);
+  const mesh::RawMesh raw = square(4);
+  Parameters p = clamped("3 * t^2");
+  Structure plate(p, PlateContext{}, &raw);
+  const log::Finding found = support::observe(plate, 1, 1).finding("step-that-resolves-the-load");
+  EXPECT_NEAR(found.number, (1 - 1. / 196 - 0.75) / std::sqrt(9. / 5), 0.002);
 }
 
 TEST(PlateResolution, what_was_seen_goes_on_after_a_restart) {
   const std::vector<double> omega{2 * pi, 30}, zero{0, 0};
   Oscillators modes(omega, zero, zero, {}, nullptr);
-  Resolution whole(omega), first(omega), second(omega);
+  Motion whole(omega), first(omega), second(omega);
   ModalState now = modes.start({1, 0.1}, zero), next = now;
   for (int i = 0; i < 40; ++i) {
     modes.step(
         now, 0.15, [&](double t, std::span<double> f) { std::ranges::fill(f, std::sin(i * 0.15 + t)); },
         next);
     whole.accepted(now, next, modes.load(), 0.15);
-    if (i == 20) second.restore(first.state());
+    if (i == 20) base::from_numbers(base::to_numbers(first), second, "motion");
     (i < 20 ? first : second).accepted(now, next, modes.load(), 0.15);
     if (i == 20) {
       first.accepted(now, next, modes.load(), 0.15);
-      second.restore(first.state());
+      base::from_numbers(base::to_numbers(first), second, "motion");
     }
     std::swap(now, next);
   }
-  EXPECT_EQ(whole.state(), second.state());
+  EXPECT_EQ(base::to_numbers(whole), base::to_numbers(second));
 }
 
-/// Evidence of a body that falls on a seat with `steps` in a contact.
-StepEvidence bounce(double steps, double weight, int n, double speed) {
+/// Finding about the impacts of a body that falls on a seat, with `steps` in a contact.
+std::optional<log::Finding> bounce(double steps, double weight, int n, double speed) {
   const double kappa = 1e4, dt = pi / 100 / steps;
   Bounce one(kappa, speed == 0 ? -weight / kappa : 0.7 * dt, -speed, ContactRule::conserving, -weight);
-  Resolution seen(std::vector<double>{0});
-  double largest = 0;
+  Parameters p;
+  p.modes_file = "block";
+  Built built;
+  built.model = block();
+  const coupling::Step step{.dt = dt};
+  const std::optional<Deflection> no_deflection;
+  const std::vector<double> no_values;
+  const bool acts = false;
+  const PlateView view{p,        built,   one.share, one.body,      &one.contact, nullptr, step,
+                       one.next, one.now, no_values, no_deflection, no_values,    acts};
+  diagnostics::Diagnostics all(0, false);
+  add_diagnostics(view, all);
   for (int i = 0; i < n; ++i) {
     one.step(dt);
-    largest = std::max(largest, one.now.energies.kinetic + one.now.energies.contact);
-    const double work = one.now.energies.impact_work - one.next.energies.impact_work;
-    if (work != 0)
-      seen.impact(one.contact.stiffness_of_impact(one.next.q, one.now.q, one.body.seat().force), work,
-                  largest, dt);
+    all.accepted(dt * (i + 1));
   }
-  return seen.evidence(true);
+  all.look();
+  for (const log::Finding& f : all.findings())
+    if (f.id == "step-that-resolves-the-contact") return f;
+  return {};
 }
 
 TEST(PlateResolution, a_contact_wants_ten_steps) {
   for (const double steps : {0.3, 1., 4., 20.}) {
-    const StepEvidence e = bounce(steps, 0, 60, 1);
-    EXPECT_NEAR(e.contact_share * steps, 1, 1e-9);
-    EXPECT_NEAR(e.contact_time, pi / 100, 1e-9);
+    const auto found = bounce(steps, 0, 60, 1);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->number * steps, 1, 1e-9);
+    EXPECT_EQ(found->severity > base::Severity::note, steps < 10);
+    EXPECT_NE(found->advice.find("simulation.time-step: 0.0016 s"), std::string::npos) << found->advice;
   }
   // A body at rest on its seat, with a step of three contacts: nothing is hit.
-  EXPECT_TRUE(std::isnan(bounce(0.3, 9.81, 200, 0).contact_share));
+  EXPECT_FALSE(bounce(0.3, 9.81, 200, 0));
 }
 
-/// Verdicts of a clamped square plate under a pressure after two seconds.
-std::vector<effects::EffectVerdict> verdicts(const std::string& pressure, double dt) {
-  Parameters p;
-  p.material = {1000, 1e9, 0.3};
-  p.thickness = 0.01;
-  p.number = 6;
-  for (const char* patch : {"xmin", "xmax", "ymin", "ymax"}) p.boundaries[patch].support = Support::clamped;
-  p.load.emplace().lower.emplace().text = pressure;
-  const mesh::RawMesh raw = square(6);
-  Structure plate(p, PlateContext{}, &raw);
-  plate.initialise();
-  const int steps = int(std::lround(2 / dt));
-  for (int i = 0; i < steps; ++i) {
-    plate.begin_step({.time = i * dt,
-                      .dt = dt,
-                      .scheme = coupling::Scheme::standalone,
-                      .number = i,
-                      .is_last = i + 1 == steps});
-    plate.solve({});
-    plate.accept_step();
-  }
-  return plate.audit();
-}
-
-std::vector<std::string> unsound(const std::vector<effects::EffectVerdict>& all) {
-  std::vector<std::string> names;
-  for (const effects::EffectVerdict& v : all)
-    if (!v.sound()) names.push_back(v.effect);
-  return names;
-}
-
-TEST(PlateResolution, the_audit_says_so) {
+TEST(PlateResolution, a_run_says_so) {
   using Names = std::vector<std::string>;
+  const mesh::RawMesh raw = square(6);
+  const auto run = [&](const std::string& pressure, double dt) {
+    Parameters p = clamped(pressure);
+    Structure plate(p, PlateContext{}, &raw);
+    return support::observe(plate, int(std::lround(2 / dt)), dt);
+  };
+  const auto doubts = [&](const std::string& pressure, double dt) { return run(pressure, dt).doubts(); };
+  const auto has = [](const Names& names, const char* id) {
+    return std::ranges::find(names, id) != names.end();
+  };
   // The first mode has 16.5 Hz.
-  EXPECT_EQ(unsound(verdicts("10 * sin(2 * pi * 5 * t)", 0.002)), Names{});
-  EXPECT_EQ(unsound(verdicts("10 * min(t, 1)", 0.2)), Names{});
-  const Names coarse = unsound(verdicts("t < 1 ? 10 : 0", 0.04));
-  EXPECT_TRUE(std::ranges::find(coarse, "step that resolves the modes") != coarse.end());
+  EXPECT_EQ(doubts("10 * sin(2 * pi * 5 * t)", 0.002), Names{});
+  EXPECT_EQ(doubts("10 * min(t, 1)", 0.2), Names{});
+  const log::Finding coarse = run("t < 1 ? 10 : 0", 0.04).finding("step-that-resolves-the-modes");
+  EXPECT_GT(coarse.severity, base::Severity::note);
+  EXPECT_NE(coarse.advice.find("simulation.time-step: 0.003 s"), std::string::npos) << coarse.advice;
   // 40 Hz in steps of 40 ms look like 10 Hz.
-  const Names load = unsound(verdicts("10 * (1 + x) * sin(2 * pi * 40 * t)", 0.02));
-  EXPECT_TRUE(std::ranges::find(load, "step that resolves the load") != load.end());
+  EXPECT_TRUE(has(doubts("10 * (1 + x) * sin(2 * pi * 40 * t)", 0.02), "step-that-resolves-the-load"));
   // A load that jumps on and off ten times is one that the step sees.
-  const Names jumps = unsound(verdicts("10 * (sin(2 * pi * 1.7 * t) > 0 ? 1 : 0.5)", 0.003));
-  EXPECT_TRUE(std::ranges::find(jumps, "step that resolves the load") == jumps.end());
+  EXPECT_FALSE(
+      has(doubts("10 * (sin(2 * pi * 1.7 * t) > 0 ? 1 : 0.5)", 0.003), "step-that-resolves-the-load"));
   // Six modes of this plate end at 62 Hz: at 80 Hz one that was left out may be met, whose static share is small.
-  const auto fast = [](double f) {
-    return unsound(verdicts(fmt::format("10 * (1 + x) * sin(2 * pi * {} * t)", f), 0.0005));
+  const auto fast = [&](double f) {
+    return doubts(fmt::format("10 * (1 + x) * sin(2 * pi * {} * t)", f), 0.0005);
   };
   EXPECT_EQ(fast(20), Names{});
-  EXPECT_EQ(fast(80).front(), "load faster than the modes");
-  for (const effects::EffectVerdict& v : verdicts("t < 1 ? 10 : 0", 0.04)) {
-    if (v.effect != "step that resolves the modes") continue;
-    EXPECT_NE(v.recommendation.find("simulation.time-step: 0.003 s"), std::string::npos) << v.recommendation;
-  }
+  EXPECT_TRUE(has(fast(80), "load-faster-than-the-modes"));
 }
 
 }  // namespace

@@ -113,7 +113,6 @@ TEST(PlateStatics, a_plate_of_two_thicknesses_and_its_weight_follow_the_closed_f
 }
 
 TEST(PlateStatics, deflection_by_modes_tends_to_the_direct_one) {
-  const SlepcEnvironment slepc;
   const PlateModel plate = make_plate(square(16), all_edges(Support::clamped));
   const std::vector<double> ones(plate.surface().cells.size(), 1), load = plate.load_of(ones);
   const std::vector<double> direct = plate.deflect(load);
@@ -165,7 +164,6 @@ Centre centre_of(const RawMesh& raw, std::span<const int> curves = {}) {
 // Babuska's paradox: the limit of simply supported polygons with ever more sides is 3 / 64, a circle has
 // (5 + nu) / (64 (1 + nu)). 18 sides about the radius 1: Poisson's equation twice by harmonic polynomials.
 TEST(PlateStatics, a_circle_is_a_circle_on_any_mesh_and_a_polygon_with_blunt_corners_is_told) {
-  const SlepcEnvironment slepc;
   const double circle = 5.3 / (64 * 1.3), polygon_of_18 = 0.04493;
   double before_circle = 1, before = 0.3;
   for (const int rings : {6, 12, 24}) {  // 2, 4, 8 edges a side
@@ -187,7 +185,6 @@ TEST(PlateStatics, a_circle_is_a_circle_on_any_mesh_and_a_polygon_with_blunt_cor
 // Between hinged edges the deflection is as smooth as r^(pi / angle): a hexagon converges as h, a square as h^2, an inner
 // corner of 270 degrees as h^(2/3). The hexagon of side 1 by Poisson's equation twice, extrapolated: 0.030696.
 TEST(PlateStatics, a_hexagon_converges_as_its_corners_let_it_and_is_told) {
-  const SlepcEnvironment slepc;
   const double degree = std::numbers::pi / 180;
   EXPECT_NEAR(order_at_corner(60 * degree), 1, 1e-12);
   EXPECT_NEAR(order_at_corner(90 * degree), 2, 1e-12);
@@ -211,7 +208,6 @@ TEST(PlateStatics, a_hexagon_converges_as_its_corners_let_it_and_is_told) {
 }
 
 TEST(PlateStatics, sides_of_one_edge_are_told_from_a_curve_by_the_drawing) {
-  const SlepcEnvironment slepc;
   const RawMesh raw = disc(3);  // 18 edges
   std::vector<int> lines, arcs, many;
   for (int e = 0; e < 18; ++e) lines.push_back(e), arcs.push_back(e / 9), many.push_back(e / 2);
@@ -223,7 +219,6 @@ TEST(PlateStatics, sides_of_one_edge_are_told_from_a_curve_by_the_drawing) {
 
 // A circle of 12 edges in four arcs turns by 30 degrees from edge to edge: were these corners, both slopes would be held.
 TEST(PlateStatics, a_coarse_circle_is_not_held_as_a_polygon) {
-  const SlepcEnvironment slepc;
   std::vector<int> quarters;
   for (int e = 0; e < 12; ++e) quarters.push_back(e / 3);
   const double circle = 5.3 / (64 * 1.3);
@@ -265,7 +260,6 @@ RawMesh sector(double angle, int n, int m) {
 // The narrower the sector, the more its planes turn at the middle: up to 170 degrees, where they are nearly one line. Where a
 // coarse arc meets a plane, its chord does not, but the arc does, at a right angle: one slope is held there.
 TEST(PlateStatics, a_sector_deflects_as_the_disc_whatever_its_angle_and_its_arc) {
-  const SlepcEnvironment slepc;
   const double degree = std::numbers::pi / 180;
   struct Case {
     double angle;

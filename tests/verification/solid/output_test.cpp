@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "common/parallel/collective.hpp"
+#include "solid_solver/diagnostics/effects.hpp"
 #include "tests/support/shared_folder.hpp"
 #include "tests/verification/solid/support.hpp"
 
@@ -188,7 +189,8 @@ TEST(SolidOutput, left_out_effects_are_judged_by_numbers) {
   }
   const auto lines = [](const Solid& solid) {
     std::vector<std::string> texts;
-    for (const effects::EffectVerdict& verdict : solid.audit()) texts.push_back(effects::text(verdict));
+    for (const log::Finding& f : effect_findings(solid.body().parameters(), solid.judge().evidence()))
+      texts.push_back(f.sentence + "; " + f.advice);
     return texts;
   };
   EXPECT_THAT(

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "common/mesh/topology.hpp"
@@ -149,13 +150,21 @@ RawMesh strut_with_ears() {
     inside[c] = x[0] < 1 || std::hypot(y, z) < 1.2;
   }
   const RawMesh body = part_of(raw, inside);
-  const CellPairs pairs = connected_cells(build_faces(body));
+  std::map<std::set<Index>, Index> cell_of_face;  // the first of its two cells
+  std::vector<std::pair<Index, Index>> pairs;
+  for (Index c = 0; c < body.cell_points.size(); ++c)
+    for (const Index left_out : body.cell_points[c]) {
+      std::set<Index> face(body.cell_points[c].begin(), body.cell_points[c].end());
+      face.erase(left_out);
+      if (const auto [other, is_first] = cell_of_face.emplace(face, c); !is_first)
+        pairs.emplace_back(other->second, c);
+    }
   std::vector<char> reached(body.cell_points.size(), 0);
   reached[0] = 1;
   for (bool grows = true; grows;) {
     grows = false;
-    for (std::size_t i = 0; i < pairs.first.size(); ++i) {
-      char &a = reached[pairs.first[i]], &b = reached[pairs.second[i]];
+    for (const auto& [first, second] : pairs) {
+      char &a = reached[first], &b = reached[second];
       if (a != b) a = b = 1, grows = true;
     }
   }

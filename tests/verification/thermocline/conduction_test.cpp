@@ -6,9 +6,8 @@
 #include <limits>
 #include <numbers>
 
-#include "thermocline/wall/column.hpp"
-#include "thermocline/wall/insulation.hpp"
-#include "thermocline/wall/ullage.hpp"
+#include "thermocline/wall/layers.hpp"
+#include "thermocline/wall/surroundings.hpp"
 
 namespace couplet::thermocline::conduction_test {
 namespace {

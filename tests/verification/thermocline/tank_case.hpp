@@ -37,7 +37,7 @@ struct TankRun {
       time += dt;
     }
   }
-  std::unique_ptr<AmbientSource> ambient;
+  std::unique_ptr<Weather> ambient;
   std::unique_ptr<FlowControl> control;
   TankModel tank;
   std::vector<BedStep> steps;

@@ -4,7 +4,6 @@ they declare is help, man page and completion alike."""
 import argparse
 import importlib
 import os
-import pathlib
 import signal
 import sys
 
@@ -25,12 +24,10 @@ SUBCOMMANDS = {
     "study": ("study.main", "runs the study of a case: variants, error against time, the best of some variables"),
     "mesh": ("command.mesh", "makes meshes that no rank has to hold, and opens them"),
     "export": ("command.export", "writes a case as input of CalculiX or OpenFOAM"),
-    "accuracy": ("study.accuracy", "measures error against time of a case of the gallery"),
-    "atlas": ("atlas.main", "maps where each scheme is stable"),
+    "weather": ("command.weather", "converts a weather file to the CSV that a tank reads"),
     "validate": ("command.validate", "measures the project's bars (in a checkout)"),
     "doctor": ("command.doctor", "checks whether this machine can run coupled cases"),
 }
-ALIASES = {"stability": "atlas"}  # scripts/stability
 GUIDE = "couplet COMMAND --help describes each command. Exit codes, as of the programs: 0 done, 1 failed, 2 invalid case or command, 3 stopped with a checkpoint, 4 done, but useless."
 
 
@@ -38,9 +35,9 @@ def module_of(name):
     return importlib.import_module("couplet." + SUBCOMMANDS[name][0])
 
 
-def parser_of(name, prog=None):
+def parser_of(name):
     module = module_of(name)
-    parser = argparse.ArgumentParser(prog=prog or f"couplet {name}", description=module.__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
+    parser = argparse.ArgumentParser(prog=f"couplet {name}", description=module.__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
                                      allow_abbrev=False)
     module.declare(parser)
     return parser
@@ -60,9 +57,10 @@ def overview():
     return "\n".join(["usage: couplet COMMAND ...", "", *lines, "", GUIDE])
 
 
-def dispatch(name, words, prog):
+def dispatch(name, words):
+    prog = f"couplet {name}"
     raw = name == "validate" and words[:1] not in (["-h"], ["--help"])  # its words are those of scripts/validate
-    arguments = argparse.Namespace(words=words) if raw else parser_of(name, prog).parse_args(words)
+    arguments = argparse.Namespace(words=words) if raw else parser_of(name).parse_args(words)
     from couplet.runs.case import Wrong, yaml
     try:
         return module_of(name).run(arguments)
@@ -76,15 +74,13 @@ def dispatch(name, words, prog):
         print(f"{prog}: " + ": ".join(str(part) for part in (error.filename, error.strerror or error) if part), file=sys.stderr)
         return 1
     except KeyboardInterrupt:
-        print(f"{prog}: interrupted" + ("; start it again to continue" if name in ("study", "atlas", "accuracy") else ""), file=sys.stderr)
+        print(f"{prog}: interrupted" + ("; start it again to continue" if name == "study" else ""), file=sys.stderr)
         return 128 + signal.SIGINT
 
 
 def main(argv):
-    """`argv[0]`: couplet, or a link named like a subcommand (scripts/study)."""
-    called, words = pathlib.Path(argv[0]).name, argv[1:]
-    if called != "couplet":
-        return dispatch(ALIASES.get(called, called), words, f"scripts/{called}")
+    """`argv`: the command line, `couplet` first."""
+    words = argv[1:]
     if not words or words[0] in ("-h", "--help", "help"):
         print(overview())
         return 0
@@ -96,4 +92,4 @@ def main(argv):
         near = difflib.get_close_matches(words[0], SUBCOMMANDS, 1)
         print(f"couplet: there is no command '{words[0]}'" + (f"; did you mean '{near[0]}'?" if near else f"; there is: {', '.join(SUBCOMMANDS)}"), file=sys.stderr)
         return 2
-    return dispatch(words[0], words[1:], f"couplet {words[0]}")
+    return dispatch(words[0], words[1:])

@@ -6,7 +6,7 @@ import pathlib
 import shutil
 import tempfile
 
-from couplet.runs.case import Case, expect, load
+from couplet.runs.case import Case, expect, with_changes
 
 TO = ("calculix", "openfoam")
 
@@ -24,11 +24,11 @@ def declare(parser):
 
 def made(case, arguments, work):
     """What writes the case."""
-    from couplet.peers.values import refuse, with_changes
+    from couplet.peers.values import refuse
     names = [arguments.participant] if arguments.participant else list(case.participants)
     expect(len(names) == 1, f"{case.file}: --participant: which one of {', '.join(names)}?")
     expect(names[0] in case.participants, f"{case.file}: there is no participant '{names[0]}'")
-    data = with_changes(case, {key: load(value) for key, value in (s.split("=", 1) for s in arguments.set)})
+    data = with_changes(case.data, dict(s.split("=", 1) for s in arguments.set))
     program, common = str(data["participants"][names[0]].get("program")), (data, names[0], case.file.parent, work)
     if program == "fluid_solver" and arguments.to == "openfoam":
         from couplet.peers.flow import Flow, FlowCase

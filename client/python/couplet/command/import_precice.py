@@ -2,9 +2,10 @@
 """Creates a case from a configuration of preCICE: writes the YAML for a job whose participants are programs on preCICE's interface
 (docs/precice.md). The programs still read the XML themselves. Differences are listed. An unsupported element is named with its line,
 and no case is written (exit code 2)."""
-import json
 import os
 import pathlib
+
+import yaml
 
 from couplet.precice.configuration import Import
 from couplet.precice.elements import read
@@ -18,33 +19,13 @@ def declare(parser):
     parser.add_argument("--force", action="store_true", help="overwrites an existing case")
 
 
-def scalar(value):
-    return value if isinstance(value, str) and value.replace(" ", "").replace(".", "").replace("-", "").isalnum() else json.dumps(value)
-
-
-def yaml_of(node, depth=0):
-    lines = []
-    for key, value in node.items():
-        if isinstance(value, dict) and depth == 0:
-            lines += [f"{key}:", *yaml_of(value, 1), ""]
-        elif isinstance(value, dict):
-            lines.append("  " * depth + f"{scalar(key)}: {{{', '.join(f'{scalar(k)}: {inline(v)}' for k, v in value.items())}}}")
-        else:
-            lines.append("  " * depth + f"{key}: {inline(value)}")
-    return lines
-
-
-def inline(value):
-    return f"[{', '.join(map(scalar, value))}]" if isinstance(value, list) else scalar(value)
-
-
 def text_of(found, file, output):
     case = {"simulation": {"name": file.resolve().parent.name or "precice", **found.case["simulation"], "output": {"folder": f"{output.stem}-run", "interval": 0}, "checkpoint": {"interval": 0}},
             "participants": found.case["participants"], "coupling": found.case["coupling"]}
     source = os.path.relpath(file, output.parent)
     lines = [f"# precice-config: {source}", "# A job of programs on preCICE's interface, made by couplet import. Each program is given that file, or this one:",
              f"#   mpirun -n 1 coupler {output.name} : -n 1 ./program {source} : ...", *(f"# Line {line}: {note}." for line, note in sorted(found.notes))]
-    return "\n".join([*lines, *yaml_of(case)]).rstrip() + "\n"
+    return "\n".join([*lines, ""]) + yaml.dump(case, sort_keys=False, default_flow_style=None, width=160, allow_unicode=True)
 
 
 def run(arguments):

@@ -7,7 +7,7 @@ import subprocess
 
 from couplet import places
 from couplet.command.run import build_of
-from couplet.runs.case import Case, expect, load
+from couplet.runs.case import Case, expect, with_changes
 from couplet.runs.job import surroundings
 
 OPENED_BY = ("fluid_solver", "solid_solver", "mesh_mover")
@@ -40,9 +40,8 @@ def tool(arguments, words, ranks=1):
 
 def meshes_of(case, arguments):
     """{(mesh file, dimension, parameters): participants} of what the case opens."""
-    from couplet.peers.values import with_changes
     expect(all("=" in s for s in arguments.set), "--set: expected a.b=value")
-    data = with_changes(case, {key: load(value) for key, value in (s.split("=", 1) for s in arguments.set)})
+    data = with_changes(case.data, dict(s.split("=", 1) for s in arguments.set))
     entries, found = data["participants"], {}
     expect(arguments.participant is None or arguments.participant in entries, f"{case.file}: there is no participant '{arguments.participant}'")
     for name, entry in entries.items():

@@ -5,10 +5,13 @@ after the step under way, with a checkpoint; a second one at once."""
 import os
 import pathlib
 import shlex
+import shutil
+import subprocess
 import sys
 
+from couplet import places
 from couplet.runs import folder as folders
-from couplet.runs.case import Case, expect
+from couplet.runs.case import Case, expect, mapping_of
 from couplet.runs.job import Job, output_of
 
 RANKS_HELP = "ranks of participants (fluid=4,solid=2), or one number for all together, divided by measured or expected work"
@@ -86,14 +89,34 @@ def build_of(folder):
     return None
 
 
+def batch_script(job, options):
+    ranks = sum(int(job.command[i + 1]) for i, word in enumerate(job.command) if word == "-n") or 1
+    words = [places.command(), "run", job.case.file.absolute(), "--bin", job.case.build / "bin"]
+    words += ["-n", ",".join(f"{name}={n}" for name, n in job.ranks.items())] if job.ranks else []
+    words += ["--participant", job.alone] if job.alone else []
+    words += [w for s in job.sets for w in ("--set", s)] + job.flags + [w for name, line in job.played_by.items() for w in ("--with", f"{name}={shlex.join(line)}")]
+    # Before its time is over the job is asked to end: it saves, and couplet resume goes on.
+    head = {"--job-name": mapping_of(job.case.data.get("simulation")).get("name", job.case.file.stem), "--ntasks": ranks, "--signal": "B:TERM@60"}
+    head = [f"{name}={value}" for name, value in head.items() if name not in {option.split("=")[0] for option in options}]
+    return "\n".join(["#!/bin/bash", *(f"#SBATCH {shlex.quote(word)}" for word in (*head, *options)), "exec " + shlex.join(map(str, words)), ""])
+
+
+def hand_to_slurm(job, options, only_show):
+    text = batch_script(job, options)
+    if only_show:
+        print(text, end="")
+        return 0
+    expect(shutil.which("sbatch"), "there is no sbatch on this machine; couplet run --slurm --print shows the script")
+    return subprocess.run(["sbatch"], input=text, text=True).returncode
+
+
 def run(arguments):
     case = Case(arguments.case, build_of(arguments.bin))
     expect(all("=" in s for s in arguments.set), "--set: expected a.b=value")
     job = Job(case, ranks_of(arguments.ranks, case, arguments.slurm is None and not arguments.print), arguments.set, flags_of(arguments), arguments.participant,
               {**{name: shlex.split(words) for name, words in pairs(arguments.played_by, "--with").items()}, **relays(arguments.separate, case)})
     if arguments.slurm is not None:
-        from couplet.runs import slurm
-        return slurm.hand_over(job, shlex.split(arguments.slurm), arguments.print)
+        return hand_to_slurm(job, shlex.split(arguments.slurm), arguments.print)
     if arguments.print:
         print(job.line())
         return 0
@@ -126,8 +149,7 @@ def span(seconds):
 
 def line_of_picture(job, out):
     """The command that draws this run."""
-    from couplet.plots.case import has_picture
-    if not has_picture(job.case) or (job.alone and job.case.coupled):
+    if not job.case.has_picture or (job.alone and job.case.coupled):
         return f"couplet plot {shlex.quote(out)}"
     elsewhere = job.output.absolute() != output_of(job.case, ()).absolute()
     return f"couplet plot {shlex.quote(shown(job.case.file))}" + (f" --out {shlex.quote(out)}" if elsewhere else "")
@@ -135,7 +157,6 @@ def line_of_picture(job, out):
 
 def picture_of(job):
     """Makes the picture of the case; gives its part of the last line."""
-    import subprocess
     done = subprocess.run([sys.executable, "-m", "couplet", "plot", str(job.case.file), *(["--out", str(job.output)] if "plot" in job.case.data else [])], capture_output=True, text=True, env={
         **os.environ, "PYTHONPATH": str(pathlib.Path(__file__).resolve().parents[2])})
     name = next((line.removeprefix("picture: ") for line in reversed(done.stdout.splitlines()) if line.endswith(".png")), None)

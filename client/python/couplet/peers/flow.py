@@ -165,7 +165,7 @@ class FlowCase:
     def write(self, folder):
         """All files of the case; run it there with its program."""
         flow, steps = self.flow, self.steps()
-        flat, body, faces = flow.mesh()
+        flat, _, faces = flow.mesh()
         faces.write(folder)
         empty = " frontAndBack{type empty;}" if flow.dimension == 2 else ""
 
@@ -196,7 +196,7 @@ class FlowCase:
     def read(self, folder, out):
         """Writes the results in `folder` to the participant's folder `out` as our programs do."""
         folder, flow = pathlib.Path(folder), self.flow
-        last, (flat, body, _) = last_time(folder), flow.mesh()
+        last, (flat, _, _) = last_time(folder), flow.mesh()
         out.mkdir(parents=True, exist_ok=True)
         count = flat.count()
         u, p = read_field(last / "U", count), read_field(last / "p", count) * flow.density

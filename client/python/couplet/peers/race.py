@@ -13,8 +13,9 @@ from couplet.peers import calculix
 from couplet.peers.flow import PROGRAMS, Flow, FlowCase
 from couplet.peers.solid import Solid
 from couplet.peers.solid_foam import SolidFoam
-from couplet.peers.values import Refused, with_changes
+from couplet.peers.values import Refused
 from couplet.runs import Record, RunFailed, Wrong
+from couplet.runs.case import with_changes
 from couplet.runs.process import environment, launch
 from couplet.runs.results import Results
 from couplet.study.axes import Point
@@ -67,7 +68,7 @@ class Race:
         """[(point, data)] of those points that differ in what a peer is given, by size: how our programs solve is not theirs."""
         seen, found = set(), []
         for point in sorted(points, key=lambda p: p.size):
-            data = with_changes(self.study.case, point.changes)
+            data = with_changes(self.study.case.data, point.changes)
             own = data["participants"][self.study.participant]
             key = json.dumps([data["simulation"].get("end-time"), {k: v for k, v in own.items() if k in (
                 "mesh", "mesh-parameters", "mesh-scale", "boundaries", "material", "density", "viscosity", "plane", "gravity", "initial-velocity")}],

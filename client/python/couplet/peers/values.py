@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Values of a case for another program: units, expressions, keys that have no counterpart there."""
-import copy
 import re
 
 import numpy as np
 
-from couplet.runs.case import Wrong, load, text_of
-from couplet.study.expressions import evaluate
+from couplet.runs.case import Wrong
+from couplet.study.axes import evaluate
 
 BASE = {"g": 1e-3, "m": 1, "l": 1e-3, "s": 1, "N": 1, "Pa": 1, "bar": 1e5, "J": 1, "W": 1, "Wh": 3600, "K": 1, "Hz": 1}
 WHOLE = {"kg": 1, "t": 1e3, "min": 60, "h": 3600, "day": 86400, "rad": 1, "deg": np.pi / 180, "%": 0.01, "1": 1}
@@ -90,17 +89,3 @@ def settled(data):
     """Refuses a case whose effects the program decides."""
     if data["simulation"].get("effects", "as-given") != "as-given":
         refuse("simulation.effects", f"'{data['simulation']['effects']}' leaves to the program what is solved; export it with the effects that it chose")
-
-
-def with_changes(case, changes):
-    """The sections of a case with {absolute key: value} set."""
-    data = copy.deepcopy({k: v for k, v in case.data.items() if k != "study"})
-    for key, value in changes.items():
-        *path, last = key.split(".")
-        node = data
-        for part in path:
-            if not isinstance(node.get(part), dict):
-                node[part] = {}
-            node = node[part]
-        node[last] = load(text_of(value)) if isinstance(value, str) else value
-    return data

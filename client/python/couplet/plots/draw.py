@@ -66,7 +66,7 @@ def time_of(panel, out, where):
 def polygons_of(series, points, plane, where):
     """(corners, cells) of two-dimensional cells, or of the cells above a plane such as y = 0 that have a face in it (below it where there are none), in its
     other two axes."""
-    if is_flat(series):
+    if series.is_flat():
         return [points[cell][:, :2] for cell in series.cells], np.arange(len(series.cells)), "xy"
     axis, _, level = plane.replace(" ", "").partition("=")
     expect(axis in ("x", "y", "z") and np.isfinite(number(level or "x")), f"{where}.plane: '{plane}'; expected such as y = 0.")
@@ -84,15 +84,10 @@ def polygons_of(series, points, plane, where):
     return [points[face][:, others] for face, _ in faces], np.array([cell for _, cell in faces]), "xyz".replace(axis, "")
 
 
-def is_flat(series):
-    points = series.reference()
-    return points.shape[1] == 2 or np.ptp(points[:, 2]) == 0
-
-
 def draw_bodies(axes, panel, out, series, i, ways):
     """Outlines of a two-dimensional mesh that is drawn, and bodies in it."""
     ways = ["xyz".index(w) for w in ways]
-    if is_flat(series):
+    if series.is_flat():
         edges = np.array(series.coordinates(i))[series.edges_on_boundary()][:, :, :2]
         axes.add_collection(LineCollection(edges, colors="black", linewidths=0.8))
     for name in panel["bodies"]:
@@ -119,7 +114,7 @@ def draw_field(figure, axes, panel, case, out, where):
     i = len(series.times) - 1 if at is None else series.nearest(at)
     values = panel.get("factor", 1) * fields.values_of(series, i, panel["field"], panel.get("component"))
     points = fields.places_of(series, i, panel.get("warp", 1), panel["field"])
-    if is_flat(series) or "plane" in panel:
+    if series.is_flat() or "plane" in panel:
         polygons, cells, ways = polygons_of(series, points, panel.get("plane"), where)
         drawn = draw_map(axes, panel, polygons, values[cells])
         axes.set(xlabel=f"{ways[0]} [m]", ylabel=f"{ways[1]} [m]")

@@ -4,12 +4,13 @@ import re
 
 import numpy as np
 
+from couplet import fields
 from couplet.plots.section import seconds
 from couplet.runs.case import Wrong, expect
 from couplet.runs.folder import warn_if_older
 from couplet.runs.results import read_csv
 from couplet.series import find_series
-from couplet.study.expressions import evaluate
+from couplet.study.axes import evaluate
 from couplet.study.quantities import FUNCTIONS, module
 
 POINTS_OF_A_FUNCTION = 200
@@ -63,11 +64,11 @@ class Source:
 
 def component_of(series, i, name, where):
     """A field or, by `velocity x`, a component of it; of points the mean over each cell."""
-    field, axis = (name[:-2], "xyz".index(name[-1])) if re.search(r" [xyz]$", name) else (name, None)
-    expect(field in series.names(i), f"{where}: there is no field '{field}'; there are: {', '.join(series.names(i))}.")
-    values = np.asarray(series.field(i, field), float).reshape(-1, np.asarray(series.field(i, field)).shape[1] if np.ndim(series.field(i, field)) > 1 else 1)
-    values = values[:, axis] if axis is not None else values[:, 0] if values.shape[1] == 1 else np.linalg.norm(values, axis=1)
-    return np.array([values[cell].mean() for cell in series.cells]) if series.is_at_points(i, field) else values
+    field, axis = (name[:-2], name[-1]) if re.search(r" [xyz]$", name) else (name, None)
+    try:
+        return fields.values_of(series, i, field, axis)
+    except Wrong as problem:
+        raise Wrong(f"{where}: {problem}") from None
 
 
 def series_in(out, participant):

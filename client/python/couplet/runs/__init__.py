@@ -3,6 +3,6 @@
 benchmarks/."""
 from couplet import lazy
 
-PLACES = {"case": ("Case", "Wrong", "expect", "text_of"), "job": ("Job", "run"), "process": ("Cost", "RunFailed", "environment", "launch"), "pool": ("run_all",),
-          "results": ("Results", "read_csv"), "task": ("Record", "Task"), "warnings": ("warnings_of",)}
+PLACES = {"case": ("Case", "Wrong", "expect", "text_of"), "job": ("Job", "run"), "process": ("Cost", "RunFailed", "environment", "launch"), "pool": ("run_all", "warnings_of"),
+          "results": ("Results", "read_csv"), "task": ("Record", "Task")}
 __getattr__ = lazy.names(__name__, PLACES)

@@ -57,6 +57,20 @@ def mapping_of(value):
     return found if isinstance(found, dict) else {}
 
 
+def with_changes(data, changes):
+    """The sections of a case with {absolute key: value} set; a text is read as YAML."""
+    data = copy.deepcopy(data)
+    for key, value in changes.items():
+        *path, last = key.split(".")
+        node = data
+        for part in path:
+            if not isinstance(node.get(part), dict):
+                node[part] = {}
+            node = node[part]
+        node[last] = load(value) if isinstance(value, str) else value
+    return data
+
+
 @functools.lru_cache(maxsize=256)
 def content_of(file, time, size):
     """Digest of a file as it was at that time."""
@@ -88,6 +102,11 @@ class Case:
         section = self.data.get("study")
         expect(isinstance(section, dict), f"{self.asked}: there is no section 'study'.")
         return section
+
+    @property
+    def has_picture(self):
+        """Of its own: a section `plot` or a plot.py beside it."""
+        return "plot" in self.data or (self.file.parent / "plot.py").is_file()
 
     @property
     def coupled(self):

@@ -16,7 +16,7 @@ import time
 from couplet import places
 from couplet.runs import folder as folders
 from couplet.runs.case import COUPLER, Case, expect, load, mapping_of
-from couplet.runs.launcher import Pages, culprit
+from couplet.runs.process import Pages, culprit
 from couplet.runs.process import RunFailed, environment, last_words
 
 PATIENCE = 5.0  # for mpirun, asked to end, before everything is killed [s]: while it launches many processes it does not listen

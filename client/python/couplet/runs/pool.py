@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs many tasks, some at a time; what is done is skipped, what another process is making is waited for."""
+"""Runs many tasks, some at a time; what is done is skipped, what another process is making is waited for. Lists what they warned of."""
 import collections
 import concurrent.futures
+import re
 import threading
 import time
 
@@ -61,3 +62,24 @@ def run_all(tasks, jobs=1, again=False, say=print):
             pool.shutdown()
             process.STOP.clear()
     return {task: records[task] for task in tasks}
+
+
+WARNING = re.compile(r"\] warning: (.*)")
+NUMBER = re.compile(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?")
+
+
+def warnings_of(logs):
+    """Lines for the end of a study: warnings of the runs' logs that differ in more than their numbers, with an example each."""
+    found = {}  # without its numbers -> (example, runs)
+    number = 0
+    for log in logs:
+        number += 1
+        if not log.exists():
+            continue
+        seen = {}
+        for text in WARNING.findall(log.read_text(errors="replace")):
+            seen.setdefault(NUMBER.sub("#", text), text)
+        for kind, text in seen.items():
+            example, runs = found.get(kind, (text, 0))
+            found[kind] = (example, runs + 1)
+    return [f"warning in {runs} of {number} runs, for example: {example}" for example, runs in found.values()]

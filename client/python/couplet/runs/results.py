@@ -50,12 +50,12 @@ class Results:
 
     def surfaces(self, participant):
         """Patches of which it wrote fields (`output.surfaces`)."""
-        from couplet.surfaces import surface_names
+        from couplet.series import surface_names
         return surface_names(self.folder / participant)
 
     def surface(self, participant, patch):
         """Fields on a patch over time, one row per face or point; areas, integrals, the chain of edges in 2-D."""
-        from couplet.surfaces import find_surface
+        from couplet.series import find_surface
         return find_surface(self.folder / participant, patch)
 
     def probes(self, participant):

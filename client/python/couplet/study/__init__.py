@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What scripts/study is made of: the runs a `study` section asks for, what is read from them, and what they say together."""
+"""What couplet study is made of: the runs a `study` section asks for, what is read from them, and what they say together."""

@@ -11,7 +11,7 @@ finer that guesses less of itself, less what that run guesses (triangle inequali
 beside it as the one it accuses, or three: a change between two runs is small by chance."""
 import math
 
-from couplet.study import convergence, table
+from couplet.study import fits, table
 
 ORDER = 2
 ENOUGH = 3  # coarser runs beside one whose guess is as good as any
@@ -34,7 +34,7 @@ def of_series(sizes, values, i, order):
     before = values[i - 1] - values[i - 2]
     if (values[i] - values[i - 1]) * before <= 0:  # it swings: the larger swing
         return max(plain, abs(before) / (ratio**order - 1))
-    limit = convergence.limit_of(sizes[i - 2:i + 1], values[i - 2:i + 1], 0.1)
+    limit = fits.limit_of(sizes[i - 2:i + 1], values[i - 2:i + 1], 0.1)
     shown = limit.order if limit else (LOWEST if 2 * change >= abs(before) else order)
     return math.sqrt(plain * change / (ratio**min(max(shown, LOWEST), max(order, HIGHEST)) - 1))
 

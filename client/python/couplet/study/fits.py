@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fits of a series of refined runs, with a bound of the error that grows where the fit is poor.
+"""Fits of a series of refined runs, with a bound of the error that grows where the fit is poor; order, extrapolation and uncertainty of three runs.
+
+Richardson's extrapolation with the observed order and the grid convergence index (GCI) with a factor of safety of 1.25 for
+three sizes, after Roache, J. Fluids Eng. 116 (1994) 405, and Celik et al., J. Fluids Eng. 130 (2008) 078001 (their equation
+for the order where the ratios of the sizes differ).
 
 Least squares over the runs after Eca and Hoekstra, J. Comput. Phys. 262 (2014) 104 (doi 10.1016/j.jcp.2014.01.006), here in h = 1/n:
 value(n) = limit + c n^-p with 0.5 <= p <= the formal order + 0.1, each run weighted alike or by n; where the order ends at the lower border or
@@ -12,7 +16,7 @@ import dataclasses
 import math
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+from scipy.optimize import brentq, minimize_scalar
 
 LOWEST, ABOVE = 0.5, 0.1  # orders: the lowest, and how far above the formal one they may lie
 SAFETY, STEEP, POOR = 1.25, 2.0, 3.0
@@ -224,3 +228,47 @@ def of_errors(sizes, errors, formal=2.0):
         return None, f"its error does not fall with size ({e[-2]:.2g}, then {e[-1]:.2g})"
     level = max(level, math.log(e[-1]))  # through the finest at least
     return Fit(0.0, [(math.exp(level) * float(n[-1])**order, order)], 0.0, 1.0, 0.0, count, math.exp(min(scatter, 1.0))), ""
+
+
+# -- three runs ----------------------------------------------------------------------------------------------------------
+@dataclasses.dataclass
+class Limit:
+    value: float        # extrapolated
+    order: float        # observed
+    gci: float          # uncertainty of the finest value, absolute
+
+
+def limit_of(sizes, values, lowest=0.2, highest=8):
+    """The limit of the three finest; None where they do not approach one (changes that do not shrink, or alternate)."""
+    if len(values) < 3:
+        return None
+    (n1, n2, n3), (v1, v2, v3) = sizes[-3:], values[-3:]
+    first, second = v2 - v1, v3 - v2
+    if second == 0 or first / second <= 0 or not all(map(math.isfinite, (first, second))):
+        return None
+
+    def mismatch(p):
+        return (n1**-p - n2**-p) / (n2**-p - n3**-p) - first / second
+    if mismatch(lowest) * mismatch(highest) > 0:
+        return None
+    order = brentq(mismatch, lowest, highest)
+    value = v3 - (v2 - v3) / (n2**-order - n3**-order) * n3**-order
+    return Limit(value, order, SAFETY * abs(value - v3))
+
+
+def slope(x, y):
+    """Exponent of a power law, least squares in the logarithms; None with fewer than two points."""
+    good = [(a, b) for a, b in zip(x, y) if a > 0 and b > 0]
+    if len(good) < 2 or len({a for a, _ in good}) < 2:
+        return None
+    return float(np.polyfit(*np.log(np.array(good)).T, 1)[0])
+
+
+def pareto(points):
+    """Of (cost, error) pairs those that no other beats in both, by cost."""
+    best, front = math.inf, []
+    for cost, error in sorted(points):
+        if error < best:
+            best = error
+            front.append((cost, error))
+    return front

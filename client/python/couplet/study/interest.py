@@ -6,41 +6,57 @@ the same with a half and a quarter of the cells along each line, and with twice 
 
 with the observed order p between 0.5 and the formal one; the formal one where the differences change their sign or the coarsest run fails.
 
-What is made coarser: `study.sources` (docs/studies.md) where the case has it, from the setting that it names; else the size of the study's
-refining axis that gives the mesh of the case, and `simulation.time-step` where the run has more than one step."""
-import copy
+What is made coarser: `study.sources` where the case has it, from the setting that it names; else the size of the study's
+refining axis that gives the mesh of the case, and `simulation.time-step` where the run has more than one step.
+
+sources:
+  mesh: {size: 16, set: {mesh-parameters: "{n: <n>}"}}   # compared with half the size and a quarter; order: 2
+  step: {key: simulation.time-step, value: 0.1}          # compared with twice the step and four times; order: 2
+  linear tolerance: {key: pressure-tolerance, value: 1.0e-5, tolerance: true}     # compared with a hundredth of the tolerance
+The part of a tolerance is what tightening it changes; mesh and step are compared with tight tolerances, so that what a solver leaves is not
+taken for theirs."""
+import dataclasses
 import json
 import math
 
 import yaml
 
 from couplet.runs import Task, expect, run_all
-from couplet.study.axes import Axes
-from couplet.study.dominance import Source, source_of
+from couplet.runs.case import Wrong, with_changes
+from couplet.study.axes import Axes, filled
 from couplet.study.quantities import quantities_of
 
-AS_IT_IS, COARSER, COARSEST = "as-it-is", "coarser", "coarsest"
+KEYS = {"size", "set", "key", "value", "tolerance", "order", "factor"}  # of a source
+AS_IT_IS, COARSER, COARSEST, TIGHTER, ALL_TIGHTER = "as-it-is", "coarser", "coarsest", "tighter", "all tighter"
 LEAST_ORDER = 0.5
 LARGEST = 4  # sizes up to this many times the largest of the axis are looked at for that of the case
+NOTHING = 0.1  # of the largest part: what is less buys nothing
+
+
+@dataclasses.dataclass
+class Source:
+    name: str
+    changes: object  # (factor) -> {key: value}; 1 as it is, above 1 coarser, below 1 finer
+    tolerance: bool
+    ratio: float     # coarser by this, or the tolerance tighter by this
+    order: float
+
+
+def source_of(name, given, where):
+    where = f"{where}: study.sources.{name}"
+    expect(isinstance(given, dict) and not set(given) - KEYS, f"{where}: expected a mapping of {', '.join(sorted(KEYS))}.")
+    if "size" in given:
+        expect(isinstance(given.get("set"), dict), f"{where}: 'size' needs 'set', keys with <expressions in n>.")
+        return Source(name, lambda f: {k: filled(str(t), max(1, given["size"] / f)) for k, t in given["set"].items()}, False,
+                      given.get("factor", 2), given.get("order", 2))
+    expect("key" in given and isinstance(given.get("value"), (int, float)), f"{where}: expected {{key: ..., value: number}}.")
+    tolerance = bool(given.get("tolerance"))
+    return Source(name, lambda f: {given["key"]: given["value"] * f}, tolerance, given.get("factor", 100 if tolerance else 2), given.get("order", 2))
 
 
 def value_at(data, key):
     for part in key.split("."):
         data = data.get(part) if isinstance(data, dict) else None
-    return data
-
-
-def as_it_stands(case, base):
-    """The content of the case with `base`, {absolute key: value or its text}."""
-    data = copy.deepcopy(case.data)
-    for key, value in base.items():
-        *above, last = key.split(".")
-        node = data
-        for part in above:
-            if not isinstance(node.get(part), dict):
-                node[part] = {}
-            node = node[part]
-        node[last] = yaml.safe_load(value) if isinstance(value, str) else value
     return data
 
 
@@ -61,8 +77,8 @@ def sources_of(case, participant, base=None):
     """`base`: what the study's `set` and --set change, {absolute key: value}."""
     section, base = case.study, base or {}
     if section.get("sources"):
-        return [s for s in (source_of(n, g, case.file) for n, g in section["sources"].items()) if not s.tolerance]
-    data = as_it_stands(case, base)
+        return [source_of(n, g, case.file) for n, g in section["sources"].items()]
+    data = with_changes(case.data, base)
     found = [mesh_source(case, section, participant, data)]
     if found[0] and "simulation.time-step" in found[0].changes(1):
         return found  # mesh and step together
@@ -81,11 +97,6 @@ def seconds(text):
         return None
 
 
-def values_of(task, quantities):
-    """{quantity: value}; those that are errors themselves are omitted."""
-    return {q.name: q.value(task.results) for q in quantities if not q.is_error}
-
-
 def unit_of(quantity):
     head = str(quantity.given.get("probe", quantity.given.get("column", "")))
     return quantity.given.get("unit") or (head[head.rindex("[") + 1:-1] if head.endswith("]") else "1")
@@ -99,10 +110,38 @@ def order_of(own, coarser, coarsest, source):
     return min(source.order, max(LEAST_ORDER, math.log(second / first) / math.log(source.ratio)))
 
 
-def estimate(own, coarser, coarsest, sources):
-    """The parts of the error, and their orders, by source."""
-    orders = {s.name: order_of(own, coarser[s.name], coarsest[s.name], s) for s in sources}
-    return {s.name: abs(own - coarser[s.name]) / (s.ratio ** orders[s.name] - 1) for s in sources}, orders
+def runs_of(sources):
+    """{name: {source: factor}} of the runs."""
+    tight = {s.name: 1 / s.ratio for s in sources if s.tolerance}
+    found = {AS_IT_IS: {}, **{f"{name} {TIGHTER}": {name: factor} for name, factor in tight.items()}}
+    if len(tight) > 1:
+        found[ALL_TIGHTER] = tight
+    for s in sources:
+        if not s.tolerance:
+            found |= {f"{s.name} {word}": {**tight, s.name: s.ratio**power} for power, word in ((1, COARSER), (2, COARSEST))}
+    return found
+
+
+def parts_of(values, sources):
+    """The parts of the error, and the orders, by source; `values`: of the runs by name."""
+    own, parts, orders = values[AS_IT_IS], {}, {}
+    for s in sources:
+        if s.tolerance:
+            parts[s.name] = abs(values[f"{s.name} {TIGHTER}"] - own)
+    exact = values[ALL_TIGHTER] if len(parts) > 1 else values[f"{next(iter(parts))} {TIGHTER}"] if parts else own
+    for s in sources:
+        if not s.tolerance:
+            coarser = values[f"{s.name} {COARSER}"]
+            orders[s.name] = order_of(exact, coarser, values.get(f"{s.name} {COARSEST}"), s)
+            parts[s.name] = abs(exact - coarser) / (s.ratio ** orders[s.name] - 1)
+    return parts, orders
+
+
+def advice(parts):
+    """What to do about the error."""
+    worst = max(parts, key=parts.get)
+    idle = [name for name, value in parts.items() if value < NOTHING * parts[worst]]
+    return f"the {worst} dominates" + (f": improving {' or '.join(idle)} would not help" if idle else "")
 
 
 def run(case, out, arguments, say):
@@ -114,42 +153,29 @@ def run(case, out, arguments, say):
                     "mesh, and takes one step.")
     taken = {case.absolute(k, participant) for s in sources for k in s.changes(1)} & set(arguments.changes) if section.get("sources") else ()
     expect(not taken, f"{case.file}: --quantities: --set {next(iter(taken), '')}: study.sources gives it its own values.")
-    folder = out / "quantities"
-
-    def changes(coarser=None, factor=1):
-        """Of the case as it stands, but for one source."""
-        found = {k: v for s in sources for k, v in s.changes(factor if s is coarser else 1).items()}
-        return {**base, **{case.absolute(k, participant): v for k, v in found.items()}}
-    tasks = {AS_IT_IS: Task(case, AS_IT_IS, folder / AS_IT_IS, changes())}
-    for s in sources:
-        for power, word in ((1, COARSER), (2, COARSEST)):
-            name = f"{s.name} {word}"
-            tasks[name] = Task(case, name, folder / name.replace(" ", "-"), changes(s, s.ratio**power))
+    folder, tasks = out / "quantities", {}
+    for name, factors in runs_of(sources).items():
+        changes = {case.absolute(k, participant): v for s in sources for k, v in s.changes(factors.get(s.name, 1)).items()}
+        tasks[name] = Task(case, name, folder / name.replace(" ", "-"), {**base, **changes})
     records = run_all(list(tasks.values()), arguments.jobs or 1, arguments.again, say)
-    quantities = quantities_of(case, section, participant)
-    found = {}
+    values, written = {}, {}
     for name, task in tasks.items():
-        good = records[task].state == "done"
-        expect(good or name.endswith(COARSEST), f"{name}: {records[task].reason}")
         try:
-            found[name] = values_of(task, quantities) if good else {}
-        except LookupError as error:  # a step too coarse to oscillate
+            expect(records[task].state == "done", f"{name}: {records[task].reason}")
+            values[name] = {q.name: q.value(task.results) for q in quantities_of(case, section, participant)}
+        except (Wrong, LookupError) as error:  # the coarsest run may be too coarse to hold or to oscillate
             expect(name.endswith(COARSEST), f"{name}: {error}")
-            found[name] = {}
-    written = {}
-    for quantity in quantities:
-        if quantity.name not in found[AS_IT_IS]:
-            continue
-        own = found[AS_IT_IS][quantity.name]
-        coarser, coarsest = ({s.name: found[f"{s.name} {word}"].get(quantity.name) for s in sources} for word in (COARSER, COARSEST))
-        expect(all(map(math.isfinite, (own, *coarser.values()))), f"{quantity.name}: not a number in a run that ended well.")
-        parts, orders = estimate(own, coarser, coarsest, sources)
-        error, unit = sum(parts.values()), unit_of(quantity)
+    for quantity in quantities_of(case, section, participant):
+        of_runs = {name: found[quantity.name] for name, found in values.items()}
+        expect(all(math.isfinite(v) for name, v in of_runs.items() if not name.endswith(COARSEST)), f"{quantity.name}: not a number in a run that ended well.")
+        parts, orders = parts_of(of_runs, sources)
+        own, error, unit = of_runs[AS_IT_IS], sum(parts.values()), unit_of(quantity)
         written[quantity.name] = {"value": own, "unit": unit, "error": error, "parts": parts, "orders": orders, "method": f"differences of {len(tasks)} runs"}
-        share = f" ({100 * error / abs(own):.2g} %)" if own else ""
+        share = f" ({100 * error / abs(own):.2g} %)" if own and not quantity.is_error else ""
         say(f"{quantity.name}: {own:.6g} {unit}, estimated error {error:.2g} {unit}{share} by differences of {len(tasks)} runs: "
-            + ", ".join(f"{n} {p:.2g} of order {orders[n]:.2g}" for n, p in parts.items()))
-    expect(written, f"{case.file}: study.quantities: all of them are errors already.")
+            + ", ".join(f"{n} {p:.2g}" + (f" of order {orders[n]:.2g}" if n in orders else "") for n, p in sorted(parts.items(), key=lambda part: -part[1])))
+        if len(parts) > 1:
+            say(advice(parts))
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "quantities.json").write_text(json.dumps(written, indent=1))
     say(f"table: {folder / 'quantities.json'}")

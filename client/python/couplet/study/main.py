@@ -58,10 +58,6 @@ def run_axes(case, arguments):
     if arguments.for_error:
         from couplet.study.predict import for_error
         return for_error(study, arguments.for_error, arguments.quantity, say)
-    if arguments.parts:
-        for line in study.parts(arguments.quantity, say)[0]:
-            say(line)
-        return 0
     points = study.axes.points()
     names = chosen([p.name for p in points], arguments)
     points = [p for p in points if p.name in names]
@@ -103,9 +99,8 @@ def declare(parser):
     parser.add_argument("--peers", action="store_true", help="writes the case for CalculiX or OpenFOAM, runs those that are installed, and puts them on the same pictures and fronts; reports the reason where it cannot")
     parser.add_argument("--allow-commands", action="store_true", help="of --peers: allows a .geo to run commands and write files, with your permissions")
     parser.add_argument("--for-error", metavar="SHARE", help="predicts from few cheap runs the cheapest setting that meets this error (1%%), runs it, and reports the accuracy of the prediction")
-    parser.add_argument("--quantity", metavar="NAME", help="of --for-error and --parts")
-    parser.add_argument("--parts", action="store_true", help="what the error at the setting of the section `sources` is made of, and which part dominates")
-    parser.add_argument("--quantities", action="store_true", help="errors of the study's quantities at the case as it stands, by differences: the case as it is, with a half and a quarter of the cells along each line, and with twice and four times the step")
+    parser.add_argument("--quantity", metavar="NAME", help="of --for-error")
+    parser.add_argument("--quantities", action="store_true", help="errors of the study's quantities at the case as it stands, by differences: the case as it is, with a half and a quarter of the cells along each line, with twice and four times the step, and with the tolerances of the section `sources` tightened; which part dominates")
     parser.add_argument("--optimise", action="store_true", help="the best of some variables in few runs")
 
 

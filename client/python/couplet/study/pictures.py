@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator
 
-from couplet.study import convergence
+from couplet.study import fits
 from couplet.study.table import series_of
 
 CLOCKS = {"cpu": "processor time of the run [s]", "wall": "wall time of the run [s]", "work": "processor time of all programs at work, without waiting [s]"}
@@ -112,7 +112,7 @@ def error_against_time(title, rows, quantity, clock, file, others=()):
     found, beside = panels(rows), dict(others)
     theirs = [] if len(found) == 1 and len(series) + len(beside) < MOST else divided(beside)
     made, axes = figure(title, len(found) + len(theirs))
-    styles, front = looks(found), convergence.pareto([*points, *(tuple(p) for xy in beside.values() for p in xy)])
+    styles, front = looks(found), fits.pareto([*points, *(tuple(p) for xy in beside.values() for p in xy)])
     for one, (heading, some) in zip(axes, found):
         one.set_title(heading, fontsize=8)
         for k, (name, label) in enumerate(some.items()):
@@ -148,7 +148,7 @@ def over_size(title, rows, value, words):
 
 def order(title, rows, quantity, refinement, file):
     def words(xy):
-        steep, last = convergence.slope(*zip(*xy)), convergence.slope(*zip(*xy[-2:]))
+        steep, last = fits.slope(*zip(*xy)), fits.slope(*zip(*xy[-2:]))
         return f"order {-steep:.2f}, last two {-last:.2f}" if steep is not None and last is not None else None
     made, axes, drawn = over_size(title, rows, lambda r: r.errors.get(quantity.name, 0), words)
     if not drawn:
@@ -162,7 +162,7 @@ def order(title, rows, quantity, refinement, file):
 
 def growth(title, rows, clock, refinement, file):
     def words(xy):
-        exponent = convergence.slope(*zip(*xy[-3:]))
+        exponent = fits.slope(*zip(*xy[-3:]))
         return f"n^{exponent:.2f}" if exponent is not None else None
     made, axes, drawn = over_size(title, rows, lambda r: getattr(r.record, clock), words)
     return finish(made, axes, file, f"{refinement} (size n)", CLOCKS[clock]) if drawn else plt.close(made)

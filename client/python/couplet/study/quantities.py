@@ -21,7 +21,7 @@ import sys
 import numpy as np
 
 from couplet.runs import expect
-from couplet.study.expressions import evaluate
+from couplet.study.axes import evaluate
 
 FUNCTIONS = {name: getattr(np, name) for name in ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "abs", "sinh", "cosh", "where")}
 KEYS = {"probe", "file", "column", "summary", "python", "item", "field", "exact", "over", "against", "at", "from", "reference", "absolute",
@@ -35,6 +35,12 @@ def module(file):
     found = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(found)
     return found
+
+
+def function_of(folder, text):
+    """Of 'FILE.py: FUNCTION', the file beside a case."""
+    file, function = (part.strip() for part in text.split(":"))
+    return getattr(module(str(folder / file)), function)
 
 
 def seconds(value):
@@ -92,8 +98,7 @@ class Quantity:
     def value(self, results):
         g, who = self.given, self.given.get("participant", self.participant)
         if "python" in g:
-            file, function = (part.strip() for part in g["python"].split(":"))
-            found = getattr(module(str(self.folder / file)), function)(results.folder / who)
+            found = function_of(self.folder, g["python"])(results.folder / who)
             return float(found[g["item"]] if "item" in g else found)
         if "field" in g:
             return self.norm(results.fields(who))

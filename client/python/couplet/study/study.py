@@ -5,7 +5,7 @@ import re
 
 from couplet.runs import Task, expect, run_all
 from couplet.runs.process import machine
-from couplet.study import convergence, estimates, pictures, table
+from couplet.study import estimates, fits, pictures, table
 from couplet.study.axes import Axes
 from couplet.study.quantities import quantities_of
 from couplet.study.report import Report
@@ -77,7 +77,7 @@ class Study:
         where = machine()
         versions = sorted({r.record.version for r in rows})
         report.text(f"{len(rows)} runs, {sum(not r.good for r in rows)} of them failed. Measured at {', '.join(versions)} on {where['processor']}, "
-                    f"{where['cores']} cores; times are {pictures.CLOCKS[self.clock]}. Table: `runs.csv`. Repeat with `scripts/study`.")
+                    f"{where['cores']} cores; times are {pictures.CLOCKS[self.clock]}. Table: `runs.csv`. Repeat with `couplet study`.")
         others = self.others(peers)
         for name, reason in (why or {}).items():
             report.text(f"{name} was not run: {reason}.")
@@ -91,14 +91,6 @@ class Study:
         self.all_runs(report, rows)
         return report.write(self.out)
 
-    def parts(self, name, say):
-        """What the error at the setting of `sources` is made of; lines to read, and {source: error}."""
-        from couplet.study.dominance import Dominance, sentences
-        quantity = next((q for q in self.quantities if q.name == (name or self.quantities[0].name)), None)
-        expect(quantity, f"--quantity {name}: there is no such quantity.")
-        found, value = Dominance(self, self.section.get("sources")).parts(quantity, say)
-        return [f"{quantity.name} = {value:.6g}", *sentences(found)], found
-
     def about(self, report, rows, quantity, against, others):
         name, safe = quantity.name, "".join(c if c.isalnum() else "-" for c in quantity.name)
         report.head(name)
@@ -106,7 +98,7 @@ class Study:
         costs = [(getattr(r.record, self.clock), r.errors[name], r) for r in rows if name in r.errors]
         if costs:
             named = {**{point: who for who, points in others for point in map(tuple, points)}, **{c[:2]: c[2].point.name for c in costs}}
-            front = convergence.pareto(list(named))
+            front = fits.pareto(list(named))
             report.text("Cheapest for their error (Pareto front" + (", other programs among them):" if others else "):"))
             report.table(("run", "seconds", "error"), [(named[p], p[0], p[1]) for p in front])
         report.picture(pictures.error_against_time(f"{self.title}: {name}", rows, quantity, self.clock, self.out / f"error-{safe}.png", others),

@@ -5,7 +5,7 @@ import math
 import re
 import types
 
-from couplet.study import convergence
+from couplet.study import fits
 from couplet.study.axes import Point
 
 COSTS = ("wall", "cpu", "work", "memory", "steps", "iterations", "spread")
@@ -54,7 +54,7 @@ def series_of(rows):
 
 def limits_of(rows, quantity):
     """{series: Limit or None} of a quantity's values over the sizes."""
-    return {name: convergence.limit_of([r.point.size for r in some], [r.values[quantity.name] for r in some])
+    return {name: fits.limit_of([r.point.size for r in some], [r.values[quantity.name] for r in some])
             for name, some in series_of(rows).items()}
 
 

@@ -45,7 +45,7 @@ OTHER = {  # title: (what is compared, [(who, how, figure, core-hours)]); a figu
         ("solids4foam, weakly compressible, BDF2, Aitken", "0.05 ms", "1.573e-04 at 7.30 ms", "0.46"),
         ("its limit of the step to zero", "", "1.585e-04", "")]),
     "Perpendicular flap": ("first and second maximum of the tip [m]", [
-        ("Couplet", "10 ms", "main-job:flap: first tip maximum; flap: second tip maximum", "-"),
+        ("Couplet", "10 ms", "flagship:flap: first tip maximum; flap: second tip maximum", "-"),
         ("preCICE: OpenFOAM, CalculiX (tutorial, read from its picture, 0.002 m)", "10 ms", "0.198 at 0.74 s; 0.184 at 2.36 s", "-"),
         ("preCICE: OpenFOAM, FEniCS", "10 ms", "0.199; 0.186", "-"), ("preCICE: Nutils, deal.II", "10 ms", "0.195; 0.183", "-")]),
     "Mok's cavity with an outlet strip": ("least and largest height of the middle over a period [m]", [
@@ -94,24 +94,24 @@ def flag(case, rows):
     return [f"## {case} of Turek and Hron", "", *lines(("", "fluid, solid cells", "step", *(head for head, _, _ in shown.values()), "core-hours"), found)]
 
 
-def figure(text, rows, main_job):
+def figure(text, rows, flagship):
     """(figure, core-hours) as it stands, or those of our rows."""
     where, _, names = text.partition(":")
-    if where not in ("row", "main-job"):
+    if where not in ("row", "flagship"):
         return text, None
-    source = rows if where == "row" else main_job
+    source = rows if where == "row" else flagship
     chosen = [next(r for q, r in source.items() if q.startswith(name)) for name in names.split("; ")]
     got = [re.sub(r" \([\d.]+ processor minutes[^)]*\)", "", r.got) for r in chosen]
     return "; ".join(got), hours(" ".join(r.got for r in chosen))
 
 
 def text():
-    rows, main_job = (table.read(ROOT / "docs/validation" / f"{name}.md") for name in ("coupled-benchmarks", "main-job"))
+    rows, flagship = (table.read(ROOT / "docs/validation" / f"{name}.md") for name in ("coupled-benchmarks", "flagship"))
     found = [HEAD, *flag("FSI1", rows), *flag("FSI3", rows)]
     for title, (what, entries) in OTHER.items():
         body = []
         for who, step, given, cost in entries:
-            value, measured = figure(given, rows, main_job)
+            value, measured = figure(given, rows, flagship)
             body.append((f"**{who}**" if measured else who, step, value, measured if cost == "cost" else cost))
         found += [f"## {title}", "", *lines(("", "step", what, "core-hours"), body)]
     return "\n".join(found)

@@ -5,7 +5,6 @@ holds while it steps (the median over its time), not the peak of its start. `scr
 programs and documents take them from; the bars measure it again."""
 import concurrent.futures
 import dataclasses
-import math
 import re
 
 from validation.parts.effects.scenes import EFFECTS, SHELL, Own, Scene, watched
@@ -117,24 +116,3 @@ def read(root):
 def line(p):
     ends = lambda pair: "{" + ", ".join(f"{x:g}" for x in pair) + "}"
     return f'    {{"{p.program}", "{p.effect}", {p.dimension}, {ends(p.bytes)}, {ends(p.step)}}},\n'
-
-
-def holds(said, got, part, least):
-    return all(abs(s - g) <= max(part * abs(g), least) for s, g in zip(said, got))
-
-
-def again(job):
-    """[(listed, measured)] of the whole list."""
-    listed = {(p.program, p.effect, p.dimension): p for p in read(job.root)}
-    return [(listed.get((p.program, p.effect, p.dimension)), p) for p in measure(job)]
-
-
-def claims(job, kind):
-    pairs = job.once("prices", lambda: again(job))
-    least = LEAST_BYTES if kind == "bytes" else LEAST_SHARE
-    wrong = [f"{p.program} {p.effect} in {p.dimension} dimensions: {getattr(p, kind)} for {s and getattr(s, kind)}" for s, p in pairs
-             if not s or not holds(getattr(s, kind), getattr(p, kind), 0.2, least)]
-    named = sum(getattr(p, kind)[1] > 0 for _, p in pairs)
-    wide = max((getattr(p, kind)[1] / getattr(p, kind)[0] for _, p in pairs if getattr(p, kind)[0] > 0), default=math.nan)
-    text = f"{len(pairs) - len(wrong)} of {len(pairs)} prices of {len(PRICED)} effects of five programs, {named} of them not next to nothing, spread up to a factor of {wide:.2g}"
-    return text + (f"; not: {'; '.join(wrong)}" if wrong else ""), not wrong and len(pairs) == len(read(job.root))

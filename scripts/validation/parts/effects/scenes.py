@@ -42,13 +42,13 @@ class Own:
 
 
 EFFECTS = [
-    Own("fluid_solver", "turbulence model", ("turbulence={model: wale}",), ("fluid_solver/turbulence/turbulence.cpp",)),
+    Own("fluid_solver", "turbulence model", ("turbulence={model: wale}",), ("fluid_solver/momentum/turbulence.cpp",)),
     Own("fluid_solver", "immersed bodies", ("bodies={ball: {level: 'sqrt((x-0.5)^2+(y-0.5)^2)-0.2'}}",),
-        ("fluid_solver/motion/immersed.cpp", "fluid_solver/pressure/projection_bodies.cpp")),
+        ("fluid_solver/motion/immersed.cpp",)),
     Own("fluid_solver", "gaps that close", ("gaps={slot: {between: [bottom, top], opening: 1 mm}}",),
-        ("fluid_solver/motion/gaps.cpp", "fluid_solver/pressure/projection_gaps.cpp")),
+        ("fluid_solver/motion/gaps.cpp",)),
     Own("fluid_solver", "implicit viscous term", ("viscous=implicit",), ("fluid_solver/momentum/viscous_solver.cpp",), ("viscous=explicit",)),
-    Own("fluid_solver", "running statistics", ("statistics={start: 0}",), ("fluid_solver/turbulence/statistics.cpp",)),
+    Own("fluid_solver", "running statistics", ("statistics={start: 0}",), ("fluid_solver/output/statistics.cpp",)),
     Own("fluid_solver", "lines and planes", ("output={samples: {middle: {type: line, from: [0.1, 0.5], to: [0.9, 0.5]}}}",),
         ("fluid_solver/output/samples.cpp",)),
     Own("fluid_solver", "vorticity and Q", ("output={vorticity: true}",), ("fluid_solver/output/derived.cpp",), names="vorticity|q_criterion"),
@@ -69,10 +69,10 @@ EFFECTS = [
     Own("mesh_mover", "mesh motion by a barrier", ("method=barrier",), ("mesh_mover/barrier/barrier_motion.cpp",)),
     Own("plate_modal", "contact with a seat", ("contact={height: -1 cm}",), ("plate_modal/motion/contact.cpp",)),
     Own("plate_modal", "pressures of the case", ("load={upper-pressure: 1}",), ("plate_modal/motion/pressure_load.cpp",)),
-    Own("thermocline", "shell", SHELL, ("thermocline/wall/shell.cpp",)),
+    Own("thermocline", "shell", SHELL, ("thermocline/wall/shell.cpp",), names="Shell::"),
     Own("thermocline", "filler mechanics", (*SHELL, "filler-mechanics={}"), ("thermocline/wall/mechanics.cpp",), SHELL, "FillerMechanics"),
-    Own("thermocline", "insulation", (*SHELL, "insulation={thickness: 0.3 m}"), ("thermocline/wall/insulation.cpp",), SHELL),
-    Own("thermocline", "ground", ("ground={layers: [{material: soil, thickness: 5 m}]}",), ("thermocline/wall/column.cpp",)),
+    Own("thermocline", "insulation", (*SHELL, "insulation={thickness: 0.3 m}"), ("thermocline/wall/layers.cpp",), SHELL, "Insulation"),
+    Own("thermocline", "ground", ("ground={layers: [{material: soil, thickness: 5 m}]}",), ("thermocline/wall/layers.cpp",), names="Column"),
 ]
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measures of --for-error: what it chooses beside ladders of runs (FILE.csv, by ladders.py) of every series and size. The study files of this
-folder give no reference, so that errors are extrapolated; they are judged afterwards by the truth named here. Costs are compared
-by those of the ladder, at the size chosen by interpolation, so that both were measured at one time."""
+"""Predictions of --for-error beside ladders of runs."""
+import argparse
+import csv
 import json
 import math
 import pathlib
@@ -9,8 +9,8 @@ import sys
 
 import numpy as np
 
-from validation.parts.prediction.ladders import read
 
+# -- rows -------------------------------------------------------------------------------------------------------------
 HERE = pathlib.Path(__file__).resolve().parent
 # File: quantity, three targets, truth: a number, or the series whose finest run of the ladder is the truth, or whose finest runs' fit is its limit.
 CASES = {
@@ -58,7 +58,7 @@ def cost_of(rows, series, size):
 
 def asked(job, name, target):
     quantity, out = CASES[name][0], job.scratch / f"prediction-{name}"
-    done = job.run([sys.executable, job.root / "scripts/study", HERE / f"{name}.yaml", f"--build={job.build}", f"--out={out}", f"--for-error={target}"], timeout=3600)
+    done = job.run([sys.executable, job.root / "scripts/couplet", "study", HERE / f"{name}.yaml", f"--build={job.build}", f"--out={out}", f"--for-error={target}"], timeout=3600)
     file = out / f"for-error-{quantity.replace(' ', '-')}-{target.replace('%', 'pc')}.json"
     if not file.exists():
         raise RuntimeError((done.stderr or done.stdout)[-300:])
@@ -84,3 +84,52 @@ def predicted(job, name):
         text, met = judged(rows, truth, asked(job, name, target))
         parts.append((f"{target}: {text}" + ("" if met else " (not met)"), met))
     return "; ".join(p for p, _ in parts), all(met for _, met in parts)
+
+
+# -- ladders ----------------------------------------------------------------------------------------------------------
+sys.path.insert(0, str(HERE.parents[3] / "client/python"))
+from couplet.runs import Case  # noqa: E402
+from couplet.study.study import Study  # noqa: E402
+
+HEAD = ("series", "size", "value", "seconds", "reason")
+
+
+def read(file):
+    with open(file, newline="") as source:
+        return list(csv.DictReader(source))
+
+
+def climb(study, quantity, sizes, word, say):
+    """A row per size and series."""
+    refining, rows = study.axes.refining, []
+    labels = {tuple((k, v) for k, v in p.labels.items() if k != refining.name) for p in study.axes.points()}
+    for fixed in sorted(labels):
+        name = ", ".join(v for _, v in fixed) or "the case"
+        for size in sizes if word in name else ():
+            row, = study.run([study.axes.point({**dict(fixed), refining.name: f"{size:g}"}, size)], 1, False, say)
+            rows.append({"series": name, "size": f"{size:g}", "value": f"{row.values[quantity]:.10g}" if row.good else "",
+                         "seconds": f"{getattr(row.record, study.clock):.4g}" if row.good else "", "reason": row.reason})
+    return rows
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("file", type=pathlib.Path)
+    parser.add_argument("quantity")
+    parser.add_argument("--sizes", required=True)
+    parser.add_argument("--series", default="")
+    parser.add_argument("--build", type=pathlib.Path, required=True)
+    parser.add_argument("--out", type=pathlib.Path, required=True)
+    arguments = parser.parse_args()
+    study = Study(Case(arguments.file, arguments.build), arguments.out)
+    rows = climb(study, arguments.quantity, [float(n) for n in arguments.sizes.split(",")], arguments.series, lambda line: print(line, flush=True))
+    target = arguments.file.with_suffix(".csv")
+    kept = {(r["series"], r["size"]): r for r in (read(target) if target.exists() else [])} | {(r["series"], r["size"]): r for r in rows}
+    with open(target, "w", newline="") as out:
+        writer = csv.DictWriter(out, HEAD, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(sorted(kept.values(), key=lambda r: (r["series"], float(r["size"]))))
+
+
+if __name__ == "__main__":
+    main()

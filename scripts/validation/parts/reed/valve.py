@@ -50,21 +50,6 @@ def energy(job):
     return f"{100 * off:.2g} % of the largest energy", off <= 0.01
 
 
-def loop(job):
-    run = valve(job)
-    t, area, drop = columns(run, "fluid/flow-areas.csv", "valve effective area [m^2]", "valve pressure drop [Pa]")
-    s, z = columns(run, "reed/probes.csv", "point-2 z [m]")
-    lift = np.interp(t, s, z) + START
-    top = int(np.argmax(lift))
-    end = top + int(np.argmin(lift[top:]))
-    texts = []
-    for at in (1.5e-3, 2e-3, 2.5e-3, 3e-3):
-        opening = np.interp(at, lift[:top], area[:top])
-        closing = np.interp(-at, -lift[top:end], area[top:end])
-        texts.append(f"{1000 * at:g} mm {2e6 * opening:.0f} and {2e6 * closing:.0f} mm^2")
-    return "opening and closing, at a lift of point 2 of " + ", ".join(texts), None
-
-
 AIR = tuple(f"participants.fluid.{key}" for key in ("compressibility.speed-of-sound=346", "compressibility.upstream-volume=1e-4", "boundaries.outlet.absorbing=true"))
 
 

@@ -21,18 +21,11 @@ def passive(job):
             get("below_surface") == 0)
 
 
-def program_speed(job):
-    """ns per cell-step and shares as the program prints them."""
-    result = job.run([job.build / "bin/thermocline", job.root / "configs/thermocline-solar-one/case.yaml",
-                      f"--set=simulation.output.folder={job.scratch / 'solar-one'}"])
-    line = re.search(r"speed: (.*)", result.stdout)
-    return line.group(1) if line else "no line", bool(line) and result.returncode == 0
-
-
 def walls(job):
     """The first day with solid_solver's wall in the loop beside the rings': differences, and the rings' closing words."""
     def make():
-        alone, log = job.solve("thermocline-solar-one", ["simulation.end-time=24 h"])
+        run = job.alone("thermocline-solar-one", ["simulation.end-time=24 h"])
+        alone, log = run.folder, run.log
         out = job.scratch / "solar-one-wall"
         case = job.root / "configs/thermocline-solar-one-wall/case.yaml"
         command = ["mpirun", "--oversubscribe"]

@@ -36,7 +36,7 @@ def study(job, case, changes=(), only=",".join(VARIANTS)):
     out = job.scratch / f"study-{case}-{abs(hash((changes, only)))}"
 
     def make():
-        command = [job.root / "scripts/study", job.root / "configs" / folder / "case.yaml", f"--only={only}", f"--out={out}",
+        command = [job.root / "scripts/couplet", "study", job.root / "configs" / folder / "case.yaml", f"--only={only}", f"--out={out}",
                    f"--build={job.build}"]
         job.done([*command, *(f"--set={c}" for c in changes)], timeout=7200)
         return read_table(out / "table.csv")
@@ -72,17 +72,6 @@ def row(job, case, name, points=None, percent=None):
     return text, not outside
 
 
-def numerical_diffusion(job, case):
-    """How much of the thermocline's thickness and of what it costs is the first-order scheme's."""
-    upwind, tvd, print_ = study(job, case), study(job, case, TVD), published(job, case)
-    parts = []
-    for name in ("h_th/h_bed", "eta_th", "Q_C/Q_excess", "B_D"):
-        a, b = upwind[ROWS[name]], tvd[ROWS[name]]
-        share = {v: 100 * (a[v] - b[v]) / a[v] for v in VARIANTS}
-        parts.append(f"{name} {shown(share)} %")
-    return "part of the upwind value that goes with TVD: " + "; ".join(parts), bool(print_)
-
-
 # -- identities -------------------------------------------------------------------------------------------------------
 def solar_field(job):
     tests, _ = job.gtest(TESTS)
@@ -94,7 +83,7 @@ def solar_field(job):
 # -- cost -------------------------------------------------------------------------------------------------------------
 def scaling(job):
     """The 18 variants over fewer days, one and two at a time, alternately: the better time of each."""
-    command = [job.root / "scripts/study", *(job.root / "configs" / folder / "case.yaml" for folder, _ in CASES.values()),
+    command = [job.root / "scripts/couplet", "study", *(job.root / "configs" / folder / "case.yaml" for folder, _ in CASES.values()),
                f"--only={','.join(VARIANTS)}", f"--build={job.build}", f"--out={job.scratch / 'scaling'}", "--again",
                "--set=simulation.end-time=10 day", "--set=participants.tank.report.run-in=2 day"]
     seconds = {1: [], 2: []}

@@ -28,7 +28,7 @@ def tables(job, case, prefixes=("", SMOOTH)):
 
     def make():
         names = ",".join(prefix + v for prefix in prefixes for v in VARIANTS)
-        job.done([job.root / "scripts/study", job.root / "configs" / folder / "case.yaml", f"--only={names}", f"--out={out}",
+        job.done([job.root / "scripts/couplet", "study", job.root / "configs" / folder / "case.yaml", f"--only={names}", f"--out={out}",
                           f"--build={job.build}"], timeout=7200)
         columns = read_columns(out / "table.csv")
         return {prefix: {row: {v: columns[prefix + v][ours] for v in VARIANTS} for row, ours in ROWS.items()}
@@ -79,24 +79,11 @@ def count(job, prefix, prefixes=("", SMOOTH), judged=True):
     return f"{inside} of {total} ({100 * inside / total:.0f} %); outside: {'; '.join(far)}", inside >= 0.9 * total if judged else None
 
 
-def co2_outlets(job):
-    found = {case: [tables(job, case)[SMOOTH][r]["CO2"] for r in ("time_TCout<Tcold+5", "time_TDout>Thot-5")] for case in CASES}
-    text = "; ".join(f"{case} {values[0]:.0f}/{values[1]:.0f} %" for case, values in found.items())
-    return text, all(round(v) == 100 for values in found.values() for v in values)
-
-
-def outlet_rule(job):
-    """G AR2, L1, L2 in all rows with bars."""
-    far = [f"{name} {v}" for name in LIMITS for v in outside(name, published(job, "G")[name], tables(job, "G")[SMOOTH][name])
-           if v in ("AR2", "L1", "L2")]
-    return f"outside of {3 * len(LIMITS)} entries: {'; '.join(far) or 'none'}", not far
-
-
 # -- practitioners ----------------------------------------------------------------------------------------------------
 def melting_layers(job):
     """Case A with layers of capsules at both ends in place of rock and sand."""
     out = job.scratch / "melting"
-    result = job.run([job.root / "scripts/study", job.root / "configs/thermocline-andasol/case.yaml", "--only=smooth-B,smooth-PCM",
+    result = job.run([job.root / "scripts/couplet", "study", job.root / "configs/thermocline-andasol/case.yaml", "--only=smooth-B,smooth-PCM",
                       f"--out={out}", f"--build={job.build}"], timeout=3600)
     result.check_returncode()
     columns = read_columns(out / "table.csv")
@@ -118,19 +105,6 @@ def optimise(job):
     _, value, points, _ = module.search(runs, 2, 16, 0.002, 2, say=lambda line: None)
     return (f"grid of 81 runs {best:.5g}, search of {len(points)} runs {value:.5g}: {100 * (value / best - 1):+.2f} %"), (
         value <= best * (1 + 0.01) and len(points) <= 81 / 5)
-
-
-def bending_verdicts(job):
-    """Three days of both cases: the verdict of the programs on the bending that rings neglect."""
-    said = {}
-    for case in CASES:
-        log = job.solve(CASES[case][0], ["simulation.end-time=3 day", "simulation.output.interval=1 day",
-                                                        "participants.tank.report.run-in=1 day"])[1]
-        line = [text for text in log.splitlines() if "bending of the wall neglected: max equivalent" in text][-1]
-        rings, shell = map(float, re.search(r": ([\d.e-]+) as rings, ([\d.e-]+) as a shell", line).groups())
-        said[case] = rings, shell, "not justified" not in line
-    text = "; ".join(f"{case}: {rings:g} as rings, {shell:g} as a shell, {'justified' if sound else 'not justified'}" for case, (rings, shell, sound) in said.items())
-    return text, said["A"][2] and not said["G"][2]
 
 
 # -- speed ------------------------------------------------------------------------------------------------------------
@@ -163,35 +137,3 @@ def before(job):
             job.done(command, timeout=7200)
         return build / "bin/thermocline", tree / "configs/thermocline-andasol/case.yaml"
     return job.once("before", make)
-
-
-def pairs(job, days=60, turns=7):
-    """Processor time a cell-step of the bed, today's over that before, turn by turn on the same case."""
-    import statistics
-    program, case = before(job)
-    ours, ratios = [], []
-    for turn in range(turns):
-        each = []
-        for name, binary in (("now", job.build / "bin/thermocline"), ("then", program)):
-            seconds, text = processor_seconds(job, [binary, case, f"--set=simulation.end-time={days} day",
-                                                    f"--set=simulation.output.folder={job.scratch / name}"])
-            steps, cells = map(int, re.search(r"in (\d+) steps of (\d+) cells", text).groups())
-            each.append(1e9 * seconds / steps / cells)
-        ours, ratios = ours + each[:1], ratios + [each[0] / each[1]]
-    ratio = statistics.median(ratios)
-    return (f"{ratio:.3f} times (median of {turns} pairs, {min(ratios):.3f} to {max(ratios):.3f}); now {statistics.median(ours):.1f} ns "
-            f"in {days} days of case A, start-up included", ratio <= 1)
-
-
-def off_is_off(job):
-    """What only looks changes nothing: with pump, prices, a tariff and a constant load the temperatures are the same bits."""
-    case = job.root / "configs/thermocline-andasol/case.yaml"
-    outs = []
-    for name, sets in (("off", []), ("on", ["participants.tank.pump={}", "participants.tank.report.economics={field: 200}",
-                                            "participants.tank.flow.tariff=[50]", "participants.tank.flow.load=[1]"])):
-        out = job.scratch / f"bits-{name}"
-        job.done([job.build / "bin/thermocline", case, "--set=simulation.end-time=3 day", "--set=simulation.output.interval=1 day",
-                 "--set=participants.tank.report.run-in=1 day", f"--set=simulation.output.folder={out}",
-                 *(f"--set={s}" for s in sets)])
-        outs.append((out / "tank/bed.csv").read_bytes() + (out / "tank/wall.csv").read_bytes())
-    return "bed.csv and wall.csv " + ("are the same bytes" if outs[0] == outs[1] else "differ"), outs[0] == outs[1]

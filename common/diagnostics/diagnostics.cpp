@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/diagnostics/diagnostics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cctype>
+#include <chrono>
+#include <cmath>
+
+#include "common/io/archive.hpp"
+#include "common/log/progress.hpp"
+
+namespace couplet::diagnostics {
+namespace {
+
+using base::Severity;
+
+/// By how far its number is beyond its limit; NaN is worse than any number.
+bool exceeds(const log::Finding& a, const log::Finding& b) {
+  return !(a.number / a.limit <= b.number / b.limit);
+}
+
+/// Adds the time of what follows to the timers of the run.
+class Timed {
+ public:
+  ~Timed() {
+    log::timers().add("diagnostics",
+                      std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count());
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+void Diagnostics::take(Report& report) {
+  for (log::Finding& f : report.findings) {
+    const auto same = [&](const log::Finding& w) { return w.id == f.id && w.subject == f.subject; };
+    const auto worst = std::ranges::find_if(worst_, same);
+    const bool is_news = f.severity > (worst == worst_.end() ? Severity::note : worst->severity);
+    if (is_news) {
+      log::Finding told = f;
+      if (!concluding_ || !f.effect.empty()) told.sentence = fmt::format("t = {:g} s: {}", time_, f.sentence);
+      log::finding(rank_, std::move(told));
+    }
+    if (worst == worst_.end())
+      worst_.push_back(std::move(f));
+    else if (is_news || (f.severity >= worst->severity && exceeds(f, *worst)))
+      *worst = std::move(f);
+  }
+  effects::keep_nearest(position_, report.position);
+}
+
+void Diagnostics::accepted(double time) {
+  const Timed timed;
+  ++steps_;
+  time_ = time;
+  Report report;
+  for (const Named& one : all_) one.diagnostic->observe(report);
+  take(report);
+  if (std::has_single_bit(static_cast<unsigned long>(steps_)) || steps_ % 100 == 0) look();
+}
+
+void Diagnostics::look() {
+  if (steps_ == 0) return;
+  Report report;
+  for (const Named& one : all_) one.diagnostic->look(report);
+  take(report);
+}
+
+std::vector<std::string> Diagnostics::conclude(bool failed) {
+  const Timed timed;
+  look();
+  concluding_ = true;
+  Report report;
+  if (!failed) {
+    for (const Named& one : all_) one.diagnostic->conclude(report);
+    take(report);
+    if (with_errors_) {
+      errors_ = report.errors;
+      add_model(worst_, errors_);
+    }
+  }
+  for (const log::Finding& f : worst_)
+    if (!(f.saves > 0) && !f.effect.empty() && (!failed || f.severity > Severity::note))
+      report.sentences.push_back(fmt::format("{}{}{}", f.sentence,
+                                             f.severity > Severity::note && !f.advice.empty() ? "; " : "",
+                                             f.severity > Severity::note ? f.advice : ""));
+  return report.sentences;
+}
+
+void add_model(const std::vector<log::Finding>& findings, coupling::ErrorParts& errors) {
+  double largest = 0;
+  for (const log::Finding& f : findings) {
+    if (f.saves > 0)
+      errors.omittable += fmt::format("{}{} saves about {:.0f} % of the time",
+                                      errors.omittable.empty() ? "" : ", ", f.sentence, 100 * f.saves);
+    if (std::isnan(f.share)) continue;
+    errors.model = std::isnan(errors.model) ? f.share : errors.model + f.share;
+    if (!(f.share > largest)) continue;
+    largest = f.share;
+    const bool is_justified = f.severity == Severity::note && f.share < 0.1;
+    errors.model_by = f.effect + (is_justified       ? ", which is justified"
+                                  : f.advice.empty() ? ""
+                                                     : ": " + f.advice);
+  }
+}
+
+void Diagnostics::visit(io::Archive& archive) {
+  std::vector<log::Finding> found = log::findings();
+  std::vector<std::string> names;
+  for (const Named& one : all_) names.push_back(one.name);
+  archive.common("findings", found, worst_, position_, steps_, time_, names);
+  if (archive.reads()) log::resume_findings(rank_, found);
+  for (const Named& one : all_) {
+    if (std::ranges::count(names, one.name) == 0) continue;  // new in this run
+    archive.set_prefix("diagnostic-" + one.name + "-");
+    one.diagnostic->visit(archive);
+  }
+  archive.set_prefix("");
+}
+
+std::optional<log::Finding> finding_of(const EffectFinding& e) {
+  if (std::isnan(e.number)) return {};
+  log::Finding f{.number = e.number, .limit = e.limit, .sentence = {}, .advice = e.advice};
+  for (const char* c = e.effect; *c != '\0'; ++c) {
+    if (std::isalnum(static_cast<unsigned char>(*c)))
+      f.id += char(std::tolower(static_cast<unsigned char>(*c)));
+    else if (!f.id.empty() && f.id.back() != '-')
+      f.id += '-';
+  }
+  const bool is_sound = e.number <= e.limit || e.saves > 0;
+  f.severity = is_sound ? Severity::note : e.number < e.wrong_from ? Severity::warning : Severity::wrong;
+  f.effect = fmt::format("{}{}", e.effect, e.left_out ? " neglected" : "");
+  f.share = e.share;
+  if (e.saves > 0) {
+    if (!(e.number <= e.limit)) return {};
+    f.saves = e.saves;
+    f.sentence = fmt::format("{} ({}; limit {:.2g})", e.effect, e.what, e.limit);
+    return f;
+  }
+  const char* word = is_sound                        ? (e.left_out ? "justified" : "adequate")
+                     : f.severity == Severity::wrong ? "wrong"
+                     : e.left_out                    ? "not justified"
+                                                     : "questionable";
+  f.sentence = fmt::format("{}: {} (limit {:.2g}): {}", f.effect, e.what, e.limit, word);
+  return f;
+}
+
+}  // namespace couplet::diagnostics

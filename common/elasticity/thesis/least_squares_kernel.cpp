@@ -1,0 +1,445 @@
+// SPDX-License-Identifier: Apache-2.0
+// ElasticKernel with the published least-squares face gradient, and with its corrections. Passes of the published one:
+// vertices, faces. Of the corrected one: gradients of the cells; vertices of open boundaries and from them the gradients
+// of the boundary nodes; all vertices; faces, which find the middles of their edges.
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include "common/base/processor_clones.hpp"
+#include "common/elasticity/elastic_nodes.hpp"
+#include "common/elasticity/elastic_rows.hpp"
+#include "common/elasticity/elastic_vertices.hpp"
+#include "common/elasticity/thesis/elastic_corrected_face.hpp"
+#include "common/elasticity/thesis/elastic_corrections.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet::elastic {
+namespace least_squares {
+
+template <int D, bool Corrected>
+class LeastSquaresKernel final : public ElasticKernel::Implementation {
+ public:
+  LeastSquaresKernel(const mesh::Mesh& mesh, const ElasticOperator& rows);
+
+  void apply(std::span<const double> unknowns, std::span<const double> known,
+             std::span<double> result) override;
+  void face_gradients(std::span<const double> unknowns, std::span<const double> known,
+                      const ElasticKernel::TakeGradient& take, Index first, Index end) override;
+  void point_values(std::span<const double> unknowns, std::span<const double> known,
+                    std::span<double> points) override;
+
+  [[gnu::always_inline]] inline void find_cell_gradients();
+  [[gnu::always_inline]] inline void find_boundary_gradients();
+  [[gnu::always_inline]] inline void find_vertices(std::span<const Index> points);
+  [[gnu::always_inline]] inline void find_plain_vertices();
+  [[gnu::always_inline]] inline void collect_forces(std::span<const double> known, std::span<double> result);
+
+ private:
+  void prepare(std::span<const double> unknowns, std::span<const double> known);
+  void find_gradients(std::span<const double> known);
+  void mirror_vertex_gradients();
+  double* cell(Index node) { return records_.data() + std::size_t(node) * record<D>; }
+  double* vertex(Index point) { return points_.data() + std::size_t(point) * record<D>; }
+  [[gnu::always_inline]] inline Surface<D> around(Index f);
+  [[gnu::always_inline]] inline Lane<D> inner(Index f, const Rows<D>& grad);
+  [[gnu::always_inline]] inline Lane<D> outer(Index f, const Rows<D>& grad);
+  [[gnu::always_inline]] inline Lane<D> at_symmetry(Index f, const Rows<D>& grad);
+  template <class Take>
+  [[gnu::always_inline]] inline void set_record(Index node, const Vec3& place, const Take& row);
+
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
+  const ElasticOperator& rows_;
+  ElasticNodes<D> nodes_;
+  ElasticRows boundary_;
+  ElasticVertices vertices_;
+  std::optional<CellGradients> gradients_;       // here and below what only the corrections need
+  std::vector<Index> open_points_, open_faces_;  // of traction faces; faces include the ghosts
+  std::vector<Index> plain_points_;  // whose value takes nothing from the gradients; all without corrections
+  std::vector<MirrorVertex> mirrors_;
+  FaceLames lame_;
+  std::vector<CorrectedFace> faces_;
+  Vec3 origin_ = Vec3::Zero();
+  // q = u - 1/2 x . G and G of the nodes; u and G of the vertices: sum w (u_i + 1/2 r_i . G_i) is then
+  // sum w q_i + 1/2 x_V . sum w G_i.
+  std::vector<double> records_, points_;
+};
+
+template <int D, bool Corrected>
+LeastSquaresKernel<D, Corrected>::LeastSquaresKernel(const mesh::Mesh& mesh, const ElasticOperator& rows)
+    : mesh_(mesh),
+      geometry_(rows.geometry()),
+      rows_(rows),
+      nodes_(mesh, rows),
+      boundary_(mesh, rows),
+      vertices_(mesh, rows),
+      plain_points_(Corrected ? plain_points(mesh, rows, vertices_.free) : vertices_.free),
+      lame_(mesh, rows),
+      records_(record_space<D>(mesh.cells.n_local() + mesh.boundary.n_local()), 0.0),
+      points_(record_space<D>(mesh.points.n_local()), 0.0) {
+  const mesh::Geometry& geometry = rows.geometry();
+  faces_.reserve(n_faces_with_force(mesh));
+  for (Index f = 0; f < n_faces_with_force(mesh); ++f) faces_.push_back(make_face(mesh, geometry, f));
+  if (!Corrected) return;
+  gradients_.emplace(mesh, rows);
+  mirrors_ = mirror_vertices(mesh, rows, vertices_.free);
+  if constexpr (D == 3) {
+    const std::vector<std::uint32_t> kinds = edge_kinds(mesh, rows);
+    for (std::size_t f = 0; f < kinds.size(); ++f) faces_[f].edges = kinds[f];
+  }
+  std::vector<std::uint8_t> open(mesh.points.n_local(), 0);
+  for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f) {
+    if (rows.at(f).fixed || rows.at(f).mirrored) continue;
+    open_faces_.push_back(f);
+    for (const Index v : mesh.face_points[f]) open[v] = 1;
+  }
+  for (const Index v : vertices_.free)
+    if (open[v]) open_points_.push_back(v);
+  // Any place near the mesh will do, the same on all ranks: it only keeps x . G small beside u.
+  for (int a = 0; a < D; ++a) {
+    double lowest = std::numeric_limits<double>::max();
+    for (const Vec3& x : geometry.points) lowest = std::min(lowest, x[a]);
+    origin_[a] = parallel::min(mesh.comm, lowest);
+  }
+}
+
+// Passes over cells and vertices: their values and gradients.
+
+/// Gradient rows and q of a node at `place`.
+template <int D, bool Corrected>
+template <class Take>
+inline void LeastSquaresKernel<D, Corrected>::set_record(Index node, const Vec3& place, const Take& row) {
+  Lane<D> q = load<D>(nodes_[node]);
+  Rows<D> gradient;
+  for (int i = 0; i < D; ++i) {
+    gradient.row[i] = row(i);
+    q -= 0.5 * (place[i] - origin_[i]) * gradient.row[i];
+  }
+  store_record<D>(cell(node), q, gradient);
+}
+
+template <int D, bool Corrected>
+inline void LeastSquaresKernel<D, Corrected>::find_cell_gradients() {
+  const Index* offset = gradients_->offset.data();
+  const Index* node = gradients_->node.data();
+  const float* weight = gradients_->weight.data();
+  const Vec3* centre = geometry_.cell_centre.data();
+  const Index n_cells = mesh_.cells.n_local();
+  const Vec3* outside = geometry_.face_centre.data() + mesh_.n_interior;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    const Lane<D> here = load<D>(nodes_[c]);
+    Rows<D> sum;
+    for (Index i = offset[c]; i < offset[c + 1]; ++i) {
+      const Lane<D> difference = weight[i] * (load<D>(nodes_[node[i]]) - here);
+      const Vec3& there = node[i] < n_cells ? centre[node[i]] : outside[node[i] - n_cells];
+      for (int a = 0; a < D; ++a) sum.row[a] += (there[a] - centre[c][a]) * difference;
+    }
+    const auto& m = gradients_->inverse[c];
+    Rows<D> g;
+    if constexpr (D == 2) {
+      g.row[0] = m[0] * sum.row[0] + m[1] * sum.row[1];
+      g.row[1] = m[1] * sum.row[0] + m[3] * sum.row[1];
+    } else {
+      g.row[0] = m[0] * sum.row[0] + m[1] * sum.row[1] + m[2] * sum.row[2];
+      g.row[1] = m[1] * sum.row[0] + m[3] * sum.row[1] + m[4] * sum.row[2];
+      g.row[2] = m[2] * sum.row[0] + m[4] * sum.row[1] + m[5] * sum.row[2];
+    }
+    set_record(
+        c, centre[c], [&](int a) __attribute__((always_inline)) { return g.row[a]; });
+  }
+  for (const auto& mirror : gradients_->mirrors) {
+    double* here = cell(mirror.cell);
+    const Lane<D> u = load<D>(nodes_[mirror.cell]);
+    double normal = 0, reach = 0;
+    for (int a = 0; a < D; ++a) {
+      normal += mirror.normal[a] * u[a];
+      reach += mirror.weight[a] * (geometry_.cell_centre[mirror.cell][a] - origin_[a]);
+    }
+    for (int b = 0; b < D; ++b) {
+      const double difference = -2 * normal * mirror.normal[b];
+      here[b] -= 0.5 * reach * difference;
+      for (int a = 0; a < D; ++a) here[(a + 1) * D + b] += mirror.weight[a] * difference;
+    }
+  }
+}
+
+template <int D, bool Corrected>
+inline void LeastSquaresKernel<D, Corrected>::find_vertices(std::span<const Index> points) {
+  for (const Index v : points) {
+    const auto index = rows_.vertices().nodes(v);
+    const auto weight = rows_.vertices().weights(v);
+    Lane<D> u = {};
+    Rows<D> g;
+    for (std::size_t i = 0; i < index.size(); ++i) {
+      const double* node = cell(index[i]);
+      const double w = weight[i];
+      u += w * load<D>(node);
+      for (int a = 0; a < D; ++a) g.row[a] += w * row_of<D>(node, a);
+    }
+    const Vec3& x = geometry_.points[v];
+    for (int a = 0; a < D; ++a) u += 0.5 * (x[a] - origin_[a]) * g.row[a];
+    store_record<D>(vertex(v), u, g);
+  }
+}
+
+// u = sum w u_i, exact for linear fields.
+template <int D, bool Corrected>
+inline void LeastSquaresKernel<D, Corrected>::find_plain_vertices() {
+  for (const Index v : plain_points_) {
+    const auto index = rows_.vertices().nodes(v);
+    const auto weight = rows_.vertices().weights(v);
+    Lane<D> u = {};
+    for (std::size_t i = 0; i < index.size(); ++i) u += weight[i] * load<D>(nodes_[index[i]]);
+    lanes::store_components<D>(vertex(v), u);
+  }
+}
+
+// On a symmetry plane: the mean of the gradient and its mirror image, G - NG -
+// GN + 2 NGN with N = n n^T.
+template <int D, bool Corrected>
+void LeastSquaresKernel<D, Corrected>::mirror_vertex_gradients() {
+  for (const MirrorVertex& mirror : mirrors_) {
+    double* here = vertex(mirror.point);
+    for (const Vec3& normal : mirror.normals) {
+      const Vec<D> n = normal.head<D>();
+      Tensor<D> g;
+      for (int a = 0; a < D; ++a)
+        for (int b = 0; b < D; ++b) g(a, b) = here[(a + 1) * D + b];
+      const Vec<D> right = g * n, left = g.transpose() * n;
+      g += n * (2 * n.dot(right) * n - left).transpose() - right * n.transpose();
+      for (int a = 0; a < D; ++a)
+        for (int b = 0; b < D; ++b) here[(a + 1) * D + b] = g(a, b);
+    }
+  }
+}
+
+// The middle value lies L^2/8 u'' below the trapezoid, the mean L^2/12 u''.
+template <int D, bool Corrected>
+inline Surface<D> LeastSquaresKernel<D, Corrected>::around(Index f) {
+  const CorrectedFace& face = faces_[f];
+  const auto corners = mesh_.face_points[f];
+  if constexpr (D == 3 && !Corrected)
+    return plain_surface(
+        face, corners,
+        geometry_.points.data(), [&](Index v) __attribute__((always_inline)) { return load<3>(vertex(v)); });
+  const auto value = [&](int e, const Lane<D>& edge) __attribute__((always_inline)) {
+    const double* first = vertex(corners[e]);
+    if constexpr (D == 2) {
+      return load<D>(first);
+    } else {
+      constexpr double below[]{0, 1.0 / 8, 1.0 / 12};
+      const double* second = vertex(corners[e + 1 < std::ssize(corners) ? e + 1 : 0]);
+      Lane<D> here = 0.5 * (load<D>(first) + load<D>(second));
+      const Lane<D> part = below[(face.edges >> (2 * e)) & 3U] * edge;
+      for (int a = 0; a < D; ++a) here -= part[a] * (row_of<D>(second, a) - row_of<D>(first, a));
+      return here;
+    }
+  };
+  return surface<D>(face, corners, geometry_.points.data(), value);
+}
+
+template <int D, bool Corrected>
+inline Lane<D> LeastSquaresKernel<D, Corrected>::inner(Index f, const Rows<D>& grad) {
+  const CorrectedFace& face = faces_[f];
+  const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+  const Vec3 &from = geometry_.cell_centre[p], to = geometry_.cell_centre[n] + mesh_.shift(f);
+  Lane<D> along = load<D>(nodes_[n]) - load<D>(nodes_[p]);
+  if (Corrected && face.curved != 0) {
+    const double *here = cell(p), *there = cell(n);
+    const Vec3& centre = geometry_.face_centre[f];
+    for (int i = 0; i < D; ++i)
+      along += (centre[i] - 0.5 * (from[i] + to[i])) * (row_of<D>(there, i) - row_of<D>(here, i));
+  }
+  return normal_derivative<D>(face, to - from, along, grad);
+}
+
+// On the boundary d . grad u = 2 (u_B - u_P) - d . G_P; without corrections u_B - u_P.
+template <int D, bool Corrected>
+inline Lane<D> LeastSquaresKernel<D, Corrected>::outer(Index f, const Rows<D>& grad) {
+  const Index p = mesh_.owner[f];
+  const Vec3 d = geometry_.face_centre[f] - geometry_.cell_centre[p];
+  const Lane<D> across = load<D>(nodes_.of_face(f)) - load<D>(nodes_[p]);
+  if (!Corrected) return normal_derivative<D>(faces_[f], d, across, grad);
+  return normal_derivative<D>(faces_[f], d, 2 * across - contract<D>(d, cell(p) + D), grad);
+}
+
+// The mirrored difference is central already.
+template <int D, bool Corrected>
+inline Lane<D> LeastSquaresKernel<D, Corrected>::at_symmetry(Index f, const Rows<D>& grad) {
+  const Index p = mesh_.owner[f];
+  const Vec3 d = geometry_.face_centre[f] - geometry_.cell_centre[p];
+  return normal_derivative<D>(faces_[f], d, -load<D>(nodes_[p]), grad);
+}
+
+template <int D, bool Corrected>
+inline void LeastSquaresKernel<D, Corrected>::find_boundary_gradients() {
+  for (const Index f : open_faces_) {
+    if (f >= mesh_.n_flux_faces()) break;
+    const CorrectedFace& face = faces_[f];
+    const auto point = mesh_.face_points[f];
+    const auto n_points = static_cast<int>(point.size());
+    // In 3-D means of the edges' end points.
+    const Surface<D> here = surface<D>(
+        face, point, geometry_.points.data(), [&](int e, const Lane<D>&) __attribute__((always_inline)) {
+          const Lane<D> first = load<D>(vertex(point[e]));
+          if (D == 2) return first;
+          return 0.5 * (first + load<D>(vertex(point[e + 1 < n_points ? e + 1 : 0])));
+        });
+    const Lane<D> g = outer(f, here.grad);
+    set_record(
+        mesh_.cells.n_local() + f - mesh_.n_interior,
+        geometry_.face_centre[f], [&](int a) __attribute__((always_inline)) {
+          return here.grad.row[a] + here.n[a] * g;
+        });
+  }
+}
+
+template <int D, bool Corrected>
+inline void LeastSquaresKernel<D, Corrected>::collect_forces(std::span<const double> known,
+                                                             std::span<double> result) {
+  nodes_.clear_forces();
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Surface<D> here = around(f);
+    const Lane<D> force = force_on<D>(lame_[f], inner(f, here.grad), here);
+    lanes::add<D>(nodes_.force(mesh_.owner[f]), -force);
+    lanes::add<D>(nodes_.force(mesh_.neighbour[f]), force);
+  }
+  const auto slope = [&](Index f, const Rows<D>& grad) __attribute__((always_inline)) {
+    return rows_.mirrored(f) ? at_symmetry(f, grad) : outer(f, grad);
+  };
+  boundary_.add_rows<D>(
+      nodes_, known, result.data() + std::size_t(mesh_.cells.n_owned()) * D,
+      [&](Index f) __attribute__((always_inline)) {
+        const Surface<D> here = around(f);
+        return force_on<D>(lame_[f], slope(f, here.grad), here);
+      },
+      [&](Index f) __attribute__((always_inline)) { return slope(f, around(f).grad); });
+  nodes_.take_forces(result);
+}
+
+namespace {
+
+// The loops for several generations of processors; the right one is picked when the program starts. Halo
+// exchanges stand between them.
+template <int D>
+using Corrected = LeastSquaresKernel<D, true>;
+template <int D>
+using Published = LeastSquaresKernel<D, false>;
+using Fields = std::span<const double>;
+
+COUPLET_PROCESSOR_CLONES void cells_pass(Corrected<3>& kernel) { kernel.find_cell_gradients(); }
+COUPLET_PROCESSOR_CLONES void cells_pass(Corrected<2>& kernel) { kernel.find_cell_gradients(); }
+COUPLET_PROCESSOR_CLONES void boundary_pass(Corrected<3>& kernel) { kernel.find_boundary_gradients(); }
+COUPLET_PROCESSOR_CLONES void boundary_pass(Corrected<2>& kernel) { kernel.find_boundary_gradients(); }
+COUPLET_PROCESSOR_CLONES void vertices_pass(Corrected<3>& kernel, std::span<const Index> points) {
+  kernel.find_vertices(points);
+}
+COUPLET_PROCESSOR_CLONES void vertices_pass(Corrected<2>& kernel, std::span<const Index> points) {
+  kernel.find_vertices(points);
+}
+COUPLET_PROCESSOR_CLONES void plain_pass(Corrected<3>& kernel) { kernel.find_plain_vertices(); }
+COUPLET_PROCESSOR_CLONES void plain_pass(Corrected<2>& kernel) { kernel.find_plain_vertices(); }
+COUPLET_PROCESSOR_CLONES void plain_pass(Published<3>& kernel) { kernel.find_plain_vertices(); }
+COUPLET_PROCESSOR_CLONES void plain_pass(Published<2>& kernel) { kernel.find_plain_vertices(); }
+COUPLET_PROCESSOR_CLONES void faces_pass(Corrected<3>& kernel, Fields known, std::span<double> result) {
+  kernel.collect_forces(known, result);
+}
+COUPLET_PROCESSOR_CLONES void faces_pass(Corrected<2>& kernel, Fields known, std::span<double> result) {
+  kernel.collect_forces(known, result);
+}
+COUPLET_PROCESSOR_CLONES void faces_pass(Published<3>& kernel, Fields known, std::span<double> result) {
+  kernel.collect_forces(known, result);
+}
+COUPLET_PROCESSOR_CLONES void faces_pass(Published<2>& kernel, Fields known, std::span<double> result) {
+  kernel.collect_forces(known, result);
+}
+
+}  // namespace
+
+/// All that stands before the faces: node records, vertices.
+template <int D, bool Corrected>
+void LeastSquaresKernel<D, Corrected>::prepare(std::span<const double> unknowns,
+                                               std::span<const double> known) {
+  nodes_.fill(unknowns, known);
+  if constexpr (Corrected) find_gradients(known);
+  plain_pass(*this);
+  vertices_.constrain<D>(points_, record<D>, known);
+  mirror_vertex_gradients();
+}
+
+/// Gradients of cells and boundary nodes, and the vertices by them.
+template <int D, bool Corrected>
+void LeastSquaresKernel<D, Corrected>::find_gradients(std::span<const double> known) {
+  cells_pass(*this);
+  const std::span<double> all(records_);
+  const std::size_t n_cells = mesh_.cells.n_local();
+  mesh_.cells.update_ghosts(all.first(n_cells * record<D>), record<D>);
+  // Boundary nodes begin with their cell's gradient; its error is the same for neighbours where cells are.
+  for (const Index f : open_faces_) {
+    const double* owner = cell(mesh_.owner[f]);
+    set_record(static_cast<Index>(n_cells) + f - mesh_.n_interior, geometry_.face_centre[f],
+               [&](int a) { return row_of<D>(owner, a); });
+  }
+  vertices_pass(*this, open_points_);
+  plain_pass(*this);
+  vertices_.constrain<D>(points_, record<D>, known);
+  boundary_pass(*this);
+  mesh_.boundary.update_ghosts(
+      all.subspan(n_cells * record<D>, std::size_t(mesh_.boundary.n_local()) * record<D>), record<D>);
+  vertices_pass(*this, vertices_.free);
+}
+
+template <int D, bool Corrected>
+void LeastSquaresKernel<D, Corrected>::apply(std::span<const double> unknowns, std::span<const double> known,
+                                             std::span<double> result) {
+  prepare(unknowns, known);
+  faces_pass(*this, known, result);
+}
+
+template <int D, bool Corrected>
+void LeastSquaresKernel<D, Corrected>::face_gradients(std::span<const double> unknowns,
+                                                      std::span<const double> known,
+                                                      const ElasticKernel::TakeGradient& take, Index first,
+                                                      Index end) {
+  prepare(unknowns, known);
+  for (Index f = first; f < end; ++f) {
+    const Surface<D> here = around(f);
+    const Rows<D>& grad = here.grad;
+    const Lane<D>& n = here.n;
+    Lane<D> g;
+    if (f < mesh_.n_interior)
+      g = inner(f, grad);
+    else if (rows_.mirrored(f))
+      g = lanes::dot<D>(n, at_symmetry(f, grad)) * n;
+    else
+      g = outer(f, grad);
+    Tensor3 gradient = Tensor3::Zero();
+    for (int a = 0; a < D; ++a)
+      for (int b = 0; b < D; ++b) gradient(a, b) = grad.row[a][b] + n[a] * g[b];
+    take(f, gradient);
+  }
+}
+
+template <int D, bool Corrected>
+void LeastSquaresKernel<D, Corrected>::point_values(std::span<const double> unknowns,
+                                                    std::span<const double> known, std::span<double> points) {
+  prepare(unknowns, known);
+  vertices_.visit([&](Index v) { std::copy_n(vertex(v), D, points.data() + std::size_t(v) * D); });
+}
+
+}  // namespace least_squares
+
+std::unique_ptr<ElasticKernel::Implementation> make_thesis_kernel(const mesh::Mesh& mesh,
+                                                                  const ElasticOperator& rows) {
+  if (mesh.dim == 2) return std::make_unique<least_squares::LeastSquaresKernel<2, false>>(mesh, rows);
+  return std::make_unique<least_squares::LeastSquaresKernel<3, false>>(mesh, rows);
+}
+
+std::unique_ptr<ElasticKernel::Implementation> make_corrected_kernel(const mesh::Mesh& mesh,
+                                                                     const ElasticOperator& rows) {
+  if (mesh.dim == 2) return std::make_unique<least_squares::LeastSquaresKernel<2, true>>(mesh, rows);
+  return std::make_unique<least_squares::LeastSquaresKernel<3, true>>(mesh, rows);
+}
+
+}  // namespace couplet::elastic

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/linalg/linear_solver.hpp"
+#include "common/parallel/index_map.hpp"
+
+namespace couplet::linalg {
+
+/// Neighboring cells: two local cells per face, at least one of them owned. Holds references.
+struct CellGraph {
+  const parallel::IndexMap& cells;
+  MPI_Comm comm;  ///< of `cells`
+  std::span<const Index> owner, neighbour;
+};
+
+/// Entries that a matrix has beside those of the mesh, in rows of owned cells. Symmetric as a whole.
+struct Beside {
+  std::span<const Index> row;
+  std::span<const GlobalIndex> column;
+};
+
+/// Conjugate gradients for a symmetric positive (semi-)definite system with one unknown per cell. The places of its entries
+/// are fixed.
+class CellSolver {
+ public:
+  enum class Preconditioner {
+    factors,    ///< Cholesky factors
+    multigrid,  ///< AggregationMultigrid of the mesh's entries
+    ml          ///< PETSc's multigrid of all entries
+  };
+  /// `what` names the unknown in messages. Collective.
+  CellSolver(std::string what, const CellGraph& graph, const Beside& beside, Preconditioner kind);
+  /// Sets the values: `diagonal` per owned cell, `faces` the entry of each two neighbors, `beside` one per entry of Beside.
+  /// Collective.
+  void fill(std::span<const double> diagonal, std::span<const double> faces, std::span<const double> beside);
+  /// What solves the system, and refreshes, saves and restores its preconditioner.
+  LinearSolver& solver() { return solver_; }
+
+ private:
+  SparseMatrix make_matrix(const Beside& beside);
+  LinearMap make_cycle() const;
+  CellGraph graph_;
+  std::vector<double> diagonal_, faces_, values_;  // values_: the matrix's triplets
+  SparseMatrix matrix_;
+  LinearSolver solver_;
+};
+
+}  // namespace couplet::linalg

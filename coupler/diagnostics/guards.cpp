@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/diagnostics/guards.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/io/archive.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet::coupler {
+namespace {
+
+double dot_over(MPI_Comm comm, const std::vector<double>& a, const std::vector<double>& b) {
+  double total = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) total += a[i] * b[i];
+  return parallel::sum(comm, total);
+}
+
+double norm(MPI_Comm comm, const std::vector<double>& values) {
+  return std::sqrt(dot_over(comm, values, values));
+}
+
+const char* cure_of_oscillation(coupling::Scheme scheme) {
+  switch (scheme) {
+    case coupling::Scheme::explicit_:
+      return "This is the added-mass instability of explicit coupling: the structure is too light for the "
+             "fluid moving with it, and smaller steps do not help. `scheme: semi-implicit` iterates the "
+             "added mass, `scheme: implicit` the whole fluid.";
+    case coupling::Scheme::semi_implicit:
+      return "The semi-implicit scheme evaluates the wall shear at the predicted velocity: with strong "
+             "viscosity and a light structure this grows although every step converges, and smaller steps "
+             "hardly help. Use `scheme: implicit`, which iterates it.";
+    default:
+      return "The scheme iterates all exchanged data: tighten `convergence.relative`, lower "
+             "`predictor.order`, or check the participants' own time schemes.";
+  }
+}
+
+}  // namespace
+
+namespace {
+
+// |1 - omega (1 + r)| = factor for the heaviest mode
+std::string too_much_added_mass(double factor, int passes, double omega) {
+  const double r = (factor + 1) / omega - 1;
+  return fmt::format(
+      "the coupling diverges: the residual grew by {:.3g} per pass over {}. With constant relaxation "
+      "{:g} this implies an added mass of about {:.3g} times the structure's; only relaxations below {:.3g} "
+      "converge, at any step. Use `acceleration.type: aitken` or `iqn-ils`, which adapt it.",
+      factor, passes == 1 ? "a pass" : fmt::format("{} passes", passes), omega, r, 2 / (1 + r));
+}
+
+}  // namespace
+
+void IterationGuard::pass(double residual, double omega, bool constant) {
+  ++passes_;
+  if (passes_ == 1) first_ = residual;
+  if (passes_ > 1 && residual > last_) {
+    if (growing_ == 0) at_turn_ = last_;
+    ++growing_;
+  } else {
+    growing_ = 0;
+  }
+  last_ = residual;
+  if (!grows()) return;
+  const bool ran_away = residual > too_far * first_;
+  if (growing_ < patience && !ran_away) return;
+  if (constant) throw SchemeFailure(too_much_added_mass(factor(), growing_, omega));
+  throw SolveFailure(
+      "the coupling diverges: the residual grew by {:.3g} per pass over {} passes, by {:.3g} in the last "
+      "one. If smaller steps do not help, `acceleration.type: iqn-ils` handles several modes at once; the "
+      "participants' own tolerances may be too loose for it.",
+      factor(), growing_, omega);
+}
+
+bool IterationGuard::grows() const { return growing_ > 0 && last_ > 2 * at_turn_; }
+
+double IterationGuard::factor() const { return std::pow(last_ / at_turn_, 1. / growing_); }
+
+std::optional<std::string> IterationGuard::suspects(double relaxation) const {
+  if (!grows()) return {};
+  if (relaxation > 0) return too_much_added_mass(factor(), growing_, relaxation);
+  return fmt::format(
+      "the coupling diverges: the residual grew by {:.3g} per pass before a participant failed. Use a lower "
+      "`acceleration.initial-relaxation`, or `predictor.order: 0` for the first steps.",
+      factor());
+}
+
+namespace {
+
+std::string swing(int turns, double factor, double growth, coupling::Scheme scheme) {
+  return fmt::format(
+      "interface oscillation: over {} steps the amplitude grew {:.3g}-fold, {:.3g} per step, although every "
+      "step was solved: unstable. {}",
+      turns, factor, growth, cure_of_oscillation(scheme));
+}
+
+}  // namespace
+
+std::optional<std::string> OscillationGuard::accepted(const std::vector<double>& x, double dt,
+                                                      coupling::Scheme scheme) {
+  std::vector<double> velocity(x.size()), jump;
+  if (levels_ >= 1)
+    for (std::size_t i = 0; i < x.size(); ++i) velocity[i] = (x[i] - x_[i]) / dt;
+  if (levels_ >= 2) {
+    jump = velocity;
+    for (std::size_t i = 0; i < x.size(); ++i) jump[i] -= velocity_[i];
+  }
+  const double size = norm(comm_, jump), old_size = norm(comm_, jump_);
+  speed_.push_back(norm(comm_, velocity));
+  if (speed_.size() > 4) speed_.pop_front();
+  // It turns round: most of the shape is the last one's with the other sign.
+  const bool turned = levels_ >= 3 && dot_over(comm_, jump, jump_) < -0.3 * size * old_size;
+  if (turned) {
+    if (turns_ == 0) sizes_.assign(1, old_size);
+    ++turns_;
+    sizes_.push_back(size);
+  } else {
+    turns_ = 0;
+    sizes_.clear();
+  }
+  levels_ = std::min(levels_ + 1, 3);
+  x_ = x;
+  velocity_ = std::move(velocity);
+  jump_ = std::move(jump);
+  if (turns_ < 4) return {};
+  // Pairs of neighbours: the growth need not be even.
+  const std::size_t n = sizes_.size();
+  const double then = sizes_[0] + sizes_[1], now = sizes_[n - 2] + sizes_[n - 1];
+  const double speed = *std::ranges::max_element(speed_);
+  const double wanted = turns_ < 8 ? 3 : turns_ < 20 ? 2 : 1.5;
+  if (!(now > wanted * then) || now < speed) return {};
+  return swing(turns_, now / then, std::pow(now / then, 1. / double(n - 2)), scheme);
+}
+
+std::optional<std::string> OscillationGuard::suspects(coupling::Scheme scheme) const {
+  if (turns_ < 2 || speed_.empty()) return {};
+  const double factor = sizes_.back() / sizes_.front();
+  if (factor < 3 || 2 * sizes_.back() < *std::ranges::max_element(speed_)) return {};
+  return swing(turns_, factor, std::pow(factor, 1. / double(sizes_.size() - 1)), scheme);
+}
+
+void OscillationGuard::visit_numbers(io::Archive& archive) {
+  archive.common("swings", turns_, levels_, sizes_, speed_);
+}
+
+void OscillationGuard::visit_fields(io::Archive& archive, const parallel::GlobalOrder& order,
+                                    const std::string& name, std::size_t first, std::size_t count,
+                                    std::size_t width) {
+  int k = 0;
+  for (std::vector<double>* values : {&x_, &velocity_, &jump_}) {
+    const bool known = levels_ > k++;
+    std::vector<double> part;
+    if (known && !archive.reads())
+      part.assign(values->begin() + std::ptrdiff_t(first), values->begin() + std::ptrdiff_t(first + count));
+    archive.field(order, name + "-" + std::to_string(k), part, width);
+    if (!archive.reads()) continue;
+    values->resize(first);
+    values->insert(values->end(), part.begin(), part.end());
+  }
+}
+
+std::optional<std::string> WorkGuard::suspects(coupling::Scheme scheme) const {
+  if (scheme != coupling::Scheme::explicit_ || steps_ < 4 ||
+      !(std::abs(fluid_ - structure_) > 0.5 * exchanged_))
+    return {};
+  return fmt::format(
+      "interface work: the fluid gave {:.3g} J and the structure took {:.3g} J, more than half of all work "
+      "apart: added-mass instability of the explicit scheme. `scheme: semi-implicit` or `implicit` iterates "
+      "it.",
+      fluid_, structure_);
+}
+
+double WorkGuard::Window::apart() const { return std::abs(given - taken); }
+
+std::optional<std::string> WorkGuard::accepted(double fluid, double structure, coupling::Scheme scheme) {
+  const double larger = std::max(std::abs(fluid), std::abs(structure));
+  fluid_ += fluid;
+  structure_ += structure;
+  exchanged_ += larger;
+  stored_ = std::max(stored_, std::abs(structure_));
+  ++steps_;
+  if (windows_.empty() || windows_.back().steps == window) {
+    if (windows_.size() == 3) windows_.erase(windows_.begin());
+    windows_.emplace_back();
+  }
+  Window& last = windows_.back();
+  last.given += fluid, last.taken += structure, last.size += larger, ++last.steps;
+  if (windows_.size() < 3 || last.steps < window) return {};
+  // More than half of what goes to and fro is made by the scheme, it is no small part of the whole run's, and
+  // it grows: a guess that jitters parts the work, too, but stays as it is.
+  const bool grows = last.apart() > 2 * windows_[1].apart() && windows_[1].apart() > 2 * windows_[0].apart();
+  if (!grows || !(last.apart() > 0.5 * last.size) || !(last.apart() > 0.1 * exchanged_)) return {};
+  return fmt::format(
+      "interface work: over the last {} steps the fluid gave {:.4g} J and the structure took {:.4g} J, "
+      "increasingly apart: the scheme itself adds or removes energy. {}",
+      window, last.given, last.taken, cure_of_oscillation(scheme));
+}
+
+WorkGuard::Verdict WorkGuard::verdict(bool by_nearest, bool lagging) const {
+  if (steps_ == 0 || exchanged_ == 0) return {};
+  const double apart = std::abs(fluid_ - structure_), net = std::min(std::abs(fluid_), std::abs(structure_)),
+               energy = energy_ > 0 ? energy_ : stored_, against = std::max(net, energy);
+  Verdict v;
+  // Nothing but noise has gone over where all of it is apart by rounding alone.
+  v.part = apart <= 1e-12 * exchanged_ ? 0 : apart / std::max(against, 1e-12 * exchanged_);
+  v.sound = v.part < sound_part;
+  v.useless = !lagging && apart / exchanged_ >= useless_part && steps_ >= judged_steps;
+  v.text = fmt::format(
+      "interface work of {} steps: fluid gave {:.6g} J, structure took {:.6g} J, {:.2g} % of the {} apart: {}",
+      steps_, fluid_, structure_, 100 * v.part, net >= energy ? "net work" : "structure's largest energy",
+      v.sound ? "closed."
+      : lagging
+          ? "NOT CLOSED: in explicit coupling load and motion belong to different times, and loads alternate from step to "
+            "step; 'scheme: semi-implicit' closes it."
+      : by_nearest
+          ? "NOT CLOSED: `mapping.type: nearest` transfers motion and load by maps that are not transposes "
+            "of each other; `projection` conserves the work on any meshes."
+          : "NOT CLOSED: the wall seen by the fluid moved differently from the structure; use smaller steps "
+            "or an iterating scheme.");
+  return v;
+}
+
+}  // namespace couplet::coupler

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+// What compressibility would do: changes of density, and waves of pressure beside moving walls.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "common/io/archive.hpp"
+#include "common/parallel/collective.hpp"
+#include "fluid_solver/diagnostics/compliance.hpp"
+#include "fluid_solver/diagnostics/effects.hpp"
+#include "fluid_solver/diagnostics/view.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+template <int D>
+std::optional<Sound> sound_in(const FluidView<D>& view) {
+  const FluidParameters& p = view.parameters();
+  return sound_of(p.compressibility, p.density, p.viscosity);
+}
+
+/// Largest extent of the points [m]. Collective.
+double size_of(const mesh::Mesh& mesh, std::span<const Vec3> centres) {
+  constexpr double far = std::numeric_limits<double>::max();
+  double square = 0;
+  for (int c = 0; c < mesh.dim; ++c) {
+    double low = far, high = -far;
+    for (const Vec3& x : centres) low = std::min(low, x[c]), high = std::max(high, x[c]);
+    square = std::max(square, std::pow(parallel::max(mesh.comm, high) - parallel::min(mesh.comm, low), 2));
+  }
+  return std::sqrt(square);
+}
+
+/// Waves of pressure: the change of density in an instant, and over the run how walls move and how the pressure answers.
+template <int D>
+class WavesOfPressure final : public diagnostics::Diagnostic {
+ public:
+  WavesOfPressure(const FluidView<D>& view, const Sound& sound)
+      : view_(view), sound_(sound), moves_((view.has_interface && view.has_mover) || has_bodies(view)) {
+    if (!moves_) return;
+    faces_ = moving_faces(view);
+    for (const Index f : faces_) at_start_.push_back(centre(f));
+  }
+  void observe(diagnostics::Report&) override {
+    const auto latest = moves_ ? view_.fluid.pressure() : nullptr;
+    if (!latest) return;
+    const mesh::Mesh& mesh = view_.mesh;
+    const Placement<D>& now = *view_.fluid.state().placement;
+    std::vector<double> swept;
+    std::array<double, 4> sums{};  // swept, pressure times volume, pressure times area and area of inlets
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      const Vec3 moved = centre(faces_[i]) - at_start_[i];
+      swept.push_back(moved.template head<D>().dot(now.area[faces_[i]]));
+      sums[0] += swept.back();
+    }
+    for (Index c = 0; c < mesh.cells.n_owned(); ++c) sums[1] += latest->p[c] * now.volume[c];
+    for (const mesh::Patch& patch : mesh.patches)
+      if (condition_of(view_.parameters().boundaries.at(patch.name)).passage == Passage::in)
+        for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+          sums[2] += latest->p[mesh.owner[f]] * now.area[f].norm();
+          sums[3] += now.area[f].norm();
+        }
+    MPI_Allreduce(MPI_IN_PLACE, sums.data(), int(sums.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
+    const auto& known = view_.parameters().compressibility;
+    if (sums[3] > 0) sums[1] += (known ? known->upstream_volume : 0) * sums[2] / sums[3];
+    watch_.add(view_.step.dt, swept, {sums[0], sums[1]});
+  }
+  void look(diagnostics::Report& report) override {
+    if (view_.parameters().is_compressible()) return;
+    if (const auto range = pressure_range(view_))
+      add(report, change_of_density(false, density(), *range, largest_speed(view_), sound_));
+  }
+  /// Means over the run count at its end only: while a flow starts, its pressures compress much and walls have hardly moved.
+  void conclude(diagnostics::Report& report) override {
+    if (view_.parameters().is_compressible()) return;
+    const ComplianceWatch::Walls mine = watch_.walls();
+    std::array<double, 3> walls{mine.square, mine.rate, mine.size};
+    MPI_Allreduce(MPI_IN_PLACE, walls.data(), int(walls.size()), MPI_DOUBLE, MPI_SUM, view_.mesh.comm);
+    if (!(walls[0] > 0)) return;
+    const ComplianceWatch::Totals totals = watch_.totals();
+    // A plate in the fluid sweeps as much on one side as it leaves on the other.
+    const double stroke = std::max(totals.swept, 0.5 * walls[2]);
+    const double size = size_of(view_.mesh, view_.fluid.state().placement->boundary_centre);
+    add(report, compliance(density(), stroke, totals.pressure_volume, sound_));
+    add(report, wave_time(std::sqrt(walls[1] / walls[0]), size, sound_));
+  }
+  void visit(io::Archive& archive) override {
+    if (!moves_) return;
+    archive.common("means", watch_);
+    constexpr std::size_t width = 4;
+    std::vector<double> flat(width * std::size_t(view_.mesh.boundary.n_owned()));
+    const auto values = watch_.per_face();
+    const auto place = [&](std::size_t i, std::size_t k) {
+      return width * std::size_t(faces_[i] - view_.mesh.n_interior) + k;
+    };
+    for (std::size_t k = 0; k < width; ++k)
+      for (std::size_t i = 0; i < values[k]->size(); ++i) flat[place(i, k)] = (*values[k])[i];
+    archive.field(mesh::Entries::owned_boundary, "walls", flat, width);
+    if (!archive.reads() || flat.empty()) return;
+    for (std::size_t k = 0; k < width; ++k) {
+      values[k]->resize(faces_.size());
+      for (std::size_t i = 0; i < faces_.size(); ++i) (*values[k])[i] = flat[place(i, k)];
+    }
+  }
+
+ private:
+  double density() const { return view_.parameters().density; }
+  static bool has_bodies(const FluidView<D>& view) { return !view.fluid.boundary().body_patches().empty(); }
+  const Vec3& centre(Index face) const {
+    return view_.fluid.state().placement->boundary_centre[face - view_.mesh.n_interior];
+  }
+  static void add(diagnostics::Report& report, const diagnostics::EffectFinding& effect) {
+    if (auto finding = diagnostics::finding_of(effect)) report.findings.push_back(std::move(*finding));
+  }
+
+  FluidView<D> view_;
+  Sound sound_;
+  bool moves_;
+  std::vector<Index> faces_;    // of walls that move
+  std::vector<Vec3> at_start_;  // their centers
+  ComplianceWatch watch_;
+};
+
+}  // namespace
+
+// Density changes go with the Mach number squared over two: 5 % at 0.3.
+diagnostics::EffectFinding mach_number(double speed, const Sound& sound) {
+  const double mach = speed / sound.speed;
+  return {
+      .effect = "compressibility",
+      .number = mach,
+      .limit = 0.3,
+      .what = fmt::format("max speed {:.3g} m/s = {:.2g} of the speed of sound in {} ({:.4g} m/s)", speed,
+                          mach, sound.of, sound.speed),
+      .advice =
+          "density would change by more than 5 %: use a compressible solver; if the speed of sound "
+          "differs, set it in 'compressibility'",
+      .share = mach < 0.9 ? 1 / std::sqrt(1 - mach * mach) - 1 : 1};  // of pressures [Prandtl and Glauert]
+}
+
+// Where flow is stopped or driven faster than waves cross the domain the pressure rises as rho c du or rho L
+// du/dt, whatever the Mach number; the density follows by dp/(rho c^2). What the speed itself explains of that, 2 M^2 of a
+// body in a stream (pressures from 1 to -3 of rho u^2/2), is the compressibility's share. Linear acoustics leaves out what
+// goes with the change of density.
+diagnostics::EffectFinding change_of_density(bool is_compressible, double density, double range, double speed,
+                                             const Sound& sound) {
+  const double change = range / (density * sound.speed * sound.speed);
+  return {
+      .effect = is_compressible ? "small changes of density" : "waves of pressure",
+      .number = change,
+      .limit = 0.05,
+      .what = fmt::format("pressure range {:.3g} Pa: density change of {} = {:.2g}", range, sound.of, change),
+      .advice = is_compressible
+                    ? "'compressibility' holds for small changes of density only: use a compressible solver"
+                    : "the flow changes faster than pressure waves would allow: add 'compressibility'",
+      .left_out = !is_compressible,
+      .share = std::max(0., change - 2 * std::pow(speed / sound.speed, 2))};
+}
+
+// What the walls displace goes partly into compression, V dp / (rho c^2) = V dp / (gamma p) of a gas: of the volume of their
+// stroke it is what an incompressible fluid pushes through the openings instead.
+diagnostics::EffectFinding compliance(double density, double stroke, double pressure_volume,
+                                      const Sound& sound) {
+  const double share = pressure_volume / (density * sound.speed * sound.speed) / std::max(stroke, 1e-300);
+  return {.effect = "waves of pressure",
+          .number = share,
+          .limit = 0.1,
+          .what = fmt::format("compression of {} / volume displaced by the walls = {:.2g}", sound.of, share),
+          .advice =
+              "the compliance of the fluid may change frequencies and stability of the coupled motion: add "
+              "'compressibility'",
+          .share = share};
+}
+
+// A column of length L answers a motion of rate omega as tan(omega L/c) / (omega L/c): 3 % more than without waves at 0.3.
+diagnostics::EffectFinding wave_time(double rate, double size, const Sound& sound) {
+  const double phase = rate * size / sound.speed;
+  return {
+      .effect = "waves of pressure",
+      .number = phase,
+      .limit = 0.3,
+      .what = fmt::format("sound crosses {} in {:.2g} s = {:.2g} of 1/omega = {:.2g} s of the wall motion",
+                          sound.of, size / sound.speed, phase, 1 / rate),
+      .advice = "pressure waves return while the walls move: add 'compressibility'",
+      .share = phase < 1 ? std::tan(phase) / std::max(phase, 1e-300) - 1 : 1};
+}
+
+template <int D>
+std::optional<log::Finding> compressibility(const FluidView<D>& view) {
+  const auto sound = sound_in(view);
+  if (!sound) return {};
+  return diagnostics::finding_of(mach_number(largest_speed(view), *sound));
+}
+
+template <int D>
+std::optional<log::Finding> changes_of_density(const FluidView<D>& view) {
+  const auto sound = sound_in(view);
+  const auto range = view.parameters().is_compressible() && sound ? pressure_range(view) : std::nullopt;
+  if (!range) return {};
+  return diagnostics::finding_of(
+      change_of_density(true, view.parameters().density, *range, largest_speed(view), *sound));
+}
+
+template <int D>
+std::shared_ptr<diagnostics::Diagnostic> waves_of_pressure(const FluidView<D>& view) {
+  const auto sound = sound_in(view);
+  return sound ? std::make_shared<WavesOfPressure<D>>(view, *sound) : nullptr;
+}
+
+template std::optional<log::Finding> compressibility(const FluidView<2>&);
+template std::optional<log::Finding> compressibility(const FluidView<3>&);
+template std::optional<log::Finding> changes_of_density(const FluidView<2>&);
+template std::optional<log::Finding> changes_of_density(const FluidView<3>&);
+template std::shared_ptr<diagnostics::Diagnostic> waves_of_pressure(const FluidView<2>&);
+template std::shared_ptr<diagnostics::Diagnostic> waves_of_pressure(const FluidView<3>&);
+
+}  // namespace couplet::fluid

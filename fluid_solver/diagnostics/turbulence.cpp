@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// Layers that the mesh does not resolve, with and without a turbulence model.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/effects/prices.hpp"
+#include "common/parallel/collective.hpp"
+#include "fluid_solver/diagnostics/effects.hpp"
+#include "fluid_solver/diagnostics/view.hpp"
+#include "fluid_solver/output/derived.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+// Ducts turn turbulent at 2300 by the mean speed; the largest of a plane laminar one is 3/2 of it.
+constexpr double laminar_below = 3450;
+
+/// Of walls; 0 without walls.
+template <int D>
+double largest_yplus(const FluidView<D>& view) {
+  double largest = 0;
+  for (const mesh::Patch& patch : view.mesh.patches)
+    if (is_wall(view.parameters().boundaries.at(patch.name)))
+      largest = std::max(largest, summarise_wall(view.fluid, patch).largest_yplus);
+  return largest;
+}
+
+/// Largest eddy viscosity over the molecular one.
+template <int D>
+double eddy_viscosity(const FluidView<D>& view) {
+  double largest = 0;
+  for (const double eddy : view.fluid.state().eddy) largest = std::max(largest, eddy);
+  return parallel::max(view.mesh.comm, largest) * view.parameters().density / view.parameters().viscosity;
+}
+
+}  // namespace
+
+// Layers are as thin as where they begin: where the mesh resolves those at the walls (y+ up to 1) it resolves what they shed,
+// and the cell Reynolds number of the flow outside them says little. On whatever mesh, what passes walls so closely that ducts
+// stay laminar there has no turbulence to model: what such a mesh misses is in its estimated error.
+diagnostics::EffectFinding unresolved_layers(int dimension, double peclet, double yplus, double reynolds) {
+  const double limit = yplus > 0 && yplus <= 1 ? 250 : 50;
+  diagnostics::EffectFinding e{
+      .effect = "turbulence model",
+      .number = peclet,
+      .limit = limit,
+      .what = fmt::format("max cell Reynolds number = {:.3g}, max y+ = {:.3g}", peclet, yplus),
+      .advice =
+          dimension == 2
+              ? "steep layers may be thinner than the mesh: refine it; if the flow is turbulent, use 'turbulence' "
+                "and 'dimension: 3'"
+              : "steep layers may be thinner than the mesh: refine it, or add 'turbulence' if the flow is "
+                "turbulent"};
+  if (peclet > limit && reynolds < laminar_below) {
+    e.number = reynolds, e.limit = laminar_below;
+    e.what = fmt::format("Reynolds number (max speed, hydraulic diameter) = {:.3g}: laminar; {}", reynolds,
+                         e.what);
+  } else {
+    // Layers get thinner with the root of the number: what a mesh that is too coarse by that misses of them.
+    e.share = peclet > limit ? 1 - std::sqrt(limit / peclet) : 0;
+  }
+  return e;
+}
+
+// Turbulence passes its energy to ever smaller eddies as vortices stretch, which those of two dimensions do not: there the models
+// are added friction only, and layers thicken with the root of the viscosity.
+diagnostics::EffectFinding eddies(int dimension, double eddy_viscosity) {
+  diagnostics::EffectFinding e{
+      .effect = dimension == 3 ? "turbulence model" : "eddy viscosity in two dimensions",
+      .number = eddy_viscosity,
+      .limit = 0.01,
+      .what = fmt::format("max eddy viscosity = {:.2g} of the molecular", eddy_viscosity),
+      .left_out = false};
+  if (dimension == 3 || eddy_viscosity <= e.limit) {
+    e.saves = effects::saved_share("fluid_solver", "turbulence model");
+    return e;
+  }
+  e.advice =
+      "vortices in two dimensions do not stretch, so it models no turbulence: omit 'turbulence', or use 'dimension: 3'";
+  e.share = 1 - 1 / std::sqrt(1 + eddy_viscosity);
+  return e;
+}
+
+diagnostics::EffectFinding unresolved_walls(double yplus, double peclet) {
+  return {.effect = "resolved walls",
+          .number = yplus,
+          .limit = 2,
+          .what = fmt::format("max y+ = {:.3g}, max cell Reynolds number = {:.3g}", yplus, peclet),
+          .advice = "there is no wall function: refine at the walls to y+ of about 1",
+          .left_out = false};
+}
+
+// In two dimensions a model does not resolve what is left out without it.
+template <int D>
+std::optional<log::Finding> turbulence_model(const FluidView<D>& view) {
+  const FluidParameters& p = view.parameters();
+  if (p.turbulence && D == 3) return diagnostics::finding_of(eddies(3, eddy_viscosity(view)));
+  const double reynolds = p.density * largest_speed(view) * hydraulic_diameter(view.fluid) / p.viscosity;
+  return diagnostics::finding_of(
+      unresolved_layers(D, view.sizes.largest_peclet(view.fluid.state()), largest_yplus(view), reynolds));
+}
+
+template <int D>
+std::optional<log::Finding> eddies_in_two_dimensions(const FluidView<D>& view) {
+  if (!view.parameters().turbulence || D != 2) return {};
+  return diagnostics::finding_of(eddies(2, eddy_viscosity(view)));
+}
+
+template <int D>
+std::optional<log::Finding> resolved_walls(const FluidView<D>& view) {
+  if (!view.parameters().turbulence) return {};
+  return diagnostics::finding_of(
+      unresolved_walls(largest_yplus(view), view.sizes.largest_peclet(view.fluid.state())));
+}
+
+template std::optional<log::Finding> turbulence_model(const FluidView<2>&);
+template std::optional<log::Finding> turbulence_model(const FluidView<3>&);
+template std::optional<log::Finding> eddies_in_two_dimensions(const FluidView<2>&);
+template std::optional<log::Finding> eddies_in_two_dimensions(const FluidView<3>&);
+template std::optional<log::Finding> resolved_walls(const FluidView<2>&);
+template std::optional<log::Finding> resolved_walls(const FluidView<3>&);
+
+}  // namespace couplet::fluid

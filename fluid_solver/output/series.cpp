@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/output/series.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/constants.hpp"
+#include "common/base/error.hpp"
+#include "common/base/processor_clones.hpp"
+#include "common/parallel/collective.hpp"
+#include "fluid_solver/output/derived.hpp"
+#include "fluid_solver/state/face_sums.hpp"
+
+namespace couplet::fluid {
+
+namespace {
+
+using Walls = std::vector<const mesh::Patch*>;
+
+/// Adds the components of a vector.
+template <int D>
+void add_to_row(Row& row, const std::string& name, const char* unit, const double* values) {
+  for (int c = 0; c < D; ++c)
+    row.emplace_back(fmt::format("{} {} [{}]", name, base::axis_letters[c], unit), values[c]);
+}
+
+/// Forces of the fluid on each wall, means over the coupling step.
+template <int D>
+Row forces(const Fluid<D>& fluid, const Walls& walls) {
+  const mesh::Mesh& mesh = fluid.mesh();
+  std::vector<Vec<D>> totals;  // pressure, friction of each wall
+  for (const mesh::Patch* patch : walls)
+    for (const Vectors<D>* force : {&fluid.pressure_force(), &fluid.viscous_force()}) {
+      totals.push_back(Vec<D>::Zero());
+      for (Index f = patch->first; !force->empty() && f < patch->first + patch->count; ++f)
+        totals.back() += (*force)[f - mesh.n_interior];
+    }
+  const std::span<double> sums = flat<D>(totals);
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
+  Row row;
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    add_to_row<D>(row, walls[i]->name + " pressure", "N", totals[2 * i].data());
+    add_to_row<D>(row, walls[i]->name + " viscous", "N", totals[2 * i + 1].data());
+  }
+  return row;
+}
+
+template <int D>
+Row coefficients(const Fluid<D>& fluid) {
+  Row row;
+  for (const auto& [name, parameters] : fluid.parameters().output.coefficients) {
+    const Coefficients c = force_coefficients(fluid, parameters);
+    row.insert(
+        row.end(),
+        {{name + " drag [-]", c.drag}, {name + " lift [-]", c.lift}, {name + " moment [-]", c.moment}});
+  }
+  return row;
+}
+
+template <int D>
+Row wall_layers(const Fluid<D>& fluid, const Walls& walls) {
+  Row row;
+  for (const mesh::Patch* patch : walls) {
+    const WallSummary w = summarise_wall(fluid, *patch);
+    row.insert(row.end(), {{patch->name + " mean shear [Pa]", w.mean_shear},
+                           {patch->name + " largest shear [Pa]", w.largest_shear},
+                           {patch->name + " mean y+ [-]", w.mean_yplus},
+                           {patch->name + " largest y+ [-]", w.largest_yplus}});
+  }
+  return row;
+}
+
+template <int D>
+Row fluxes(const Fluid<D>& fluid) {
+  Row row;
+  for (const PatchFlux<D>& flux : patch_fluxes(fluid)) {
+    row.emplace_back(flux.patch + " volume [m^3/s]", flux.volume);
+    add_to_row<D>(row, flux.patch + " momentum", "N", flux.momentum.data());
+    row.emplace_back(flux.patch + " mean pressure [Pa]", flux.mean_pressure);
+  }
+  return row;
+}
+
+template <int D>
+Row flow_areas(const Fluid<D>& fluid) {
+  Row row;
+  const std::vector<PatchFlux<D>> all = patch_fluxes(fluid);
+  if (all.empty()) return row;
+  const auto of = [&](const std::string& patch) -> const PatchFlux<D>& {
+    const auto found = std::ranges::find(all, patch, &PatchFlux<D>::patch);
+    if (found == all.end()) throw Error("output.flow-areas: the mesh has no faces in the patch '{}'.", patch);
+    return *found;
+  };
+  for (const auto& [name, area] : fluid.parameters().output.flow_areas) {
+    const FlowArea now = flow_area(of(area.from), of(area.to), fluid.parameters().density);
+    row.insert(row.end(), {{name + " mass flow [kg/s]", now.mass_flow},
+                           {name + " pressure drop [Pa]", now.pressure_drop},
+                           {name + " effective area [m^2]", now.area}});
+  }
+  return row;
+}
+
+struct CellSums {
+  double divergence = 0, volume = 0, squares = 0;  ///< |sum phi|, V, V |u|^2
+  double worst = 0;                                ///< largest |sum phi| / V
+};
+
+template <int D>
+[[gnu::always_inline]] inline CellSums sums_of(std::span<const double> volume, const double* outflow,
+                                               const Vec<D>* u) {
+  CellSums sums;
+  for (std::size_t c = 0; c < volume.size(); ++c) {
+    const double out = std::abs(outflow[c]);
+    sums.divergence += out;
+    sums.volume += volume[c];
+    sums.squares += volume[c] * u[c].squaredNorm();
+    if (out > sums.worst * volume[c]) sums.worst = out / volume[c];
+  }
+  return sums;
+}
+COUPLET_PROCESSOR_CLONES CellSums sum_cells(std::span<const double> volume, const double* outflow,
+                                            const Vec<2>* u) {
+  return sums_of<2>(volume, outflow, u);
+}
+COUPLET_PROCESSOR_CLONES CellSums sum_cells(std::span<const double> volume, const double* outflow,
+                                            const Vec<3>* u) {
+  return sums_of<3>(volume, outflow, u);
+}
+
+/// Volume, energy and divergence.
+template <int D>
+Row balance(const Fluid<D>& fluid) {
+  const mesh::Mesh& mesh = fluid.mesh();
+  const State<D>& s = fluid.state();
+  const std::span<const double> volumes = std::span(s.placement->volume).first(mesh.cells.n_owned());
+  enum { inflow, outflow, volume, energy, divergence, taken_up };
+  double sums[6] = {};
+  std::vector<double> out(mesh.cells.n_local(), 0.0);
+  subtract_outflow(mesh, -1, s.phi, out);
+  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
+    out[mesh.owner[f]] += s.phi[f];
+    (s.phi[f] < 0 ? sums[inflow] : sums[outflow]) += std::abs(s.phi[f]);
+  }
+  if (s.blocked)  // held by their gaps as a whole
+    for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+      if ((*s.blocked)[c]) out[c] = 0;
+  const CellSums over_cells = sum_cells(volumes, out.data(), s.u.data());
+  sums[divergence] = over_cells.divergence, sums[volume] = over_cells.volume;
+  sums[energy] = 0.5 * fluid.parameters().density * over_cells.squares;
+  if (s.pressure[0]) sums[taken_up] = s.pressure[0]->taken_up;
+  MPI_Allreduce(MPI_IN_PLACE, sums, 6, MPI_DOUBLE, MPI_SUM, mesh.comm);
+  const double worst = parallel::max(mesh.comm, over_cells.worst);
+  return {{"inflow [m^3/s]", sums[inflow]},
+          {"outflow [m^3/s]", sums[outflow]},
+          {"volume [m^3]", sums[volume]},
+          {"kinetic energy [J]", sums[energy]},
+          {"largest divergence [1/s]", worst},
+          {"mean divergence [1/s]", sums[divergence] / sums[volume]},
+          {"mass defect [m^3/s]", sums[outflow] - sums[inflow] + sums[taken_up]},
+          {"sub-steps [-]", double(fluid.statistics().sub_steps)},
+          {"pressure iterations so far [-]", double(fluid.statistics().pressure_iterations)}};
+}
+
+template <int D>
+Row energies(const Fluid<D>& fluid) {
+  const EnergyBudget e = energy_budget(fluid);
+  return {{"kinetic energy [J]", e.kinetic},
+          {"viscous power [W]", e.viscous},
+          {"eddy power [W]", e.eddies},
+          {"pressure power [W]", e.pressure}};
+}
+
+/// Forces on the immersed bodies, and what leaks through their surfaces.
+template <int D>
+Row bodies(const Fluid<D>& fluid) {
+  Row row;
+  const State<D>& s = fluid.state();
+  if (!s.pressure[0]) return row;
+  const auto all = fluid.bodies()->forces(*s.placement, *s.pressure[0], s.u, fluid.parameters().viscosity);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    add_to_row<D>(row, fluid.bodies()->names()[i] + " pressure", "N", all[i].first.data());
+    add_to_row<D>(row, fluid.bodies()->names()[i] + " viscous", "N", all[i].second.data());
+  }
+  row.emplace_back("leak [m^3/s]", fluid.bodies()->leak(*s.placement, s.phi));
+  return row;
+}
+
+template <int D>
+Row gaps(const Fluid<D>& fluid) {
+  Row row;
+  const std::vector<std::string>& names = fluid.gaps()->names();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto& facts = fluid.gaps()->facts()[i];
+    row.insert(row.end(), {{names[i] + " opening [m]", facts.opening},
+                           {names[i] + " blocked cells [-]", facts.cells},
+                           {names[i] + " blocked volume [m^3]", facts.volume}});
+  }
+  return row;
+}
+
+}  // namespace
+
+template <int D>
+std::vector<SeriesTable> tables_of(const Fluid<D>& fluid, const Walls& walls) {
+  const FluidParameters& p = fluid.parameters();
+  std::vector<SeriesTable> all;
+  const auto add = [&](bool wanted, const char* file, const auto& row) {
+    if (wanted) all.push_back({file, row});
+  };
+  add(!walls.empty(), "forces.csv", [&] { return forces(fluid, walls); });
+  add(!p.output.coefficients.empty(), "coefficients.csv", [&] { return coefficients(fluid); });
+  add(!walls.empty() && (p.turbulence || p.output.walls), "walls.csv",
+      [&] { return wall_layers(fluid, walls); });
+  add(p.output.fluxes, "fluxes.csv", [&] { return fluxes(fluid); });
+  add(!p.output.flow_areas.empty(), "flow-areas.csv", [&] { return flow_areas(fluid); });
+  add(true, "balance.csv", [&] { return balance(fluid); });
+  add(p.output.energy_budget, "energy.csv", [&] { return energies(fluid); });
+  add(fluid.bodies() != nullptr, "bodies.csv", [&] { return bodies(fluid); });
+  add(fluid.gaps() != nullptr, "gaps.csv", [&] { return gaps(fluid); });
+  return all;
+}
+
+template std::vector<SeriesTable> tables_of<2>(const Fluid<2>&, const Walls&);
+template std::vector<SeriesTable> tables_of<3>(const Fluid<3>&, const Walls&);
+
+}  // namespace couplet::fluid

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <tuple>
+#include <utility>
+
+#include "common/base/text.hpp"
+#include "fluid_solver/parameters/condition.hpp"
+
+namespace couplet::fluid {
+
+void declare_rotation(config::Section& r, RotationParameters& rotation) {
+  r.value("speed", rotation.speed)
+      .unit("rad/s")
+      .plausible(1e-6, 1e6)
+      .required()
+      .doc("expression of t [s] in rad/s; a ramp applies to it as well");
+  r.value("centre", rotation.centre).unit("m").plausible(1e-9, 1e4).doc("a point on the axis");
+  r.value("axis", rotation.axis).size(3).doc("3-D; a 2-D scene rotates about z");
+  r.check([&rotation] { return rotation.axis.norm() > 0 ? std::string() : "'axis' must not be zero"; },
+          "axis");
+}
+
+namespace {
+
+void declare_velocity(config::Section& s, BoundaryParameters& b) {
+  s.value("velocity", b.velocity)
+      .unit("m/s")
+      .plausible(1e-9, 1e4)
+      .doc("one expression of x, y, z [m] and t [s] per component");
+}
+
+void declare_ramp(config::Section& s, BoundaryParameters& b) {
+  s.value("ramp", b.ramp)
+      .unit("s")
+      .plausible(1e-12, 1e10)
+      .positive()
+      .doc("the velocity grows from 0 as (1 - cos(pi t/ramp))/2 until t = ramp; absent: no ramp");
+}
+
+void declare_table_and_rotation(config::Section& s, BoundaryParameters& b) {
+  s.optional_section<VelocityTableParameters>(
+      "table", b.table,
+      [](config::Section& t, VelocityTableParameters& table) {
+        t.value("file", table.file)
+            .required()
+            .doc(
+                "CSV file next to the case; its first line names the columns: some of x, y, z [m], t [s], "
+                "and u, v, w [m/s]; its lines form a full grid with linear interpolation");
+        t.choice("outside", table.outside,
+                 {{"error", fv::GridTable::Outside::error}, {"clamp", fv::GridTable::Outside::clamp}})
+            .doc("for values beyond the ends: error, or clamp (hold the end values)");
+      },
+      "velocity from a file, instead of 'velocity'");
+  s.optional_section<RotationParameters>(
+      "rotation", b.rotation, declare_rotation,
+      "omega x (r - centre) added to the other velocity: a rotating inlet or wall; absent: none");
+}
+
+void declare_absorbing(config::Section& s, BoundaryParameters& b) {
+  s.value("absorbing", b.absorbing)
+      .doc(
+          "with `compressibility`: lets pressure waves out (characteristic); what is prescribed then holds for the mean "
+          "over its mean-time");
+}
+
+void declare_inlet(config::Section& s, BoundaryParameters& b) {
+  declare_velocity(s, b);
+  s.value("mean-speed", b.mean_speed)
+      .unit("m/s")
+      .plausible(1e-9, 1e4)
+      .doc("instead of 'velocity': mean normal speed into the domain, an expression of t [s]");
+  s.choice("profile", b.profile, {{"uniform", InletProfile::uniform}, {"parabolic", InletProfile::parabolic}})
+      .doc("for mean-speed; parabolic: zero at the rim of the patch, a straight line in 2-D, a disc in 3-D");
+  declare_ramp(s, b);
+  declare_table_and_rotation(s, b);
+  declare_absorbing(s, b);
+  s.check(
+      [&b] {
+        const int given = !b.velocity.empty() + b.mean_speed.has_value() + b.table.has_value();
+        if (given != 1) return std::string("give either 'velocity', 'mean-speed' or 'table'");
+        if (b.profile == InletProfile::parabolic && !b.mean_speed)
+          return std::string(
+              "'profile: parabolic' requires 'mean-speed'; use 'mean-speed', or remove 'profile'");
+        return std::string();
+      },
+      "type");
+}
+
+void declare_moving_wall(config::Section& s, BoundaryParameters& b) {
+  declare_velocity(s, b);
+  declare_ramp(s, b);
+  declare_table_and_rotation(s, b);
+  s.check(
+      [&b] {
+        if (!b.velocity.empty() && b.table) return std::string("give either 'velocity' or 'table'");
+        if (b.velocity.empty() && !b.table && !b.rotation)
+          return std::string("give 'velocity', 'table' or 'rotation'");
+        return std::string();
+      },
+      "type");
+}
+
+void declare_outlet(config::Section& s, BoundaryParameters& b) {
+  s.value("pressure", b.pressure).unit("Pa").plausible(1e-9, 1e11).doc("expression of x, y, z [m] and t [s]");
+  s.value("backflow-stabilisation", b.backflow_stabilisation)
+      .doc("inflow here carries no kinetic energy; without it strong backflow may grow");
+  declare_absorbing(s, b);
+}
+
+void declare_partial_slip(config::Section& s, BoundaryParameters& b) {
+  s.value("slip-length", b.slip_length)
+      .unit("m")
+      .plausible(1e-10, 10)
+      .positive()
+      .required()
+      .doc("distance behind the wall at which the velocity along it, continued, is zero: u = L du/dn");
+}
+
+void declare_periodic(config::Section& s, BoundaryParameters& b) {
+  s.value("partner", b.partner).required().doc("the patch that is a translated copy of this one");
+}
+
+void declare_interface(config::Section& s, BoundaryParameters& b) {
+  s.value("surface-density", b.surface_density)
+      .unit("kg/m^2")
+      .plausible(1e-6, 1e6)
+      .positive()
+      .doc(
+          "mass per area of the structure behind the wall: the pressure equation then anticipates "
+          "its response (Robin condition), with `coupling.order: structure-first`; the density of a "
+          "solid times its thickness, or less: too small costs passes, too large may diverge; "
+          "absent: the wall moves as the coupling prescribes");
+  s.choice("impedance", b.impedance, {{"given", Impedance::given}, {"structure", Impedance::structure}})
+      .doc(
+          "source of the surface density: given: `surface-density`, if present; structure: the "
+          "structure itself, for each face (solid_solver with `interface: {surface-density: true}`, "
+          "plate_modal with `surface-density: true`, or any program that gives 'surface-density' "
+          "[kg/m^2] at its faces)");
+  s.choice("sides", b.sides,
+           {{"auto", Sides::automatic}, {"together", Sides::together}, {"apart", Sides::apart}})
+      .doc(
+          "Robin condition of faces that lie opposite each other, on two wet sides of one body no thicker than a "
+          "quarter of the interface's extent: together: one motion, driven by the difference of their pressures, with "
+          "the mass of both, refused where there are none, and in a fluid without an outlet; apart: each for itself, for a body that a pressure wave needs more than a step to cross; auto: together where that is possible");
+  s.check(
+      [&b] {
+        return b.sides != Sides::automatic && !b.foresees()
+                   ? "there is no Robin condition here: set 'surface-density' or 'impedance: structure', or remove the key"
+                   : "";
+      },
+      "sides");
+  s.check(
+      [&b] {
+        return b.surface_density && b.impedance == Impedance::structure
+                   ? "the structure gives it: remove 'surface-density'"
+                   : "";
+      },
+      "impedance");
+}
+
+using Entry = std::pair<BoundaryType, Condition>;
+
+/// All conditions, in the order of the documentation.
+const auto& condition_table() {
+  const auto without_friction = [](const BoundaryParameters&) { return FaceRow{.slip_length = no_friction}; };
+  static const std::array table{
+      // The fluid comes in with a velocity that the case gives. Of a compressible fluid it may let pressure waves out
+      // (pressure/absorbing), or lie before a volume (pressure/upstream_volume).
+      Entry{BoundaryType::inlet,
+            {.name = "inlet",
+             .about = "inlet: prescribed velocity",
+             .declare = declare_inlet,
+             .velocity = GivenBy::keys,
+             .passage = Passage::in}},
+      // The fluid leaves at a pressure that the case gives. What comes in through it carries half of its velocity, so
+      // that its share of the kinetic energy vanishes, phi (u_b - u_P/2).u_P = 0.
+      Entry{BoundaryType::outlet,
+            {.name = "outlet",
+             .about = "outlet: prescribed pressure",
+             .declare = declare_outlet,
+             .row =
+                 [](const BoundaryParameters& b) {
+                   return FaceRow{1, no_friction, b.backflow_stabilisation ? 0.5 : 1.0};
+                 },
+             .velocity = GivenBy::nobody,
+             .passage = Passage::out}},
+      // The fluid leaves with the velocity that the mean outflow carries to the patch: Boundary::convect().
+      Entry{
+          BoundaryType::convective_outlet,
+          {.name = "convective-outlet",
+           .about = "convective-outlet: the flow leaves with the mean outflow speed, with zero mean pressure",
+           .velocity = GivenBy::flow,
+           .passage = Passage::out}},
+      Entry{BoundaryType::no_slip, {.name = "no-slip", .about = "no-slip: wall at rest", .wall = true}},
+      // A wall that moves along itself.
+      Entry{BoundaryType::moving_wall,
+            {.name = "moving-wall",
+             .about = "moving-wall: wall with a prescribed velocity",
+             .declare = declare_moving_wall,
+             .velocity = GivenBy::keys,
+             .wall = true}},
+      // A wall at rest along which the fluid slides the faster the more it is sheared, u = L du/dn [navier1823].
+      Entry{BoundaryType::partial_slip,
+            {.name = "partial-slip",
+             .about = "partial-slip: wall at rest with a slip length (Navier)",
+             .declare = declare_partial_slip,
+             .row = [](const BoundaryParameters& b) { return FaceRow{.slip_length = b.slip_length}; },
+             .wall = true}},
+      // A surface without friction that the fluid does not cross; it moves with the mesh. A plane of symmetry is the
+      // same.
+      Entry{BoundaryType::slip,
+            {.name = "slip",
+             .about = "slip, symmetry: no normal flow, no friction",
+             .row = without_friction,
+             .velocity = GivenBy::mesh}},
+      Entry{BoundaryType::symmetry,
+            {.name = "symmetry", .about = "", .row = without_friction, .velocity = GivenBy::mesh}},
+      // What leaves comes in at the partner: the mesh is joined there, no face of the boundary is left.
+      Entry{BoundaryType::periodic,
+            {.name = "periodic",
+             .about = "periodic: outflow re-enters at the partner",
+             .declare = declare_periodic,
+             .velocity = GivenBy::nobody,
+             .joined = true}},
+      // A wall that moves with the structure. Where its mass is known the pressure equation foresees its answer, as a
+      // Robin condition: pressure/yielding_walls.
+      Entry{BoundaryType::interface,
+            {.name = "interface",
+             .about = "interface: wall that moves with the structure",
+             .declare = declare_interface,
+             .velocity = GivenBy::structure,
+             .wall = true}},
+      // A wall that moves as prescribed, across itself too.
+      Entry{
+          BoundaryType::body,
+          {.name = "body",
+           .about =
+               "body: wall that moves by 'motion', or by its own motion in the mesh mover (type: moving there)",
+           .velocity = GivenBy::motion,
+           .wall = true}},
+  };
+  return table;
+}
+
+}  // namespace
+
+const Condition& condition_of(const BoundaryParameters& boundary) {
+  return std::ranges::find(condition_table(), boundary.type, &Entry::first)->second;
+}
+
+std::string condition_names(const std::string& last) {
+  std::vector<std::string> names;
+  for (const auto& [type, condition] : condition_table()) names.push_back(condition.name);
+  const std::string end = names.back();
+  names.pop_back();
+  return base::join(names) + last + end;
+}
+
+void declare_boundary(config::Section& s, BoundaryParameters& b) {
+  std::vector<std::tuple<std::string, BoundaryType, config::Section::Declare>> cases;
+  std::vector<std::string> about;
+  for (const auto& [type, condition] : condition_table()) {
+    cases.emplace_back(condition.name, type, [&b, declare = condition.declare](config::Section& v) {
+      if (declare) declare(v, b);
+    });
+    if (!condition.about.empty()) about.push_back(condition.about);
+  }
+  s.variant("type", b.type, cases, base::join(about, "; "), true);
+}
+
+}  // namespace couplet::fluid

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// Checks that faces, steps and modes see the prescribed pressures, and that faces and steps resolve them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/io/archive.hpp"
+#include "common/mesh/on_root.hpp"
+#include "plate_modal/diagnostics/motion.hpp"
+#include "plate_modal/diagnostics/view.hpp"
+
+namespace couplet::plate {
+namespace {
+
+/// A load that the run has looked at less often says nothing before the end: one jump among few steps is no error.
+constexpr long least_looks = 16;
+
+/// Sixteen points of equal weight: centres of the pieces that two halvings make.
+std::vector<Vec3> points_within(const modes::ModalModel& model, std::span<const Index> face) {
+  std::vector<Vec3> points;
+  const auto at = [&](std::size_t i) -> const Vec3& { return model.vertices[face[i]]; };
+  if (face.size() == 4) {
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) {
+        const double x = (i + 0.5) / 4, y = (j + 0.5) / 4;
+        points.push_back((1 - x) * (1 - y) * at(0) + x * (1 - y) * at(1) + x * y * at(2) +
+                         (1 - x) * y * at(3));
+      }
+    return points;
+  }
+  // Rows of a triangle cut into quarters of its edges: pieces that stand and pieces that hang.
+  const auto add = [&](double x, double y) {
+    points.push_back(at(0) + x * (at(1) - at(0)) + y * (at(2) - at(0)));
+  };
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; i + j < 4; ++j) {
+      add((i + 1. / 3) / 4, (j + 1. / 3) / 4);
+      if (i + j < 3) add((i + 2. / 3) / 4, (j + 2. / 3) / 4);
+    }
+  return points;
+}
+
+class PrescribedPressures final : public diagnostics::Diagnostic {
+ public:
+  explicit PrescribedPressures(const PlateView& view) : view_(view) {}
+  void observe(diagnostics::Report&) override {
+    has_acted_ = has_acted_ || view_.pressure_acts;
+    if (const auto t = time_to_look(view_)) look_at_modes(*t);
+    // A load that differs from place to place costs an expression for each face, so it is not looked at in each step.
+    const GlobalIndex steps = view_.step.number + 1;
+    if (view_.is_dynamic() && view_.pressure->changes_in_time() &&
+        (view_.pressure->is_uniform() || steps <= 16 || steps % 16 == 0))
+      look_within_step(6 + int(steps % 5));
+  }
+  void look(diagnostics::Report& report) override {
+    report_neglected(report, "load within a face", within_faces(), 0.05,
+                     fmt::format("error of the load's effect on the modes with one force per face = {:.2g}",
+                                 within_faces()),
+                     "the pressure varies within a face: refine the mesh there", within_faces());
+    if (!(size_ > 0) || !(view_.step.is_last || samples_ >= least_looks)) return;
+    const double apart = std::sqrt(apart_ / size_);
+    report_present(
+        report, "step that resolves the load", apart, 0.1,
+        fmt::format("load at mid-step against its mean over the step: difference {:.2g} of the load (rms)",
+                    apart),
+        "the step does not resolve the load: use ten or more steps per load period");
+  }
+  // A load that does nothing yet may come, so it is judged at the end.
+  void conclude(diagnostics::Report& report) override {
+    if (fine_ > 0) report.errors.mesh += within_faces();  // NaN with modes of a file
+    if (!has_acted_ && (view_.pressure->changes_in_time() || !view_.pressure->is_uniform()))
+      report_neglected(
+          report, "load between the faces or steps", 1, 0.5,
+          "the prescribed pressures were 0 at every face centre in every step",
+          "a load smaller than a face or shorter than a step is lost: refine, or distribute it over a face "
+          "or a step with the same resultant");
+    // Rounding remains where the modes do not move along the forces, or where these cancel.
+    const double part = std::sqrt(part_ / most_);
+    if (part < 1e-9)
+      report_neglected(
+          report, "load that moves no mode", 1, 0.5,
+          fmt::format("modal load of the prescribed pressures = {:.1g} of what it would be along the motion",
+                      part),
+          "nothing moves by them: with 'modes.file' the upper side is where the surface faces +z, whatever "
+          "the structure's own normal; equal pressures on both sides cancel; a mode of another symmetry "
+          "needs 'modes.number'");
+  }
+  void visit(io::Archive& archive) override {
+    archive.common("sums", has_acted_, part_, most_, within_, fine_, apart_, size_, samples_);
+  }
+
+ private:
+  double within_faces() const { return fine_ > 0 ? std::sqrt(within_ / fine_) : unknown; }
+  /// Adds what the pressures at t do to the modes: with one force in the middle of each face, if each force lay along the
+  /// motion of its face, and with sixteen points per face.
+  void look_at_modes(double t) {
+    std::vector<double> sums{part_, most_, within_, fine_};
+    mesh::on_root(view_.comm(), [&] { add_faces(t, sums); });
+    mesh::broadcast(view_.comm(), sums);
+    part_ = sums[0], most_ = sums[1], within_ = sums[2], fine_ = sums[3];
+  }
+  void add_faces(double t, std::vector<double>& sums) const {
+    const modes::ModalModel& model = view_.built.model;
+    const PressureLoad& pressure = *view_.pressure;
+    const std::size_t n = model.n_modes();
+    std::vector<double> middle(n, 0), most(n, 0), fine(n, 0);
+    const std::vector<Vec3> areas = modes::face_areas(model), centres = modes::face_centres(model);
+    try {
+      for (std::size_t f = 0; f < areas.size(); ++f) {
+        const double at_middle = pressure.push(areas[f], centres[f], t);
+        double mean = 0;
+        if (!pressure.is_uniform())
+          for (const Vec3& x : points_within(model, model.faces[Index(f)]))
+            mean += pressure.push(areas[f], x, t) / 16;
+        if (at_middle == 0 && mean == 0) continue;
+        for (std::size_t m = 0; m < n; ++m) {
+          const double* u = model.face_shape.data() + 3 * f * n + m;
+          const Vec3 shape(u[0], u[n], u[2 * n]);
+          middle[m] += at_middle * shape.dot(areas[f]);
+          most[m] += std::abs(at_middle) * shape.norm() * areas[f].norm();
+          fine[m] += mean * shape.dot(areas[f]);
+        }
+      }
+    } catch (const Error&) {
+      return;  // no value there: the scheme need not ask for it
+    }
+    double of_middle = 0, of_fine = 0;
+    for (std::size_t m = 0; m < n; ++m) {
+      sums[0] += middle[m] * middle[m], sums[1] += most[m] * most[m];
+      const double omega = view_.share.omega()[m], weight = 1 / (omega * omega + view_.first_elastic());
+      of_middle += weight * middle[m] * middle[m], of_fine += weight * fine[m] * fine[m];
+      if (!pressure.is_uniform()) sums[2] += weight * (fine[m] - middle[m]) * (fine[m] - middle[m]);
+    }
+    if (!pressure.is_uniform()) sums[3] += std::max(of_fine, of_middle);
+  }
+  /// Compares the load in the middle of the step with its mean over some samples of the step.
+  void look_within_step(int samples) {
+    const double start = view_.step.time, dt = view_.step.dt;
+    std::vector<double> middle(view_.share.omega().size()), mean(middle.size(), 0), one(middle);
+    double squares = 0;
+    ++samples_;
+    try {
+      view_.pressure->at(start + 0.5 * dt, middle);
+      for (int i = 0; i < samples; ++i) {
+        view_.pressure->at(start + (i + 0.5) / samples * dt, one);
+        for (std::size_t m = 0; m < mean.size(); ++m) {
+          mean[m] += one[m] / samples;
+          squares += one[m] * one[m] / samples;
+        }
+      }
+    } catch (const Error&) {
+      return;  // no value there: the scheme need not ask for it
+    }
+    size_ += squares;
+    for (std::size_t m = 0; m < mean.size(); ++m) apart_ += (mean[m] - middle[m]) * (mean[m] - middle[m]);
+  }
+
+  PlateView view_;
+  bool has_acted_ = false;
+  double part_ = 0, most_ = 0;  // squares over all modes of the loads, and of these along the motion
+  double within_ = 0,
+         fine_ = 0;  // the same of what the faces miss and of the loads, each over (omega^2 + omega_1^2)
+  // Squares over all modes of the load in the middle of a step less its mean over the step, and of the load.
+  double apart_ = 0, size_ = 0;
+  long samples_ = 0;
+};
+
+}  // namespace
+
+std::shared_ptr<diagnostics::Diagnostic> prescribed_pressures(const PlateView& view,
+                                                              const std::shared_ptr<Motion>&) {
+  const bool is_modal = view.parameters.analysis == Parameters::Analysis::modal;
+  return view.pressure && !is_modal ? std::make_shared<PrescribedPressures>(view) : nullptr;
+}
+
+}  // namespace couplet::plate

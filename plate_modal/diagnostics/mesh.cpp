@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "common/mesh/on_root.hpp"
+#include "plate_modal/diagnostics/motion.hpp"
+#include "plate_modal/diagnostics/view.hpp"
+#include "plate_modal/model/outline.hpp"
+
+namespace couplet::plate {
+namespace {
+
+/// Component of a shape along a direction at entry i, mode m.
+double along(const modes::ModalModel& model, const std::vector<double>& shape, std::size_t i, std::size_t m,
+             const Vec3& direction) {
+  const std::size_t n = model.n_modes();
+  const double* u = shape.data() + 3 * i * n + m;
+  return Vec3(u[0], u[n], u[2 * n]).dot(direction);
+}
+
+/// For each mode: how far the mean of a cell's corners is from the cell's mean deflection, rms over that of the latter. In
+/// each direction of a wave with n cells in half of it that is (pi / n)^2 / 12.
+std::vector<double> mesh_gaps(const modes::ModalModel& model, std::size_t cells, const Vec3& normal) {
+  const std::vector<Vec3> areas = modes::face_areas(model);
+  std::vector<double> gaps(model.n_modes(), 0);
+  for (std::size_t m = 0; m < gaps.size(); ++m) {
+    double apart = 0, all = 0;
+    for (std::size_t f = 0; f < cells; ++f) {
+      const double mean = along(model, model.face_shape, f, m, normal);
+      double corners = 0;
+      for (const Index v : model.faces[Index(f)])
+        corners += along(model, model.vertex_shape, std::size_t(v), m, normal) /
+                   double(model.faces[Index(f)].size());
+      apart += areas[f].norm() * (corners - mean) * (corners - mean);
+      all += areas[f].norm() * mean * mean;
+    }
+    gaps[m] = all > 0 ? std::sqrt(apart / all) : 1;
+  }
+  return gaps;
+}
+
+class MeshOfModes final : public diagnostics::Diagnostic {
+ public:
+  MeshOfModes(const PlateView& view, std::shared_ptr<const Motion> motion)
+      : view_(view), motion_(std::move(motion)), kinks_(view.built.kinks) {
+    mesh::on_root(view.comm(), [&] {
+      if (!view.parameters.modes_file)
+        gaps_ = mesh_gaps(view.built.model, view.n_cells(), view.parameters.placement.normal());
+    });
+    mesh::broadcast(view.comm(), gaps_);
+    mesh::broadcast(view.comm(), kinks_);
+  }
+  /// At the end only: a mean over the first steps is one of the load's start, whose waves are short.
+  void conclude(diagnostics::Report& report) override {
+    report.errors.mesh = mesh_gap();
+    // 0.1 is four cells in half a wave in both directions.
+    report_neglected(
+        report, "mesh that resolves the modes", mesh_gap(), 0.1,
+        fmt::format("deflection of cell centres against their corners = {:.2g} (rms over the motion)",
+                    mesh_gap()),
+        "the mesh does not resolve the moving modes: use at least four cells per half wave in each "
+        "direction");
+  }
+
+ private:
+  /// Mean over the modes by their share of the motion; of a modal analysis that of the highest mode.
+  double mesh_gap() const {
+    if (gaps_.empty()) return unknown;
+    if (view_.parameters.analysis == Parameters::Analysis::modal) return with_corners(gaps_.back(), kinks_);
+    double all = 0, apart = 0;
+    for (std::size_t m = 0; m < gaps_.size(); ++m) {
+      const double moved = motion_ ? motion_->moved(m) : view_.state.q[m] * view_.state.q[m];
+      all += moved;
+      apart += moved * gaps_[m] * gaps_[m];
+    }
+    return all > 0 ? with_corners(std::sqrt(apart / all), kinks_) : unknown;
+  }
+
+  PlateView view_;
+  std::shared_ptr<const Motion> motion_;
+  std::vector<double> gaps_, kinks_;  // gaps_: of each mode; empty for modes of a file
+};
+
+}  // namespace
+
+std::shared_ptr<diagnostics::Diagnostic> mesh_of_modes(const PlateView& view,
+                                                       const std::shared_ptr<Motion>& motion) {
+  return std::make_shared<MeshOfModes>(view, motion);
+}
+
+}  // namespace couplet::plate

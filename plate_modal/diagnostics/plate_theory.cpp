@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// Effects that modes of a thin plate neglect: large motions, motion in the plane, stretch, shear and rotary inertia.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common/io/archive.hpp"
+#include "common/mesh/on_root.hpp"
+#include "common/modes/rigid_motion.hpp"
+#include "plate_modal/diagnostics/motion.hpp"
+#include "plate_modal/diagnostics/view.hpp"
+
+namespace couplet::plate {
+namespace {
+
+double largest_of(const std::vector<double>& vectors) {
+  double largest = 0;
+  for (std::size_t i = 0; i < vectors.size(); i += 3) largest = std::max(largest, Vec3(&vectors[i]).norm());
+  return largest;
+}
+
+class PlateTheory final : public diagnostics::Diagnostic {
+ public:
+  PlateTheory(const PlateView& view, std::shared_ptr<const Motion> motion)
+      : view_(view), motion_(std::move(motion)) {
+    const modes::ModalModel& model = view.built.model;
+    const std::vector<double>& omega = view.share.omega();
+    std::vector<double> flat(2, 0);  // size, limit of the stretch; rotation of each mode
+    mesh::on_root(view.comm(), [&] {
+      for (const Vec3& x : model.vertices) flat[0] = std::max(flat[0], (x - model.vertices.front()).norm());
+      flat[1] = view.built.stretch_limit;
+      for (std::size_t m = 0; m < omega.size(); ++m) {
+        const Vec3 turn = omega[m] == 0 ? modes::rigid_motion(model, m).rotation : Vec3(Vec3::Zero());
+        flat.insert(flat.end(), turn.begin(), turn.end());
+      }
+    });
+    mesh::broadcast(view.comm(), flat);
+    size_ = flat[0], stretch_limit_ = flat[1];
+    for (std::size_t m = 0; m < omega.size(); ++m) rotations_.emplace_back(&flat[2 + 3 * m]);
+  }
+  void observe(diagnostics::Report&) override {
+    displacement_ = std::max(displacement_, largest_of(view_.displacement));
+    Vec3 turn = Vec3::Zero();
+    for (std::size_t m = 0; m < rotations_.size(); ++m) turn += view_.state.q[m] * rotations_[m];
+    rotation_ = std::max(rotation_, turn.norm());
+  }
+  void look(diagnostics::Report& report) override {
+    std::vector<double> displacement{displacement_};
+    mesh::broadcast(view_.comm(), displacement);
+    look_at_rotation(report, displacement[0] / size_);
+    if (stretch_limit_ > 0) look_at_stretch(report, displacement[0] / view_.parameters.thickness);
+    if (!view_.parameters.modes_file && view_.is_dynamic()) look_at_plane(report);
+    if (!view_.parameters.modes_file) look_at_shear(report);
+  }
+  void visit(io::Archive& archive) override { archive.common("largest", displacement_, rotation_); }
+
+ private:
+  bool moves_freely() const { return view_.share.omega().front() == 0; }
+
+  // A body that moves as a whole may go far, but it must not rotate far: a mode moves it along its tangent, so that
+  // 0.25 rad stretch it by 1 / cos, 3 %. A clamped strip whose tip has moved by a quarter of its length has rotated there
+  // by about 20 degrees: the foreshortening that modes do not know is 0.6 x 0.25^2 of the length, 4 %.
+  void look_at_rotation(diagnostics::Report& report, double displacement) const {
+    if (moves_freely())
+      report_neglected(report, "large rotation", rotation_, 0.25,
+                       fmt::format("rigid rotation = {:.2g} rad", rotation_),
+                       "linear modes move a body along its tangent: use a program for finite strain",
+                       1 / std::max(0.1, std::cos(rotation_)) - 1);
+    else
+      report_neglected(
+          report, "large rotation", displacement, 0.25,
+          fmt::format("max displacement / structure size = {:.2g}", displacement),
+          "modes are linear and cannot describe large rotations: use a program for finite strain",
+          0.6 * displacement * displacement);
+  }
+
+  // A plate that is held all round is stiffened by its stretch as 1 + 0.5 (w/h)^2, more or less by its edges.
+  void look_at_stretch(diagnostics::Report& report, double deflection) const {
+    const double stiffening = 0.5 * deflection * deflection;
+    report_neglected(
+        report, "stretch of the mid-surface", deflection, stretch_limit_,
+        fmt::format("held on opposite sides: max deflection / thickness = {:.2g}", deflection),
+        "unless its edges may slide in its plane, stretching stiffens it noticeably: use a program for "
+        "finite strain",
+        stiffening / (1 + stiffening));
+  }
+
+  /// The largest share in the plane of what pushes or moves the whole plate: modes of bending do not answer it.
+  void look_at_plane(diagnostics::Report& report) const {
+    const Parameters& p = view_.parameters;
+    const Vec3 normal = p.placement.normal();
+    const auto share_of = [&](const Vec3& all) {
+      return all.norm() > 0 ? (all - all.dot(normal) * normal).norm() / all.norm() : 0;
+    };
+    double share = share_of(p.initial_velocity);
+    // Supports hold the weight along a plate; nothing holds a plate that may fall as a whole.
+    if (!p.gravity.empty() && moves_freely()) share = std::max(share, share_of(Vec3(p.gravity.data())));
+    report_neglected(
+        report, "motion in the plane", share, 0.01,
+        fmt::format("in-plane share of {1} = {0:.2g}", share,
+                    p.gravity.empty() ? "the initial velocity" : "the gravity or the initial velocity"),
+        "no mode moves along the plane, so that part is neglected: apply only its normal part, or use a "
+        "volume model",
+        share);
+  }
+
+  // Mindlin's plate against Kirchhoff's: rotary inertia and shear lower omega^2 by (k h)^2 (1/12 + 1/(5 (1 - nu))) of it,
+  // omega by 2 % where half a wave, pi / k, is ten thicknesses long.
+  void look_at_shear(diagnostics::Report& report) const {
+    const double omega =
+        motion_ ? motion_->evidence(view_.step.is_last).last_mode_omega : view_.share.omega().back();
+    const double ratio = thickness_over_wave(omega);
+    report_neglected(report, "shear and rotary inertia", ratio, 0.1,
+                     fmt::format("thickness / half the wavelength of the highest mode {1} = {0:.2g}", ratio,
+                                 motion_ ? "with 1 % of the motion" : "kept"),
+                     "shear and rotary inertia soften such modes: keep fewer, or use a volume model",
+                     4 * ratio * ratio);  // twice the 2 % of omega at 0.1, in the motion
+  }
+  /// Thickness over half the length of a bending wave of this frequency in the thickest part of the plate:
+  /// D k^4 = rho h omega^2. NaN for a frequency that is not known.
+  double thickness_over_wave(double omega) const {
+    const Parameters& p = view_.parameters;
+    if (std::isnan(omega)) return omega;
+    double largest = 0;
+    const auto add = [&](double h, double density, double youngs_modulus) {
+      const double d =
+          youngs_modulus * h * h * h / (12 * (1 - p.material.poissons_ratio * p.material.poissons_ratio));
+      largest = std::max(largest, h * std::pow(density * h * omega * omega / d, 0.25) / std::numbers::pi);
+    };
+    add(p.thickness, p.material.density, p.material.youngs_modulus);
+    for (const auto& [name, zone] : p.zones)
+      add(zone.thickness.value_or(p.thickness), zone.density.value_or(p.material.density),
+          zone.youngs_modulus.value_or(p.material.youngs_modulus));
+    return largest;
+  }
+
+  PlateView view_;
+  std::shared_ptr<const Motion> motion_;
+  double size_ = 0, stretch_limit_ = 0;
+  std::vector<Vec3> rotations_;  // of each rigid mode [1/(sqrt(kg) m)], 0 for the others
+  double displacement_ = 0,
+         rotation_ = 0;  // largest of any vertex, on rank 0 [m]; of the body as a whole [rad]
+};
+
+}  // namespace
+
+std::shared_ptr<diagnostics::Diagnostic> plate_theory(const PlateView& view,
+                                                      const std::shared_ptr<Motion>& motion) {
+  return std::make_shared<PlateTheory>(view, motion);
+}
+
+}  // namespace couplet::plate

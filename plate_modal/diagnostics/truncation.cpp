@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// Estimates what the truncated modes would contribute.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "common/base/error.hpp"
+#include "common/io/archive.hpp"
+#include "common/linalg/linear_solver.hpp"
+#include "common/mesh/on_root.hpp"
+#include "plate_modal/diagnostics/motion.hpp"
+#include "plate_modal/diagnostics/view.hpp"
+
+namespace couplet::plate {
+namespace {
+
+/// Judges the truncated modes of a dynamic analysis by static correction: the compliance f (K + s M)^-1 f of the plate
+/// against that of its modes, sum (phi . f)^2 / (omega^2 + s), summed over the times at which the loads are looked at. s is
+/// 0 for a plate that is held, and the square of its first frequency above 0 otherwise.
+class TruncatedModes final : public diagnostics::Diagnostic {
+ public:
+  TruncatedModes(const PlateView& view, std::shared_ptr<const Motion> motion)
+      : view_(view),
+        motion_(std::move(motion)),
+        shift_(view.share.omega().front() == 0 ? view.first_elastic() : 0) {}
+  void observe(diagnostics::Report&) override {
+    if (!motion_ || view_.parameters.modes_file) return;
+    const auto t = time_to_look(view_);
+    if (!t) return;
+    std::vector<double> sums{left_out_, all_};
+    mesh::on_root(view_.comm(), [&] { add_compliance(*t, sums); });
+    mesh::broadcast(view_.comm(), sums);
+    left_out_ = sums[0], all_ = sums[1];
+  }
+  void look(diagnostics::Report& report) override {
+    if (!motion_) return look_at_deflection(report);
+    const double share = all_ > 0 ? left_out_ / all_ : unknown;
+    report_neglected(report, "deflection beyond the modes", share, 0.05,
+                     fmt::format("compliance of the loads in truncated modes = {:.2g}", share),
+                     "the loads excite truncated modes: keep more modes ('modes.number')", share);
+    // A load without any part in the truncated modes does not move them at any frequency.
+    if (!(share < 1e-6)) look_at_load_frequency(report);
+    look_at_velocity(report);
+  }
+  void visit(io::Archive& archive) override { archive.common("compliance", left_out_, all_); }
+
+ private:
+  void add_compliance(double t, std::vector<double>& sums) {
+    std::vector<double> pressure;
+    try {
+      pressure = cell_pressures(*view_.built.plate, view_.parameters, view_.pressure, t);
+    } catch (const Error&) {
+      return;  // no value there: the scheme need not ask for it
+    }
+    const PlateModel& plate = *view_.built.plate;
+    const Vec3 normal = view_.parameters.placement.normal();
+    const std::vector<double> areas = plate.cell_areas();
+    const std::vector<double>& fluid = view_.fluid_force;
+    const std::size_t sides = view_.parameters.wetted == Wetted::both ? 2 : 1;
+    for (std::size_t f = 0; !fluid.empty() && f < sides * areas.size(); ++f)
+      pressure[f % areas.size()] += Vec3(&fluid[3 * f]).dot(normal) / areas[f % areas.size()];
+    const std::vector<double> load = plate.load_of(pressure);
+    if (std::ranges::all_of(load, [](double f) { return f == 0; })) return;
+    if (!solver_) {
+      matrix_.emplace(plate.shifted_stiffness(shift_));
+      solver_ = std::make_unique<linalg::LinearSolver>(
+          "deflection beyond the modes", *matrix_,
+          linalg::LinearOptions{.method = linalg::LinearMethod::direct_symmetric});
+    }
+    std::vector<double> u(load.size(), 0);
+    solver_->solve(load, u);
+    double all = 0, kept = 0;
+    for (std::size_t i = 0; i < u.size(); ++i) all += load[i] * u[i];
+    const std::vector<double>&omega = view_.share.omega(), &shape = view_.built.model.face_shape;
+    const std::size_t n = omega.size();
+    for (std::size_t m = 0; m < n; ++m) {
+      double on_mode = 0;
+      for (std::size_t c = 0; c < pressure.size(); ++c) {
+        const double* mean = shape.data() + 3 * c * n + m;
+        on_mode += pressure[c] * areas[c] * Vec3(mean[0], mean[n], mean[2 * n]).dot(normal);
+      }
+      kept += on_mode * on_mode / (omega[m] * omega[m] + shift_);
+    }
+    sums[0] += std::max(0.0, all - kept);
+    sums[1] += all;
+  }
+  /// In a static analysis the deflection itself is known.
+  void look_at_deflection(diagnostics::Report& report) const {
+    std::vector<double> apart{unknown};
+    if (const auto& d = view_.deflection; d && d->direct > 0) apart[0] = d->apart / d->direct;
+    mesh::broadcast(view_.comm(), apart);
+    report_neglected(
+        report, "deflection beyond the modes", apart[0], 0.05,
+        fmt::format("truncation error of the deflection = {:.2g}", apart[0]),
+        "fields and probes show the full deflection, but modal.csv and the interface only the modes: keep "
+        "more modes ('modes.number')",
+        apart[0]);
+  }
+  // A mode answers a load of frequency f as 1 / (1 - (f / f_mode)^2): at two thirds of its own frequency with 1.8 times
+  // what the static measure counts, and near it without limit.
+  void look_at_load_frequency(diagnostics::Report& report) const {
+    const Motion::Evidence seen = motion_->evidence(view_.step.is_last);
+    report_neglected(
+        report, "load faster than the modes", seen.load_over_last, 2. / 3,
+        fmt::format("load frequency {:.3g} Hz = {:.2g} of the highest retained mode's",
+                    seen.load_omega / (2 * std::numbers::pi), seen.load_over_last),
+        "truncated modes may resonate: keep modes up to 1.5 times that frequency ('modes.number')");
+  }
+  /// Share of the energy of the initial velocity that no mode has.
+  void look_at_velocity(diagnostics::Report& report) const {
+    const Vec3& v = view_.parameters.initial_velocity;
+    if (!(v.norm() > 0)) return;
+    double kept = 0;
+    for (const double one : view_.share.participation(v)) kept += one * one;
+    const double lost = std::max(0.0, 1 - kept / (view_.share.mass() * v.squaredNorm()));
+    report_neglected(
+        report, "initial velocity beyond the modes", lost, 0.1,
+        fmt::format("initial kinetic energy outside the modes = {:.2g}", lost),
+        "a uniform velocity near supports needs many modes: keep more, or use 'initial-amplitudes'",
+        0.5 * lost);  // of an energy
+  }
+
+  PlateView view_;
+  std::shared_ptr<const Motion> motion_;
+  double shift_;                   // s [1/s^2]
+  double left_out_ = 0, all_ = 0;  // compliance
+  // On rank 0, from the first load on.
+  std::optional<linalg::SparseMatrix> matrix_;
+  std::unique_ptr<linalg::LinearSolver> solver_;
+};
+
+}  // namespace
+
+std::shared_ptr<diagnostics::Diagnostic> truncated_modes(const PlateView& view,
+                                                         const std::shared_ptr<Motion>& motion) {
+  return std::make_shared<TruncatedModes>(view, motion);
+}
+
+}  // namespace couplet::plate

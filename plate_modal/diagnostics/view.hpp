@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/coupling/participant.hpp"
+#include "common/diagnostics/diagnostics.hpp"
+#include "plate_modal/model/build_model.hpp"
+#include "plate_modal/motion/contact.hpp"
+#include "plate_modal/motion/oscillators.hpp"
+#include "plate_modal/motion/pressure_load.hpp"
+
+namespace couplet::plate {
+
+/// Everything that diagnostics may read of a structure, as it is after the last accepted step.
+struct PlateView {
+  const Parameters& parameters;
+  const Built& built;  ///< on rank 0
+  const Share& share;
+  const Oscillators& oscillators;
+  const Contact* contact;        ///< nullptr if there is no seat
+  const PressureLoad* pressure;  ///< nullptr if the case prescribes no pressures
+  const coupling::Step& step;
+  const ModalState &before, &state;         ///< at the start and at the end of the step
+  const std::vector<double>& displacement;  ///< of the vertices [m], 3 each, on rank 0
+  const std::optional<Deflection>& deflection;
+  const std::vector<double>&
+      fluid_force;            ///< pressure forces on the faces [N], 3 each, on rank 0; may be empty
+  const bool& pressure_acts;  ///< a prescribed pressure was not 0 somewhere in the step
+
+  bool is_dynamic() const { return parameters.analysis == Parameters::Analysis::dynamic; }
+  MPI_Comm comm() const { return share.comm(); }
+  /// Square of the first angular frequency above 0 [1/s^2]; 1 if there is none.
+  double first_elastic() const;
+  /// Cells of the mid-surface, which are the first faces of the surface. On rank 0.
+  std::size_t n_cells() const;
+};
+
+/// The time at which to look at the loads of the accepted step: its middle in a dynamic analysis, at ever longer
+/// intervals; its end in a static analysis, where the answer changes.
+std::optional<double> time_to_look(const PlateView& view);
+
+/// Adds all diagnostics of a structure.
+void add_diagnostics(const PlateView& view, diagnostics::Diagnostics& all);
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+/// Reports what is neglected, unless its number is unknown. `share` of the answer that this changes, see log::Finding.
+void report_neglected(diagnostics::Report& report, const char* effect, double number, double limit,
+                      std::string what, std::string advice, double share = unknown);
+/// Reports on an effect that the scene has, unless its number is unknown.
+void report_present(diagnostics::Report& report, const char* effect, double number, double limit,
+                    std::string what, std::string advice,
+                    double wrong_from = std::numeric_limits<double>::infinity());
+
+}  // namespace couplet::plate

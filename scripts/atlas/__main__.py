@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Draws the atlas of stability: where each scheme is stable and where it fails, from runs of the programs. Writes MAP.csv and MAP.png and, for
+docs/stability, docs/stability.md. Exit code 1 if a square is a wrong result without a guard or warning.
+Usage: python3 scripts/atlas [MAP ...]"""
+import argparse
+import collections
+import pathlib
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "client/python")]
+import atlas  # noqa: E402
+
+HEAD = """# Where each scheme is stable
+
+Written by `python3 scripts/atlas` from runs of the programs; do not edit. Each square shows the number of the map's criterion; each picture has
+its table.
+
+| color | meaning |
+|---|---|
+| green | within 5 % |
+| pale | within 20 % |
+| yellow | further off, and the run warned (`--strict` makes it a failed run) |
+| blue | a guard ended the run: exit code 1 |
+| red | silent: more than 20 % off with exit code 0 and no warning: there must be none |
+
+All runs have default settings but for what the map varies; a failed step is halved up to ten times, as in any run. `error` in a table is what the color shows.
+A run whose estimated error is above 0.15 warns ([findings](findings.md)).
+"""
+
+
+def page(maps, folder):
+    text = HEAD
+    for m in maps.values():
+        squares = atlas.read(folder / f"{m.name}.csv")
+        counts = collections.Counter(s.outcome for s in squares.values())
+        if squares:
+            text += f"\n## {m.title}\n\n{m.about}\n\n![{m.title}](stability/{m.name}.png)\n\n"
+            text += f"*{m.criterion}; {', '.join(f'{n} {o}' for o, n in sorted(counts.items()))}: [table](stability/{m.name}.csv).*\n"
+        if squares and m.given.get("without-halving"):
+            text += "\n*Drawn without halving of steps, which the default settings have: squares that stopped may hold now.*\n"
+    if lost := atlas.missing_tests():
+        raise SystemExit(f"hard cases without their test in tests/stability: {', '.join(lost)}")
+    text += "\n## Hard cases\n\nAs tests in `tests/stability` (label `stability`), each with its failure mechanism, its criterion, and a neighboring case that fails.\n\n"
+    text += "| part | case | mechanism | criterion | tested by | failing neighbor |\n|---|---|---|---|---|---|\n"
+    tests = lambda names: "<br>".join(f"`{n.split(': ')[-1]}`" for n in names)
+    for c in atlas.hard_cases():
+        text += f"| {c['part']} | {c['case']} | {c['mechanism']} | {c['criterion']} | {tests(c['holds'])} | {tests(c['fails'])} |\n"
+    return text
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("maps", nargs="*", metavar="MAP", help="names of maps (listed by --list); default: all")
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build", metavar="FOLDER", help="the folder with bin/ of the programs")
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs/stability", metavar="FOLDER", help="where tables and pictures go (docs/stability)")
+    parser.add_argument("--fresh", action="store_true", help="reruns every square; otherwise only missing ones")
+    parser.add_argument("--list", action="store_true", help="lists the maps")
+    parser.add_argument("--page", action="store_true", help="no runs: only docs/stability.md, from existing tables")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="number of concurrent runs")
+    arguments, maps, red = parser.parse_args(), atlas.maps(), []
+    if unknown := set(arguments.maps) - set(maps):
+        parser.error(f"there is no map '{min(unknown)}'; there is: {', '.join(maps)}")
+    if arguments.list:
+        print("\n".join(f"{m.name:18} {m.title}" for m in maps.values()))
+        return 0
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    for m in () if arguments.page else maps.values():
+        if arguments.maps and m.name not in arguments.maps:
+            continue
+        from atlas import draw
+        start = time.monotonic()
+        with tempfile.TemporaryDirectory(prefix="couplet-stability-") as scratch:
+            squares = atlas.make(m, arguments.out / f"{m.name}.csv", atlas.Runner(arguments.build.resolve(), scratch), arguments.fresh, arguments.jobs)
+        draw.picture(m, squares, arguments.out / f"{m.name}.png")
+        wrong = [k for k, s in squares.items() if s.outcome == atlas.RED]
+        red += [f"RED {m.name}: {panel}, x {x:g}, y {y:g}" for panel, x, y in wrong]
+        print(f"{m.name}: {len(squares)} squares, {len(wrong)} red, {time.monotonic() - start:.0f} s", flush=True)
+    if arguments.out == ROOT / "docs/stability":
+        (ROOT / "docs/stability.md").write_text(page(maps, arguments.out))
+    print(*red, sep="\n", end="\n" if red else "")
+    return 1 if red else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

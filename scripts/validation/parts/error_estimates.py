@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Estimated errors beside the true ones: other programs on a case by one command, a flow that a clock drives, quantities of one run, the positions that runs
+report on the atlas of stability."""
+import csv
+import json
+import pathlib
+import re
+import sys
+import tempfile
+
+import atlas
+
+FOAM = "solidDisplacementFoam"
+# What of a study is run (--only: the sizes that a busy machine allows), its quantity, and the error that each program's best run has at most.
+PEERS = {
+    "plate B": ("elliptic-plate/case.yaml", "4-corrected-1e-8,8-corrected-1e-8,12-corrected-1e-8,16-corrected-1e-8", "displacement",
+                {"CalculiX C3D8I": 0.02, "CalculiX C3D20R": 0.01, FOAM: 0.1}),
+    "LE1": ("le1/case.yaml", "*", "stress at D", {"CalculiX CPS4": 0.03, "CalculiX C3D8I": 0.01, "CalculiX CPS8R": 0.001, FOAM: 0.01}),
+    "Cook": ("cook/case.yaml", "4-*,8-*,16-*,32-*", "displacement of the corner",
+             {"CalculiX CPE4": 0.05, "CalculiX C3D8I": 0.02, "CalculiX CPE8R": 0.005, FOAM: 0.1}),
+    "cavity, Re 1000": ("cavity/study.yaml", "16-even,24-even,32-even", "u minimum", {"icoFoam": 0.3, "pimpleFoam": 0.3}),
+    "2D-1": ("cylinder/study-2d-1.yaml", "8,12,16", "cd", {"icoFoam": 0.02, "pimpleFoam": 0.02}),
+}
+
+
+def beside(job, name):
+    """One command on the case as it is; what was run before with the same programs and input is not run again."""
+    file, only, quantity, wanted = PEERS[name]
+    case = job.root / "configs" / file
+    done = job.run([job.root / "scripts/couplet", "study", case, "--peers", f"--only={only}", f"--build={job.build}"], timeout=7200)
+    folder = case.parent / "out" / "study"
+    if done.returncode != 0:
+        return f"exit code {done.returncode}: {(done.stderr or done.stdout).strip()[-200:]}", False
+    with open(folder / "peers.csv", newline="") as table:
+        rows = [r for r in csv.DictReader(table) if not r["reason"]]
+    head = f"error of {quantity}" if rows and f"error of {quantity}" in rows[0] else quantity
+    parts, met = [], True
+    for program, limit in wanted.items():
+        best = min(((float(r[head]), float(r["processor [s]"])) for r in rows if re.fullmatch(rf"{re.escape(program)}(, .*)?", r["version"])), default=None)
+        parts.append(f"{program} {100 * best[0]:.2g} % in {best[1]:.2g} s" if best else f"{program}: no run" + (
+            " (not installed)" if "is not installed" in done.stdout else ""))
+        met = met and best is not None and best[0] <= limit
+    with open(folder / "runs.csv", newline="") as table:
+        ours = [(float(r[head]), float(r["processor [s]"])) for r in csv.DictReader(table) if r[head]]
+    text = (folder / "report.md").read_text()
+    section = text[text.index(f"\n## {quantity}\n"):].split("\n![", 1)[0]
+    front = [p for p in wanted if f"| {p}" in section]
+    return f"{'; '.join(parts)}; ours {100 * min(ours)[0]:.2g} % in {min(ours)[1]:.2g} s; on the front: {', '.join(front) or 'ours alone'}", met
+
+
+def scenes(job):
+    """Each with a second run that has the effect, or a closed form (tests/cli/budget)."""
+    done = job.run([sys.executable, job.root / "tests/cli/budget/run.py", job.build / "bin", job.root / "configs", "all"], 900)
+    good, bad = (re.findall(rf"^{word} +(.*?):", done.stdout, re.M) for word in ("ok", "FAILED"))
+    near = re.findall(r"^ok +.*share ([\d.e+-]+), truth ([\d.e+-]+) \(near\)", done.stdout, re.M)
+    text = f"{len(good)} of {len(good) + len(bad)} name the right one{' (not: ' + '; '.join(bad) + ')' if bad else ''}; shares and truths "
+    return text + ", ".join(f"{share} and {truth}" for share, truth in near), not bad and len(good) == 10 and len(near) >= 8
+
+
+def periodic(job):
+    done = job.run([sys.executable, job.root / "tests/cli/periodic/run.py", job.build / "bin", job.root / "configs", "4", "32", "100"], 3600)
+    found = re.findall(r"^(ok|FAILED) +(alpha \d+), 40 steps per period, (\d+ periods): step ([\d.e+-]+), truth ([\d.e+-]+)", done.stdout, re.M)
+    text = "; ".join(f"{alpha}, {periods}: {step} for {truth}" for _, alpha, periods, step, truth in found)
+    return text or done.stdout[-300:], len(found) == 6 and all(word == "ok" for word, *_ in found)
+
+
+def street(job):
+    done = job.run([sys.executable, job.root / "tests/cli/periodic/street.py", job.build / "bin", job.root / "configs", "4", "30", "100"], 3600)
+    found = re.findall(r"^(ok|FAILED) +2D-2, (\d+ periods): step ([\d.e+-]+), truth ([\d.e+-]+) \(of it without the phase ([\d.e+-]+)", done.stdout, re.M)
+    return ("; ".join(f"{name}: {step} for {truth} ({shape} without the phase)" for _, name, step, truth, shape in found),
+            len(found) == 3 and all(word == "ok" for word, *_ in found))
+
+
+# Study, program of keys, {quantity: truth; a number or the same by extrapolation of finer runs}.
+INTEREST = {
+    "cook": {"displacement of the corner": 0.0323007},                          # [m], quadratic elements refined to convergence
+    "le1": {"stress at D": 92.66e6, "displacement of D": -1.02207e-4},           # NAFEMS; extrapolated from nr = 32, 64, 128
+    "cantilever": {"tip": 0.10008},                                             # [m], three-dimensional finite elements
+}
+
+
+def interest(job):
+    parts, met = [], True
+    for case, truths in INTEREST.items():
+        out = job.scratch / f"quantities-{case}"
+        done = job.run([sys.executable, job.root / "scripts/couplet", "study", job.root / f"configs/{case}/case.yaml", "--quantities", f"--build={job.build}", f"--out={out}"])
+        file = out / "quantities/quantities.json"
+        if done.returncode != 0 or not file.exists():
+            raise RuntimeError((done.stderr or done.stdout)[-300:])
+        for name, truth in truths.items():
+            found = json.loads(file.read_text())[name]
+            ratio = found["error"] / abs(found["value"] - truth)
+            parts.append(f"{case}, {name}: {found['error'] / abs(truth):.2%} by {found['method']}, {ratio:.2f} of the truth")
+            met = met and 1 / 3 <= ratio <= 3
+    return "; ".join(parts), met
+
+
+# Case, meshes, quantities of one run with their truths (as above; Kirsch: three times the pull at the rim of the hole).
+CORNER = {"tip": ("{point: [48 mm, 60 mm], component: y}", 0.0323007)}
+PULLED = {"pull": ("{point: [0, 0.5], field: stress, component: xx}", 3e6)}
+DUAL = [
+    ("cook", [f"{{n: {n}, shape: {shape}}}" for shape in (0, 1) for n in (8, 16)], CORNER),
+    ("le1", [f"{{nr: {n}, nt: {3 * n // 2}}}" for n in (8, 16)], {"D": ("{point: [2, 0], component: x}", -1.02207e-4),
+                                                                 "pull": ("{point: [2, 0], field: stress, component: yy}", 92.66e6)}),
+    ("cantilever", [f"{{n_length: {10 * n}, n_side: {n}}}" for n in (2, 4)], {"tip": ("{point: [20, 1, 1], component: y}", 0.10008)}),
+    ("kirsch-hole", [f"{{n: {n}, nr: {4 * n // 3}, growth: 10, shape: {shape}}}" for shape in (0, 1) for n in (6, 12)], PULLED),
+]
+
+
+def dual_weighted(job):
+    parts, ratios = [], []
+    for case, meshes, quantities in DUAL:
+        for mesh in meshes:
+            out = job.scratch / f"dual-{len(ratios)}"
+            asked = ", ".join(f"{name}: {given}" for name, (given, _) in quantities.items())
+            done = job.run([job.build / "bin/solid_solver", job.root / f"configs/{case}/case.yaml", "--set", f"simulation.output.folder={out}", "--accept", "buckling",
+                            "--set", f"participants.solid.mesh-parameters={mesh}", "--set", f"participants.solid.quantities={{{asked}}}"])
+            file = out / "solid/quantities.csv"
+            if not file.exists():
+                raise RuntimeError((done.stderr or done.stdout)[-300:])
+            with open(file, newline="") as table:
+                for row in csv.DictReader(table):
+                    truth = quantities[row["quantity"]][1]
+                    ratios.append(float(row["estimated error"]) / abs(float(row["value"]) - truth))
+                    parts.append(f"{case} {mesh} {row['quantity']}: {float(row['estimated error']) / abs(truth):.2%}, {ratios[-1]:.2f} of the truth")
+    near = [sum(1 / f <= r <= f for r in ratios) for f in (2, 3)]
+    return f"{near[0]} of {len(ratios)} within a factor of 2, {near[1]} of 3: " + "; ".join(parts), near[0] == len(ratios)
+
+
+def heat_weighted(job):
+    """Numbers that the test records, which has the exact values."""
+    counts = [job.recorded("verification_heat_quantities", "within_a_factor", key)[0][0] for key in ("near", "all")]
+    return "{:.0f} of {:.0f} within a factor of 2".format(*counts), counts[0] == counts[1]
+
+
+STUDIES = {  # folder in docs/validation/studies: file in configs
+    "elliptic-plate": "elliptic-plate/case", "le1": "le1/case", "le11": "le11/case", "cantilever": "cantilever/case",
+    "vibrating-cantilever": "vibrating-cantilever/case", "heated-cylinder": "heated-cylinder/case", "taylor-green-2d": "taylor-green-2d/case",
+    "cylinder-2d-1": "cylinder/study-2d-1", "cylinder-2d-2": "cylinder/study-2d-2", "cavity": "cavity/study",
+    "perpendicular-flap": "perpendicular-flap/study", "schumann": "schumann/case", "thermocline-andasol": "thermocline-andasol/study",
+    "bent-beam": "bent-beam/study",
+    **{f"{case}-gradients": f"{case}/study-gradients" for case in ("elliptic-plate", "le1", "le10", "le11", "cantilever")}}
+# Words of series that are not what a run does by default: symmetric gradient, solver by choice, trapezoidal rule, flux-memory, implicit coupling,
+# a tank's upwind scheme. Series of the first name of the study alone ("thesis-gradient") begin with theirs.
+OTHERS = ("thesis", "corrected", "block-coupled", "segregated", "aitken", "anderson", "newton-krylov", "bathe", "euler", "three-point", "loose-pressure",
+          "viscous-implicit", "incremental", "explicit", "semi-implicit", "tvd", "implicit-60s")
+
+
+def all_studies(job):
+    """Runs of the default schemes in the committed studies; a run whose reference is too coarse to judge it counts by the reference that it has."""
+    from couplet.runs import Case
+    from couplet.study import estimates, table
+    from couplet.study.study import Study
+    judged, coarse, lines = [], [], []
+    for name, case in STUDIES.items():
+        study = Study(Case(job.root / "configs" / f"{case}.yaml", job.build), job.scratch / "estimates")
+        rows = table.read(job.root / "docs/validation/studies" / name / "runs.csv", study.axes, study.quantities)
+        # A tank's implicit scheme is not its default, a coupled case's is.
+        others = OTHERS + (("implicit",) if name in ("schumann", "thermocline-andasol") else ())
+        kept = [r for r in rows if not any(word.strip().startswith(others) for word in str(r.series).split(","))]
+        for quantity in study.quantities:
+            sure, every = (estimates.of(kept, quantity, clear) for clear in (estimates.CLEAR, 0))
+            rest = [f for f in every if f not in sure]
+            judged, coarse = judged + sure, coarse + rest
+            wrong = len(every) - estimates.inside(every)
+            lines += [f"{name} {quantity.name} {wrong} of {len(every)}"] if wrong else []
+    good, all_ = estimates.inside(judged) + estimates.inside(coarse), len(judged) + len(coarse)
+    return (f"{good} of {all_} runs ({100 * good / all_:.0f} %): {estimates.inside(judged)} of {len(judged)} with a clear reference, {estimates.inside(coarse)} of "
+            f"{len(coarse)} whose reference is too coarse; beyond: {', '.join(lines)}"), good >= 0.85 * all_
+
+
+# -- positions on the atlas --------------------------------------------------------------------------------------------
+# Of each map: its panels, places between its squares, and the quantity whose number is the map's own axis (by a factor).
+BETWEEN = [
+    ("fluid-diffusion", ["explicit, Adams-Bashforth", "explicit, Runge-Kutta"], [0.07, 0.11, 0.13, 0.2, 0.35], [0.25, 0.75]),
+    ("fluid-convection", ["explicit, Adams-Bashforth", "implicit viscous term", "explicit, Runge-Kutta"], [0.3, 0.7, 1.2, 1.7], [0.25, 0.75]),
+    ("coupling-mass", ["explicit, predictor 1", "explicit, predictor 2"], [0.5, 0.8, 1.5, 5], [0.05]),
+]
+
+
+def placed(folder):
+    """Largest share of the way to a limit in any run.json of the folder; None without one."""
+    found = [c for file in pathlib.Path(folder).glob("out/*/run.json") for c in json.loads(file.read_text()).get("atlas", []) if c["map"] != "strong-robin"]
+    return max(((1 - c["value"]) / (1 - c["limit"]) if c["floor"] else c["value"] / c["limit"] for c in found), default=None)
+
+
+def halved(folder):
+    """Whether a failed step made the run continue with shorter ones."""
+    for file in pathlib.Path(folder).glob("out/*/steps.csv"):
+        with open(file, newline="") as rows:
+            steps = [float(r["dt [s]"]) for r in csv.DictReader(rows)]
+        if steps and min(steps) < 0.75 * steps[0]:
+            return True
+    return False
+
+
+def positions(job):
+    maps = atlas.maps()
+    right, early, saved, wrong = 0, 0, 0, []
+    with tempfile.TemporaryDirectory(prefix="couplet-atlas-") as scratch:
+        for name, panels, xs, ys in BETWEEN:
+            for panel, x, y in ((p, x, y) for p in panels for x in xs for y in ys):
+                runner = atlas.Runner(job.build, pathlib.Path(scratch) / f"{name}-{panels.index(panel)}-{x}-{y}".replace(" ", ""))
+                square = atlas.judged(maps[name], *maps[name].run(panel, x, y, runner))
+                used = placed(next(runner.scratch.iterdir()))
+                held = square.outcome in (atlas.HOLDS, atlas.POOR)
+                if used is not None and held == (used <= 1):
+                    right += 1
+                elif used is not None and held and used <= 1.5:
+                    early += 1  # a bound on the eigenvalues is beyond them on oblique cells
+                elif used is not None and held and halved(next(runner.scratch.iterdir())):
+                    saved += 1  # the first steps were where it is printed
+                else:
+                    wrong.append(f"{name} {panel} {x:g}, {y:g}: {used if used is None else round(used, 2)} of the way, {square.outcome}")
+    total = right + early + saved + len(wrong)
+    return f"{right} of {total} agree, {early} hold up to 1.5 times the limit, {saved} begin beyond it and hold by halved steps" + (f"; not: {'; '.join(wrong)}" if wrong else ""), total >= 50 and not wrong

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Broken input, damaged checkpoints, the sanitizers' build, and mutants."""
+import os
+import pathlib
+import re
+import shutil
+
+
+# -- runs -------------------------------------------------------------------------------------------------------------
+PROGRAMS = ("solid_solver", "fluid_solver", "mesh_mover", "thermocline", "coupler")
+
+
+def fuzz(job, name, count):
+    """What the one test of a fuzz program recorded, and whether it passed."""
+    found, passed = job.fuzz(name, count)
+    return next(iter(found.values())), passed
+
+
+def yaml(job):
+    found = [fuzz(job, f"fuzz_yaml_{program}", 4000) for program in PROGRAMS]
+    tried = sum(int(t["tried"]) for t, _ in found)
+    return (f"{tried} tried over {len(found)} programs, {sum(int(t['refused']) for t, _ in found)} refused, "
+            f"{sum(int(t['unplaced']) for t, _ in found)} messages without a place, slowest {max(float(t['slowest']) for t, _ in found):.2f} s, "
+            f"{max(float(t['megabytes']) for t, _ in found):.0f} MB"), tried >= 20000 and all(good for _, good in found)
+
+
+def meshes(job):
+    test, good = fuzz(job, "fuzz_meshes", 10000)
+    return (f"{test['tried']} tried, {test['refused']} refused, slowest {test['slowest']} s, {test['megabytes']} MB",
+            good and int(test["tried"]) >= 10000)
+
+
+def checkpoints(job):
+    test, good = fuzz(job, "fuzz_checkpoints", 2000)
+    return (f"{test['tried']} damaged: {test['refused']} refused, {test['earlier_set']} continued from an earlier set, "
+            f"{test['unharmed']} unharmed, 0 with another result", good and int(test["tried"]) >= 2000)
+
+
+# -- sanitizers -------------------------------------------------------------------------------------------------------
+SANITIZER = "a build of the preset asan: build-asan, or the folder that COUPLET_ASAN_BUILD names"
+
+
+def sanitizer_folder(job):
+    return pathlib.Path(os.environ.get("COUPLET_ASAN_BUILD", job.root / "build-asan"))
+
+
+def sanitizer_build(job):
+    folder = sanitizer_folder(job)
+    if not (folder / "bin/fluid_solver").exists():
+        raise FileNotFoundError(f"there is no {SANITIZER}")
+    return folder
+
+
+def sanitizer_test(job, name):
+    """The words that run a test of the sanitizers' build, of which no more than that needs to be built."""
+    build = sanitizer_folder(job)
+    if not build.exists():
+        raise FileNotFoundError(f"there is no {SANITIZER}")
+    return type(job)(job.root, build, job.quick).test(name)
+
+
+def reports(folder):
+    """First lines of what the sanitizers wrote to a folder."""
+    found = [next((line for line in f.read_text(errors="replace").splitlines() if "ERROR: AddressSanitizer" in line or "runtime error:" in line), f.name)
+             for f in folder.glob("report*") if f.stat().st_size]
+    return sorted(set(found))
+
+
+def watched(job, folder, command, seconds, **more):
+    """Runs a command of the sanitizers' build. They write to files: a test that passes shows no output, and one that expects a program
+    to fail would take a report for that. Signals are left to the tests' strikes; limits of the fuzzers' clock are ten times as wide, and
+    what is freed is kept for 16 MB only: it counts as memory."""
+    folder.mkdir(parents=True, exist_ok=True)
+    to = f"log_path={folder}/report"
+    return job.run(["env", f"ASAN_OPTIONS=detect_leaks=0:handle_segv=0:quarantine_size_mb=16:{to}", f"UBSAN_OPTIONS=print_stacktrace=1:{to}", "COUPLET_FUZZ_SECONDS=100",
+                    *command], seconds, **more)
+
+
+def sanitized(job):
+    """Once more, alone, what failed: tests that hold a clock lose it where everything takes several times as long. A suite whose log is
+    newer than all programs is not run again, only what failed in it."""
+    build = sanitizer_build(job)
+    log, to = build / "suite.log", build / "reports"
+    programs = [p for p in build.rglob("*") if p.is_file() and os.access(p, os.X_OK) and not p.suffix]
+    suite = ["ctest", "--test-dir", build, "-LE", "long", "--output-on-failure"]
+    if not log.exists() or log.stat().st_mtime < max(p.stat().st_mtime for p in programs):
+        shutil.rmtree(to, ignore_errors=True)
+        watched(job, to, [*suite, "-j", os.cpu_count()], 4 * 3600)
+        shutil.copy(build / "Testing/Temporary/LastTest.log", log)
+    text = log.read_text(errors="replace")
+    passed, failed = (len(re.findall(rf"^Test {word}\.", text, re.M)) for word in ("Passed", "Failed"))
+    lost = []
+    if failed:
+        again = watched(job, to, [*suite, "--rerun-failed"], 4 * 3600)
+        lost = re.findall(r"\d+ - (\S+) \((?:Failed|Timeout|Not Run|SEGFAULT)", again.stdout)
+    found = reports(to)
+    return (f"{passed} of {passed + failed} tests pass" + (f", {failed - len(lost)} of the other {failed} alone" if failed else "")
+            + f", {len(found)} kinds of reports of the sanitizers"
+            + (f" (lost: {', '.join(lost[:4])})" if lost else "") + (f": {'; '.join(found[:3])}" if found else "")), not lost and passed > 200 and not found
+
+
+def corpora(job, **counts):
+    """Whole fuzzers with the sanitizers on, each at so many inputs."""
+    failed = []
+    for name, count in counts.items():
+        result = watched(job, job.scratch / name, [f"COUPLET_FUZZ_COUNT={count}", *sanitizer_test(job, name)], 3 * 3600, cwd=job.scratch)
+        found = reports(job.scratch / name)
+        if result.returncode != 0 or found:
+            failed.append(" ".join([name, *found[:1]]))
+    return (f"{len(counts) - len(failed)} of {len(counts)} corpora clean, {sum(counts.values())} inputs" + (f": not {', '.join(failed)}" if failed else ""),
+            not failed)
+
+
+# -- mutants ----------------------------------------------------------------------------------------------------------
+MOST = 0.15
+
+
+def tool(job, name, *words, timeout=100000):
+    return job.run(["/usr/bin/python3", job.root / "tests/mutants" / name, job.root, *words], timeout)
+
+
+def campaign(job):
+    """Continues the results in the file that COUPLET_MUTANTS names, else mutants.jsonl of the build (a whole run takes hours of one core)."""
+    file = pathlib.Path(os.environ.get("COUPLET_MUTANTS", job.build / "mutants.jsonl"))
+    result = tool(job, "campaign.py", job.build, file)
+    last = (result.stdout.strip() or result.stderr.strip()).splitlines()[-1]
+    counts = re.search(r"(\d+) of (\d+) mutants survive", last)
+    met = counts is not None and int(counts[2]) >= 200 and int(counts[1]) <= MOST * int(counts[2]) and result.returncode == 0
+    return last, met

@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Metrics of the sources, counted with regular expressions rather than a compiler: good to a few per cent, and the same from one commit to the next.
+Every measure returns (what it found, whether the limit is met)."""
+import importlib
+import os
+import re
+import resource
+import shutil
+import statistics
+import sys
+
+PROGRAMS = ("solid_solver", "fluid_solver", "mesh_mover", "thermocline", "plate_modal", "coupler")
+HOUSE = ("common", *PROGRAMS)
+LITERAL = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'(?!\w)', re.S)
+CLASS = re.compile(r"\b(?:class|struct)\s+(?:\[\[\w+\]\]\s*)?([\w:]+)(?:\s+final)?\s*(?::([^:;{(][^;{(]*))?\{")
+JUDGING = re.compile(r"/(?:judge|diagnostics|effects)/|(?:guard|audit|estimate|verdict|effect|finding|position|judge|card|ledger|watch|error_part|role_check|fluid_check"
+                     r"|scene_check|question|step_error|velocity_error|quality)\w*\.[ch]pp$")
+JUDGING_WORDS = ("judge", "audit", "guard", "watch", "estimate", "verdict", "evidence", "card", "doubt", "look", "ledger", "trail", "position")
+# The names by which the fluid's steps ask for an optional feature.
+FEATURES = re.compile(r"\b(?:if|while)\s*\(.*\b\w*(?:gaps?|bod(?:y|ies)|yield\w*|impedance|absorb\w*|volume_?s?|compress\w*|closed|sound|frame|rotat\w*|lines?|eddy|eddies"
+                      r"|turbulen\w*|porous|periodic|robin)_?\w*\b")
+BAD_BEGINNING = re.compile(r"(?:Of|What|Whether|By|The same|That|Those)\b")
+
+
+# -- files ------------------------------------------------------------------------------------------------------------
+def tracked(job, *folders):
+    return job.once(("tracked", folders), lambda: job.run(["git", "-C", job.root, "ls-files", *folders]).stdout.split("\n")[:-1])
+
+
+def texts(job):
+    """{path: text} of the C++ of programs and common."""
+    def make():
+        return {f: (job.root / f).read_text() for f in tracked(job, *HOUSE) if f.endswith((".cpp", ".hpp")) and (job.root / f).is_file()}
+    return job.once("texts of the sources", make)
+
+
+def lines_of(job, endings, *folders):
+    return sum(len((job.root / f).read_bytes().splitlines()) for f in tracked(job, *folders) if f.endswith(endings) and (job.root / f).is_file())
+
+
+def worst(found, count=3):
+    names = sorted(found, key=lambda f: -found[f])
+    return ", ".join(f"{n} {found[n]}" for n in names[:count]) + (" ..." if len(names) > count else "")
+
+
+def lines(job, endings, folders, most):
+    n = lines_of(job, tuple(endings), *folders)
+    return f"{n}", n <= most
+
+
+def lines_of_programs(job, most):
+    found = {}
+    for f, text in texts(job).items():
+        found[f.split("/")[0]] = found.get(f.split("/")[0], 0) + len(text.splitlines())
+    return f"{sum(found.values())}: {worst(found, 7)}", sum(found.values()) <= most
+
+
+def files(job, most):
+    sizes = [len(t.splitlines()) for t in texts(job).values()]
+    return f"{len(sizes)} files, median {statistics.median(sizes):.0f} lines", len(sizes) <= most
+
+
+def small_files(job, below, share):
+    n = sum(len(t.splitlines()) < below for t in texts(job).values())
+    return f"{n} of {len(texts(job))} files", n <= share * len(texts(job))
+
+
+def boilerplate(job, share):
+    """License, includes, include guards, the lines that open and close namespaces, and the blank lines beside all of these."""
+    pattern, found, every = re.compile(r"// SPDX|#pragma once|#include\b|namespace\b.*\{$|\}\s*// (?:namespace|anonymous)"), 0, 0
+    for text in texts(job).values():
+        rows = [line.strip() for line in text.splitlines()]
+        marks = [bool(pattern.match(row)) for row in rows]
+        found += sum(mark or not row and any(marks[max(i - 1, 0):i + 2]) for i, (row, mark) in enumerate(zip(rows, marks)))
+        every += len(rows)
+    return f"{found} lines, {100 * found / every:.1f} %", found <= share * every
+
+
+# -- judging ------------------------------------------------------------------------------------------------------------
+def judging(job, most):
+    found = {f: len(t.splitlines()) for f, t in texts(job).items() if JUDGING.search(f)}
+    return f"{sum(found.values())} lines in {len(found)} files", sum(found.values()) <= most
+
+
+def judging_words(job):
+    """In names of files and classes."""
+    text = " ".join(f"{f} {' '.join(m[1] for m in CLASS.finditer(plain(t)))}" for f, t in texts(job).items()).lower()
+    found = [word for word in JUDGING_WORDS if word in text]
+    return f"{len(found)} beside diagnostic and finding: {', '.join(found) or 'none'}", not found
+
+
+# -- classes ------------------------------------------------------------------------------------------------------------
+def plain(text):
+    """Comments, literals and preprocessor lines are blank."""
+    blank = lambda match: re.sub(r"[^\n]", " ", match.group())
+    return re.sub(r"^[ \t]*#[^\n]*", blank, LITERAL.sub(blank, text), flags=re.M)
+
+
+def closing(text, begin):
+    """Position of the brace that closes the one before `begin`."""
+    depth = 1
+    for brace in re.compile(r"[{}]").finditer(text, begin):
+        depth += 1 if brace.group() == "{" else -1
+        if depth == 0:
+            return brace.start()
+    return len(text)
+
+
+def data_members(body):
+    """Number of data members declared in the body of a class; those of nested classes count."""
+    count, at = 0, 0
+    while match := CLASS.search(body, at):
+        end = closing(body, match.end())
+        if not re.search(r"\benum\s+$", body[:match.start()]):
+            count += data_members(body[match.end():end])
+        body = body[:match.start()] + "struct X " + body[end + 1:]
+        at = match.start() + 9
+    while True:  # bodies of functions, initializers, arguments of templates
+        shorter = re.sub(r"<[^<>;{}()]*>", "", re.sub(r"\{[^{}]*\}", "{}", body.replace("->", "").replace("operator<", "operator")))
+        shorter = re.sub(r"\{\}(?=\s*[,;])", "", re.sub(r"=[^,;{}()]*(?=[,;])", "", shorter))
+        if shorter == body:
+            break
+        body = shorter
+    for statement in re.split(r";|\{\}|\b(?:public|protected|private)\s*:", body):
+        head = statement.strip()
+        if not head or "(" in head or re.match(r"(?:using|typedef|friend|static_assert|enum|template|static|constexpr|struct X$|class \w+$|struct \w+$)\b", head):
+            continue
+        if re.search(r"[\w>*&]\s+[&*]?\w+", head):
+            count += 1 + head.count(",")
+    return count
+
+
+def largest_class(job, most):
+    found = {}
+    for f, text in texts(job).items():
+        text = plain(text)
+        at = 0
+        while match := CLASS.search(text, at):
+            at = closing(text, match.end())
+            if not re.search(r"\benum\s+$", text[:match.start()]):
+                found[match[1]] = max(found.get(match[1], 0), data_members(text[match.end():at]))
+    over = sum(n > most for n in found.values())
+    return f"{worst(found, 5)}; {over} of {len(found)} have more than {most}", not over
+
+
+def single_implementations(job):
+    """Classes with a pure virtual function from which exactly one class derives."""
+    abstract, derived = {}, {}
+    for f, text in texts(job).items():
+        text = plain(text)
+        for match in CLASS.finditer(text):
+            name, body = match[1].split("::")[-1], text[match.end():closing(text, match.end())]
+            if re.search(r"\)\s*(?:const\s*)?(?:noexcept\s*)?=\s*0\s*;", body):
+                abstract[name] = len(re.findall(r"\bvirtual\b", body))
+            for base in re.findall(r"(?:public\s+)?((?:\w+::)*\w+)", re.sub(r"<[^<>]*>", "", match[2] or "")):
+                derived.setdefault(base.split("::")[-1], set()).add(name)
+    lone = {name: n for name, n in abstract.items() if len(derived.get(name, ())) == 1}
+    return f"{len(lone)} of {len(abstract)} interfaces (virtual functions): {worst(lone, 8)}", not lone
+
+
+# -- habits -------------------------------------------------------------------------------------------------------------
+def saved_by_hand(job, most):
+    """Single values that checkpoints write and read by name, apart from `visit`."""
+    every = [t for f, t in texts(job).items() if not f.startswith(("common/io/", "common/base/"))]
+    writes, reads = (sum(len(re.findall(pattern, t)) for t in every) for pattern in (
+        r"\b(?:checkpoint|file|out|writer|to)_?\.write\w*\(\s*(?:\"|\w+ \+ \")", r"\b(?:checkpoint|file|in|reader|from)_?\.read\w*\(\s*(?:\"|\w+ \+ \")"))
+    return f"{writes} writes, {reads} reads", writes + reads <= most
+
+
+def branches(job, folders, most):
+    found = {f: n for f, t in texts(job).items() if f.startswith(tuple(folders)) for n in [sum(bool(FEATURES.search(line.split("//")[0])) for line in t.splitlines())] if n}
+    return f"{sum(found.values())} in {len(found)} files: {worst(found)}", sum(found.values()) <= most
+
+
+def comment_blocks(job, share):
+    found, bad = 0, 0
+    for text in texts(job).values():
+        before = ""
+        for line in text.splitlines():
+            own = re.match(r"\s*//[/!]?<?\s*(.*)", line)
+            if own and not re.match(r"\s*//", before) and not own[1].startswith(("SPDX", "clang-format", "NOLINT", "namespace")):
+                found += 1
+                bad += bool(BAD_BEGINNING.match(own[1]))
+            before = line
+    return f"{bad} of {found} ({100 * bad / found:.1f} %)", bad <= share * found
+
+
+def mirrored(job, share):
+    """tests/unit/mesh/order_test.cpp is the test of common/mesh/order.hpp, tests/unit/coupler/links_test.cpp that of coupler/links.hpp."""
+    tests = {f for f in tracked(job, "tests/unit") if f.endswith("_test.cpp")}
+    headers = [f for f in texts(job) if f.endswith(".hpp")]
+    there = [h for h in headers if f"tests/unit/{h.removeprefix('common/').removesuffix('.hpp')}_test.cpp" in tests]
+    return f"{len(there)} of {len(headers)}", len(there) >= share * len(headers)
+
+
+def bare(job):
+    """The two exceptions are in the table of docs/architecture.md."""
+    headers = {f: text for f, text in texts(job).items() if f.endswith(".hpp")}
+    excepted = re.findall(r"^\| `([\w/.]+)` \| `couplet` \|", (job.root / "docs/architecture.md").read_text(), re.M)
+    rest = [f for f, text in headers.items() if re.search(r"^namespace couplet\s*\{", text, re.M) and f not in excepted]
+    return f"{len(rest)} of {len(headers)} headers, and {', '.join(excepted)} by a written exception", not rest
+
+
+def comparison(job):
+    folder = str(job.root / "benchmarks/linalg")
+    if folder not in sys.path:
+        sys.path.append(folder)
+    tables = importlib.import_module("tables")
+    rows = tables.read(job.root / "benchmarks/linalg/table.csv")
+    there = [n for n in tables.HAND_WRITTEN if any((job.root / "common/linalg").rglob(f"{n}.hpp"))]
+    gains = {n: tables.best(rows, n) for n in there}
+    lacking = tables.problems(rows, job.root / "common/linalg")
+    text = ", ".join(f"{n} {min(g[:2]):.2f} of PETSc's best ({g[2]['system']})" + "".join(f", {ratio:.2f} of a whole job of {row['cells']} cells" for ratio, row in sorted(tables.whole_jobs(n), key=lambda w: w[0])[:1]) for n, g in gains.items() if g)
+    return f"{len({r['system'] for r in rows})} systems, {len(rows)} rows; {text}{'; ' + '; '.join(lacking) if lacking else ''}", not lacking
+
+
+def minutes(job, limit, *targets):
+    """Processor minutes of compiler and linker from an empty folder, two jobs, no compiler cache."""
+    folder = job.scratch / "metrics-build"
+    shutil.rmtree(folder, ignore_errors=True)
+    result = job.run(["cmake", "-G", "Ninja", "-S", job.root, "-B", folder], 600)
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    if result.returncode == 0:
+        result = job.run(["env", "CCACHE_DISABLE=1", "ninja", "-C", folder, "-j", min(2, os.cpu_count()), *targets], 4 * 3600)
+    if result.returncode != 0:
+        raise RuntimeError((result.stderr or result.stdout)[-300:])
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    used = (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime) / 60
+    return f"{used:.1f} min", used <= limit

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "common/log/finding.hpp"
+#include "solid_solver/effects/evidence.hpp"
+#include "solid_solver/parameters/parameters.hpp"
+
+namespace couplet::solid {
+
+/// What the evidence of a run says about the effects that its scene leaves out, or has in vain.
+std::vector<log::Finding> effect_findings(const SolidParameters& parameters, const SolidEvidence& evidence);
+
+}  // namespace couplet::solid

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/diagnostics/large_strain_estimate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "common/elasticity/finite/finite_kernel.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/laws/laws.hpp"
+#include "solid_solver/method/solution_method.hpp"
+
+namespace couplet::solid {
+namespace {
+
+using Values = std::vector<double>;
+
+/// Differences are taken over displacements with gradients of this size: Saint Venant-Kirchhoff's forces are a cubic
+/// polynomial, which they give exactly; of other laws they miss parts of that size.
+constexpr double probe_gradient = 0.01;
+
+struct Displacement {
+  Values unknowns, known;
+};
+
+Displacement combined(double a, const Displacement& u, double b, const Displacement& v) {
+  Displacement w = u;
+  for (std::size_t i = 0; i < w.unknowns.size(); ++i) w.unknowns[i] = a * u.unknowns[i] + b * v.unknowns[i];
+  for (std::size_t i = 0; i < w.known.size(); ++i) w.known[i] = a * u.known[i] + b * v.known[i];
+  return w;
+}
+
+/// The inner forces F of the body at large strain.
+class Forces {
+ public:
+  explicit Forces(const SolidBody& body) : n_(body.elastic().n_unknowns()) {
+    const char* name =
+        body.elastic().volume_by_cells() ? "nearly-incompressible-neo-hookean" : "saint-venant-kirchhoff";
+    std::vector<const elastic::FiniteLaw*> all;
+    for (const SolidMaterial& material : materials_of(body.parameters())) {
+      laws_.push_back(laws::of(name)->make(lame_constants(body.parameters(), material), {}));
+      all.push_back(laws_.back().get());
+    }
+    kernel_ = elastic::make_finite_kernel(body.mesh(), body.elastic(), all);
+  }
+  /// [F(s u) + sign F(-s u)] / 2.
+  Values part(double s, const Displacement& u, double sign) {
+    const Values plus = at(combined(s, u, 0, u)), minus = at(combined(-s, u, 0, u));
+    Values result(n_);
+    for (std::size_t i = 0; i < n_; ++i) result[i] = 0.5 * (plus[i] + sign * minus[i]);
+    return result;
+  }
+
+ private:
+  Values at(const Displacement& u) {
+    Values force(n_);
+    kernel_->linearise(u.unknowns, u.known, 0, force);
+    return force;
+  }
+
+  std::size_t n_;
+  std::vector<std::unique_ptr<elastic::FiniteLaw>> laws_;
+  std::unique_ptr<elastic::FiniteKernel> kernel_;
+};
+
+/// Solves with K of the symmetric gradient.
+class Stiffness {
+ public:
+  explicit Stiffness(const SolidBody& body)
+      : kernel_(body.mesh(), body.elastic(), elastic::FaceGradientScheme::symmetric),
+        problem_{body.mesh(), body.elastic(), {}, kernel_, 0} {
+    MethodParameters chosen = body.parameters().method;
+    chosen.type = MethodParameters::Type::automatic;
+    chosen.face_gradient = MethodParameters::FaceGradient::symmetric;
+    method_ = make_solution_method(problem_, chosen);
+  }
+  Values solve(const Values& b) {
+    Values u(b.size(), 0);
+    method_->solve(b, u);
+    return u;
+  }
+
+ private:
+  elastic::ElasticKernel kernel_;
+  SolidProblem problem_;
+  std::unique_ptr<SolutionMethod> method_;
+};
+
+/// The root of x - a x^3 = 1 that is reached from no load on; NaN: the load has a maximum before.
+double amplitude(double a) {
+  if (a > 4. / 27) return std::numeric_limits<double>::quiet_NaN();
+  double x = a > 0 ? 1 : 1 / (1 - a);  // below the root, where Newton's method closes in from one side
+  for (int k = 0; k < 60; ++k) x -= (x - a * x * x * x - 1) / (1 - 3 * a * x * x);
+  return x;
+}
+
+/// See LargeStrainEstimate.
+LargeStrainEstimate summed(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Values& u1,
+                           const Values& u2, const Values& u3) {
+  const std::size_t n = std::size_t(mesh.cells.n_owned()) * mesh.dim;
+  const auto dot = [&](const auto& a, const auto& b) {
+    double local = 0;
+    for (std::size_t i = 0; i < n; ++i) local += geometry.volume[i / std::size_t(mesh.dim)] * a(i) * b(i);
+    return parallel::sum(mesh.comm, local);
+  };
+  const auto first = [&](std::size_t i) { return u1[i]; };
+  const auto second = [&](std::size_t i) { return u2[i]; };
+  const auto third = [&](std::size_t i) { return u3[i]; };
+  LargeStrainEstimate e;
+  const double size = dot(first, first), size2 = dot(second, second);
+  e.ratio = size2 > 0 ? dot(third, second) / size2 : 0;
+  const auto rest = [&](std::size_t i) { return u3[i] - e.ratio * u2[i]; };
+  e.cubic = dot(rest, first) / size;
+  const double x = e.ratio < 1 ? amplitude(e.cubic) : std::numeric_limits<double>::quiet_NaN();
+  const auto change = [&](std::size_t i) {
+    return (x - 1) * u1[i] + x * x / (1 - e.ratio) * u2[i] + x * x * x * (rest(i) - e.cubic * u1[i]);
+  };
+  e.change = std::sqrt(dot(change, change) / size);
+  return e;
+}
+
+}  // namespace
+
+std::string LargeStrainEstimate::text() const {
+  if (!is_known())
+    return "large strain: the expansion about the linear solution has no equilibrium under the full load; "
+           "the body would snap or buckle, or the load is far too large for linear theory";
+  return fmt::format("large strain would change the displacement by about {:.3g} %", 100 * change);
+}
+
+LargeStrainEstimate estimate_large_strain(const SolidBody& body, std::span<const double> unknowns,
+                                          std::span<const double> known) {
+  const mesh::Geometry& geometry = body.geometry();
+  const mesh::Mesh& mesh = body.mesh();
+  const Displacement u1{{unknowns.begin(), unknowns.end()}, {known.begin(), known.end()}};
+  double steepest = 0;
+  body.kernel().face_gradients(
+      unknowns, known, [&](Index, const Tensor3& g) { steepest = std::max(steepest, g.norm()); }, 0,
+      mesh.n_flux_faces());
+  steepest = parallel::max(mesh.comm, steepest);
+  if (!(steepest > 0)) return {};
+  const double s = probe_gradient / steepest;
+  Forces forces(body);
+  Stiffness stiffness(body);
+  const std::size_t n = u1.unknowns.size();
+  const auto dot = [&](const Values& a, const Values& b) {
+    double local = 0;
+    for (std::size_t i = 0; i < n; ++i) local += a[i] * b[i];
+    return parallel::sum(mesh.comm, local);
+  };
+  const Values even = forces.part(s, u1, 1), odd = forces.part(s, u1, -1), odd2 = forces.part(2 * s, u1, -1);
+  Values q(n), c(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    q[i] = -even[i] / (s * s);
+    c[i] = (odd2[i] - 2 * odd[i]) / (6 * s * s * s);
+  }
+  const Displacement u2{stiffness.solve(q), Values(known.size(), 0)};
+  // u2 is made as large as u1, so that the differences see both.
+  const double size2 = std::sqrt(dot(u2.unknowns, u2.unknowns));
+  const double t = size2 > 0 ? std::sqrt(dot(u1.unknowns, u1.unknowns)) / size2 : 1;
+  const Values with = forces.part(s, combined(1, u1, t, u2), 1),
+               without = forces.part(s, combined(1, u1, -t, u2), 1);
+  Values r(n);
+  for (std::size_t i = 0; i < n; ++i) r[i] = -(with[i] - without[i]) / (2 * s * s * t) - c[i];
+  return summed(mesh, geometry, u1.unknowns, u2.unknowns, stiffness.solve(r));
+}
+
+}  // namespace couplet::solid

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/diagnostics/recovered_strain.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+#include "common/elasticity/symmetric/symmetric_faces.hpp"
+#include "common/mesh/transpose.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/body/cell_moment.hpp"
+#include "solid_solver/material/stress.hpp"
+
+namespace couplet::solid {
+namespace {
+
+constexpr GlobalIndex patches_looked_at = 100000;  // of all ranks
+constexpr double no_slope = 1e-9;                  // of a slope that no neighbour determines
+
+}  // namespace
+
+RecoveredStrain::RecoveredStrain(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows)
+    : mesh_(mesh),
+      geometry_(rows.geometry()),
+      rows_(rows),
+      mean_(std::size_t(mesh.cells.n_local()) * tensor_size, 0.0),
+      volume_(std::size_t(mesh.cells.n_local()), 0.0) {}
+
+template <class Visit>
+void RecoveredStrain::visit_pyramids(Index face, const Visit& visit) const {
+  const auto [here, there] = elastic::pyramids(mesh_, geometry_, face);
+  if (mesh_.owner[face] < mesh_.cells.n_owned())
+    visit(mesh_.owner[face], Vec3(geometry_.face_centre[face]), here);
+  if (face < mesh_.n_interior && mesh_.neighbour[face] < mesh_.cells.n_owned())
+    visit(mesh_.neighbour[face], Vec3(geometry_.face_centre[face] - mesh_.shift(face)), there);
+}
+
+void RecoveredStrain::add(Index face, const Tensor3& strain) {
+  const PackedTensor packed = pack(strain);
+  visit_pyramids(face, [&](Index cell, const Vec3&, double volume) {
+    volume_[std::size_t(cell)] += volume;
+    for (std::size_t i = 0; i < packed.size(); ++i)
+      mean_[std::size_t(cell) * tensor_size + i] += volume * packed[i];
+  });
+}
+
+void RecoveredStrain::recover() {
+  const GlobalIndex stride = 1 + mesh_.cells.n_global() / patches_looked_at;
+  for (std::size_t c = 0; c < std::size_t(mesh_.cells.n_owned()); ++c)
+    for (std::size_t i = 0; i < std::size_t(tensor_size); ++i)
+      if (volume_[c] > 0) mean_[c * tensor_size + i] /= volume_[c];
+  mesh_.cells.update_ghosts(mean_, tensor_size);
+  const mesh::Csr cells_of_point = mesh::transpose(mesh_.cell_points, 0, mesh_.points.n_local());
+  std::vector<Index> mark(std::size_t(mesh_.cells.n_local()), -1), patch;
+  slot_.assign(std::size_t(mesh_.cells.n_owned()), -1);
+  for (Index cell = 0; cell < mesh_.cells.n_owned(); ++cell) {
+    if (mesh_.cell_id[cell] % stride != 0) continue;  // the same ones on any number of ranks
+    patch.clear();
+    gather_cells(mesh_, cells_of_point, cell, mark, patch);
+    slot_[std::size_t(cell)] = Index(linear_.size());
+    linear_.push_back(fit(cell, patch));
+  }
+  // The run holds most memory here.
+  std::vector<double>().swap(mean_), std::vector<double>().swap(volume_);
+}
+
+RecoveredStrain::Linear RecoveredStrain::fit(Index cell, const std::vector<Index>& patch) const {
+  using Terms = Eigen::Vector4d;
+  const Vec3 centre = geometry_.cell_centre[cell];
+  Vec3 reach = Vec3::Zero();  // along each axis: thin cells have slopes, too
+  for (const Index c : patch) reach = reach.cwiseMax((geometry_.cell_centre[c] - centre).cwiseAbs());
+  const double longest = reach.maxCoeff();
+  for (int a = 0; a < 3; ++a) reach[a] = reach[a] > no_slope * longest ? 1 / reach[a] : 0;
+  Eigen::Matrix4d of = Eigen::Matrix4d::Zero();
+  Eigen::Matrix<double, 4, tensor_size> right = Eigen::Matrix<double, 4, tensor_size>::Zero();
+  for (const Index c : patch) {
+    Terms phi;
+    phi << 1, reach.cwiseProduct(geometry_.cell_centre[c] - centre);
+    of += phi * phi.transpose();
+    right +=
+        phi * Eigen::Map<const Eigen::Matrix<double, 1, tensor_size>>(&mean_[std::size_t(c) * tensor_size]);
+  }
+  of.diagonal().array() += no_slope;
+  const Eigen::Matrix<double, 4, tensor_size> coefficients = of.llt().solve(right);
+  Linear linear{};
+  for (int i = 0; i < 4; ++i)
+    for (int k = 0; k < tensor_size; ++k)
+      linear[std::size_t(i)][std::size_t(k)] = float(coefficients(i, k) * (i == 0 ? 1 : reach[i - 1]));
+  return linear;
+}
+
+void RecoveredStrain::compare(Index face, const Tensor3& strain) {
+  const PackedTensor packed = pack(strain);
+  visit_pyramids(face, [&](Index cell, const Vec3& place, double volume) {
+    const Index slot = slot_[std::size_t(cell)];
+    if (slot < 0) return;
+    const Linear& linear = linear_[std::size_t(slot)];
+    const Vec3 x = place - geometry_.cell_centre[cell];
+    PackedTensor gap = packed;
+    for (std::size_t k = 0; k < gap.size(); ++k)
+      gap[k] -= double(linear[0][k]) + linear[1][k] * x[0] + linear[2][k] * x[1] + linear[3][k] * x[2];
+    const Tensor3 missed = unpack(gap);
+    difference_ += volume * contraction(rows_.stress(cell, missed), missed);
+    whole_ += volume * contraction(rows_.stress(cell, strain), strain);
+  });
+}
+
+double RecoveredStrain::missed() const {
+  const double difference = parallel::sum(mesh_.comm, difference_), whole = parallel::sum(mesh_.comm, whole_);
+  return whole > 0 ? difference / whole : 0;
+}
+
+}  // namespace couplet::solid

@@ -1,0 +1,175 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Golden file of the shipped cases: what each ends with, so that a change of the code that should change no answer can prove it.
+
+  golden.py record  [--bin FOLDER] [CASE ...]   runs the cases and writes golden.json
+  golden.py compare [--bin FOLDER] [CASE ...]   runs them and lists what differs from golden.json
+  golden.py resume  [--bin FOLDER] [CASE ...]   runs them whole, and again from a checkpoint in their middle; lists what differs
+
+Cases run for at most STEPS of their steps. Recorded are the exit code, each participant's findings, error budget and place on the
+maps (run.json), and the last row of each of its tables."""
+import argparse
+import csv
+import json
+import math
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import yaml
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+STEPS = 24
+SECONDS = 240  # limit of one run
+NOT_RESULTS = {"steps.csv", "participants.csv", "residuals.csv", "solver.csv"}  # of time and iterations
+TOLERANCE = 1e-5  # relative; iterative solvers leave 1e-8 to 1e-6
+
+
+def cases():
+    """The shipped cases, with the time in seconds of their first STEPS steps and their own end."""
+    sys.path.insert(0, str(ROOT / "client/python"))
+    for path in sorted((ROOT / "configs").glob("*/*.yaml")):
+        data = yaml.safe_load(path.read_text())
+        if "participants" in data:
+            yield path.relative_to(ROOT / "configs").as_posix()
+
+
+def seconds(value):
+    """'0.1 ms' in seconds."""
+    number, _, unit = str(value).partition(" ")
+    return float(number) * {"": 1, "s": 1, "ms": 1e-3, "us": 1e-6, "min": 60, "h": 3600, "day": 86400}[unit]
+
+
+def run(case, binaries, folder, *, end, every=None, restart=None):
+    command = [sys.executable, "-m", "couplet", "run", "-q", "--bin", str(binaries), "--set", f"simulation.output.folder={folder}",
+               "--set", f"simulation.end-time={end!r} s", "--set", "simulation.output.interval=0 s"]
+    if every:
+        command += ["--set", f"simulation.checkpoint.interval={every!r} s", "--set", "simulation.checkpoint.keep=1000"]
+    if restart:
+        command += ["--restart", str(restart)]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "client/python"), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    try:
+        done = subprocess.run([*command, str(ROOT / "configs" / case)], env=environment, capture_output=True, text=True,
+                              timeout=SECONDS)
+        return done.returncode, (done.stdout + done.stderr)[-2000:]
+    except subprocess.TimeoutExpired:
+        return "timeout", ""
+
+
+def value(text):
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def outcome(folder, code):
+    result = {"exit code": code, "participants": {}}
+    for report in sorted(pathlib.Path(folder).glob("*/run.json")):
+        data = json.loads(report.read_text())
+        one = {"findings": [[f["id"], f["severity"], f["number"]] for f in data["findings"]],
+               "errors": {k: v for k, v in data["errors"].items() if isinstance(v, float | int)},
+               "place": {c["quantity"]: c["value"] for c in data["atlas"]}, "tables": {}}
+        for table in sorted(report.parent.rglob("*.csv")):
+            if table.name in NOT_RESULTS:
+                continue
+            rows = [row for row in csv.reader(table.open()) if row and not row[0].startswith("#")]
+            if rows:
+                one["tables"][table.relative_to(report.parent).as_posix()] = [len(rows), [value(cell) for cell in rows[-1]]]
+        result["participants"][report.parent.name] = one
+    return result
+
+
+def differences(a, b, where="", scale=0.):
+    """Places where two outcomes differ; a row of a table is compared with its largest number."""
+    if isinstance(a, dict) and isinstance(b, dict):
+        return [d for key in sorted({*a, *b}) for d in differences(a.get(key), b.get(key), f"{where}/{key}")]
+    if isinstance(a, list) and isinstance(b, list) and len(a) == len(b):
+        numbers = [abs(x) for x in a[1:] if isinstance(x, float) and math.isfinite(x)]
+        return [d for k, (x, y) in enumerate(zip(a, b)) for d in differences(x, y, f"{where}[{k}]", max(numbers, default=0))]
+    if isinstance(a, float | int) and isinstance(b, float | int) and not isinstance(a, bool):
+        if a == b or (math.isnan(a) and math.isnan(b)) or abs(a - b) <= TOLERANCE * max(abs(a), abs(b), 1e-3 * scale):
+            return []
+    return [] if a == b else [f"{where}: {a} and {b}"]
+
+
+def whole(case, binaries, folder, checkpoints=False):
+    data = yaml.safe_load((ROOT / "configs" / case).read_text())
+    simulation = data.get("simulation", {})
+    step, end = seconds(simulation.get("time-step", "1 s")), seconds(simulation["end-time"])
+    steps = min(STEPS, max(1, round(end / step)))
+    end = min(end, steps * step)
+    middle = max(1, steps // 2)
+    code, text = run(case, binaries, folder, end=end, every=step if checkpoints else None)
+    return outcome(folder, code), end, middle, text
+
+
+def record(args):
+    golden = {}
+    for case in args.cases:
+        with tempfile.TemporaryDirectory() as folder:
+            golden[case] = whole(case, args.bin, folder)[0]
+        print(case, golden[case]["exit code"], flush=True)
+    (args.file).write_text(json.dumps(golden, indent=0, sort_keys=True) + "\n")
+    return 0
+
+
+def compare(args):
+    golden, bad = json.loads(args.file.read_text()), 0
+    for case in args.cases:
+        if case not in golden or golden[case]["exit code"] == "timeout":
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            found, _, _, text = whole(case, args.bin, folder)
+        apart = differences(golden[case], found)
+        bad += bool(apart)
+        print(case, "same" if not apart else "DIFFERS", flush=True)
+        for line in apart[:12]:
+            print("  ", line, flush=True)
+        if found["exit code"] != golden[case]["exit code"]:
+            print(text)
+    return int(bad > 0)
+
+
+def resume(args):
+    bad = 0
+    for case in args.cases:
+        with tempfile.TemporaryDirectory() as folder:
+            first, again = pathlib.Path(folder, "whole"), pathlib.Path(folder, "resumed")
+            found, end, middle, _ = whole(case, args.bin, first, checkpoints=True)
+            kept = sorted((first / "checkpoints").glob("step-*"))
+            if found["exit code"] == "timeout" or len(kept) < 2:
+                continue
+            code, text = run(case, args.bin, again, end=end, restart=kept[min(middle, len(kept) - 1) - 1])
+            resumed = outcome(again, code)
+        for one in (found, resumed):  # what tables hold of a resumed run is under test elsewhere
+            for participant in one["participants"].values():
+                participant["tables"] = {}
+        apart = differences(found, resumed)
+        findings = sum(len(p["findings"]) for p in found["participants"].values())
+        bad += bool(apart)
+        print(case, f"{findings} findings", "same" if not apart else "DIFFERS", flush=True)
+        for line in apart[:12]:
+            print("  ", line, flush=True)
+        if code != found["exit code"]:
+            print(text)
+    return int(bad > 0)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("task", choices=["record", "compare", "resume"])
+    parser.add_argument("--bin", type=pathlib.Path, default=ROOT / "build/bin")
+    parser.add_argument("--file", type=pathlib.Path, default=HERE / "golden.json")
+    parser.add_argument("cases", nargs="*")
+    args = parser.parse_intermixed_args()
+    args.cases = args.cases or list(cases())
+    return {"record": record, "compare": compare, "resume": resume}[args.task](args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

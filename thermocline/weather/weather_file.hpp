@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace couplet::thermocline {
+
+inline constexpr int hours_a_day = 24, days_a_year = 365;
+
+/// "MM-DD" as the day of a year of 365 days, 0 for 01-01. Throws Error if it is no such date (02-29 neither:
+/// a reference year has none).
+int day_of_year(const std::string& date);
+/// Month of a day of the year, 0 to 11.
+int month_of_day(int day);
+/// The inverse of day_of_year; any whole number of years may be added to `day`.
+std::string date_of_day(int day);
+
+/// Hourly records of a site, whole days. `dni` is the mean over the hour; the states belong to the moment
+/// `state_offset` after its start.
+struct WeatherHours {
+  std::string source;       ///< for messages: file or generator
+  int first_day = 0;        ///< day of the year of the first record, 0 for 01-01
+  double state_offset = 0;  ///< [s]
+  /// The sun's position follows from these. Not every file has them.
+  struct Site {
+    double latitude = 0;     ///< [deg], north positive
+    double solar_ahead = 0;  ///< solar time minus the file's clock [s]
+  };
+  std::optional<Site> site;
+  std::vector<double> dni;          ///< direct normal irradiance [W/m^2]
+  std::vector<double> temperature;  ///< of the air [degC]
+  std::vector<double> wind;         ///< [m/s]
+  std::vector<double> humidity;     ///< relative, 0 to 1
+  std::vector<double> pressure;     ///< [Pa]
+  std::vector<std::string> warnings;
+  std::vector<std::string> doubts;  ///< why it may not be what was meant
+  int days() const { return static_cast<int>(dni.size()) / hours_a_day; }
+};
+
+/// The quantities of a record, in the order of the columns of the CSV.
+constexpr std::vector<double> WeatherHours::*weather_quantities[] = {
+    &WeatherHours::dni, &WeatherHours::temperature, &WeatherHours::wind, &WeatherHours::humidity,
+    &WeatherHours::pressure};
+
+/// Site from latitude and longitude [deg] and the hours by which the clock is ahead of Greenwich.
+WeatherHours::Site site_of(double latitude, double longitude, double time_zone);
+
+/// Reads a CSV, plain or compressed, in the format that docs/formats.md describes: optional lines
+/// '# latitude: ...', '# longitude: ...', '# time-zone: ...' and '# states-at: ...', a head with the columns hour,
+/// dni_W_m2, T_degC, wind_m_s, rh_pct and p_Pa in any order, and a line per hour. Gaps of a few hours are closed by
+/// straight lines with a warning. Throws Error with file:line for everything else that is wrong, and for a file
+/// of another format with the command that converts it.
+WeatherHours read_weather(const std::filesystem::path& file);
+
+}  // namespace couplet::thermocline
