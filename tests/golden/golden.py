@@ -118,6 +118,16 @@ def record(args):
     return 0
 
 
+def answers(outcome):
+    """Without what tells of iterative solvers only: their part of the error, and their iterations."""
+    for one in outcome["participants"].values():
+        one["errors"].pop("linear", None)
+        one["tables"].pop("solver.csv", None)
+        if len(one["tables"].get("balance.csv", [0, []])[1]) == 10:  # of a fluid; the last column counts iterations
+            one["tables"]["balance.csv"][1].pop()
+    return outcome
+
+
 def compare(args):
     golden, bad = json.loads(args.file.read_text()), 0
     for case in args.cases:
@@ -125,7 +135,7 @@ def compare(args):
             continue
         with tempfile.TemporaryDirectory() as folder:
             found, _, _, text = whole(case, args.bin, folder)
-        apart = differences(golden[case], found)
+        apart = differences(answers(golden[case]), answers(found))
         bad += bool(apart)
         print(case, "same" if not apart else "DIFFERS", flush=True)
         for line in apart[:12]:
