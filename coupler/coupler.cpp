@@ -132,7 +132,7 @@ std::optional<app::StepFailure> Coupler::attempt_once(const coupling::Step& step
   return {};
 }
 
-/// What the coupling itself does comes before what a participant reports.
+/// Findings of the coupling come before those of a participant.
 app::StepFailure Coupler::cause_of(const std::string& reported) const {
   // Without the advice that goes with it: a smaller step or another mesh would not help.
   const std::string met = reported.substr(0, reported.find(". Try ") + 1);

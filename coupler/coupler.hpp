@@ -66,7 +66,7 @@ class Coupler {
   }
 
  private:
-  /// What is made of the interfaces once they are known.
+  /// Parts that are built from the interfaces once they are known.
   struct Known {
     Known(MPI_Comm comm, const Coupler& coupler);
     Unknown unknown;

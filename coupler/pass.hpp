@@ -31,7 +31,7 @@ class Pass {
   void initialise(const CouplingParameters& parameters);
   /// Values before the first step, from those that gave any to those that take them.
   void exchange_initial_values();
-  /// The same command to everyone.
+  /// Sends one command to everyone.
   void ask_all(const coupling::Command& command);
 
   /// One pass from what is `known` to what all give. `first`: of the step. Throws SolveFailure if a participant fails.
@@ -59,13 +59,13 @@ class Pass {
   VolumeLevel* volume_level() {
     return volume_level_ ? &*volume_level_ : nullptr;
   }  ///< nullptr: no closed fluid
-  /// By each in the last pass of the last solved step.
+  /// Answer of each in the last pass of the last solved step.
   const std::vector<coupling::Exchange>& given() const { return given_; }
   const std::vector<coupling::Exchange>& taken() const { return taken_; }
   void set_given(std::vector<coupling::Exchange> given) {
     give_back(std::exchange(given_, std::move(given)));
   }
-  /// Whether somebody began to answer otherwise in the last pass (Participant::answered_anew).
+  /// Tells whether somebody began to answer otherwise in the last pass (Participant::answered_anew).
   bool answered_anew() const { return answered_anew_; }
 
   /// State of the coupling's own parts: levels of closed fluids, displacements of foreign structures.

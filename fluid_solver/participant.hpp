@@ -50,7 +50,7 @@ class FluidParticipant final : public coupling::Participant {
   void write_monitors(double time) override;
   std::vector<std::string> finish() override;
 
-  /// What diagnostics see; refers to this participant, which must outlive it. After initialise().
+  /// View for diagnostics; it refers to this participant, which must outlive it. After initialise().
   FluidView<D> view() const {
     return {mesh_,         *fluid_,           fluid_->sizes(), step_,     bool(interface_),
             bool(motion_), bool(prescribed_), displacement_,   renewals_, unseen_share_};

@@ -58,7 +58,7 @@ std::vector<double> MovingPatches::velocities(double time, double dt) const {
 
 namespace {
 
-// What the fit may leave of the largest value. No point of the mesh moves by more than its boundary does, so
+// Largest error of the fit, over the largest value. No point of the mesh moves by more than its boundary does, so
 // this is the largest error too.
 constexpr double round_off = 1e-12;
 // Extent of the points in a direction, squared and relative to the largest, below which they have none.

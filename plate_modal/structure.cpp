@@ -139,7 +139,7 @@ void Structure::solve_static(double t, std::span<const double> fluid) {
     trial_.q[m] = (load[m] + fluid[m] + gravity_[m]) / (share_->omega()[m] * share_->omega()[m]);
     trial_.v[m] = 0;
   }
-  // The same loads again: the same answer.
+  // Equal loads give the same answer again.
   const bool first = !repeats_;
   repeats_ = trial_.q == solved_ && trial_.q == state_.q;
   if (repeats_) {

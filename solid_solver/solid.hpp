@@ -44,7 +44,7 @@ class Solid final : public coupling::Participant {
   std::vector<std::string> finish() override;
   /// Called before the first step if the run is to end with an estimate of its error.
   void collect_errors();
-  /// Of the accepted state, after the last step. Collective.
+  /// Describes the accepted state, after the last step. Collective.
   coupling::ErrorParts error_parts() const;
 
   const SolidBody& body() const { return body_; }

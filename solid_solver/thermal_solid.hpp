@@ -41,7 +41,7 @@ class ThermalSolid final : public coupling::Participant {
   void load(io::CheckpointReader& file) override;
   /// Called before the first step if the run is to end with an estimate of its error.
   void collect_errors() { errors_.emplace(mesh_, geometry_, parameters_.heat.value()); }
-  /// Of the accepted state, after the last step. Collective.
+  /// Describes the accepted state, after the last step. Collective.
   coupling::ErrorParts error_parts() const {
     return errors_ ? errors_->parts(*heat_) : coupling::ErrorParts{};
   }

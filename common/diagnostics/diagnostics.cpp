@@ -17,7 +17,7 @@ namespace {
 
 using base::Severity;
 
-/// By how far its number is beyond its limit; NaN is worse than any number.
+/// Tells whether a is further beyond its limit than b; NaN is worse than any number.
 bool exceeds(const log::Finding& a, const log::Finding& b) {
   return !(a.number / a.limit <= b.number / b.limit);
 }

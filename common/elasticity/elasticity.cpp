@@ -272,7 +272,7 @@ Tensor3 ElasticOperator::stress(Index cell, const Tensor3& gradient) const {
   return mu * (gradient + gradient.transpose()) + lambda * gradient.trace() * Tensor3::Identity();
 }
 
-// What the boundary faces of an ElasticOperator carry: known forces and values, holding forces, twins.
+// The boundary faces of an ElasticOperator carry known forces and values, holding forces and twins.
 
 Vec3 ElasticOperator::add_forces(std::span<const double> forces, std::span<double> rhs) const {
   const int dim = mesh_->dim;

@@ -37,7 +37,7 @@ class CellSolver {
   /// Sets the values: `diagonal` per owned cell, `faces` the entry of each two neighbors, `beside` one per entry of Beside.
   /// Collective.
   void fill(std::span<const double> diagonal, std::span<const double> faces, std::span<const double> beside);
-  /// What solves the system, and refreshes, saves and restores its preconditioner.
+  /// Solver of the system, which refreshes, saves and restores its preconditioner.
   LinearSolver& solver() { return solver_; }
 
  private:

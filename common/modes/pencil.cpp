@@ -56,7 +56,7 @@ class Search {
 
   EPS eps() const { return eps_; }
 
-  /// By Krylov-Schur.
+  /// Solves by Krylov-Schur.
   void set_method(EPSWhich which, STType transformation) {
     petsc_check(EPSSetType(eps_, EPSKRYLOVSCHUR));
     petsc_check(EPSSetWhichEigenpairs(eps_, which));
@@ -245,7 +245,7 @@ EigenModes largest_modes(const Pencil& pencil, int n) {
 
 namespace {
 
-// Of a direction that is left of another one by rounding.
+// Share of a direction that rounding leaves of another one.
 constexpr double left_of_direction = 1e-10;
 
 Eigen::VectorXd times(const linalg::LinearMap& map, const Eigen::VectorXd& x) {

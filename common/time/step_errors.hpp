@@ -71,7 +71,7 @@ class StepErrors {
 /// the ends of the last two or three steps.
 class VelocityErrors {
  public:
-  /// Of a field like the velocity, the same on all ranks.
+  /// Norm of a field like the velocity, the same on all ranks.
   using Norm = std::function<double(std::span<const double>)>;
 
   explicit VelocityErrors(const TimeSchemeParameters& scheme) : local_(local_error(scheme)) {}
@@ -85,7 +85,7 @@ class VelocityErrors {
   /// For checkpoints; empty: of a run that collected nothing.
   std::vector<double> state() const;
   void restore(std::span<const double> state);
-  /// The same in two parts: numbers that are the same on all ranks, and the velocity, of this rank; empty: not yet.
+  /// Gives the state in two parts: numbers that are the same on all ranks, and the velocity, of this rank; empty: not yet.
   std::vector<double> numbers() const;
   std::span<const double> before() const { return v_before_; }
   void restore(std::span<const double> numbers, std::vector<double> before);

@@ -24,7 +24,7 @@ class InterfaceOscillation final : public CouplingDiagnostic {
           {.id = "interface-oscillation", .severity = base::Severity::wrong, .sentence = *reason});
   }
   std::optional<app::StepFailure> suspects() const override {
-    // What swings already is not saved by halving.
+    // Halving does not save a step that swings already.
     if (const auto swings = guard_.suspects(view_.scheme.now()); swings && stops())
       return app::StepFailure(*swings, false);
     return {};
@@ -101,7 +101,7 @@ class InterfaceWork final : public CouplingDiagnostic {
 
  private:
   bool stops() const { return view_.parameters.on_divergence == OnDivergence::stop; }
-  /// Of the accepted state, of all that take a force [J]; NaN where one does not tell.
+  /// Work in the accepted state of all that take a force [J]; NaN where one does not tell.
   double energy_of_structures() const {
     double total = 0;
     for (std::size_t i = 0; i < view_.pass.sides().size(); ++i) {

@@ -42,7 +42,7 @@ std::shared_ptr<CouplingDiagnostic> iteration_growth(const CouplingView& view) {
 
 namespace {
 
-// Of the motion: a step that leaves more is no solution of the coupled problem.
+// Share of the motion: a step that leaves more is no solution of the coupled problem.
 constexpr double useless_residual = 0.5;
 
 /// Steps that `at-max-iterations: accept` takes although they have not converged.
@@ -78,7 +78,7 @@ std::shared_ptr<CouplingDiagnostic> unconverged_step(const CouplingView& view) {
 
 namespace {
 
-// Of a residual that hardly falls nothing is known but that the error is large.
+// A residual that hardly falls says nothing except that the error is large.
 constexpr double slowest = 0.99;
 // Where one pass was enough.
 constexpr double unseen = 0.5;

@@ -15,7 +15,7 @@
 
 namespace couplet::coupler {
 
-/// What the coupler shows of a run: its parts, as they are after the step just solved or accepted.
+/// View of a run that the coupler shows: its parts, as they are after the step just solved or accepted.
 struct CouplingView {
   MPI_Comm comm;
   const CouplingParameters& parameters;
@@ -38,7 +38,7 @@ class CouplingDiagnostic : public diagnostics::Diagnostic {
                         const coupling::Exchange& /*given*/) {}
   /// A pass of an iteration is over; `omega` led to its x. Throws SolveFailure where the iteration runs away.
   virtual void passed(const Residual& /*residual*/, double /*omega*/) {}
-  /// Of explicit coupling, in a few steps: the pass from x gave `image`, another one from there `again`.
+  /// Passes of explicit coupling, in a few steps: the pass from x gave `image`, another one from there `again`.
   virtual void returned(GlobalIndex /*step*/, const Iterate& /*x*/, const Iterate& /*image*/,
                         const Iterate& /*again*/) {}
   /// After a step that failed: why it did, if this diagnostic knows.

@@ -17,7 +17,7 @@ namespace couplet::coupler {
 void require_finite(MPI_Comm comm, const coupling::Exchange& data, const coupling::Interface& interface,
                     const std::vector<coupling::Interface::Datum>& of, const std::string& who);
 
-/// What is wrong with two coupled surfaces that need not match, as far as their places tell.
+/// Findings about two coupled surfaces that need not match, as far as their places show.
 struct PlaceReport {
   std::string problem;             ///< empty: none
   std::vector<std::string> notes;  ///< what the user should know

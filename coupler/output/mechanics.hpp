@@ -10,7 +10,7 @@
 
 namespace couplet::coupler {
 
-/// What the loads on one side of the interface add up to.
+/// Sums of the loads on one side of the interface.
 struct Balance {
   Vec3 force = Vec3::Zero();   ///< [N]
   Vec3 moment = Vec3::Zero();  ///< about the origin, on the reference configuration [N m]

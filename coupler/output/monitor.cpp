@@ -195,7 +195,7 @@ std::string Monitor::waiting(const std::vector<Partner>& partners, const Schedul
 
 namespace {
 
-// What a division has to gain before it is proposed.
+// A division is proposed if it gains at least this much.
 constexpr double worth_it = 0.1;
 // Below that a run is too short to judge [s].
 constexpr double too_short = 1;

@@ -60,7 +60,7 @@ class Monitor {
          own_before_ = 0;  // processor seconds of the coupler: of the run, up to this step since it began
 };
 
-/// What a participant did in a run.
+/// Work of a participant in a run.
 struct Worker {
   std::string name;
   int ranks = 1;

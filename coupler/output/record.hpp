@@ -11,7 +11,7 @@
 
 namespace couplet::coupler {
 
-/// What the coupler writes of a run: tables, balances of forces and work, interface data.
+/// Files that the coupler writes of a run: tables, balances of forces and work, interface data.
 class Record {
  public:
   Record(MPI_Comm comm, const CouplingParameters& parameters, const Pass& pass);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What compressibility would do: changes of density, and waves of pressure beside moving walls.
+// Effects of compressibility: changes of density, and waves of pressure beside moving walls.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -160,7 +160,7 @@ diagnostics::EffectFinding change_of_density(bool is_compressible, double densit
       .share = std::max(0., change - 2 * std::pow(speed / sound.speed, 2))};
 }
 
-// What the walls displace goes partly into compression, V dp / (rho c^2) = V dp / (gamma p) of a gas: of the volume of their
+// Compression takes part of what the walls displace, V dp / (rho c^2) = V dp / (gamma p) of a gas: of the volume of their
 // stroke it is what an incompressible fluid pushes through the openings instead.
 diagnostics::EffectFinding compliance(double density, double stroke, double pressure_volume,
                                       const Sound& sound) {

@@ -6,12 +6,12 @@
 
 namespace couplet::fluid {
 
-// What numbers of a run say about effects of turbulence and compressibility.
+// Judges effects of turbulence and compressibility by numbers of a run.
 
 /// Layers that the mesh does not resolve. `peclet`: largest cell Reynolds number; `yplus`: largest of walls, 0 without
 /// walls; `reynolds`: by the largest speed and the hydraulic diameter.
 diagnostics::EffectFinding unresolved_layers(int dimension, double peclet, double yplus, double reynolds);
-/// What a turbulence model adds to the viscosity, over the molecular one.
+/// Viscosity that a turbulence model adds, over the molecular one.
 diagnostics::EffectFinding eddies(int dimension, double eddy_viscosity);
 /// Walls under a turbulence model.
 diagnostics::EffectFinding unresolved_walls(double yplus, double peclet);

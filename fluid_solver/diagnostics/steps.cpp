@@ -12,7 +12,7 @@
 namespace couplet::fluid {
 namespace {
 
-// Of the limits of a step that is given: what is certain to go wrong.
+// A given step that exceeds its limit by this factor is certain to go wrong.
 constexpr double far_above = 2;
 constexpr int steps_between_looks = 10;
 // Error of the friction at the end of a step, over the load: what a growing oscillation reaches.
@@ -108,13 +108,13 @@ double rate_of(const mesh::Mesh& mesh, const Fluid<D>& fluid, GlobalIndex cell, 
   return parallel::sum(mesh.comm, rate);
 }
 
-/// Of a step, or what it was cut into: Courant number, or nu dt/h^2 where friction limits it.
+/// Numbers of a step, or of its sub-steps: Courant number, or nu dt/h^2 where friction limits it.
 template <int D>
 class PlaceOnTheMap final : public diagnostics::Diagnostic {
  public:
   explicit PlaceOnTheMap(const FluidView<D>& view) : view_(view) {}
   void look(diagnostics::Report& report) override {
-    // What the first step sets in motion could not limit it.
+    // The first step could not be limited by the motion that it starts.
     if (view_.step.number == 0 && !view_.parameters().time_step) return;
     const StepLimiter by = view_.sizes.limiter(view_.fluid.state());
     if (!std::isfinite(by.limit)) return;

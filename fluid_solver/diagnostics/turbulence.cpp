@@ -17,7 +17,7 @@ namespace {
 // Ducts turn turbulent at 2300 by the mean speed; the largest of a plane laminar one is 3/2 of it.
 constexpr double laminar_below = 3450;
 
-/// Of walls; 0 without walls.
+/// Largest y+ at walls; 0 without walls.
 template <int D>
 double largest_yplus(const FluidView<D>& view) {
   double largest = 0;

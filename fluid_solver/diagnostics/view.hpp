@@ -11,7 +11,7 @@
 
 namespace couplet::fluid {
 
-/// What the fluid shows of a run, as it is after the last accepted step.
+/// View of a run that the fluid shows, as it is after the last accepted step.
 template <int D>
 struct FluidView {
   const mesh::Mesh& mesh;
@@ -21,7 +21,7 @@ struct FluidView {
   bool has_interface;          ///< walls that a structure moves
   bool has_mover;              ///< a mesh mover moves the mesh
   bool is_prescribed;          ///< the case moves the mesh
-  /// Of an interface on a mesh at rest: largest displacement over the height of the cell there.
+  /// For an interface on a mesh at rest: largest displacement over the height of the cell there.
   const double& wall_displacement;
   const int& renewals;         ///< of the prediction, in the last step
   const double& unseen_share;  ///< error of the friction at the end of the last step, over the load
@@ -37,7 +37,7 @@ struct FluidView {
 template <int D>
 std::vector<Index> moving_faces(const FluidView<D>& view);
 
-// What several diagnostics look at. Collective.
+// Quantities that several diagnostics look at. Collective.
 template <int D>
 double largest_speed(const FluidView<D>& view);  ///< [m/s]
 /// Largest minus smallest pressure [Pa]; none in the first step, whose pressure is the impulse that starts the motion.

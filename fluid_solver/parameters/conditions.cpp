@@ -216,7 +216,7 @@ const auto& condition_table() {
              .velocity = GivenBy::mesh}},
       Entry{BoundaryType::symmetry,
             {.name = "symmetry", .about = "", .row = without_friction, .velocity = GivenBy::mesh}},
-      // What leaves comes in at the partner: the mesh is joined there, no face of the boundary is left.
+      // Fluid that leaves comes in at the partner: the mesh is joined there, no face of the boundary is left.
       Entry{BoundaryType::periodic,
             {.name = "periodic",
              .about = "periodic: outflow re-enters at the partner",

@@ -51,7 +51,7 @@ struct Projected {
   std::vector<double> p, boundary;  ///< per local cell, per boundary face [Pa]
   std::vector<double> phi;  ///< phi^p per flux face, the last pressure's part still to be added [m^3/s]
   Vectors<D> w;             ///< given velocities at t^{n+1}, answers of walls and openings included [m/s]
-  /// Of p in the non-orthogonal part, per local cell [Pa/m]; empty on orthogonal meshes.
+  /// Gradient of p in the non-orthogonal part, per local cell [Pa/m]; empty on orthogonal meshes.
   Vectors<D> gradient;
 };
 

@@ -139,7 +139,7 @@ HeldPoints find_held_points(const mesh::Mesh& mesh, const mesh::Geometry& geomet
   HeldPoints held{std::vector<Tensor3>(n), std::vector<Tensor3>(n)};
   double anything = 0;
   for (Index v = 0; v < n; ++v) {
-    // The same order on every rank.
+    // The order is the same on every rank.
     std::ranges::sort(slides[v], {}, &std::pair<GlobalIndex, Vec3>::first);
     std::vector<Vec3> areas;
     for (const auto& [face, area] : slides[v]) areas.push_back(area);

@@ -249,7 +249,7 @@ std::vector<double> SolidBody::unknowns_of(std::span<const double> cells,
   return unknowns;
 }
 
-/// What of a point's value is not free, and the known faces.
+/// Directions in which a point's value is not free, and the known faces.
 std::vector<double> SolidBody::known_of(const BodyField& field) const {
   const int dim = mesh_.dim;
   const elastic::VertexConstraints& constraints = elastic_.constraints();

@@ -29,7 +29,7 @@ V finding(double number, double limit, std::string what, std::string advice,
       .number = number, .limit = limit, .what = std::move(what), .advice = std::move(advice), .share = share};
 }
 
-/// Of an effect that is on: advice where it does next to nothing.
+/// Gives advice where an effect that is on does next to nothing.
 V in_vain(double number, double threshold, std::string sentence, double saves) {
   if (std::isnan(number)) return {};
   return diagnostics::EffectFinding{
@@ -57,7 +57,7 @@ V spare_inertia(const P& p, const E& e) {
 
 // The stretch along a fibre that turns by an angle phi without straining is off by phi^2/2 in the linear
 // theory; a gradient of 0.02 is a fiftieth of that in the strain itself.
-// What that makes of a displacement: 0.4 of the square of the rotation at the tip of a cantilever (elastica; the norm of the
+// Its share of a displacement: 0.4 of the square of the rotation at the tip of a cantilever (elastica; the norm of the
 // gradient is sqrt(2) times the rotation), about the strain of a bar, and 1/(f - 1) where a load of 1/f of the buckling load makes lateral motion
 // grow.
 double share_of_geometry(const E& e) {

@@ -9,7 +9,7 @@
 
 namespace couplet::solid {
 
-/// What the evidence of a run says about the effects that its scene leaves out, or has in vain.
+/// Judges by the evidence of a run the effects that its scene leaves out, or has in vain.
 std::vector<log::Finding> effect_findings(const SolidParameters& parameters, const SolidEvidence& evidence);
 
 }  // namespace couplet::solid

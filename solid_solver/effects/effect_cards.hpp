@@ -9,7 +9,7 @@
 namespace couplet::solid {
 
 using SolidCard = effects::EffectCard<SolidParameters>;
-/// Whether a volume strain of the cells stands for that of the faces, so that nothing locks near incompressibility.
+/// Tells whether a volume strain of the cells stands for that of the faces, so that nothing locks near incompressibility.
 bool has_volume_strain_of_cells(const SolidParameters& parameters);
 /// All that a solid can simulate beside linear elasticity, in the order in which it is told.
 std::span<const SolidCard> solid_effect_cards();

@@ -6,7 +6,7 @@
 
 namespace couplet::solid {
 
-/// What a run of the solid has seen that says whether an effect was rightly left out. NaN: not seen.
+/// Evidence of a run of the solid for whether an effect was rightly left out. NaN: not seen.
 struct SolidEvidence {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   double largest_gradient = unknown;     ///< Frobenius norm of the displacement gradient, over space and time

@@ -301,7 +301,7 @@ double FiniteStrain::judge_rounding(const Load& load, double scale, double left)
   return left / loads;
 }
 
-// What the body answers in a given state: forces, energy, softness; the last solve in words.
+// Response of the body in a given state: forces, energy, softness; the last solve in words.
 
 linalg::SolveStatistics FiniteStrain::find(const Load& load, SolidSystem&, std::span<double> u) {
   if (path_) return follow_path(load, u);
@@ -319,7 +319,7 @@ linalg::SolveStatistics FiniteStrain::find(const Load& load, SolidSystem&, std::
   } catch (const SolveFailure& failure) {
     kernel_->forget_start();
     if (!parallel::any(mesh_.comm, !load.accepted.empty())) throw;
-    // What of the accepted state may be why no other is found.
+    // Features of the accepted state that may be why no other is found.
     kernel_->set_own_pressures(false);
     kernel_->linearise(load.accepted, load.accepted_known, 0, trial_);
     const std::string fold =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Of FiniteStrain: the next equilibrium along a load path, and whether an equilibrium holds.
+// Parts of FiniteStrain: the next equilibrium along a load path, and whether an equilibrium holds.
 //
 // The next equilibrium: Newton's method for (u, lambda), A(u) = lambda b, on the plane across the path's tangent at a
 // distance from the last equilibrium (pseudo arc length [riks1979]). Each iteration solves K d = r and K v = b, and
@@ -26,7 +26,7 @@ constexpr double path_growth = 30, path_first = 1e6, path_small = 1e-3, path_sho
 // Of the linear solves: near a limit point both solutions are large and nearly cancel.
 constexpr double path_linear = 1e-8;
 
-// Of the solution in which a negative curvature would show, and of the least stiffness once there is one, or nearly.
+// Tolerance of the solution in which a negative curvature would show, and of the least stiffness once there is one, or nearly.
 constexpr double looked_for = 1e-3;
 constexpr int most_looks = 2000, most_refined = 12;
 // A stiffness below this is looked at more closely, by one more inverse iteration.
@@ -35,7 +35,7 @@ constexpr double nearly_lost = 0.5;
 constexpr double spectral_rounding = 1e-14;
 // Linear solve of a motion whose size alone is used.
 constexpr double roughly = 1e-4;
-// Of x . K y against y . K x.
+// Largest difference of x . K y and y . K x.
 constexpr double symmetric_part = 1e-7;
 
 }  // namespace
@@ -189,7 +189,7 @@ void FiniteStrain::load(io::CheckpointReader& file, std::span<const double>, std
   is_restored_ = true;
 }
 
-// Whether the equilibrium that was found holds.
+// Tells whether the equilibrium that was found holds.
 
 SoftMotion FiniteStrain::lowest_stiffness(std::span<const double> unknowns, std::span<const double> known,
                                           const linalg::LinearMap& elastic, std::vector<double> start) {

@@ -75,7 +75,7 @@ std::vector<Tensor3> LargeStrain::face_stress(const Displaced& state, Index firs
   return stress;
 }
 
-/// Of a cell by the pyramids over its faces: sum V_fP P F^T / sum V_fP J, the mean over the deformed cell. The
+/// Stress of a cell by the pyramids over its faces: sum V_fP P F^T / sum V_fP J, the mean over the deformed cell. The
 /// ghosts' faces are another rank's.
 std::vector<Tensor3> LargeStrain::cell_stress(const Displaced& state) {
   constexpr int size = 10;

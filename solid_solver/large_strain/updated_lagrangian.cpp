@@ -211,7 +211,7 @@ linalg::SolveStatistics UpdatedLagrangian::find(const EquilibriumLoad& load, Sol
   return statistics;
 }
 
-// What follows from a state of the updated-Lagrangian method: energies, forces, the place where the next step begins.
+// Results of a state of the updated-Lagrangian method: energies, forces, the place where the next step begins.
 
 std::vector<double> UpdatedLagrangian::forces(std::span<const double> unknowns,
                                               std::span<const double> known) {

@@ -71,7 +71,7 @@ class ThermalStrain {
   void load(io::CheckpointReader& file);
   /// Adds its part of the stress of owned cells at the accepted time [Pa].
   void add_cell_stress(std::span<Tensor3> stress) const;
-  /// The same of the local faces first, first + 1, ...
+  /// Adds its part of the stress of the local faces first, first + 1, ...
   void add_face_stress(Index first, std::span<Tensor3> stress) const;
   /// Appends fields at the accepted time; their values live until the next call.
   void add_fields(std::vector<io::OutputField>& fields);
@@ -83,7 +83,7 @@ class ThermalStrain {
   void judge(std::vector<std::string>& sentences) const;
   /// Before the first step, if the run is to end with an estimate of its error; else nothing is collected.
   void collect_errors();
-  /// Of the temperature that is solved for, over its distance from the reference: the strain errs by as much. Collective.
+  /// Error of the temperature that is solved for, over its distance from the reference: the strain errs by as much. Collective.
   coupling::ErrorParts error_parts() const;
 
   /// None: the temperature is prescribed.

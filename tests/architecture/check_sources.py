@@ -57,7 +57,7 @@ DOORS = {
     "handshake and roll call are read by common/app/case/roll_call.cpp (and by the clients)":
         (r"0x434f'?5550'?4c45'?54", r"common/app/case/roll_call\.cpp|client/(?:wire\.[ch]pp|python/couplet/participant\.py)"),
 }
-# What opens a file to read, takes lines apart, decompresses, or makes a number of a text.
+# Functions that open a file to read, take lines apart, decompress, or make a number of a text.
 READING = (r"\bstd::(?:ifstream|fstream|filebuf|basic_ifstream|from_chars|getline|sto(?:d|f|ld|i|l|ll|ul|ull)|strto\w+|ato(?:f|i|l|ll)|sscanf|fopen)\b"
            r"|\bgetline\(|\bgz(?:open|dopen|read|gets)\w*\(|\binflate\w*\(|\bf(?:open|dopen|scanf|gets)\(|\bv?sscanf\(|\bato(?:f|i|l|ll)\("
            r"|\bstrto(?:d|f|ld|l|ul|ll|ull|imax|umax)\(|\bmmap\(|\bO_RD(?:ONLY|WR)\b|\bfrom_chars\(")

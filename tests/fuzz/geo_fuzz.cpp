@@ -58,7 +58,7 @@ class CraftedGeo : public testing::Test {
       if (entry.path().filename().string().find("pwned") != std::string::npos) found.push_back(entry.path());
     return found;
   }
-  /// What is said of it; "" if it is meshed.
+  /// Gives the message about it; "" if it is meshed.
   std::string complaint(const std::string& text) const {
     write_file(folder() / "a.geo", text);
     try {

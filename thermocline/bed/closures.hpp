@@ -54,7 +54,7 @@ class LayerClosure {
   LayerClosure(const ClosureParameters& parameters, const Fluid& fluid, const Filler& filler, double porosity,
                double diameter);
   Closure at(double temperature, const MassFlux& flux) const;
-  /// The same for many cells: film, conductivity and wall coefficient of each.
+  /// Evaluates many cells at once: film, conductivity and wall coefficient of each.
   void fill(std::span<const double> temperature, const MassFlux& flux, double* film, double* conductivity,
             double* wall) const;
   /// Re on the superficial velocity.

@@ -14,7 +14,7 @@ namespace couplet::thermocline {
 /// Temperatures of the bed's start that look as if their unit was forgotten: colder than the fluid's lowest,
 /// and within its limits if they were degC. One sentence, or empty.
 std::string forgotten_unit_of_bed(const TankParameters& parameters);
-/// The same for the temperatures of the flow.
+/// Checks the temperatures of the flow likewise.
 std::string forgotten_unit_of_flow(const TankParameters& parameters);
 
 /// Sentences for the log about a tank in its first state: air and sun that nobody gave, a restart beyond the

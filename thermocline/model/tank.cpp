@@ -266,7 +266,7 @@ void Tank::save(io::CheckpointWriter& file) const {
   const_cast<Tank*>(this)->visit_seen(archive);  // writing changes nothing
 }
 
-/// What the run has seen for its findings.
+/// Saves or loads what the run has seen for its findings.
 void Tank::visit_seen(io::Archive& archive) { archive.common("seen", peak_flow_, peak_advance_, bending_); }
 
 void Tank::load(io::CheckpointReader& file) {

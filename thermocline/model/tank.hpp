@@ -45,7 +45,7 @@ class Tank final : public coupling::Participant {
   void load(io::CheckpointReader& file) override;
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
-  /// What the run so far says about effects of its scene.
+  /// Judges effects of the scene by the run so far.
   std::vector<log::Finding> effects() const;
   std::vector<std::string> finish() override;
   /// Upwind advection spreads a front as a diffusion v dz / 2 does, implicit steps as v^2 dt / 2: over the way w by

@@ -23,7 +23,7 @@ std::vector<std::string> problems_of_files(const config::Document& document, con
 /// program, files whose digests do not fit, a case that is another one. Empty: nothing, or there is no --restart.
 std::string problem_of_restart(const CommandLine& command_line, const CaseFile& file, bool is_coupler);
 
-/// What is wrong with the file that a key of a participant names.
+/// A fault of the file that a key of a participant names.
 struct ProblemOfKey {
   std::string key;   ///< path below the participant: "ambient.file"
   std::string what;  ///< a sentence, with file:line where it can be said

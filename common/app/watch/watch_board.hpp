@@ -94,7 +94,7 @@ void describe(Line& line, const Slot& slot, std::string_view fate);
 /// timeout. Only where all processes of the job can be seen: a guest, or another machine, may be the one that works.
 void watch_waits();
 
-/// What one process notices of the others' silence, look by look.
+/// Records what one process notices of the others' silence, look by look.
 class Listener {
  public:
   explicit Listener(double patience);

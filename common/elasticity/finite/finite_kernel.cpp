@@ -381,7 +381,7 @@ void FiniteKernelOf<D>::set_start(std::span<const double> unknowns, std::span<co
   has_start_ = true;
 }
 
-/// Of a step that conserves energy; the tangent stays that of the states in its middle, which is symmetric and differs
+/// Forces of a step that conserves energy; the tangent stays that of the states in its middle, which is symmetric and differs
 /// by the square of the step.
 template <int D>
 void FiniteKernelOf<D>::conserving_forces() {
@@ -460,7 +460,7 @@ void FiniteKernelOf<D>::stretch_edges() {
   edges_->take_stretch();
 }
 
-/// By nine changes of F. What the edges see of a pressure they see through their own F: the face takes it whole here.
+/// Uses nine changes of F. The edges see a pressure through their own F: the face takes it whole here.
 template <int D>
 void FiniteKernelOf<D>::visit_tangents(const std::function<void(const FaceTangent&)>& take) {
   for (const finite::Group<D>& group : groups_)

@@ -14,7 +14,7 @@ struct PlaceBlock {
   Tensor3 block;
 };
 
-/// What acts in a body before it moves on.
+/// Stresses that act in a body before it moves on.
 struct Prestress {
   std::vector<Tensor3> stress;       ///< per flux face [Pa], that of the trial functions: the kernel's own
   std::vector<PlaceBlock> pressure;  ///< of a pressure that follows the surface

@@ -87,7 +87,7 @@ SharedFaces shared_faces(const mesh::Mesh& mesh, const ElasticOperator& rows);
 /// face [Pa]. Collective.
 void find_edge_stresses(const SharedFaces& shared, std::span<const Tensor3> stress, SharedEdges& edges);
 
-/// What stands at an edge as a symmetric tensor.
+/// Gives the value at an edge as a symmetric tensor.
 Tensor3 edge_tensor(SharedEdges& edges, Index edge);
 
 }  // namespace couplet::elastic

@@ -294,9 +294,9 @@ double SymmetricSpace<D>::work() const {
   return sum;
 }
 
-// What holds a body at its patches: the forces that the trial functions leave where displacements are known.
+// Reactions at the patches that hold a body: the forces that the trial functions leave where displacements are known.
 
-/// Of an entry of point_force_ or of force_; the face's node at a symmetry plane is the mirror image of the cell's centre.
+/// Place of an entry of point_force_ or force_; the face's node at a symmetry plane is the mirror image of the cell's centre.
 template <int D>
 Vec3 SymmetricSpace<D>::place_of(const double* force, bool moved) const {
   const auto entry = [force](const std::vector<double>& all) { return Index((force - all.data()) / stride); };
@@ -359,7 +359,7 @@ std::vector<Wrench> SymmetricSpace<D>::held(std::span<const double> known, bool 
   std::vector<Wrench> result(mesh_.patches.size());
   const std::vector<Index> patch_of = mesh_.patch_of_boundary();
   held_at_points(patch_of, moved, result);
-  // What the free part of the points' forces leaves at nodes that are held.
+  // The remainder of the points' forces at nodes that are held.
   points_to_nodes();
   for (Index b = 0; b < mesh_.boundary.n_local(); ++b) {
     const Index f = mesh_.n_interior + b;

@@ -37,7 +37,7 @@ class SymmetricSpace {
   void fill(std::span<const double> unknowns, std::span<const double> known);
   const double* nodes() const { return nodes_[0]; }
   const double* points() const { return points_.data(); }
-  /// Of a place, see FaceRows.
+  /// Data of one place, see FaceRows.
   const double* value(Index place) const {
     const auto n = Index(n_nodes());
     return place < n ? nodes_[place] : points_.data() + std::size_t(place - n) * stride;

@@ -80,7 +80,7 @@ class CutMeshWriter {
   hdf5::Handle& file_;
 };
 
-/// Of the box around all points. Collective.
+/// Gives the size of the box around all points. Collective.
 Vec3 size_of(MPI_Comm comm, const std::vector<Vec3>& points) {
   Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
   for (const Vec3& x : points) low = low.cwiseMin(x), high = high.cwiseMax(x);
@@ -88,7 +88,7 @@ Vec3 size_of(MPI_Comm comm, const std::vector<Vec3>& points) {
   return high - low;
 }
 
-/// Of all cells. Collective.
+/// Gives the shortest edge of all cells. Collective.
 double shortest_edge(MPI_Comm comm, const mesh::MeshBlock& block) {
   const mesh::PointNumbers numbers(block.cells.points);
   const std::vector<Vec3> x =

@@ -208,7 +208,7 @@ class Part {
     }
   }
 
-  /// What to add to places of the neighbour to see them from the owner.
+  /// Offset that moves places of the neighbour to where the owner sees them.
   Vec3 shift_of(const Inner& f) const {
     if (f.joined == 0) return Vec3::Zero();
     const FaceRecord record{f.face, 0, f.joined, 0};

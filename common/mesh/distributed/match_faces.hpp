@@ -13,7 +13,7 @@ namespace couplet::mesh {
 /// The points of a face, ascending; after the last one -1.
 using FaceKey = std::array<GlobalIndex, 4>;
 
-/// What is wrong with the faces that this rank has compared: told with their places, which other ranks may have.
+/// Faults of the faces that this rank has compared, told with their places, which other ranks may have.
 struct FaceFaults {
   struct Fault {
     FaceKey face;
@@ -27,7 +27,7 @@ struct FaceFaults {
 /// Throws the Error that build_faces() throws of such a mesh, on all ranks, if any has found something. Collective.
 void throw_face_faults(MPI_Comm comm, const MeshBlock& block, const FaceFaults& found);
 
-/// What is wrong with a face that more than two cells share. `where`: its middle.
+/// Describes the fault of a face that more than two cells share. `where`: its middle.
 std::string face_of_many_cells(std::size_t cells, const std::string& where);
 
 /// One side of a face: seen from a cell, or from a boundary element (then `cell` is -1 - element).

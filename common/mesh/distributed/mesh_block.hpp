@@ -26,7 +26,7 @@ struct MeshBlock {
   std::vector<GlobalIndex> element_points;
   std::vector<Index> element_offset{0};
   std::vector<int> element_patch;
-  // The same on all ranks, as in RawMesh:
+  // These agree on all ranks, as in RawMesh:
   std::vector<std::string> zones, patches;
   std::vector<std::array<std::string, 2>> periodic;
   std::vector<std::vector<std::string>> materials;

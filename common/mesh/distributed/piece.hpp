@@ -6,7 +6,7 @@
 
 namespace couplet::mesh {
 
-/// What of a mesh a rank makes its piece of.
+/// Part of a mesh from which a rank makes its piece.
 struct PieceSource {
   MPI_Comm comm;
   const MeshBlock& block;  ///< its cells may be gone

@@ -8,15 +8,15 @@
 
 namespace couplet::mesh {
 
-/// What the kernel lets a program do that reads a file of somebody else: Landlock for files, seccomp for all the rest. It needs no
+/// Rules for a program that reads a file of somebody else: Landlock for files, seccomp for all the rest. It needs no
 /// privileges and no namespaces, so it holds in containers and chroots, too. The program may read and start what lies below some
 /// folders and write below one; it cannot start a process, open a socket, send a signal, or change modes, owners or times of files.
 class Barrier {
  public:
-  /// Whether the kernel has it.
+  /// Tells whether the kernel has it.
   static bool is_possible();
 
-  /// What does not exist of `readable` is left out. Throws Error if the kernel refuses the rules.
+  /// Paths of `readable` that do not exist are left out. Throws Error if the kernel refuses the rules.
   Barrier(const std::vector<std::filesystem::path>& readable, const std::filesystem::path& writable);
   ~Barrier();
   Barrier(const Barrier&) = delete;

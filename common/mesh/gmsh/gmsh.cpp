@@ -49,7 +49,7 @@ std::string complaints(const std::string& output) {
   return found;
 }
 
-/// Whether these may be complaints about what the sandbox forbids.
+/// Tells whether these may be complaints about what the sandbox forbids.
 bool is_of_sandbox(const std::string& errors) {
   for (const char* words : {"open file", "system call", "socket", "directory"})
     if (errors.find(words) != std::string::npos) return true;

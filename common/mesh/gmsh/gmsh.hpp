@@ -15,7 +15,7 @@ namespace couplet::mesh {
 void run_gmsh(const std::vector<std::string>& options, const std::filesystem::path& source, bool trusted,
               const std::filesystem::path& result, const std::string& verb);
 
-/// Whether a cached mesh is as it was sealed under its name. One that is not (damaged, or of somebody else) is named in the
+/// Tells whether a cached mesh is as it was sealed under its name. One that is not (damaged, or of somebody else) is named in the
 /// log, and is to be made anew.
 bool is_sound_cache(const std::filesystem::path& file);
 

@@ -13,7 +13,7 @@ namespace {
 // Larger ones are read by all ranks together, so that none holds the mesh: some 500 000 cells.
 constexpr std::uintmax_t bytes_of_large_msh = std::uintmax_t(64) << 20;
 
-/// Whether the mesh is read as an input deck; otherwise it is a .msh, or gmsh makes one of it.
+/// Tells whether the mesh is read as an input deck; otherwise it is a .msh, or gmsh makes one of it.
 bool is_deck(const std::filesystem::path& file) {
   const std::string kind = file.extension().string();
   return kind == ".inp" || (is_read_by_meshio(kind) && !(kind == ".med" && gmsh_has("Med")));

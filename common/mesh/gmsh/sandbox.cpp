@@ -51,7 +51,7 @@ void limit(__rlimit_resource_t what, rlim_t most) {
   setrlimit(what, &now);
 }
 
-/// What a child needs, made before the fork: between fork and exec only calls to the kernel are sound.
+/// Everything that a child needs, made before the fork: between fork and exec only calls to the kernel are sound.
 struct Prepared {
   std::vector<char*> arguments, environment;
   std::string folder, output;
@@ -69,7 +69,7 @@ struct Prepared {
 }
 
 [[noreturn]] void be_child(const Prepared& p) {
-  // Of the thread that forked, not of the process: it waits, and so it is there as long as the child.
+  // This is of the thread that forked, not of the process: it waits, and so it is there as long as the child.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != p.parent) _exit(127);
   limit(RLIMIT_CORE, 0);
@@ -176,7 +176,7 @@ Words clean_environment(const fs::path& folder) {
   return kept;
 }
 
-/// What a program needs to start: the system's libraries, and what lies beside a program or an environment that is installed
+/// Files that a program needs to start: the system's libraries, and what lies beside a program or an environment that is installed
 /// elsewhere. No file of the user's but these.
 std::vector<fs::path> of_the_system(const fs::path& program) {
   std::vector<fs::path> paths{"/usr",

@@ -55,7 +55,7 @@ InpType inp_type(std::string_view name) {
   int n = 0;
   for (; !rest.empty() && rest[0] >= '0' && rest[0] <= '9' && n < 100; rest.remove_prefix(1))
     n = 10 * n + (rest[0] - '0');
-  // What follows is how they are integrated: reduced, hybrid, incompatible modes, modified.
+  // The letters that follow say how they are integrated: reduced, hybrid, incompatible modes, modified.
   if (rest.find_first_not_of("RHIMS") != std::string_view::npos) return {};
   for (const Row& row : rows)
     if (row.family == family && row.n_nodes == n) return {InpType::Use::cell, row.shape, n};

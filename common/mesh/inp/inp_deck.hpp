@@ -25,7 +25,7 @@ struct InpShape {
   std::array<std::array<std::int8_t, 4>, 6> faces;
 };
 
-/// What a name such as "C3D10" stands for.
+/// Meaning of a name such as "C3D10".
 struct InpType {
   enum class Use {
     cell,     ///< of a body

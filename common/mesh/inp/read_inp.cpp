@@ -53,7 +53,7 @@ int InpNames::number_of(std::vector<std::string>& names, const std::string& name
 
 using Corners = std::array<Index, 4>;
 constexpr Index none = -1;
-/// Of the boundary that no surface and no set names.
+/// Name of the boundary that no surface and no set names.
 constexpr const char* rest = "rest";
 
 Corners key_of(std::span<const Index> points) {

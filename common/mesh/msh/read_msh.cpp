@@ -150,7 +150,7 @@ class MshReader {
     return std::move(block_);
   }
 
-  /// Of all boundary elements of the file.
+  /// Lists the entities of all boundary elements of the file.
   std::vector<int> boundary_entities() const {
     std::vector<int> entities;
     for (const ElementRun& e : elements_)

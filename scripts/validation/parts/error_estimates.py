@@ -170,7 +170,7 @@ def all_studies(job):
 
 
 # -- positions on the atlas --------------------------------------------------------------------------------------------
-# Of each map: its panels, places between its squares, and the quantity whose number is the map's own axis (by a factor).
+# Each map has its panels, places between its squares, and the quantity whose number is the map's own axis (by a factor).
 BETWEEN = [
     ("fluid-diffusion", ["explicit, Adams-Bashforth", "explicit, Runge-Kutta"], [0.07, 0.11, 0.13, 0.2, 0.35], [0.25, 0.75]),
     ("fluid-convection", ["explicit, Adams-Bashforth", "implicit viscous term", "explicit, Runge-Kutta"], [0.3, 0.7, 1.2, 1.7], [0.25, 0.75]),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the coupler's diagnostics find in participants that give the same in every step.
+// Tests what the coupler's diagnostics find in participants that give the same in every step.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>

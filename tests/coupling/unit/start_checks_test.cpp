@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is judged before the first step: roles and sizes of surfaces.
+// Tests what is judged before the first step: roles and sizes of surfaces.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

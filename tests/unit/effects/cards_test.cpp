@@ -31,14 +31,14 @@ std::optional<log::Finding> with_id(const std::string& id, const std::vector<log
   return {};
 }
 
-/// Whether there is one and it is sound.
+/// Tells whether there is such a finding and it is sound.
 bool is_sound(const std::string& id, const std::vector<log::Finding>& findings) {
   const auto found = with_id(id, findings);
   EXPECT_TRUE(found.has_value()) << id;
   return found && found->severity == base::Severity::note;
 }
 
-/// What findings make of the model's part of the error.
+/// Gives the model's part of the error that findings add up to.
 coupling::ErrorParts model_of(const std::vector<log::Finding>& findings) {
   coupling::ErrorParts parts;
   diagnostics::add_model(findings, parts);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What becomes of findings over a run, and the thresholds of the fluid's effects.
+// Tests how findings change over a run, and the thresholds of the fluid's effects.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -72,7 +72,7 @@ TEST(Findings, are_told_once_and_again_when_they_turn_wrong) {
   EXPECT_EQ(log::findings().back().severity, Severity::wrong);
   EXPECT_EQ(run.step(0.7), 0u);
   EXPECT_EQ(run.step(0.05), 0u);
-  // What was bad in the midst of a run is still known at its end.
+  // A fault in the midst of a run is still known at its end.
   const std::vector<std::string> lines = run.all.conclude(false);
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_THAT(lines[0], HasSubstr("(limit 0.1): wrong"));

@@ -61,7 +61,7 @@ TEST_F(Sandbox, its_folder_is_its_home_and_goes_with_it) {
   EXPECT_FALSE(fs::exists(gone));
 }
 
-/// Of what a program tries, only the names in `done` succeed.
+/// Checks that only the names in `done` succeed of all that a program tries.
 TEST_F(Sandbox, a_program_writes_only_in_its_folder_and_reaches_nothing_else) {
   if (!Barrier::is_possible()) GTEST_SKIP() << "this kernel has no Landlock";
   const std::string own = own_.path.string(), readable = own_.write("readable", "text").string(),

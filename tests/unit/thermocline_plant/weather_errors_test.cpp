@@ -175,7 +175,7 @@ TEST_F(WeatherFile, says_where_the_site_is_and_when_the_states_hold) {
 
 TEST_F(WeatherFile, another_format_is_refused_with_the_command_that_converts_it) {
   for (const std::string text :
-       {"LOCATION,Nowhere,-,XXX,test,000000,37.5,-5.25,0,100\nHEADER\n",
+       {"LOCATION,Nowhere,-,NOW,test,000000,37.5,-5.25,0,100\nHEADER\n",
         "Latitude (decimal degrees): 45.000\nLongitude (decimal degrees): 8.000\n",
         "Source,Latitude,Longitude,Time Zone\nNSRDB,40,-105,-7\nYear,Month,Day,Hour\n",
         "723170,\"GREENSBORO\",NC,-5.0,36.1,-79.95,273\nDate (MM/DD/YYYY),Time (HH:MM)\n"}) {
