@@ -78,4 +78,20 @@ std::vector<Neighbour> nearest(MPI_Comm comm, const std::vector<Vec3>& points, c
   return found;
 }
 
+int most_followers(MPI_Comm comm, const std::vector<Neighbour>& found, const coupling::Starts& starts) {
+  std::vector<std::vector<GlobalIndex>> used(std::size_t(parallel::comm_size(comm)));
+  for (const Neighbour& n : found)
+    used[std::size_t(coupling::owner_of(starts, n.position))].push_back(n.position);
+  std::vector<GlobalIndex> mine;
+  for (const auto& part : parallel::all_to_all(comm, used)) mine.insert(mine.end(), part.begin(), part.end());
+  std::ranges::sort(mine);
+  int most = 0;
+  for (std::size_t i = 0; i < mine.size();) {
+    const std::size_t first = i;
+    while (i < mine.size() && mine[i] == mine[first]) ++i;
+    most = std::max(most, int(i - first));
+  }
+  return int(parallel::max(comm, double(most)));
+}
+
 }  // namespace couplet::coupler

@@ -53,6 +53,9 @@ struct Neighbour {
 /// smallest id. No rank sees more of `among` than its own part. Collective.
 std::vector<Neighbour> nearest(MPI_Comm comm, const std::vector<Vec3>& points, const PointSet& among);
 
+/// How many of `found` on all ranks have the same neighbour, at most. `starts`: of the list that was searched. Collective.
+int most_followers(MPI_Comm comm, const std::vector<Neighbour>& found, const coupling::Starts& starts);
+
 /// Every item on the rank that has it, owner(item); there those of rank 0 first, of each rank in the order in which it had
 /// them. Nothing is sent where all are there. Items are copied as bytes. Collective.
 template <class Item, class Owner>

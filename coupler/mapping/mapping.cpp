@@ -57,17 +57,6 @@ std::string without_twin(MPI_Comm comm, const PointSet& set, const std::vector<N
                      other.what, tolerance, list);
 }
 
-/// Whether two points of `found` follow the same one.
-bool some_twice(MPI_Comm comm, const std::vector<Neighbour>& found, const coupling::Starts& starts) {
-  std::vector<std::vector<GlobalIndex>> used(std::size_t(parallel::comm_size(comm)));
-  for (const Neighbour& n : found)
-    used[std::size_t(coupling::owner_of(starts, n.position))].push_back(n.position);
-  std::vector<GlobalIndex> mine;
-  for (const auto& part : parallel::all_to_all(comm, used)) mine.insert(mine.end(), part.begin(), part.end());
-  std::ranges::sort(mine);
-  return parallel::any(comm, std::ranges::adjacent_find(mine) != mine.end());
-}
-
 void require_twins(MPI_Comm comm, const PointSet& from, const PointSet& to,
                    const std::vector<Neighbour>& forth, const std::vector<Neighbour>& back,
                    const MappingParameters& parameters) {
@@ -79,7 +68,7 @@ void require_twins(MPI_Comm comm, const PointSet& from, const PointSet& to,
     throw Error("{}{}", text, advice);
   if (const std::string text = without_twin(comm, from, back, to, tolerance); !text.empty())
     throw Error("{}{}", text, advice);
-  if (!some_twice(comm, forth, from.starts) && count(comm, from) == count(comm, to)) return;
+  if (most_followers(comm, forth, from.starts) < 2 && count(comm, from) == count(comm, to)) return;
   throw Error(
       "Ambiguous matching: several {} lie within {:.3g} m of each other or of the same one of the {}. Set a "
       "smaller `coupling.mapping.tolerance`.",

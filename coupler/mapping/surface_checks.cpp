@@ -98,23 +98,6 @@ std::string other_extent(const Box& a, const std::string& from, const Box& b, co
           : "");
 }
 
-/// Most targets that follow one source.
-int most_followers(MPI_Comm comm, const std::vector<Neighbour>& found, const coupling::Starts& starts) {
-  std::vector<std::vector<GlobalIndex>> used(std::size_t(parallel::comm_size(comm)));
-  for (const Neighbour& n : found)
-    used[std::size_t(coupling::owner_of(starts, n.position))].push_back(n.position);
-  std::vector<GlobalIndex> mine;
-  for (const auto& part : parallel::all_to_all(comm, used)) mine.insert(mine.end(), part.begin(), part.end());
-  std::ranges::sort(mine);
-  int most = 0;
-  for (std::size_t i = 0; i < mine.size();) {
-    const std::size_t first = i;
-    while (i < mine.size() && mine[i] == mine[first]) ++i;
-    most = std::max(most, int(i - first));
-  }
-  return int(parallel::max(comm, double(most)));
-}
-
 /// Whether each of these points has another within a tenth of the faces there.
 bool all_near(MPI_Comm comm, const std::vector<Neighbour>& found, const std::vector<double>& size) {
   bool far = false;
