@@ -130,8 +130,9 @@ TEST(ExplicitLag, bounds_what_explicit_coupling_leaves) {
     }
     EXPECT_GE(lags.told(), 0.9 * error / size)
         << "mu " << s.mu << " drag " << s.drag << " end " << s.end << " dt " << s.dt << " order " << s.order;
-    if (s.mu == 0)  // errors of single steps add up
+    if (s.mu == 0) {  // errors of single steps add up
       EXPECT_LE(lags.told(), 20 * error / size);
+    }
     EXPECT_EQ(true_.text.find("the error of explicit coupling"), std::string::npos);
   }
 }

@@ -40,9 +40,12 @@ class Saying final : public Diagnostic {
 };
 
 struct Judged {
-  EffectFinding now{
-      .effect = "balance of the kinetic energy", .limit = 0.1, .left_out = false, .wrong_from = 0.5};
-  EffectFinding mean{.effect = "waves of pressure", .number = NAN, .limit = 0.1};
+  EffectFinding now{.effect = "balance of the kinetic energy",
+                    .limit = 0.1,
+                    .what = "",
+                    .left_out = false,
+                    .wrong_from = 0.5};
+  EffectFinding mean{.effect = "waves of pressure", .number = NAN, .limit = 0.1, .what = ""};
   Diagnostics all{0, true};
   std::size_t before = log::findings().size();
   Judged() {
@@ -94,6 +97,7 @@ TEST(Findings, make_the_models_part_of_the_error) {
   run.mean = {.effect = "thermal strain",
               .number = 2,
               .limit = 0.1,
+              .what = "",
               .advice = "use 'thermal-expansion'",
               .share = 0.3};
   run.all.accepted(1);
