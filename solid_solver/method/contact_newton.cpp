@@ -100,9 +100,8 @@ class ContactNewton {
       correct();
       const double before = size;
       size = residual();
-      // At rounding level Newton's method stands still, or creeps.
-      const double creeping = size >= before ? 1e3 : size > 0.5 * before ? 10 : 0;
-      if (size <= creeping * p_.tolerance * scale_ && i > 3) break;
+      // At rounding level Newton's method stands still, but for the last digits.
+      if (size >= 0.999 * before && size <= 1e3 * p_.tolerance * scale_ && i > 3) break;
     }
     statistics_.residual = size;
     return i;
