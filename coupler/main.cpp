@@ -4,7 +4,7 @@
 #include "common/app/job.hpp"
 #include "common/app/run_report.hpp"
 #include "common/log/log.hpp"
-#include "common/log/terminal.hpp"
+#include "common/log/progress.hpp"
 #include "coupler/coupler.hpp"
 #include "coupler/parameters/effect_cards.hpp"
 

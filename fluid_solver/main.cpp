@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
-#include "common/io/cut/load_mesh.hpp"
-#include "common/linalg/petsc_environment.hpp"
+#include "common/io/cut/cut_mesh.hpp"
+#include "common/linalg/petsc.hpp"
 #include "fluid_solver/boundary/given_velocity.hpp"
 #include "fluid_solver/parameters/auto_effects.hpp"
 #include "fluid_solver/parameters/effect_cards.hpp"

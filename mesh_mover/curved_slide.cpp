@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/base/nearest.hpp"
+#include "common/base/point_tree.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::mesh_mover {

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "common/effects/card.hpp"
+#include "common/effects/effects.hpp"
 #include "mesh_mover/parameters.hpp"
 
 namespace couplet::mesh_mover {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
-#include "common/linalg/petsc_environment.hpp"
+#include "common/linalg/petsc.hpp"
 #include "mesh_mover/diagnostics.hpp"
 #include "mesh_mover/effect_cards.hpp"
 #include "mesh_mover/mover.hpp"

@@ -4,7 +4,7 @@
 #include <limits>
 #include <span>
 
-#include "common/effects/card.hpp"
+#include "common/effects/effects.hpp"
 #include "plate_modal/model/parameters.hpp"
 
 namespace couplet::plate {

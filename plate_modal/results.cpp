@@ -8,7 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
-#include "common/mesh/on_root.hpp"
+#include "common/mesh/load.hpp"
 
 namespace couplet::plate {
 namespace {

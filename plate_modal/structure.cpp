@@ -7,7 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
-#include "common/mesh/on_root.hpp"
+#include "common/mesh/load.hpp"
 #include "plate_modal/results.hpp"
 
 namespace couplet::plate {

@@ -10,7 +10,7 @@
 #include "common/base/numbers.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
-#include "common/mesh/on_root.hpp"
+#include "common/mesh/load.hpp"
 #include "plate_modal/structure.hpp"
 
 namespace couplet::plate {

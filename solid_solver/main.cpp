@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "common/app/program.hpp"
-#include "common/io/cut/load_mesh.hpp"
-#include "common/linalg/petsc_environment.hpp"
+#include "common/io/cut/cut_mesh.hpp"
+#include "common/linalg/petsc.hpp"
 #include "solid_solver/diagnostics/table.hpp"
 #include "solid_solver/effects/auto_effects.hpp"
 #include "solid_solver/effects/effect_cards.hpp"

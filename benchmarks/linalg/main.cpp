@@ -5,7 +5,7 @@
 
 #include "benchmarks/linalg/system.hpp"
 #include "common/base/error.hpp"
-#include "common/linalg/petsc_environment.hpp"
+#include "common/linalg/petsc.hpp"
 
 int main(int argc, char** argv) {
   if (argc >= 5 && std::strcmp(argv[1], "solid") == 0) {

@@ -6,8 +6,7 @@
 #include "benchmarks/linalg/system.hpp"
 #include "common/base/error.hpp"
 #include "common/linalg/linear_solver.hpp"
-#include "common/linalg/petsc_check.hpp"
-#include "common/linalg/petsc_environment.hpp"
+#include "common/linalg/petsc.hpp"
 
 namespace couplet::benchmark {
 

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "common/linalg/petsc_check.hpp"
+#include "common/linalg/petsc.hpp"
 
 namespace couplet::benchmark {
 

@@ -7,7 +7,7 @@
 
 #include "benchmarks/linalg/meter.hpp"
 #include "benchmarks/linalg/system.hpp"
-#include "common/linalg/petsc_check.hpp"
+#include "common/linalg/petsc.hpp"
 
 namespace couplet::benchmark {
 

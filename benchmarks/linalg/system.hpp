@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/linalg/linear_map.hpp"
+#include "common/linalg/matrix.hpp"
 
 namespace couplet::benchmark {
 

@@ -24,7 +24,7 @@
 #include "common/coupling/wait.hpp"
 #include "common/log/finding.hpp"
 #include "common/log/log.hpp"
-#include "common/log/terminal.hpp"
+#include "common/log/progress.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/parallel/mpi_start.hpp"
 

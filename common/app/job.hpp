@@ -11,7 +11,7 @@
 #include "common/app/case/case_file.hpp"
 #include "common/app/case/roll_call.hpp"
 #include "common/app/loop/simulation.hpp"
-#include "common/app/watch/fault_injection.hpp"
+#include "common/app/watch/start_guard.hpp"
 #include "common/app/watch/watch.hpp"
 
 namespace couplet::app {

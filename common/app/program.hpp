@@ -15,8 +15,7 @@
 #include "common/coupling/mesh_motion.hpp"
 #include "common/coupling/participant.hpp"
 #include "common/diagnostics/diagnostics.hpp"
-#include "common/effects/card.hpp"
-#include "common/effects/choice.hpp"
+#include "common/effects/effects.hpp"
 
 namespace couplet::app {
 

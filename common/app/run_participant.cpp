@@ -17,7 +17,6 @@
 #include "common/log/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/log/progress.hpp"
-#include "common/log/terminal.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::app {

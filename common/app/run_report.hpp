@@ -9,7 +9,7 @@
 
 #include "common/coupling/error_parts.hpp"
 #include "common/coupling/participant.hpp"
-#include "common/effects/position.hpp"
+#include "common/effects/effects.hpp"
 #include "common/io/series.hpp"
 
 namespace couplet::app {

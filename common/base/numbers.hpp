@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -16,6 +17,14 @@
 #include "common/base/error.hpp"
 
 namespace couplet::base {
+
+/// The unit of a key that takes a difference of temperatures: a dimension apart from temperatures above absolute zero.
+inline constexpr std::string_view kelvin_difference = "K difference";
+
+/// Whether a number of this unit must not stand bare: two units in common use give it two plausible meanings. So it is
+/// for temperatures (20 K or 20 degC), angles and speeds of rotation (0.5 rad or 0.5 deg); differences of temperatures
+/// are the same in K and degC, everything else is in SI.
+constexpr bool needs_unit(std::string_view unit) { return unit == "K" || unit == "rad" || unit == "rad/s"; }
 
 /// A list of values as plain numbers, for checkpoints. The same list of calls writes them and reads them back:
 ///
@@ -148,5 +157,42 @@ void from_numbers(std::span<const double> saved, T& value, const char* what) {
   numbers(value);
   numbers.finish();
 }
+
+/// Numbers out of a checkpoint that say themselves how many follow: taken one after the other, and none that is not there.
+/// Throws Error.
+class SavedNumbers final {
+ public:
+  /// `what` completes "The checkpoint's ... are damaged".
+  SavedNumbers(std::span<const double> values, const char* what) : left_(values), what_(what) {}
+  std::span<const double> next(std::size_t n) {
+    if (n > left_.size()) damaged();
+    const std::span<const double> taken = left_.first(n);
+    left_ = left_.subspan(n);
+    return taken;
+  }
+  std::size_t left() const { return left_.size(); }
+  double real() { return next(1)[0]; }
+  /// A whole number from 0 to `most`.
+  std::size_t count(double most) {
+    const double value = real();
+    if (!(value >= 0 && value <= most) || value != std::floor(value)) damaged();
+    return static_cast<std::size_t>(value);
+  }
+  /// Of entries that take `size` numbers each, all of which must follow.
+  std::size_t count_of(std::size_t size) {
+    const std::size_t n = count(double(left_.size()));
+    if (n > left_.size() / size) damaged();
+    return n;
+  }
+  void fill(std::span<double> to) { std::ranges::copy(next(to.size()), to.begin()); }
+  std::span<const double> rest() { return next(left_.size()); }
+  [[noreturn]] void damaged() const {
+    throw Error("The checkpoint's {} are damaged. Use an earlier one.", what_);
+  }
+
+ private:
+  std::span<const double> left_;
+  const char* what_;
+};
 
 }  // namespace couplet::base

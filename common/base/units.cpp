@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "common/base/bare_numbers.hpp"
 #include "common/base/error.hpp"
+#include "common/base/numbers.hpp"
 #include "common/base/text.hpp"
 
 namespace couplet::base {

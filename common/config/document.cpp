@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/config/document.hpp"
 
-#include <yaml-cpp/eventhandler.h>
+#include <fmt/format.h>
 
+#include <yaml-cpp/eventhandler.h>
 #include <algorithm>
+#include <cmath>
 #include <fstream>
+#include <optional>
+#include <set>
 #include <sstream>
+#include <tuple>
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/base/units.hpp"
 
 namespace couplet::config {
+
 namespace {
 
 /// Looks for what yaml-cpp lets pass and nobody after it could bear.
@@ -278,6 +285,106 @@ std::size_t Document::hash() const {
   std::string all = content_->text;
   for (const auto& [path, option] : content_->overrides) all += '\0' + option;
   return base::stable_hash(all);
+}
+
+namespace {
+
+void collect(const YAML::Node& node, const std::string& path, std::map<std::string, std::string>& found) {
+  if (node.IsMap() && node.size() > 0) {
+    for (const auto& item : node) collect(item.second, join_path(path, item.first.Scalar()), found);
+  } else if (node.IsSequence() && node.size() > 0) {
+    for (std::size_t i = 0; i < node.size(); ++i) collect(node[i], fmt::format("{}[{}]", path, i), found);
+  } else {
+    found[path] = node.IsMap() ? "{}" : node.IsSequence() ? "[]" : node.IsNull() ? "" : node.Scalar();
+  }
+}
+
+struct Si {
+  double value;
+  std::optional<std::array<int, 4>> dimension;  // of a number with a unit
+};
+
+std::optional<Si> in_si(const std::string& text) {
+  const auto quantity = base::split_quantity(text);
+  if (!quantity) return {};
+  if (quantity->unit.empty()) return Si{quantity->number, {}};
+  try {
+    const base::Unit unit = base::parse_unit(quantity->unit);
+    return Si{unit.factor * quantity->number + unit.offset, unit.dimension};
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+std::map<std::string, std::string> leaves(const Document& document) {
+  std::map<std::string, std::string> found;
+  collect(document.content().root, "", found);
+  return found;
+}
+
+bool same_value(const std::string& a, const std::string& b) {
+  if (a == b) return true;
+  const auto x = in_si(a), y = in_si(b);
+  if (!x || !y) return false;
+  if (x->dimension && y->dimension && *x->dimension != *y->dimension) return false;
+  return std::abs(x->value - y->value) <= 1e-14 * std::max(std::abs(x->value), std::abs(y->value));
+}
+
+Place place_of(const YAML::Node& node) {
+  const YAML::Mark mark = node.Mark();
+  if (mark.is_null()) return {};
+  return {mark.line + 1, mark.column + 1, ""};
+}
+
+std::string join_path(const std::string& parent, std::string_view name) {
+  return parent.empty() ? std::string(name) : fmt::format("{}.{}", parent, name);
+}
+
+bool is_below(std::string_view path, std::string_view above) {
+  if (!path.starts_with(above)) return false;
+  return path.size() == above.size() || path[above.size()] == '.' || path[above.size()] == '[';
+}
+
+std::vector<std::string> key_names(const YAML::Node& map) {
+  std::vector<std::string> names;
+  if (map.IsMap())
+    for (const auto& item : map) names.push_back(item.first.Scalar());
+  return names;
+}
+
+Entry find(const YAML::Node& map, std::string_view name) {
+  if (map.IsMap())
+    for (const auto& item : map)
+      if (item.first.Scalar() == name) return {true, place_of(item.first), item.second};
+  return {};
+}
+
+std::string format(const std::string& file, const Message& message) {
+  const Place& place = message.place;
+  std::string where = file;
+  if (!place.override_text.empty())
+    where = place.override_text;
+  else if (place.line > 0)
+    where = fmt::format("{}:{}:{}", file, place.line, place.column);
+  return message.path.empty() ? fmt::format("{}: {}", where, message.text)
+                              : fmt::format("{}: {}: {}", where, message.path, message.text);
+}
+
+std::vector<std::string> format_all(const std::string& file, std::vector<Message> messages) {
+  const auto order = [](const Message& m) {
+    return std::make_tuple(!m.place.override_text.empty(), m.place.line, m.place.column);
+  };
+  std::stable_sort(messages.begin(), messages.end(),
+                   [&](const Message& a, const Message& b) { return order(a) < order(b); });
+  std::vector<std::string> lines;
+  std::set<std::string> seen;
+  for (const Message& message : messages) {
+    std::string line = format(file, message);
+    if (seen.insert(line).second) lines.push_back(std::move(line));
+  }
+  return lines;
 }
 
 }  // namespace couplet::config

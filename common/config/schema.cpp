@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "common/base/bare_numbers.hpp"
+#include "common/base/numbers.hpp"
 #include "common/base/text.hpp"
 #include "common/config/description.hpp"
 #include "common/config/load.hpp"

@@ -2,6 +2,7 @@
 #include "common/config/values.hpp"
 
 #include <fmt/format.h>
+
 #include <yaml-cpp/yaml.h>
 #include <array>
 #include <cmath>
@@ -10,13 +11,14 @@
 #include <string>
 #include <vector>
 
-#include "common/base/bare_numbers.hpp"
 #include "common/base/error.hpp"
+#include "common/base/numbers.hpp"
 #include "common/base/text.hpp"
 #include "common/base/units.hpp"
 #include "common/config/visitor.hpp"
 
 namespace couplet::config {
+
 namespace {
 
 struct Axis {
@@ -364,6 +366,26 @@ std::string format_value(const Slot& slot, std::string_view unit) {
           [&](const Word& v) { return v.current; },
       },
       slot);
+}
+
+std::string doubt_of_wave_speed(double modulus, double density) {
+  constexpr double slowest = 0.999, fastest = 20e3;  // [m/s]
+  if (!(modulus > 0) || !(density > 0)) return "";
+  const double speed = std::sqrt(modulus / density);
+  if (speed >= slowest && speed <= fastest) return "";
+  return fmt::format(
+      "waves would travel at {:.3g} m/s (usual: 1 to 20000 m/s): implausible; check the units of the modulus ({:g} Pa) and of the "
+      "density ({:g} kg/m^3).",
+      speed, modulus, density);
+}
+
+std::string doubt_of_kinematic_viscosity(double viscosity, double density) {
+  constexpr double least = 5e-8;  // [m^2/s]
+  if (!(viscosity > 0) || !(density > 0) || viscosity / density >= least) return "";
+  return fmt::format(
+      "viscosity/density is {:.3g} m^2/s (usual: at least {:g} m^2/s): implausible; 'viscosity' is the dynamic one, in Pa s: the "
+      "kinematic one times the density would be {:g} Pa s.",
+      viscosity / density, least, viscosity * density);
 }
 
 }  // namespace couplet::config

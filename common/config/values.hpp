@@ -2,7 +2,6 @@
 #pragma once
 
 #include <yaml-cpp/yaml.h>
-
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -27,5 +26,12 @@ std::string describe_type(const Slot& slot);
 
 /// The value in the member now, as it would stand in the YAML, with its unit where it needs one; empty optional: "".
 std::string format_value(const Slot& slot, std::string_view unit);
+
+/// Pairs of keys each of which is plausible alone; for Section::doubt. Empty: nothing to say.
+
+/// sqrt(modulus/density): 1 m/s (gels) to 20 km/s (diamond).
+std::string doubt_of_wave_speed(double modulus, double density);
+/// viscosity/density: hardly any fluid has less than 5e-8 m^2/s (mercury: 1e-7, water: 1e-6).
+std::string doubt_of_kinematic_viscosity(double viscosity, double density);
 
 }  // namespace couplet::config

@@ -5,10 +5,10 @@
 #include <cstring>
 
 #include "common/base/error.hpp"
-#include "common/coupling/sub_stepping.hpp"
-#include "common/coupling/unpacker.hpp"
+#include "common/coupling/step_plan.hpp"
 
 namespace couplet::coupling {
+
 namespace {
 
 constexpr std::int64_t command_mark = 0x434f'4d4d;  // "COMM"

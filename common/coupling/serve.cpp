@@ -6,7 +6,7 @@
 
 #include "common/base/error.hpp"
 #include "common/coupling/channel.hpp"
-#include "common/coupling/sub_stepping.hpp"
+#include "common/coupling/step_plan.hpp"
 #include "common/coupling/wait.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/coupling/error_parts.hpp"
-#include "common/effects/position.hpp"
+#include "common/effects/effects.hpp"
 #include "common/log/finding.hpp"
 
 namespace couplet::io {

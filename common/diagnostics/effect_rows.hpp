@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/diagnostics/diagnostics.hpp"
-#include "common/effects/card.hpp"
+#include "common/effects/effects.hpp"
 
 namespace couplet::diagnostics {
 

@@ -1,11 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "common/effects/effects.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "common/effects/card.hpp"
-
 namespace couplet::effects {
+
+std::string text(const EffectChoice& c) {
+  if (c.given)
+    return fmt::format("auto: {}: set by the case; auto would choose {} ({})", c.key, c.what, c.reason);
+  return fmt::format("auto: {}{}{} ({})", c.key, c.key.empty() ? "" : ": ", c.what, c.reason);
+}
+
+std::string text(const ExpectedCost& c) {
+  const bool long_step = c.seconds_a_step >= 1;
+  return fmt::format(
+      "{} cells: about {:.0f} MB, {:.2g} {} per step on one rank (time within a factor of "
+      "three)",
+      c.cells, 1e-6 * c.bytes, long_step ? c.seconds_a_step : 1e3 * c.seconds_a_step, long_step ? "s" : "ms");
+}
+
 namespace {
 
 /// What it adds in words, then by the list of prices.
@@ -58,6 +73,29 @@ std::string markdown(const std::string& program, const std::vector<Effect>& effe
     lines += fmt::format("| {} | {} | {} | {} | {} | {} |\n", e.name, e.keys, e.adds,
                          column(e.prices, memory_text, "B"), column(e.prices, time_text, "%"), e.judged_by);
   return lines;
+}
+
+void keep_nearest(std::vector<Coordinate>& kept, const std::vector<Coordinate>& seen) {
+  for (const Coordinate& c : seen) {
+    const auto before = std::ranges::find(kept, c.quantity, &Coordinate::quantity);
+    if (before == kept.end())
+      kept.push_back(c);
+    else if (c.used() > before->used())
+      *before = c;
+  }
+}
+
+std::string position_sentence(const std::vector<Coordinate>& position) {
+  if (position.empty()) return {};
+  std::string list;
+  for (const Coordinate& c : position)
+    list += fmt::format("{}{} {:.3g} of {}{:.3g}", list.empty() ? "" : ", ", c.quantity, c.value,
+                        c.floor ? "at least " : "", c.limit);
+  const Coordinate& nearest = *std::ranges::max_element(position, {}, &Coordinate::used);
+  const double used = nearest.used();
+  return fmt::format("on the map: {}; {}: {} (docs/stability.md, map {}).", list,
+                     used > 1 ? "beyond the limit" : "nearest limit",
+                     fmt::format("{}, {:.0f} % of the way", nearest.quantity, 100 * used), nearest.map);
 }
 
 }  // namespace couplet::effects

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "common/elasticity/vector_at.hpp"
-#include "common/fv/nodes.hpp"
+#include "common/fv/vertex_interpolation.hpp"
 
 namespace couplet::elastic {
 namespace {

@@ -11,7 +11,7 @@
 #include "common/elasticity/elastic_boundary.hpp"
 #include "common/elasticity/lame.hpp"
 #include "common/elasticity/vertex_constraints.hpp"
-#include "common/fv/face_gradient.hpp"
+#include "common/fv/gradients.hpp"
 #include "common/fv/vertex_interpolation.hpp"
 #include "common/linalg/matrix.hpp"
 #include "common/mesh/mesh.hpp"

@@ -7,7 +7,7 @@
 
 #include "common/elasticity/elasticity.hpp"
 #include "common/elasticity/lanes.hpp"
-#include "common/fv/vertex_weights.hpp"
+#include "common/fv/vertex_interpolation.hpp"
 #include "common/mesh/periodic_points.hpp"
 
 namespace couplet::elastic {

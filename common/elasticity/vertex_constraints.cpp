@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/mesh/transpose.hpp"
+#include "common/mesh/topology.hpp"
 
 namespace couplet::elastic {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/fv/nodes.hpp"
+#include "common/fv/vertex_interpolation.hpp"
 
 namespace couplet::fv {
 namespace {

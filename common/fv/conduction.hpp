@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/base/types.hpp"
-#include "common/fv/face_gradient.hpp"
+#include "common/fv/gradients.hpp"
 #include "common/fv/vertex_interpolation.hpp"
 #include "common/linalg/matrix.hpp"
 #include "common/mesh/mesh.hpp"

@@ -9,7 +9,7 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/base/units.hpp"
-#include "common/csv/cells.hpp"
+#include "common/csv/csv_reader.hpp"
 #include "common/fv/table.hpp"
 
 namespace couplet::fv {

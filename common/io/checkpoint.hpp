@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "common/mesh/order/entries.hpp"
-#include "common/parallel/global_order.hpp"
+#include "common/parallel/index_map.hpp"
 
 namespace couplet::io {
 

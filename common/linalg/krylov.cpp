@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "common/base/error.hpp"
-#include "common/linalg/dot.hpp"
-#include "common/linalg/petsc_shell.hpp"
+#include "common/linalg/matrix.hpp"
+#include "common/linalg/petsc.hpp"
 #include "common/linalg/residual_projection.hpp"
 #include "common/log/log.hpp"
 #include "common/log/progress.hpp"

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "common/linalg/linear_map.hpp"
 #include "common/linalg/linear_solver.hpp"
-#include "common/linalg/petsc_shell.hpp"
+#include "common/linalg/matrix.hpp"
+#include "common/linalg/petsc.hpp"
 
 namespace couplet::linalg {
 

@@ -7,9 +7,9 @@
 #include <exception>
 #include <utility>
 
-#include "common/linalg/dot.hpp"
 #include "common/linalg/krylov.hpp"
-#include "common/linalg/petsc_check.hpp"
+#include "common/linalg/matrix.hpp"
+#include "common/linalg/petsc.hpp"
 #include "common/log/progress.hpp"
 #include "common/parallel/collective.hpp"
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "common/linalg/matrix.hpp"
-#include "common/linalg/petsc_shell.hpp"
+#include "common/linalg/petsc.hpp"
 
 namespace couplet::linalg {
 

@@ -5,7 +5,7 @@
 #include <exception>
 #include <utility>
 
-#include "common/linalg/petsc_check.hpp"
+#include "common/linalg/petsc.hpp"
 
 namespace couplet::linalg {
 

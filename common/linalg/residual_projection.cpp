@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/linalg/residual_projection.hpp"
 #include "common/base/error.hpp"
-#include "common/base/saved_numbers.hpp"
+#include "common/base/numbers.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "common/linalg/dot.hpp"
+#include "common/linalg/matrix.hpp"
 
 namespace couplet::linalg {
 namespace {

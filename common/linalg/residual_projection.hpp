@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "common/linalg/linear_map.hpp"
+#include "common/linalg/matrix.hpp"
 
 namespace couplet::linalg {
 

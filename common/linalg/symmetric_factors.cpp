@@ -5,7 +5,7 @@
 #include <cmath>
 #include <exception>
 
-#include "common/linalg/petsc_check.hpp"
+#include "common/linalg/petsc.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::linalg {

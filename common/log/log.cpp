@@ -10,7 +10,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
-#include "common/log/terminal.hpp"
+#include "common/log/progress.hpp"
 
 namespace couplet::log {
 namespace {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/base/types.hpp"
+#include "common/parallel/collective.hpp"
 #include "common/parallel/index_map.hpp"
 
 namespace couplet::mesh {
@@ -140,5 +141,21 @@ Geometry compute_geometry(const Mesh& mesh, std::vector<Vec3> points);
 /// vector (out of the owner); thesis (4.16)-(4.17), exact, with the same diagonals as compute_geometry. Per
 /// local face. The signed sum over a cell's faces is its change of volume to round-off.
 std::vector<double> swept_volumes(const Mesh& mesh, std::span<const Vec3> from, std::span<const Vec3> to);
+
+/// The box around a mesh [m], over all ranks.
+struct Extent {
+  Vec3 lower, upper;
+  double diagonal() const { return (upper - lower).norm(); }
+};
+
+/// Collective.
+inline Extent extent_of(const Mesh& mesh, const Geometry& geometry) {
+  Extent box{Vec3::Constant(1e300), Vec3::Constant(-1e300)};
+  for (const Vec3& x : geometry.points) box.lower = box.lower.cwiseMin(x), box.upper = box.upper.cwiseMax(x);
+  for (int a = 0; a < 3; ++a)
+    box.lower[a] = parallel::min(mesh.comm, box.lower[a]),
+    box.upper[a] = parallel::max(mesh.comm, box.upper[a]);
+  return box;
+}
 
 }  // namespace couplet::mesh

@@ -2,6 +2,7 @@
 #include "common/mesh/topology.hpp"
 
 #include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +10,7 @@
 #include "common/base/text.hpp"
 
 namespace couplet::mesh {
+
 namespace {
 
 /// Volume of a cell as its points stand, quadrilateral faces cut at their first point: good enough for a

@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "common/modes/rigid_motion.hpp"
+#include "common/modes/modal_model.hpp"
 
 namespace couplet::modes {
 namespace {

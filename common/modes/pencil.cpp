@@ -11,7 +11,7 @@
 #include <numeric>
 
 #include "common/base/error.hpp"
-#include "common/linalg/petsc_shell.hpp"
+#include "common/linalg/petsc.hpp"
 #include "common/linalg/symmetric_factors.hpp"
 #include "common/parallel/collective.hpp"
 

@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "common/linalg/linear_map.hpp"
 #include "common/linalg/matrix.hpp"
 
 namespace couplet::modes {

@@ -2,8 +2,11 @@
 #include "common/modes/surface_parts.hpp"
 
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
@@ -12,6 +15,7 @@
 #include "common/base/point_tree.hpp"
 
 namespace couplet::modes {
+
 namespace {
 
 /// A face that goes along an edge, and whether from its smaller to its larger number.
@@ -95,6 +99,231 @@ std::string neighbour_problem_of(const ModalModel& model, const WeldedSurface& w
         "one of them is inside out",
         uses[0].face + 1, uses[1].face + 1, x.x(), x.y(), x.z());
   }
+  return "";
+}
+
+namespace {
+
+/// A surface whose area vectors add up to more than this share of its area is a sheet: those of a closed one cancel,
+/// of a plate they leave the missing rim, of half of a tube 0.64.
+constexpr double sheet_share = 0.25;
+
+/// The middle of the edges that one face alone has; none: the surface is closed.
+std::optional<Vec3> middle_of_rim(const ModalModel& model) {
+  std::map<std::pair<Index, Index>, int> uses;
+  for (Index f = 0; f < model.faces.size(); ++f) {
+    const auto corners = model.faces[f];
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      ++uses[std::minmax(corners[i], corners[(i + 1) % corners.size()])];
+  }
+  Vec3 sum = Vec3::Zero();
+  double length = 0;
+  for (const auto& [edge, n] : uses) {
+    if (n > 1) continue;
+    const Vec3 &a = model.vertices[edge.first], &b = model.vertices[edge.second];
+    sum += (b - a).norm() * 0.5 * (a + b);
+    length += (b - a).norm();
+  }
+  if (!(length > 0)) return std::nullopt;
+  return sum / length;
+}
+
+}  // namespace
+
+std::optional<double> volume_behind(const ModalModel& model) {
+  const std::vector<Vec3> centres = face_centres(model), areas = face_areas(model);
+  Vec3 left = Vec3::Zero(), middle = Vec3::Zero();
+  double area = 0;
+  for (std::size_t f = 0; f < areas.size(); ++f) {
+    left += areas[f];
+    area += areas[f].norm();
+    middle += areas[f].norm() * centres[f];
+  }
+  if (!(area > 0) || left.norm() > sheet_share * area) return std::nullopt;
+  middle /= area;
+  const auto about = [&](const Vec3& origin) {
+    double volume = 0;
+    for (std::size_t f = 0; f < areas.size(); ++f) volume += (centres[f] - origin).dot(areas[f]) / 3;
+    return volume;
+  };
+  const std::optional<Vec3> rim = middle_of_rim(model);
+  if (!rim) return about(middle);
+  // Where the rim is wide and bent the cone is a guess: what the surface's own middle sees must have the same sign.
+  const double by_rim = about(*rim), by_middle = about(middle);
+  if ((by_rim > 0) != (by_middle > 0)) return std::nullopt;
+  return by_rim;
+}
+
+namespace {
+
+/// Where a line meets a triangle, in its direction's lengths; NaN: nowhere [Moeller and Trumbore 1997].
+double meeting(const Vec3& from, const Vec3& along, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, p = along.cross(ac);
+  const double none = std::numeric_limits<double>::quiet_NaN(), determinant = ab.dot(p);
+  if (std::abs(determinant) <= 1e-12 * ab.norm() * ac.norm()) return none;
+  const Vec3 s = from - a, q = s.cross(ab);
+  const double u = s.dot(p) / determinant, v = along.dot(q) / determinant;
+  if (!(u >= 0 && v >= 0 && u + v <= 1)) return none;
+  return ac.dot(q) / determinant;
+}
+
+/// What a line along the normal of a face meets of the surface.
+struct Crossings {
+  int before = 0, behind = 0;                       // faces
+  bool other_before = false, other_behind = false;  // of another part
+  bool touches = false;  // a face in the same place: of a body that touches, or twice
+};
+
+/// What says on which side of its faces a part lies, by areas [m^2].
+struct Votes {
+  double outward = 0, inward = 0, all = 0;
+};
+
+class Sides {
+ public:
+  Sides(const ModalModel& model, const WeldedSurface& welded)
+      : model_(model), welded_(welded), areas_(face_areas(model)), part_of_(areas_.size()) {
+    for (std::size_t p = 0; p < welded.part.size(); ++p)
+      for (const Index f : welded.part[p]) part_of_[std::size_t(f)] = p;
+    near_ = 1e-9 * extent_of(model).norm();
+  }
+
+  /// Of at most so many faces of a part, evenly among all.
+  Votes of(std::size_t part, std::size_t samples) const {
+    const std::vector<Index>& faces = welded_.part[part];
+    const bool sheet = is_sheet(faces);
+    Votes votes;
+    const std::size_t n = std::min(samples, faces.size());
+    for (std::size_t i = 0; i < n; ++i) {
+      const Index f = faces[i * faces.size() / n];
+      const double area = areas_[std::size_t(f)].norm();
+      votes.all += area;
+      const Crossings seen = crossings(f);
+      const bool before = seen.before % 2 == 1, behind = seen.behind % 2 == 1;
+      if (seen.touches || before == behind) continue;
+      // A bent sheet that meets itself has no side for that.
+      if (sheet && !(before ? seen.other_before : seen.other_behind)) continue;
+      (before ? votes.inward : votes.outward) += area;
+    }
+    return votes;
+  }
+
+  /// Volume behind a part by itself.
+  std::optional<double> volume(std::size_t part) const {
+    ModalModel alone;
+    alone.vertices = model_.vertices;
+    for (const Index f : welded_.part[part])
+      if (!welded_.faces[f].empty()) alone.faces.push_row(welded_.faces[f]);
+    return volume_behind(alone);
+  }
+
+  /// Its words in a message.
+  std::string name(std::size_t part) const {
+    if (welded_.part.size() == 1) return "its faces";
+    Vec3 middle = Vec3::Zero();
+    double area = 0;
+    const std::vector<Vec3> centres = face_centres(model_);
+    for (const Index f : welded_.part[part]) {
+      middle += areas_[std::size_t(f)].norm() * centres[std::size_t(f)];
+      area += areas_[std::size_t(f)].norm();
+    }
+    middle /= area;
+    return fmt::format(
+        "the faces of part {} of {} ({} faces from face {} on, centred at ({:.4g}, {:.4g}, {:.4g}))",
+        part + 1, welded_.part.size(), welded_.part[part].size(), welded_.part[part].front() + 1, middle.x(),
+        middle.y(), middle.z());
+  }
+
+ private:
+  bool is_sheet(const std::vector<Index>& faces) const {
+    Vec3 left = Vec3::Zero();
+    double area = 0;
+    for (const Index f : faces) left += areas_[std::size_t(f)], area += areas_[std::size_t(f)].norm();
+    return left.norm() > sheet_share * area;
+  }
+
+  /// From a place in the face that no edge of a face opposite is likely to meet.
+  Crossings crossings(Index face) const {
+    const auto corners = model_.faces[face];
+    const Vec3 from = 0.41 * model_.vertices[corners[0]] + 0.33 * model_.vertices[corners[1]] +
+                      0.26 * model_.vertices[corners[2]];
+    const Vec3 along = areas_[std::size_t(face)].normalized();
+    Crossings seen;
+    for (Index f = 0; f < model_.faces.size(); ++f) {
+      if (f == face) continue;
+      const auto v = model_.faces[f];
+      for (std::size_t i = 2; i < v.size(); ++i) {
+        const double at =
+            meeting(from, along, model_.vertices[v[0]], model_.vertices[v[i - 1]], model_.vertices[v[i]]);
+        if (std::isnan(at)) continue;
+        const bool other = part_of_[std::size_t(f)] != part_of_[std::size_t(face)];
+        seen.touches = seen.touches || std::abs(at) <= near_;
+        ++(at > 0 ? seen.before : seen.behind);
+        bool& other_there = at > 0 ? seen.other_before : seen.other_behind;
+        other_there = other_there || other;
+        break;
+      }
+    }
+    return seen;
+  }
+
+  const ModalModel& model_;
+  const WeldedSurface& welded_;
+  std::vector<Vec3> areas_;
+  std::vector<std::size_t> part_of_;
+  double near_ = 0;
+};
+
+/// Of one part. Empty: it is right, or nothing tells.
+std::string part_problem(const Sides& sides, std::size_t part, std::size_t samples, Facing wanted) {
+  constexpr const char* rule = "(the vertices of a face must turn right-handed about its outward normal)";
+  const Votes votes = sides.of(part, samples);
+  const double said = votes.outward + votes.inward;
+  const double right = wanted == Facing::outward ? votes.outward : votes.inward, wrong = said - right;
+  if (said >= 0.5 * votes.all) {
+    if (right >= 0.9 * said) return "";
+    if (wrong >= 0.9 * said)
+      return wanted == Facing::outward
+                 ? fmt::format(
+                       "{} are inside out: their normals point into the structure, but must point out of it "
+                       "{}",
+                       sides.name(part), rule)
+                 : fmt::format(
+                       "{} point out of the space that the surface encloses, but those of a cavity wall "
+                       "('modes.cavity: true') must point into it {}",
+                       sides.name(part), rule);
+  }
+  const std::optional<double> volume = sides.volume(part);
+  if (!volume) {
+    if (!(said >= 0.5 * votes.all)) return "";
+    return fmt::format(
+        "cannot determine on which side of {} the structure lies: {:.0f} % of them face away from other "
+        "faces and {:.0f} % towards them. Give the complete surface of the structure, closed where it is "
+        "closed",
+        sides.name(part), 100 * votes.outward / said, 100 * votes.inward / said);
+  }
+  if (wanted == Facing::outward ? !(*volume < 0) : !(*volume > 0)) return "";
+  return wanted == Facing::outward
+             ? fmt::format(
+                   "{} are inside out: their normals point into the {:.3g} m^3 that the surface encloses, "
+                   "but must point out of it {}",
+                   sides.name(part), -*volume, rule)
+             : fmt::format(
+                   "{} point out of the {:.3g} m^3 that the surface encloses, but those of a cavity wall "
+                   "('modes.cavity: true') must point into it {}",
+                   sides.name(part), *volume, rule);
+}
+
+}  // namespace
+
+std::string facing_problem_of(const ModalModel& model, Facing wanted) {
+  const WeldedSurface welded = weld(model);
+  if (std::string problem = neighbour_problem_of(model, welded); !problem.empty()) return problem;
+  const Sides sides(model, welded);
+  const std::size_t parts = welded.part.size();
+  const std::size_t samples = std::clamp<std::size_t>(2000 / parts, 5, 64);
+  for (std::size_t p = 0; p < parts; ++p)
+    if (std::string problem = part_problem(sides, p, samples, wanted); !problem.empty()) return problem;
   return "";
 }
 

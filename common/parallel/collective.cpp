@@ -4,6 +4,7 @@
 #include <numeric>
 
 namespace couplet::parallel {
+
 namespace {
 
 template <class T>
@@ -90,4 +91,5 @@ std::vector<std::vector<char>> all_to_all_bytes(MPI_Comm comm, const std::vector
 }
 
 }  // namespace detail
+
 }  // namespace couplet::parallel

@@ -3,9 +3,12 @@
 
 #include <mpi.h>
 
+#include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "common/base/error.hpp"
 #include "common/base/types.hpp"
 
 namespace couplet::parallel {
@@ -67,6 +70,63 @@ std::vector<std::vector<T>> all_to_all(MPI_Comm comm, const std::vector<std::vec
   for (const auto& part : detail::all_to_all_bytes(comm, bytes))
     received.push_back(detail::from_bytes<T>(part));
   return received;
+}
+
+/// What goes to each rank, or came from each, rank by rank in one array: rank r's items are [first[r], first[r + 1]).
+template <class T>
+struct Parcels {
+  std::vector<T> items;
+  std::vector<std::size_t> first;
+  std::span<const T> of(int rank) const {
+    return {items.data() + first[rank], first[rank + 1] - first[rank]};
+  }
+  std::span<T> of(int rank) { return {items.data() + first[rank], first[rank + 1] - first[rank]}; }
+};
+
+/// Room for `count[r]` items to each rank.
+template <class T>
+Parcels<T> make_parcels(const std::vector<std::size_t>& count) {
+  Parcels<T> parcels;
+  parcels.first.assign(1, 0);
+  for (const std::size_t n : count) parcels.first.push_back(parcels.first.back() + n);
+  parcels.items.resize(parcels.first.back());
+  return parcels;
+}
+
+/// `items` by the rank that `rank_of` gives each, in their order.
+template <class T, class RankOf>
+Parcels<T> sort_by_rank(MPI_Comm comm, const std::vector<T>& items, RankOf&& rank_of) {
+  std::vector<std::size_t> count(comm_size(comm), 0);
+  for (const T& item : items) ++count[rank_of(item)];
+  Parcels<T> parcels = make_parcels<T>(count);
+  std::vector<std::size_t> next(parcels.first.begin(), parcels.first.end() - 1);
+  for (const T& item : items) parcels.items[next[rank_of(item)]++] = item;
+  return parcels;
+}
+
+/// Sends each rank its parcel and gives what came from each; T is copied byte by byte. Unlike all_to_all() it holds what
+/// goes and what comes once, nothing else. Collective.
+template <class T>
+Parcels<T> exchange(MPI_Comm comm, const Parcels<T>& out) {
+  const int size = comm_size(comm);
+  std::vector<int> out_count(size), in_count(size), out_first(size), in_first(size);
+  const auto too_many = [](std::size_t n) { return n > std::size_t(std::numeric_limits<int>::max()); };
+  for (int r = 0; r < size; ++r) {
+    out_count[r] = static_cast<int>(out.first[r + 1] - out.first[r]);
+    out_first[r] = static_cast<int>(out.first[r]);
+  }
+  MPI_Alltoall(out_count.data(), 1, MPI_INT, in_count.data(), 1, MPI_INT, comm);
+  Parcels<T> in = make_parcels<T>({in_count.begin(), in_count.end()});
+  if (any(comm, too_many(out.items.size()) || too_many(in.items.size())))
+    throw Error("A rank would have to exchange more than 2^31 entries at once. Start more processes.");
+  for (int r = 0; r < size; ++r) in_first[r] = static_cast<int>(in.first[r]);
+  MPI_Datatype type = MPI_DATATYPE_NULL;
+  MPI_Type_contiguous(static_cast<int>(sizeof(T)), MPI_BYTE, &type);
+  MPI_Type_commit(&type);
+  MPI_Alltoallv(out.items.data(), out_count.data(), out_first.data(), type, in.items.data(), in_count.data(),
+                in_first.data(), type, comm);
+  MPI_Type_free(&type);
+  return in;
 }
 
 }  // namespace couplet::parallel

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "common/base/error.hpp"
-#include "common/base/saved_numbers.hpp"
+#include "common/base/numbers.hpp"
 
 namespace couplet::time {
 namespace {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "common/parallel/global_order.hpp"
+#include "common/parallel/index_map.hpp"
 #include "coupler/parameters/parameters.hpp"
 
 namespace couplet::io {

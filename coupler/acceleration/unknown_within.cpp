@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "common/coupling/sub_stepping.hpp"
+#include "common/coupling/step_plan.hpp"
 #include "coupler/acceleration/unknown.hpp"
 
 namespace couplet::coupler {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/coupling/participant.hpp"
-#include "common/parallel/global_order.hpp"
+#include "common/parallel/index_map.hpp"
 
 namespace couplet::io {
 class Archive;

@@ -9,7 +9,7 @@
 
 #include "common/coupling/blocks.hpp"
 #include "common/coupling/participant.hpp"
-#include "common/parallel/parcels.hpp"
+#include "common/parallel/collective.hpp"
 
 namespace couplet::coupler {
 

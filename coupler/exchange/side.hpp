@@ -6,7 +6,7 @@
 #include <string>
 
 #include "common/coupling/messages.hpp"
-#include "common/parallel/global_order.hpp"
+#include "common/parallel/index_map.hpp"
 #include "coupler/exchange/search.hpp"
 
 namespace couplet::coupler {

@@ -8,7 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
-#include "common/coupling/sub_stepping.hpp"
+#include "common/coupling/step_plan.hpp"
 #include "common/parallel/collective.hpp"
 #include "coupler/mapping/conjugate_map.hpp"
 #include "coupler/mapping/sparse_map.hpp"

@@ -9,7 +9,6 @@
 #include <limits>
 
 #include "common/base/error.hpp"
-#include "common/base/nearest.hpp"
 #include "common/base/point_tree.hpp"
 #include "coupler/mapping/face_weights.hpp"
 

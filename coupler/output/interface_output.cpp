@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "common/base/error.hpp"
-#include "common/csv/cells.hpp"
+#include "common/csv/csv_reader.hpp"
 #include "common/csv/line_reader.hpp"
 #include "common/parallel/collective.hpp"
 

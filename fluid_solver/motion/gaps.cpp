@@ -7,7 +7,7 @@
 
 #include "common/base/constants.hpp"
 #include "common/base/error.hpp"
-#include "common/base/nearest.hpp"
+#include "common/base/point_tree.hpp"
 #include "common/base/text.hpp"
 #include "common/fv/expression.hpp"
 #include "common/parallel/collective.hpp"

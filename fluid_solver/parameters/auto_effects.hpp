@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "common/effects/choice.hpp"
-#include "common/mesh/gmsh/mesh_facts.hpp"
+#include "common/effects/effects.hpp"
+#include "common/mesh/gmsh/gmsh.hpp"
 #include "fluid_solver/parameters/parameters.hpp"
 
 namespace couplet::fluid {

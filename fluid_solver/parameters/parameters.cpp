@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "common/base/text.hpp"
-#include "common/config/pairs.hpp"
+#include "common/config/values.hpp"
 #include "common/fv/expression.hpp"
 #include "common/io/fields/surface_series.hpp"
 #include "common/mesh/periodic_points.hpp"

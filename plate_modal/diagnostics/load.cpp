@@ -7,7 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/io/archive.hpp"
-#include "common/mesh/on_root.hpp"
+#include "common/mesh/load.hpp"
 #include "plate_modal/diagnostics/motion.hpp"
 #include "plate_modal/diagnostics/view.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "common/mesh/on_root.hpp"
+#include "common/mesh/load.hpp"
 #include "plate_modal/diagnostics/motion.hpp"
 #include "plate_modal/diagnostics/view.hpp"
 #include "plate_modal/model/outline.hpp"

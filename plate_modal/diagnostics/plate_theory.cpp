@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "common/io/archive.hpp"
-#include "common/mesh/on_root.hpp"
-#include "common/modes/rigid_motion.hpp"
+#include "common/mesh/load.hpp"
+#include "common/modes/modal_model.hpp"
 #include "plate_modal/diagnostics/motion.hpp"
 #include "plate_modal/diagnostics/view.hpp"
 

@@ -11,7 +11,7 @@
 #include "common/base/error.hpp"
 #include "common/io/archive.hpp"
 #include "common/linalg/linear_solver.hpp"
-#include "common/mesh/on_root.hpp"
+#include "common/mesh/load.hpp"
 #include "plate_modal/diagnostics/motion.hpp"
 #include "plate_modal/diagnostics/view.hpp"
 

@@ -10,11 +10,11 @@
 #include "common/base/text.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
+#include "common/mesh/load.hpp"
 #include "common/mesh/msh/read_msh.hpp"
-#include "common/mesh/on_root.hpp"
 #include "common/mesh/quality.hpp"
-#include "common/modes/facing.hpp"
 #include "common/modes/modes_file.hpp"
+#include "common/modes/surface_parts.hpp"
 #include "plate_modal/model/outline.hpp"
 
 namespace couplet::plate {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "common/config/pairs.hpp"
+#include "common/config/values.hpp"
 #include "common/fv/expression.hpp"
 
 namespace couplet::plate {

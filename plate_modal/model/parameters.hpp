@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/config/section.hpp"
-#include "common/contact/contact_parameters.hpp"
+#include "common/contact/contact.hpp"
 #include "common/time/time_scheme.hpp"
 #include "plate_modal/model/skin.hpp"
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "common/base/error.hpp"
-#include "common/contact/impact.hpp"
+#include "common/contact/contact.hpp"
 #include "common/fv/expression.hpp"
 #include "common/parallel/collective.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "common/contact/contact_parameters.hpp"
+#include "common/contact/contact.hpp"
 #include "plate_modal/motion/share.hpp"
 
 namespace couplet::plate {

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "common/base/error.hpp"
-#include "common/mesh/on_root.hpp"
+#include "common/mesh/load.hpp"
 
 namespace couplet::plate {
 namespace {

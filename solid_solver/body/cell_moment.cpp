@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/body/cell_moment.hpp"
 
-#include "common/mesh/transpose.hpp"
+#include "common/mesh/topology.hpp"
 
 namespace couplet::solid {
 namespace {

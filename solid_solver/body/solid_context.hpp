@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-#include "common/io/fields/field_choice.hpp"
+#include "common/io/fields/mesh_part.hpp"
 
 namespace couplet::solid {
 

@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "common/fv/point_gradient.hpp"
+#include "common/fv/gradients.hpp"
 
 namespace couplet::solid {
 namespace {

@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "common/elasticity/vector_at.hpp"
-#include "common/mesh/transpose.hpp"
+#include "common/mesh/topology.hpp"
 #include "solid_solver/body/cell_moment.hpp"
 #include "solid_solver/body/point_medians.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/contact/impact.hpp"
+#include "common/contact/contact.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::solid {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "common/contact/contact_parameters.hpp"
+#include "common/contact/contact.hpp"
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/mesh/mesh.hpp"
 

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "common/csv/cells.hpp"
+#include "common/csv/csv_reader.hpp"
 #include "common/diagnostics/effect_rows.hpp"
 #include "solid_solver/effects/effect_cards.hpp"
 #include "solid_solver/method/solution_method.hpp"

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "common/base/error.hpp"
-#include "common/base/saved_numbers.hpp"
+#include "common/base/numbers.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"

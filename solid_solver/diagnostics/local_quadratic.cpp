@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/elasticity/vector_at.hpp"
-#include "common/fv/near_quadratic.hpp"
+#include "common/fv/gradients.hpp"
 
 namespace couplet::solid {
 namespace {

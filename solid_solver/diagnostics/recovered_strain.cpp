@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
-#include "common/mesh/transpose.hpp"
+#include "common/mesh/topology.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/body/cell_moment.hpp"
 #include "solid_solver/material/stress.hpp"

@@ -7,7 +7,7 @@
 
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/elasticity/vector_at.hpp"
-#include "common/mesh/transpose.hpp"
+#include "common/mesh/topology.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/body/cell_moment.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "common/effects/card.hpp"
+#include "common/effects/effects.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
 namespace couplet::solid {

@@ -10,7 +10,7 @@
 #include "common/base/error.hpp"
 #include "common/elasticity/finite/finite_strain.hpp"
 #include "common/log/log.hpp"
-#include "common/mesh/extent.hpp"
+#include "common/mesh/mesh.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/large_strain/folded_support.hpp"
 #include "solid_solver/laws/laws.hpp"

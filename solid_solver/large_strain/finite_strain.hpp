@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/elasticity/finite/finite_kernel.hpp"
-#include "common/linalg/linear_map.hpp"
+#include "common/linalg/matrix.hpp"
 #include "solid_solver/large_strain/large_strain.hpp"
 #include "solid_solver/large_strain/load_path.hpp"
 #include "solid_solver/large_strain/step_jump.hpp"

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
-#include "common/fv/face_gradient.hpp"
+#include "common/fv/gradients.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::solid {

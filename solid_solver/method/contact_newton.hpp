@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "common/linalg/linear_map.hpp"
+#include "common/linalg/matrix.hpp"
 #include "solid_solver/contact/pressing.hpp"
 #include "solid_solver/method/solution_method.hpp"
 

@@ -10,8 +10,8 @@
 
 #include "common/base/error.hpp"
 #include "common/elasticity/elastic_kernel.hpp"
-#include "common/linalg/linear_map.hpp"
 #include "common/linalg/linear_solver.hpp"
+#include "common/linalg/matrix.hpp"
 #include "solid_solver/contact/pressing.hpp"
 #include "solid_solver/method/solution_method.hpp"
 

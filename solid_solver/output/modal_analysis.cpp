@@ -9,7 +9,7 @@
 #include "common/base/error.hpp"
 #include "common/elasticity/symmetric/tied_matrix.hpp"
 #include "common/log/log.hpp"
-#include "common/mesh/extent.hpp"
+#include "common/mesh/mesh.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::solid {

@@ -13,7 +13,7 @@
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
-#include "common/time/amplification.hpp"
+#include "common/time/time_scheme.hpp"
 #include "solid_solver/large_strain/load_path.hpp"
 #include "solid_solver/material/stress.hpp"
 #include "solid_solver/output/field_list.hpp"

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "common/base/text.hpp"
-#include "common/config/pairs.hpp"
+#include "common/config/values.hpp"
 #include "solid_solver/laws/laws.hpp"
 
 namespace couplet::solid {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/config/section.hpp"
-#include "common/contact/contact_parameters.hpp"
+#include "common/contact/contact.hpp"
 #include "common/elasticity/elasticity.hpp"
 #include "solid_solver/parameters/boundary_parameters.hpp"
 #include "solid_solver/parameters/heat_parameters.hpp"

@@ -6,7 +6,7 @@
 
 #include "common/base/error.hpp"
 #include "common/elasticity/symmetric/tied_matrix.hpp"
-#include "common/mesh/extent.hpp"
+#include "common/mesh/mesh.hpp"
 #include "common/modes/pencil.hpp"
 #include "common/parallel/collective.hpp"
 

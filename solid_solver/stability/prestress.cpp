@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/mesh/extent.hpp"
+#include "common/mesh/mesh.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::solid {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/fv/near_quadratic.hpp"
+#include "common/fv/gradients.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/material/stress.hpp"
 #include "solid_solver/thermal/heat_answer.hpp"

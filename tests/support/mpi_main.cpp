@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "common/linalg/petsc_environment.hpp"
+#include "common/linalg/petsc.hpp"
 #include "common/parallel/mpi_start.hpp"
 #include "tests/support/chosen_files.hpp"
 

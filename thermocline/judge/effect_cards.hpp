@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "common/effects/card.hpp"
+#include "common/effects/effects.hpp"
 #include "thermocline/judge/elsewhere.hpp"
 
 namespace couplet::thermocline {

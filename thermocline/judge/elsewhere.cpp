@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "common/base/error.hpp"
-#include "common/base/saved_numbers.hpp"
+#include "common/base/numbers.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"

@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "common/base/saved_numbers.hpp"
+#include "common/base/numbers.hpp"
 
 namespace couplet::thermocline {
 

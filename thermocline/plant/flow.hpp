@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "common/base/saved_numbers.hpp"
+#include "common/base/numbers.hpp"
 #include "common/config/section.hpp"
 #include "thermocline/plant/plant.hpp"
 #include "thermocline/weather/weather.hpp"

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "common/base/error.hpp"
-#include "common/base/saved_numbers.hpp"
+#include "common/base/numbers.hpp"
 #include "thermocline/material/numerics.hpp"
 #include "thermocline/material/properties.hpp"
 

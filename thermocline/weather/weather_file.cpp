@@ -10,7 +10,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
-#include "common/csv/cells.hpp"
+#include "common/csv/csv_reader.hpp"
 #include "common/csv/line_reader.hpp"
 
 namespace couplet::thermocline {

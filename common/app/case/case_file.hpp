@@ -12,8 +12,7 @@
 #include "common/app/case/roll_call.hpp"
 #include "common/app/loop/simulation.hpp"
 #include "common/config/load.hpp"
-#include "common/effects/card.hpp"
-#include "common/effects/choice.hpp"
+#include "common/effects/effects.hpp"
 
 namespace couplet::app {
 

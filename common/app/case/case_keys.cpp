@@ -9,7 +9,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
-#include "common/config/leaves.hpp"
+#include "common/config/document.hpp"
 #include "common/io/checkpoint_set.hpp"
 #include "common/log/log.hpp"
 

@@ -10,7 +10,7 @@
 #include "common/app/loop/step_loop.hpp"
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
-#include "common/config/leaves.hpp"
+#include "common/config/document.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/checkpoint_set.hpp"
 #include "common/io/cut/cut_mesh.hpp"

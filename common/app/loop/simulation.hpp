@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/config/section.hpp"
-#include "common/io/fields/field_choice.hpp"
+#include "common/io/fields/mesh_part.hpp"
 
 namespace couplet::app {
 

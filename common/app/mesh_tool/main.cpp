@@ -10,9 +10,8 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
-#include "common/csv/cells.hpp"
+#include "common/csv/csv_reader.hpp"
 #include "common/io/cut/cut_mesh.hpp"
-#include "common/io/cut/load_mesh.hpp"
 #include "common/mesh/distributed/box_block.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
 #include "common/parallel/collective.hpp"

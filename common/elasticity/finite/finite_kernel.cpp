@@ -11,7 +11,7 @@
 #include "common/elasticity/finite/follower_pressure.hpp"
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
 #include "common/elasticity/symmetric/symmetric_space.hpp"
-#include "common/fv/nodes.hpp"
+#include "common/fv/vertex_interpolation.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::elastic {

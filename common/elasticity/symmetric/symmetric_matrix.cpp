@@ -7,7 +7,7 @@
 #include "common/elasticity/elastic_nodes.hpp"
 #include "common/elasticity/symmetric/shared_edges.hpp"
 #include "common/elasticity/symmetric/symmetric_space.hpp"
-#include "common/fv/nodes.hpp"
+#include "common/fv/vertex_interpolation.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::elastic {

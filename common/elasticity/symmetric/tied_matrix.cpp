@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "common/elasticity/symmetric/shared_edges.hpp"
-#include "common/fv/nodes.hpp"
+#include "common/fv/vertex_interpolation.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::elastic {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "common/elasticity/elastic_nodes.hpp"
-#include "common/fv/nodes.hpp"
+#include "common/fv/vertex_interpolation.hpp"
 
 namespace couplet::elastic {
 namespace {

@@ -13,10 +13,11 @@
 #include "common/io/hdf5.hpp"
 #include "common/io/hdf5_reader.hpp"
 #include "common/mesh/cell_shapes.hpp"
-#include "common/mesh/on_root.hpp"
+#include "common/mesh/load.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::io {
+
 namespace {
 
 namespace cut {
@@ -316,6 +317,43 @@ CutMeshFacts read_cut_mesh_facts(const std::filesystem::path& file) {
   for (int a = 0; a < 3; ++a) facts.size[a] = in.number("/", fmt::format("size-{}", "xyz"[a]));
   facts.shortest_edge = in.number("/", cut::edge_name);
   facts.patches = names_of(in, "patch");
+  return facts;
+}
+
+mesh::LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
+                           const mesh::MeshParameters& parameters,
+                           const std::vector<std::array<std::string, 2>>& periodic,
+                           const std::vector<std::vector<std::string>>& materials, bool find_wide_points,
+                           double scale) {
+  if (!is_cut_mesh(file))
+    return mesh::load_mesh(comm, file, dim, parameters, periodic, materials, find_wide_points, scale);
+  if (!parameters.empty())
+    throw Error(
+        "The mesh '{}' is already meshed, so 'mesh-parameters' cannot change it. Remove them, or give the .geo it "
+        "was made from.",
+        file.string());
+  mesh::MeshBlock block = read_cut_mesh(comm, file);
+  if (block.dim != dim)
+    throw Error("The mesh '{}' is {}-dimensional, but the case sets 'dimension: {}'.", file.string(),
+                block.dim, dim);
+  block.periodic = periodic;
+  block.materials = materials;
+  block.find_wide_points = find_wide_points;
+  return mesh::load_block(comm, std::move(block), file, scale);
+}
+
+mesh::MeshFacts facts_of_file(const std::filesystem::path& file, const mesh::MeshParameters& parameters,
+                              double scale) {
+  if (!is_cut_mesh(file)) return mesh::facts_of_file(file, parameters, scale);
+  const CutMeshFacts cut = read_cut_mesh_facts(file);
+  mesh::MeshFacts facts;
+  facts.dim = cut.dim;
+  facts.cells = std::size_t(cut.cells);
+  facts.size = cut.size * scale;
+  facts.shortest_edge = cut.shortest_edge * scale;
+  double volume = 1;
+  for (int a = 0; a < cut.dim; ++a) volume *= facts.size[a];
+  facts.mean_cell = std::pow(volume / double(std::max<std::size_t>(1, facts.cells)), 1.0 / cut.dim);
   return facts;
 }
 

@@ -6,6 +6,8 @@
 #include <filesystem>
 
 #include "common/mesh/distributed/mesh_block.hpp"
+#include "common/mesh/gmsh/gmsh.hpp"
+#include "common/mesh/load.hpp"
 
 namespace couplet::io {
 
@@ -31,5 +33,16 @@ mesh::MeshBlock read_cut_mesh(MPI_Comm comm, const std::filesystem::path& file);
 
 /// On this rank alone.
 CutMeshFacts read_cut_mesh_facts(const std::filesystem::path& file);
+
+/// As mesh::load_mesh(), of a cut mesh (.h5), too, of which no rank ever has the whole. Collective.
+mesh::LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
+                           const mesh::MeshParameters& parameters = {},
+                           const std::vector<std::array<std::string, 2>>& periodic = {},
+                           const std::vector<std::vector<std::string>>& materials = {},
+                           bool find_wide_points = false, double scale = 1);
+
+/// As mesh::facts_of_file(), of a cut mesh, too, which has them written in it.
+mesh::MeshFacts facts_of_file(const std::filesystem::path& file, const mesh::MeshParameters& parameters,
+                              double scale);
 
 }  // namespace couplet::io

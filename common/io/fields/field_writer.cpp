@@ -10,7 +10,7 @@
 #include "common/io/hdf5_reader.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
-#include "common/parallel/global_order.hpp"
+#include "common/parallel/index_map.hpp"
 
 namespace couplet::io {
 namespace {

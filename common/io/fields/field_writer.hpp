@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "common/io/fields/field_choice.hpp"
 #include "common/io/fields/mesh_part.hpp"
 #include "common/mesh/mesh.hpp"
 

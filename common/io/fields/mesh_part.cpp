@@ -6,6 +6,7 @@
 #include "common/parallel/collective.hpp"
 
 namespace couplet::io {
+
 namespace {
 
 constexpr Index unused = -1;

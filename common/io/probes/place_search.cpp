@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/probes/place_search.hpp"
 
+#include <Eigen/LU>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -11,6 +14,157 @@
 #include "common/parallel/collective.hpp"
 
 namespace couplet::io {
+
+namespace {
+
+bool is_flat(mesh::CellType type) {
+  return type == mesh::CellType::triangle || type == mesh::CellType::quadrilateral;
+}
+
+// Reference coordinates r, s, t of a hexahedron corner in VTK order; the quadrilateral uses the first four.
+constexpr int corner[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                              {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+
+// Products of 1-D hat functions on [0, 1]^n.
+ShapeValues brick(const Vec3& x, int n_points, int dim) {
+  ShapeValues v;
+  for (int i = 0; i < n_points; ++i) {
+    std::array<double, 3> hat{1, 1, 1}, slope{0, 0, 0};
+    for (int d = 0; d < dim; ++d) {
+      hat[d] = corner[i][d] == 1 ? x[d] : 1 - x[d];
+      slope[d] = corner[i][d] == 1 ? 1 : -1;
+    }
+    v.weight[i] = hat[0] * hat[1] * hat[2];
+    v.gradient[i] = {slope[0] * hat[1] * hat[2], hat[0] * slope[1] * hat[2], hat[0] * hat[1] * slope[2]};
+  }
+  return v;
+}
+
+ShapeValues simplex(const Vec3& x, int dim) {
+  ShapeValues v;
+  v.weight[0] = 1;
+  v.gradient[0] = Vec3::Zero();
+  for (int d = 0; d < dim; ++d) {
+    v.weight[0] -= x[d];
+    v.gradient[0][d] = -1;
+    v.weight[d + 1] = x[d];
+    v.gradient[d + 1] = Vec3::Unit(d);
+  }
+  return v;
+}
+
+// Triangle (r, s) times line (t).
+ShapeValues prism(const Vec3& x) {
+  const ShapeValues triangle = simplex(x, 2);
+  ShapeValues v;
+  for (int i = 0; i < 6; ++i) {
+    const bool top = i >= 3;
+    const double hat = top ? x[2] : 1 - x[2], slope = top ? 1 : -1;
+    v.weight[i] = triangle.weight[i % 3] * hat;
+    v.gradient[i] = triangle.gradient[i % 3] * hat;
+    v.gradient[i][2] = triangle.weight[i % 3] * slope;
+  }
+  return v;
+}
+
+// A brick whose upper four corners are the apex.
+ShapeValues pyramid(const Vec3& x) {
+  const ShapeValues b = brick(x, 8, 3);
+  ShapeValues v;
+  v.gradient[4] = Vec3::Zero();
+  for (int i = 0; i < 8; ++i) {
+    const int target = std::min(i, 4);
+    if (i < 4) v.gradient[i] = Vec3::Zero();
+    v.weight[target] += b.weight[i];
+    v.gradient[target] += b.gradient[i];
+  }
+  return v;
+}
+
+int n_points_of(mesh::CellType type) {
+  switch (type) {
+    case mesh::CellType::triangle:
+      return 3;
+    case mesh::CellType::quadrilateral:
+    case mesh::CellType::tetrahedron:
+      return 4;
+    case mesh::CellType::pyramid:
+      return 5;
+    case mesh::CellType::prism:
+      return 6;
+    case mesh::CellType::hexahedron:
+      return 8;
+  }
+  return 0;
+}
+
+bool inside(mesh::CellType type, const Vec3& x, double slack) {
+  const bool by_box = type == mesh::CellType::quadrilateral || type == mesh::CellType::hexahedron ||
+                      type == mesh::CellType::pyramid;
+  const int dim = is_flat(type) ? 2 : 3;
+  for (int d = 0; d < dim; ++d)
+    if (x[d] < -slack || ((by_box || (type == mesh::CellType::prism && d == 2)) && x[d] > 1 + slack))
+      return false;
+  if (by_box) return true;
+  const double sum = x[0] + x[1] + (type == mesh::CellType::tetrahedron ? x[2] : 0.0);
+  return sum <= 1 + slack;
+}
+
+}  // namespace
+
+ShapeValues shape_functions(mesh::CellType type, const Vec3& reference) {
+  switch (type) {
+    case mesh::CellType::triangle:
+      return simplex(reference, 2);
+    case mesh::CellType::quadrilateral:
+      return brick(reference, 4, 2);
+    case mesh::CellType::tetrahedron:
+      return simplex(reference, 3);
+    case mesh::CellType::prism:
+      return prism(reference);
+    case mesh::CellType::pyramid:
+      return pyramid(reference);
+    case mesh::CellType::hexahedron:
+      return brick(reference, 8, 3);
+  }
+  return {};
+}
+
+std::optional<std::array<double, 8>> weights_in_cell(mesh::CellType type, std::span<const Vec3> points,
+                                                     const Vec3& place, double slack) {
+  const int n = n_points_of(type);
+  Vec3 low = points[0], high = points[0];
+  for (const Vec3& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  const double size = (high - low).norm();
+  if (((place - low).array() < -slack * size).any() || ((place - high).array() > slack * size).any())
+    return std::nullopt;
+
+  // Newton on sum_i N_i(x) (X_i - X_0) = place - X_0 (differences: no round-off from a far origin); one step
+  // for simplices, few for the others.
+  Vec3 x = Vec3::Constant(is_flat(type) ? 1.0 / 3 : 0.25);
+  ShapeValues shape;
+  for (int iteration = 0; iteration < 30; ++iteration) {
+    shape = shape_functions(type, x);
+    Vec3 residual = place - points[0];
+    Tensor3 jacobian = Tensor3::Zero();
+    for (int i = 0; i < n; ++i) {
+      const Vec3 edge = points[i] - points[0];
+      residual -= shape.weight[i] * edge;
+      jacobian += edge * shape.gradient[i].transpose();
+    }
+    if (is_flat(type)) {
+      jacobian.row(2).setZero();
+      jacobian.col(2).setZero();
+      jacobian(2, 2) = size;
+      residual[2] = 0;
+    }
+    if (residual.norm() <= 1e-13 * size)
+      return inside(type, x, slack) ? std::optional(shape.weight) : std::nullopt;
+    x += jacobian.fullPivLu().solve(residual);
+    if (!x.allFinite() || x.norm() > 10) return std::nullopt;
+  }
+  return std::nullopt;
+}
 
 struct Balls::Group {
   double radius = 0;  // largest

@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "common/base/error.hpp"
-#include "common/base/nearest.hpp"
-#include "common/io/probes/shape_functions.hpp"
+#include "common/base/point_tree.hpp"
+#include "common/io/probes/place_search.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::io {

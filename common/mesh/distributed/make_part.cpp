@@ -7,7 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/mesh/distributed/piece.hpp"
-#include "common/mesh/on_root.hpp"
+#include "common/mesh/load.hpp"
 #include "common/mesh/partition.hpp"
 #include "common/mesh/topology.hpp"
 

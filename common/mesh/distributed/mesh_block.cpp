@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/distributed/mesh_block.hpp"
 
-#include "common/mesh/on_root.hpp"
+#include "common/mesh/load.hpp"
 
 namespace couplet::mesh {
 

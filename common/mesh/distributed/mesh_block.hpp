@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "common/mesh/distributed/cell_list.hpp"
-#include "common/mesh/distributed/shares.hpp"
 #include "common/mesh/load.hpp"
 
 namespace couplet::mesh {

@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "common/base/error.hpp"
-#include "common/mesh/on_root.hpp"
+#include "common/mesh/load.hpp"
 #include "common/mesh/topology.hpp"
 
 namespace couplet::mesh {

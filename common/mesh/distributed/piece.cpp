@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "common/mesh/topology.hpp"
-#include "common/mesh/transpose.hpp"
 
 namespace couplet::mesh {
 namespace {

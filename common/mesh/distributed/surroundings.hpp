@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "common/mesh/distributed/cell_list.hpp"
 #include "common/mesh/distributed/mesh_block.hpp"
-#include "common/mesh/distributed/shares.hpp"
 #include "common/mesh/mesh.hpp"
 
 namespace couplet::mesh {

@@ -1,13 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
 #include "common/base/error.hpp"
+#include "common/base/text.hpp"
 #include "common/log/log.hpp"
+#include "common/mesh/gmsh/barrier.hpp"
+#include "common/mesh/gmsh/geo_script.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
 #include "common/mesh/gmsh/meshio.hpp"
 #include "common/mesh/load.hpp"
 #include "common/mesh/msh/read_msh.hpp"
-#include "common/mesh/on_root.hpp"
 
 namespace couplet::mesh {
+
 namespace {
 
 // Larger ones are read by all ranks together, so that none holds the mesh: some 500 000 cells.
@@ -104,6 +114,104 @@ LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
   block.materials = materials;
   block.find_wide_points = find_wide_points;
   return load_block(comm, std::move(block), file, scale);
+}
+
+namespace {
+
+void check_names(const std::filesystem::path& geo, const std::vector<std::string>& known,
+                 const MeshParameters& parameters) {
+  for (const auto& [name, value] : parameters) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    if (known.empty())
+      throw Error(
+          "The geometry file '{}' defines no parameters, so 'mesh-parameters' cannot set '{}'. Declare "
+          "names that are set from outside as 'DefineConstant [ {} = {} ];'.",
+          geo.string(), name, name, value);
+    throw Error("The geometry file '{}' defines no parameter '{}' with DefineConstant. {}", geo.string(),
+                name, base::did_you_mean(name, known, "names"));
+  }
+}
+
+/// gmsh takes the amount of a negative number of cells, drops what follows the point, and makes another kind of mesh of 0.
+void check_counts(const std::filesystem::path& geo, const std::map<std::string, bool>& counts,
+                  const MeshParameters& parameters) {
+  for (const auto& [name, value] : parameters) {
+    const auto count = counts.find(name);
+    if (count == counts.end()) continue;
+    if (!(value > 0) || !(value < 1e7) || (count->second && value != std::floor(value)))
+      throw Error(
+          "mesh-parameters: '{}' is a number of cells in the geometry file '{}' (Layers, Transfinite "
+          "Curve): it must be {} above 0 and below 1e7, not {}.",
+          name, geo.string(), count->second ? "a whole number" : "a number", value);
+  }
+}
+
+/// Whether a .msh 4.1 of gmsh (ASCII) has a block of elements of this dimension.
+bool has_cells(const std::filesystem::path& mesh, int dim) {
+  std::ifstream in(mesh);
+  std::string line;
+  while (std::getline(in, line) && line != "$Elements") {
+  }
+  std::size_t blocks = 0, n = 0, ignored = 0;
+  in >> blocks >> ignored >> ignored >> ignored;
+  for (std::size_t b = 0; b < blocks && in; ++b) {
+    int of = 0, tag = 0, type = 0;
+    in >> of >> tag >> type >> n;
+    if (in && of == dim && n > 0) return true;
+    std::getline(in, line);
+    for (std::size_t i = 0; i < n && std::getline(in, line); ++i) {
+    }
+  }
+  return false;
+}
+
+/// gmsh calls it a success when it makes nothing, and when it makes points or curves alone.
+void refuse_empty(const std::filesystem::path& geo, const std::filesystem::path& mesh, int dim) {
+  if (has_cells(mesh, dim)) return;
+  std::filesystem::remove(mesh);
+  throw Error(
+      "gmsh generated no {} from '{}'. Check that it has a {} and that all of it is in a physical group.",
+      dim == 3 ? "cells in three dimensions" : "triangles or quadrilaterals", geo.string(),
+      dim == 3 ? "volume" : "surface");
+}
+
+}  // namespace
+
+std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim, const MeshParameters& parameters) {
+  const GeoScript script = read_geo(geo);
+  const bool trusted = std::getenv("COUPLET_ALLOW_COMMANDS") != nullptr;
+  if (!trusted && !Barrier::is_possible())
+    throw Error(
+        "A .geo can run commands and write files with your permissions, and this kernel has no Landlock to prevent "
+        "that. If you trust '{}', start with --allow-commands; or mesh it elsewhere and give the .msh.",
+        geo.string());
+  if (!script.computed.empty() && !trusted)
+    throw Error(
+        "The {} includes a file with a computed name, so that Couplet does not notice when that file changes. Write "
+        "the name as a text, or start with --allow-commands.",
+        script.computed);
+  if (!script.lost.empty())
+    throw Error(
+        "The {} does not end with a newline; gmsh would read only one statement of such a last line and "
+        "skip the others. Add a newline at the end.",
+        script.lost);
+  check_names(geo, script.constants, parameters);
+  check_counts(geo, script.counts, parameters);
+  std::vector<std::string> numbers;
+  for (const auto& [name, value] : parameters)
+    numbers.insert(numbers.end(), {"-setnumber", name, fmt::format("{}", value)});
+  const std::string hash = fmt::format(
+      "{:016x}", base::stable_hash(fmt::format("{}\n{}\n{}", dim, base::join(numbers, " "), script.text)));
+  const std::string stem = geo.stem().string() + "." + hash;
+  const std::filesystem::path result = geo.parent_path() / (stem + ".cache.msh");
+  if (is_sound_cache(result)) return result;
+
+  std::vector<std::string> options{fmt::format("-{}", dim)};
+  options.insert(options.end(), numbers.begin(), numbers.end());
+  log::info("meshing {} with gmsh", geo.string());
+  run_gmsh(options, geo, trusted, result, "mesh");
+  refuse_empty(geo, result, dim);
+  return result;
 }
 
 }  // namespace couplet::mesh

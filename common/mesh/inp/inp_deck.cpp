@@ -8,7 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
-#include "common/csv/cells.hpp"
+#include "common/csv/csv_reader.hpp"
 
 namespace couplet::mesh {
 namespace {

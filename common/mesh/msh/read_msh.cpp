@@ -9,7 +9,6 @@
 
 #include "common/mesh/load.hpp"
 #include "common/mesh/msh/msh_cursor.hpp"
-#include "common/mesh/on_root.hpp"
 
 namespace couplet::mesh {
 namespace {

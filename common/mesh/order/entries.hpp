@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/mesh/mesh.hpp"
-#include "common/parallel/global_order.hpp"
+#include "common/parallel/index_map.hpp"
 
 namespace couplet::mesh {
 

@@ -9,7 +9,7 @@
 
 #include "common/app/loop/step_loop.hpp"
 #include "common/base/error.hpp"
-#include "common/coupling/sub_stepping.hpp"
+#include "common/coupling/step_plan.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"

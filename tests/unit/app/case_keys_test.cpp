@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "common/base/error.hpp"
-#include "common/config/leaves.hpp"
+#include "common/config/document.hpp"
 
 namespace couplet::case_keys_test {
 using namespace app;

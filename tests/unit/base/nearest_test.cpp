@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/base/nearest.hpp"
+#include "common/base/point_tree.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/base/saved_numbers.hpp"
+#include "common/base/numbers.hpp"
 
 #include <gtest/gtest.h>
 

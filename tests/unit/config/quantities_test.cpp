@@ -2,7 +2,7 @@
 // Quantities as contracts: usual magnitudes, temperatures and their differences, numbers that need a unit.
 #include <gmock/gmock.h>
 
-#include "common/config/pairs.hpp"
+#include "common/config/values.hpp"
 #include "tests/unit/config/fixture.hpp"
 
 namespace couplet::quantities_test {

@@ -4,7 +4,7 @@
 
 #include "common/base/error.hpp"
 #include "common/diagnostics/diagnostics.hpp"
-#include "common/effects/card.hpp"
+#include "common/effects/effects.hpp"
 #include "coupler/parameters/effect_cards.hpp"
 #include "coupler/parameters/schedule.hpp"
 #include "fluid_solver/diagnostics/compliance.hpp"

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "common/effects/card.hpp"
+#include "common/effects/effects.hpp"
 #include "fluid_solver/parameters/effect_cards.hpp"
 #include "mesh_mover/effect_cards.hpp"
 #include "plate_modal/effect_cards.hpp"

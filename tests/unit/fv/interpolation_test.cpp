@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "common/fv/face_gradient.hpp"
+#include "common/fv/gradients.hpp"
 #include "common/fv/vertex_interpolation.hpp"
 #include "common/mesh/load.hpp"
 #include "common/parallel/collective.hpp"

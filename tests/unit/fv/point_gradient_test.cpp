@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "common/fv/point_gradient.hpp"
+#include "common/fv/gradients.hpp"
 #include "common/mesh/load.hpp"
 #include "common/parallel/collective.hpp"
 

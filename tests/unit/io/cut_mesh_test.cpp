@@ -6,7 +6,6 @@
 
 #include "common/base/error.hpp"
 #include "common/io/cut/cut_mesh.hpp"
-#include "common/io/cut/load_mesh.hpp"
 #include "common/io/hdf5.hpp"
 #include "common/mesh/order/entries.hpp"
 #include "common/parallel/collective.hpp"

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "common/io/fields/field_writer.hpp"
-#include "common/linalg/petsc_environment.hpp"
+#include "common/linalg/petsc.hpp"
 #include "common/mesh/load.hpp"
 #include "common/parallel/collective.hpp"
 

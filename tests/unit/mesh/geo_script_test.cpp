@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/base/error.hpp"
-#include "common/mesh/gmsh/mesh_facts.hpp"
+#include "common/mesh/gmsh/gmsh.hpp"
 
 namespace couplet::geo_script_test {
 using namespace mesh;

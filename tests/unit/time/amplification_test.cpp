@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What schemes make of an oscillator in a step, against the roots of their recursions.
-#include "common/time/amplification.hpp"
+#include "common/time/time_scheme.hpp"
 
 #include <gtest/gtest.h>
 

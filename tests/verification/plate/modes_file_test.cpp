@@ -8,9 +8,9 @@
 
 #include "common/base/error.hpp"
 #include "common/io/hdf5.hpp"
-#include "common/modes/facing.hpp"
 #include "common/modes/modal_checks.hpp"
 #include "common/modes/modes_file.hpp"
+#include "common/modes/surface_parts.hpp"
 #include "common/parallel/collective.hpp"
 #include "plate_modal/structure.hpp"
 #include "tests/verification/plate/bounce.hpp"

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "common/mesh/topology.hpp"
-#include "common/time/amplification.hpp"
+#include "common/time/time_scheme.hpp"
 #include "solid_solver/output/spectrum.hpp"
 #include "tests/verification/solid/support.hpp"
 

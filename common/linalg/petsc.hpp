@@ -1,17 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <mpi.h>
 #include <petscksp.h>
+#include <petscsys.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <exception>
+#include <memory>
+#include <source_location>
 #include <span>
 
-#include "common/linalg/linear_map.hpp"
-#include "common/linalg/petsc_check.hpp"
+#include "common/base/error.hpp"
+#include "common/linalg/matrix.hpp"
 
 namespace couplet::linalg {
+
+/// Turns a PETSc error code into an Error that names PETSc's own message and our source line.
+inline void petsc_check(PetscErrorCode code, std::source_location where = std::source_location::current()) {
+  if (code == 0) return;
+  const char* text = nullptr;
+  char* specific = nullptr;
+  PetscErrorMessage(code, &text, &specific);
+  throw SolveFailure("PETSc failed with code {} ({}; {}) at {}:{}.", int(code), text ? text : "no message",
+                     specific ? specific : "no detail", where.file_name(), where.line());
+}
+
+/// PETSc on the communicator of one program. MPI must be up before and stay up until after.
+/// PETSC_COMM_WORLD is set before PetscInitialize; PETSc's own signal handlers stay off.
+class PetscEnvironment {
+ public:
+  explicit PetscEnvironment(MPI_Comm program);
+  ~PetscEnvironment();
+  PetscEnvironment(const PetscEnvironment&) = delete;
+  PetscEnvironment& operator=(const PetscEnvironment&) = delete;
+};
+
+/// One that lives as long as what is returned: for Program::environment.
+std::shared_ptr<void> petsc_environment(MPI_Comm program);
 
 /// An operator for PETSc, and the first exception that came out of it: none may pass through PETSc's frames.
 struct ShellOperator {

@@ -1,9 +1,105 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/fv/point_gradient.hpp"
+#include "common/fv/gradients.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
+#include <cmath>
+
 namespace couplet::fv {
+
+FaceGradient::FaceGradient(const mesh::Mesh& mesh, const mesh::Geometry& geometry)
+    : normal(mesh.n_faces()),
+      inverse_dn(mesh.n_faces()),
+      skew(mesh.n_faces()),
+      tangential(mesh.face_points.index.size()) {
+  update(mesh, geometry);
+}
+
+void FaceGradient::update(const mesh::Mesh& mesh, const mesh::Geometry& geometry) {
+  for (Index f = 0; f < mesh.n_faces(); ++f) {
+    const FaceLine line = face_line(mesh, geometry, f);
+    normal[f] = line.normal;
+    inverse_dn[f] = line.inverse_dn;
+    skew[f] = line.skew;
+    tangential_weights(mesh, geometry.points, f, line, tangential.data() + mesh.face_points.offset[f]);
+  }
+}
+
+FaceLine face_line(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f) {
+  FaceLine line;
+  line.area = geometry.face_area[f].norm();
+  line.normal = geometry.face_area[f] / line.area;
+  const Vec3 across = f < mesh.n_interior ? Vec3(geometry.cell_centre[mesh.neighbour[f]] + mesh.shift(f))
+                                          : geometry.face_centre[f];
+  const Vec3 d = across - geometry.cell_centre[mesh.owner[f]];
+  line.inverse_dn = 1 / d.dot(line.normal);
+  line.skew = line.normal - d * line.inverse_dn;
+  return line;
+}
+
+void tangential_weights(const mesh::Mesh& mesh, std::span<const Vec3> points, Index f, const FaceLine& line,
+                        Vec3* c) {
+  const auto index = mesh.face_points[f];
+  if (mesh.dim == 2) {
+    // An edge a-b of unit depth: the derivative along it.
+    c[1] = (points[index[1]] - points[index[0]]) / (line.area * line.area);
+    c[0] = -c[1];
+    return;
+  }
+  // L_e m_e = (x_2 - x_1) x n, half of it to each end point (2.56).
+  for (std::size_t i = 0; i < index.size(); ++i) c[i].setZero();
+  for (std::size_t i = 0; i < index.size(); ++i) {
+    const std::size_t j = (i + 1) % index.size();
+    const Vec3 half = (points[index[j]] - points[index[i]]).cross(line.normal) / (2 * line.area);
+    c[i] += half;
+    c[j] += half;
+  }
+}
+
+namespace {
+
+constexpr double near_weight = 0.05;  // beside the square of the distance over the reach
+constexpr double least_pivot = 1e-9;  // of a term that no sample determines, over one that they do
+// Of the squares of a term in the samples: a direction that they do not span.
+constexpr double not_spanned = 1e-20;
+
+}  // namespace
+
+NearQuadratic::NearQuadratic(int dim, const Vec3& centre, double reach, int values)
+    : dim_(dim), centre_(centre), reach_(reach) {
+  const Eigen::Index n = 1 + dim + dim * (dim + 1) / 2;
+  of_ = Eigen::MatrixXd::Zero(n, n), right_ = Eigen::MatrixXd::Zero(n, values);
+}
+
+Eigen::VectorXd NearQuadratic::terms(const Vec3& place) const {
+  const Vec3 x = (place - centre_) / reach_;
+  Eigen::VectorXd phi(of_.rows());
+  int i = 0;
+  phi[i++] = 1;
+  for (int a = 0; a < dim_; ++a) phi[i++] = x[a];
+  for (int a = 0; a < dim_; ++a)
+    for (int b = a; b < dim_; ++b) phi[i++] = x[a] * x[b];
+  return phi;
+}
+
+void NearQuadratic::add(const Vec3& place, std::span<const double> values) {
+  const Eigen::VectorXd phi = terms(place);
+  const double weight = 1 / (near_weight + ((place - centre_) / reach_).squaredNorm());
+  of_ += weight * phi * phi.transpose();
+  right_ += weight * phi * Eigen::Map<const Eigen::RowVectorXd>(values.data(), right_.cols());
+}
+
+Eigen::MatrixXd NearQuadratic::solve() const {
+  // Thin cells make terms of very different sizes.
+  const double least = not_spanned * of_(0, 0);
+  const Eigen::VectorXd scale =
+      of_.diagonal().unaryExpr([&](double v) { return v > least ? 1 / std::sqrt(v) : 0; });
+  Eigen::MatrixXd scaled = scale.asDiagonal() * of_ * scale.asDiagonal();
+  scaled.diagonal().array() += least_pivot;
+  return scale.asDiagonal() * scaled.llt().solve(scale.asDiagonal() * right_);
+}
+
 namespace {
 
 /// A place with the field's value and gradient.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
+
 #include <span>
 #include <vector>
 
@@ -49,5 +51,32 @@ struct FaceGradient {
     return gradient;
   }
 };
+
+/// Least squares of quadratics around a centre, phi = 1, x_a, x_a x_b (a <= b), x = (place - centre) / reach, for the value there: near samples
+/// count more, by 1 / (0.05 + x^2). Terms that the samples do not determine become small, those of a direction that they do not
+/// span zero.
+class NearQuadratic {
+ public:
+  /// `reach` [m]: the largest distance of a sample; `values` a sample.
+  NearQuadratic(int dim, const Vec3& centre, double reach, int values);
+  void add(const Vec3& place, std::span<const double> values);
+  /// Row i: what the term i of each value counts.
+  Eigen::MatrixXd solve() const;
+  Eigen::VectorXd terms(const Vec3& place) const;
+
+ private:
+  int dim_;
+  Vec3 centre_;
+  double reach_;
+  Eigen::MatrixXd of_, right_;
+};
+
+/// Mean gradient of each owned cell by Gauss's theorem from values and gradients at points, which give a
+/// quadratic on every edge; quadrilaterals are cut into triangles around the mean of their corners. Exact for
+/// quadratic fields on any (also warped) cell; for linear ones with slopes that are the same everywhere.
+/// `values`: mesh.dim components a local point; `slopes`: their gradients there; ghosts up to date. Entry
+/// (i, j) of a gradient is the derivative of component j along i, in the reference configuration.
+std::vector<Tensor3> gradients_from_points(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                                           std::span<const double> values, std::span<const Tensor3> slopes);
 
 }  // namespace couplet::fv

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/contact/contact_parameters.hpp"
+#include "common/contact/contact.hpp"
 
 #include <fmt/format.h>
 
