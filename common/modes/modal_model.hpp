@@ -8,16 +8,6 @@
 
 namespace couplet::modes {
 
-/// The rigid motion u = translation + rotation x (x - centre of the vertices) that is nearest to a mode.
-struct RigidMotion {
-  Vec3 translation = Vec3::Zero();  ///< [1/sqrt(kg)]
-  Vec3 rotation = Vec3::Zero();     ///< [1/(sqrt(kg) m)]
-  double misfit = 0;                ///< rms of what is left of the mode's vertices, over their rms
-};
-
-/// By least squares over the vertices. A surface whose vertices lie on one line does not turn about it.
-RigidMotion rigid_motion(const ModalModel& model, std::size_t mode);
-
 /// A linear structure reduced to some of its modes, as its surface shows them: all that a coupled run needs
 /// of it. Shapes are mass-normalised (modal mass 1 kg), so u(x, t) = sum q_m(t) phi_m(x) with q in sqrt(kg)
 /// m.
@@ -47,5 +37,15 @@ void average_faces(ModalModel& model);
 
 /// The largest displacement of a mode's vertices [1/sqrt(kg)].
 double largest_displacement(const ModalModel& model, std::size_t mode);
+
+/// The rigid motion u = translation + rotation x (x - centre of the vertices) that is nearest to a mode.
+struct RigidMotion {
+  Vec3 translation = Vec3::Zero();  ///< [1/sqrt(kg)]
+  Vec3 rotation = Vec3::Zero();     ///< [1/(sqrt(kg) m)]
+  double misfit = 0;                ///< rms of what is left of the mode's vertices, over their rms
+};
+
+/// By least squares over the vertices. A surface whose vertices lie on one line does not turn about it.
+RigidMotion rigid_motion(const ModalModel& model, std::size_t mode);
 
 }  // namespace couplet::modes
