@@ -2,9 +2,8 @@
 #include "common/app/program.hpp"
 #include "common/io/cut/cut_mesh.hpp"
 #include "common/linalg/petsc.hpp"
-#include "fluid_solver/boundary/given_velocity.hpp"
-#include "fluid_solver/parameters/auto_effects.hpp"
-#include "fluid_solver/parameters/effect_cards.hpp"
+#include "fluid_solver/boundary/boundary.hpp"
+#include "fluid_solver/parameters/effects.hpp"
 #include "fluid_solver/participant.hpp"
 
 int main(int argc, char** argv) {

@@ -14,12 +14,13 @@
 #include "common/log/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/boundary/cavity.hpp"
-#include "fluid_solver/motion/turning_walls.hpp"
+#include "fluid_solver/motion/rotation.hpp"
 #include "fluid_solver/output/derived.hpp"
-#include "fluid_solver/state/state_io.hpp"
+#include "fluid_solver/state/state.hpp"
+#include "fluid_solver/step/fluid.hpp"
 
 namespace couplet::fluid {
+
 namespace {
 
 bool holds_volume(const FluidParameters& p) { return p.volume_level == VolumeLevelBy::structure; }
@@ -280,5 +281,42 @@ std::unique_ptr<coupling::Participant> make_participant(mesh::LoadedMesh loaded,
     return std::make_unique<FluidParticipant<2>>(std::move(loaded), parameters, std::move(context), link);
   return std::make_unique<FluidParticipant<3>>(std::move(loaded), parameters, std::move(context), link);
 }
+
+// What a participant tells of its sub-steps.
+
+namespace {
+
+// Sub-steps of a step over those of the step last told in the log, or the other way round.
+constexpr double most_times_as_many = 2;
+}  // namespace
+
+/// One line where a step took many more parts than when it was last told, or many fewer, with the cell that
+/// asks for them.
+template <int D>
+void FluidParticipant<D>::tell_sub_steps() {
+  const int now = fluid_->statistics().sub_steps;
+  const bool as_told =
+      now < most_times_as_many * told_sub_steps_ && told_sub_steps_ < most_times_as_many * now;
+  if (as_told) return;
+  told_sub_steps_ = now;
+  const double end = step_.time + step_.dt;
+  if (const auto own = fluid_->parameters().time_step) {
+    if (parallel::comm_rank(mesh_.comm) == 0)
+      log::info("t = {:.6g} s: {} sub-steps of {:.3g} s: time-step is {:.3g} s", end, now, step_.dt / now,
+                *own);
+    return;
+  }
+  const StepLimiter limiter = fluid_->sizes().limiter(fluid_->state());
+  if (parallel::comm_rank(mesh_.comm) == 0)
+    log::info(
+        "t = {:.6g} s: {} sub-steps of {:.3g} s; {} in cell {} at ({:.4g}, {:.4g}, {:.4g}) m limits them to "
+        "{:.3g} s, of which {:.0f} % are used",
+        end, now, step_.dt / now, limiter.friction ? "friction" : "convection", limiter.cell,
+        limiter.place.x(), limiter.place.y(), limiter.place.z(), limiter.limit,
+        100 * fluid_->parameters().safety_factor);
+}
+
+template void FluidParticipant<2>::tell_sub_steps();
+template void FluidParticipant<3>::tell_sub_steps();
 
 }  // namespace couplet::fluid

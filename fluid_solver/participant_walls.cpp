@@ -5,7 +5,7 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/motion/turning_walls.hpp"
+#include "fluid_solver/motion/rotation.hpp"
 #include "fluid_solver/participant.hpp"
 
 namespace couplet::fluid {

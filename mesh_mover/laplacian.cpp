@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh_mover/laplacian.hpp"
+#include "mesh_mover/methods.hpp"
 
 #include <cmath>
 

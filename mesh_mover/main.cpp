@@ -2,8 +2,8 @@
 #include "common/app/program.hpp"
 #include "common/linalg/petsc.hpp"
 #include "mesh_mover/diagnostics.hpp"
-#include "mesh_mover/effect_cards.hpp"
 #include "mesh_mover/mover.hpp"
+#include "mesh_mover/parameters.hpp"
 
 int main(int argc, char** argv) {
   couplet::mesh_mover::Parameters parameters;

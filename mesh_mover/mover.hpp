@@ -13,11 +13,10 @@
 #include "common/io/fields/field_writer.hpp"
 #include "common/io/series.hpp"
 #include "common/mesh/periodic_points.hpp"
-#include "mesh_mover/curved_slide.hpp"
 #include "mesh_mover/guard.hpp"
-#include "mesh_mover/motion_method.hpp"
-#include "mesh_mover/moving_patches.hpp"
+#include "mesh_mover/methods.hpp"
 #include "mesh_mover/parameters.hpp"
+#include "mesh_mover/patches.hpp"
 
 namespace couplet::mesh_mover {
 

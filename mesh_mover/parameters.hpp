@@ -3,9 +3,11 @@
 
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "common/config/section.hpp"
+#include "common/effects/effects.hpp"
 #include "common/fv/prescribed_motion.hpp"
 #include "common/linalg/linear_solver.hpp"
 
@@ -78,5 +80,8 @@ struct Parameters {
 };
 
 void declare(config::Section& section, Parameters& parameters);
+
+using Card = effects::EffectCard<Parameters>;
+std::span<const Card> effect_cards();
 
 }  // namespace couplet::mesh_mover

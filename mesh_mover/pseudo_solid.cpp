@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh_mover/pseudo_solid.hpp"
+#include "mesh_mover/methods.hpp"
 
 #include <algorithm>
 #include <cmath>

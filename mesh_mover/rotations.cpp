@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh_mover/rotations.hpp"
+#include "mesh_mover/methods.hpp"
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>

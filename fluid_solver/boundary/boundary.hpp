@@ -1,17 +1,109 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "fluid_solver/boundary/face_rows.hpp"
-#include "fluid_solver/boundary/given_velocity.hpp"
+#include "common/app/case/check_files.hpp"
+#include "common/fv/expression.hpp"
 #include "fluid_solver/parameters/parameters.hpp"
 #include "fluid_solver/state/placement.hpp"
 
 namespace couplet::fluid {
+
+/// Consecutive boundary faces of one patch; on ranks without any `count` is 0.
+struct FaceRange {
+  Index first = 0, count = 0;
+};
+
+/// The FaceRow of every boundary face, and the faces by what of it they have. Arrays over "boundary faces" are indexed by
+/// f - mesh.n_interior; lists ascend.
+struct FaceRows {
+  std::vector<double> pressure, slip_length, inflow;  ///< see FaceRow
+  std::vector<Index> of_pressure;                     ///< the pressure is given
+  std::vector<Index> of_flux;                         ///< all others: phi = w.S
+  std::vector<Index> of_mesh;                         ///< of these: w is the normal velocity of the mesh
+  std::vector<Index> of_velocity;                     ///< and the rest of them
+  std::vector<char> with_mesh;                        ///< of all faces: w is the normal velocity of the mesh
+
+  explicit FaceRows(Index count = 0)
+      : pressure(count, 0.0), slip_length(count, 0.0), inflow(count, 1.0), with_mesh(count, 0) {}
+  void set(const FaceRange& faces, const FaceRow& row, bool moves_with_mesh) {
+    for (Index b = faces.first; b < faces.first + faces.count; ++b) {
+      pressure[b] = row.pressure;
+      slip_length[b] = row.slip_length;
+      inflow[b] = row.inflow;
+      with_mesh[b] = moves_with_mesh;
+    }
+  }
+  /// Once all are set.
+  void sort() {
+    for (Index b = 0; b < static_cast<Index>(pressure.size()); ++b) {
+      (pressure[b] > 0 ? of_pressure : of_flux).push_back(b);
+      if (pressure[b] == 0) (with_mesh[b] ? of_mesh : of_velocity).push_back(b);
+    }
+  }
+
+  /// t = S/(S + L g), the share of mu g (w - u_P) along the wall that friction has: 1 without slip, 0 without friction.
+  /// `f`: the flux face of b.
+  template <int D>
+  double friction(const Placement<D>& at, Index b, Index f) const {
+    const double area = at.area[f].norm();
+    return area / (area + slip_length[b] * at.conductance[f]);
+  }
+};
+
+/// Speed at the faces of an inlet relative to its mean.
+template <int D>
+struct InletShape {
+  Vec<D> direction = Vec<D>::Zero();  ///< unit vector into the domain
+  std::vector<double> speed;          ///< per face of the patch; its mean over the area is 1 to round-off
+};
+
+/// Parabolic: 4 s (1 - s) between the two ends of a line (2-D), 1 - (r/R)^2 on a disc (3-D), scaled to the
+/// mean. Throws Error if the patch is no straight line or no disc. Collective.
+template <int D>
+InletShape<D> inlet_shape(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch,
+                          InletProfile profile);
+
+/// The velocity that the keys of a condition give to the faces of a patch.
+template <int D>
+class GivenVelocity {
+ public:
+  /// Throws Error if the keys do not fit the patch. Collective.
+  GivenVelocity(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch,
+                const BoundaryParameters& parameters);
+
+  const FaceRange& faces() const { return faces_; }
+  const mesh::Patch& patch() const { return *patch_; }
+  /// A wall whose velocity differs from place to place.
+  bool turns() const { return turns_; }
+  /// At places of the patch, in the order of its faces where a profile was made for them [m/s].
+  void evaluate(double t, std::span<const Vec3> places, Vec<D>* w) const;
+
+ private:
+  FaceRange faces_;
+  const mesh::Patch* patch_;
+  BoundaryParameters parameters_;
+  std::vector<fv::Expression> velocity_;
+  fv::Expression mean_speed_;
+  InletShape<D> shape_;                 // with mean_speed
+  std::optional<fv::GridTable> table_;  // of the velocity
+  fv::Expression turning_;              // [rad/s], with a rotation
+  bool turns_ = false;
+};
+
+/// The velocities of a boundary from its file, in `dimension` components. Throws Error with file:line.
+fv::GridTable velocity_table(const std::filesystem::path& file, fv::GridTable::Outside outside,
+                             int dimension);
+
+/// For --check: tables of boundaries that are missing or broken.
+std::vector<app::ProblemOfKey> problems_of_files(const FluidParameters& parameters,
+                                                 const std::filesystem::path& case_folder);
 
 /// A patch that lets pressure waves out.
 struct AbsorbingPatch {

@@ -8,7 +8,7 @@
 
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/diagnostics/differences.hpp"
-#include "fluid_solver/pressure/wave_rule.hpp"
+#include "fluid_solver/pressure/term.hpp"
 
 namespace couplet::fluid {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/diagnostics/ringing.hpp"
+#include "fluid_solver/diagnostics/effects.hpp"
 
 #include <fmt/format.h>
 

@@ -2,14 +2,86 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "common/linalg/acceleration.hpp"
+#include "fluid_solver/boundary/boundary.hpp"
 #include "fluid_solver/momentum/rates.hpp"
-#include "fluid_solver/momentum/viscous_solver.hpp"
 #include "fluid_solver/motion/scene.hpp"
+#include "fluid_solver/state/placement.hpp"
 
 namespace couplet::fluid {
+
+/// A symmetric matrix by the rows of the owned cells, all of one width: what CG does with it takes one pass over the rows and two
+/// over the vectors. A loop over the faces, which writes each cell once per face, takes twice the instructions.
+struct ViscousRows {
+  Index width = 0;  ///< entries per row beside the diagonal: the most neighbours of a cell
+  std::vector<Index> column,
+      face;  ///< local cells, and the faces between; where there is none: the row's own cell, and -1
+  std::vector<double> value;     ///< 0 where there is none
+  std::vector<double> diagonal;  ///< per owned cell
+
+  explicit ViscousRows(const mesh::Mesh& mesh);
+  Index size() const { return static_cast<Index>(diagonal.size()); }
+};
+
+/// y = A x; returns x.y over the owned cells. `x`: per local cell, with ghosts current.
+double multiply(const ViscousRows& a, const Vectors<2>& x, Vectors<2>& y);
+double multiply(const ViscousRows& a, const Vectors<3>& x, Vectors<3>& y);
+
+/// A step of CG: u += alpha s, r -= alpha q; returns r.r.
+double go_along(double alpha, std::span<const double> s, std::span<const double> q, std::span<double> u,
+                std::span<double> r);
+
+/// The next search direction: s = r + gamma s.
+void turn_search(double gamma, std::span<const double> r, std::span<double> s);
+
+/// Share of an eddy viscosity in the matrix: theta dt nu_t at interior faces, nu_t the mean of two cells.
+struct EddyShare {
+  const std::vector<double>* eddy = nullptr;  ///< nu_t per local cell [m^2/s]; nullptr if there is none
+  double factor = 0;                          ///< theta dt [s]
+  double at(Index p, Index n) const { return eddy ? 0.5 * factor * ((*eddy)[p] + (*eddy)[n]) : 0; }
+};
+
+/// Solves  A u = V u + beta sum_f g (u_P - u_f) = b  for all components at once, by CG on D^(-1/2) A D^(-1/2), which is CG with
+/// Jacobi's preconditioner [hestenes1952]. beta = a nu dt [m^2]; at interior faces with the share of an eddy viscosity added.
+/// The system is well conditioned wherever convection limits the step.
+template <int D>
+class ViscousSolver {
+ public:
+  ViscousSolver(const mesh::Mesh& mesh, const Boundary<D>& boundary) : mesh_(mesh), boundary_(boundary) {}
+  /// The system of the solves that follow. Collective.
+  void prepare(std::shared_ptr<const Placement<D>> at, double beta, const EddyShare& eddies = {});
+  /// Inverse of its diagonal D, per owned cell.
+  const std::vector<double>& inverse_diagonal() const { return inverse_diagonal_; }
+  /// `b`: per local cell (owned ones count) without boundary parts; `w`: given velocity per boundary face;
+  /// `u`: guess on entry, with ghosts current on exit. Returns the iterations; throws SolveFailure.
+  /// Collective.
+  int solve(const Vectors<D>& w, double tolerance, Vectors<D>& b, Vectors<D>& u);
+
+ private:
+  /// Addition of a boundary face to the row of its cell: beta g [t I + (1 - t) n n], see FaceRow.
+  struct BoundaryRow {
+    Index cell;
+    double both, normal;  // beta g t, beta g (1 - t)
+    Vec<D> n;
+    Vec<D> times(const Vec<D>& x) const { return both * x + normal * x.dot(n) * n; }
+  };
+  void set_diagonal(const EddyShare& eddies);
+  void set_entries(const EddyShare& eddies);
+  double apply(Vectors<D>& x, Vectors<D>& y) const;
+  const mesh::Mesh& mesh_;
+  const Boundary<D>& boundary_;
+  std::shared_ptr<const Placement<D>> at_;
+  double beta_ = 0;
+  bool with_eddies_ = false;
+  std::unique_ptr<ViscousRows> a_;  // D^(-1/2) A D^(-1/2), but for boundary_rows_
+  std::vector<BoundaryRow> boundary_rows_;
+  std::vector<double> inverse_diagonal_;
+  std::vector<double> scale_;      // D^(-1/2), per local cell
+  Vectors<D> x_, r_, q_, search_;  // of the scaled system
+};
 
 /// The implicit part of modified Crank-Nicolson, V' u^p - a dt nu L' u^p = right side; on oblique meshes in passes. With the stress of
 /// an eddy viscosity, explicit and damped.

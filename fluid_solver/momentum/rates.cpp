@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "common/base/processor_clones.hpp"
-#include "fluid_solver/momentum/turbulence.hpp"
 
 namespace couplet::fluid {
 

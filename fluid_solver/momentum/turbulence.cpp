@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/momentum/turbulence.hpp"
+#include "fluid_solver/momentum/rates.hpp"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/momentum/viscous_solver.hpp"
+#include "fluid_solver/momentum/implicit_friction.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include "common/base/error.hpp"
 #include "common/base/processor_clones.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/state/largest_cell.hpp"
+#include "fluid_solver/state/placement.hpp"
 
 namespace couplet::fluid {
 

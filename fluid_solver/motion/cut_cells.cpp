@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/motion/cut_cells.hpp"
+#include "fluid_solver/motion/immersed.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

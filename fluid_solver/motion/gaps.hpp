@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fluid_solver/motion/obstacles.hpp"
+#include "fluid_solver/motion/scene.hpp"
 #include "fluid_solver/parameters/parameters.hpp"
 
 namespace couplet::fluid {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/motion/mesh_path.hpp"
+#include "fluid_solver/motion/scene.hpp"
 
 #include <algorithm>
 #include <utility>
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/state/largest_cell.hpp"
+#include "fluid_solver/state/placement.hpp"
 
 namespace couplet::fluid {
 namespace {

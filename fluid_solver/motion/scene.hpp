@@ -3,14 +3,98 @@
 
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
+#include "common/mesh/periodic_points.hpp"
 #include "fluid_solver/boundary/boundary.hpp"
-#include "fluid_solver/motion/obstacles.hpp"
-#include "fluid_solver/motion/rotating_frame.hpp"
+#include "fluid_solver/motion/rotation.hpp"
+#include "fluid_solver/parameters/parameters.hpp"
 #include "fluid_solver/state/fourth_order.hpp"
+#include "fluid_solver/state/state.hpp"
 
 namespace couplet::fluid {
+
+/// Parts of the mesh that the fluid does not enter: immersed bodies or closed gaps, in this class itself none. Every function is called
+/// a few times per step and loops over cells or faces itself.
+template <int D>
+class Obstacles {
+ public:
+  explicit Obstacles(const mesh::Mesh& mesh) : mesh_(mesh), closed_(mesh.cells.n_local(), 0) {}
+  virtual ~Obstacles() = default;
+
+  enum class Changed { nothing, shares, cells };  ///< `cells`: other cells are closed than before
+  /// Marks the cells of a placement at time t [s]. The same on all ranks. Collective.
+  virtual Changed mark(double, const std::shared_ptr<const Placement<D>>&, const std::vector<Vec3>&) {
+    return Changed::nothing;
+  }
+  /// Prepares what the other functions need in a step from a level, with the given velocities w [m/s]. Collective.
+  virtual void begin(const Step<D>&, const State<D>&, const Vectors<D>&) {}
+  /// The multi-step schemes begin anew after this step, which has an impulse.
+  virtual bool starts_anew() const { return false; }
+
+  /// Nothing passes any face of a closed cell but what moves with the obstacle.
+  bool is_closed(Index cell) const { return closed_[cell] != 0; }
+  /// Sets the values of closed cells to zero.
+  template <class T>
+  void clear(std::vector<T>& values) const {
+    if (!any_) return;
+    for (std::size_t c = 0; c < values.size(); ++c)
+      if (closed_[c]) set_zero(values[c]);
+  }
+  /// Closed cells on any rank, per local cell; nullptr if they take part in the choice of the step size.
+  virtual std::shared_ptr<const std::vector<char>> marks() const { return nullptr; }
+  /// Placement as the pressure equation sees it, where closed faces conduct little or nothing; nullptr if it is that of the step.
+  const Placement<D>* around() const { return around_.get(); }
+
+  /// Sets u in and beside closed cells. Ghosts current before and after. Collective.
+  virtual void hold(const Placement<D>&, double, Vectors<D>&) const {}
+  /// Fluxes of a velocity through the faces as if all of each were open. Collective.
+  virtual void carry(const Placement<D>&, const Vectors<D>&, std::vector<double>&) const {}
+  /// Reduces these fluxes to what passes the open part of each flux face, and adds what moves with the obstacle [m^3/s].
+  virtual void block(const Step<D>&, std::vector<double>&) const {}
+  /// Does so at the boundary faces of given flux.
+  virtual void block(const Step<D>&, const std::vector<Index>&, std::vector<double>&) const {}
+  /// Corrects the memory of the fluxes of a state, which starts anew at closed faces. Collective.
+  virtual void correct_memory(State<D>&) const {}
+
+  /// The cells inside have a pressure of their own.
+  virtual bool has_pressure() const { return true; }
+  /// Right-hand side and guess of the pressure equation.
+  virtual void before(std::vector<double>& b, std::vector<double>&) const { clear(b); }
+  /// The solution, in closed cells. Collective.
+  virtual void after(const Placement<D>&, std::vector<double>&) const {}
+  /// part() has something to add.
+  virtual bool parts() const { return false; }
+  /// Adds to `sum` of the free cells at closed faces sign area (p_P - p_f), p_f linear between the cells (with `gradient` also on
+  /// skewed meshes): such a cell sees its own pressure there, as at a wall.
+  virtual void part(const Placement<D>&, const std::vector<double>&, const Vectors<D>*, const Vectors<D>&,
+                    Vectors<D>&) const {}
+
+  /// Work that the obstacles do is in the energy budget.
+  virtual bool is_in_budget() const { return true; }
+  /// Why a flow may have diverged; empty if there is no reason here. Collective.
+  virtual std::string cause(const Placement<D>&) const { return {}; }
+
+ protected:
+  template <class IsClosed>
+  void close(const IsClosed& is_closed) {
+    any_ = false;
+    for (std::size_t c = 0; c < closed_.size(); ++c) {
+      closed_[c] = is_closed(static_cast<Index>(c));
+      any_ = any_ || closed_[c];
+    }
+  }
+  const mesh::Mesh& mesh_;
+  std::shared_ptr<const Placement<D>> around_;
+
+ private:
+  static void set_zero(double& value) { value = 0; }
+  static void set_zero(Vec<D>& value) { value.setZero(); }
+  std::vector<char> closed_;  // per local cell
+  bool any_ = false;          // on this rank
+};
 
 /// Everything that stays the same in all steps of a run.
 template <int D>
@@ -38,6 +122,40 @@ struct Scene {
     return fourth ? fourth->flux_velocity(at, u) : u;
   }
   bool is_compressible() const { return fluid.sound > 0; }
+};
+
+/// Where the mesh is in a coupling step: its points move along straight lines from that of level n to that at the end.
+template <int D>
+class MeshPath {
+ public:
+  /// `geometry`: of the mesh at rest, of which the points alone are kept. `moves`: the mesh will. Collective.
+  MeshPath(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const FluidParameters& parameters,
+           bool moves);
+
+  /// As read, per local point [m].
+  const std::vector<Vec3>& points_at_rest() const { return points_at_rest_; }
+
+  bool moves() const { return moves_; }
+  /// As a frame that does not turn.
+  bool translates() const { return translates_; }
+  /// Placement of the mesh at rest; a frame that is only translated keeps its shape, and with it the pressure equation and its factors.
+  std::shared_ptr<const Placement<D>> start(const mesh::Geometry& geometry);
+  /// Placement of other points; of those at rest if `points` is empty.
+  std::shared_ptr<const Placement<D>> at(std::span<const Vec3> points) const;
+  /// The sub-step of `dt` on a mesh that ends at the share `s` of the way from `begin` to `end` (empty: it rests
+  /// there). `level`: where it starts, at t = `time` of the coupling step. Throws SolveFailure for inverted cells.
+  /// Collective.
+  SubStep<D> sub_step(const State<D>& level, double dt, double s, std::span<const Vec3> begin,
+                      std::span<const Vec3> end, double time) const;
+  /// Throws Error where the points at `time` part what is joined. Collective.
+  void refuse_torn(std::span<const Vec3> points, double time) const;
+
+ private:
+  const mesh::Mesh& mesh_;
+  const std::vector<Vec3> points_at_rest_;
+  bool moves_, translates_;
+  std::optional<mesh::PeriodicPoints> periodic_;  // with patches joined on a mesh that moves
+  std::shared_ptr<const Placement<D>> frame_;     // with translates_: the placement at rest
 };
 
 }  // namespace couplet::fluid

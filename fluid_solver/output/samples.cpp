@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/output/samples.hpp"
+#include "fluid_solver/output/output.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/output/series.hpp"
+#include "fluid_solver/output/output.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "common/base/processor_clones.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/output/derived.hpp"
-#include "fluid_solver/state/face_sums.hpp"
+#include "fluid_solver/state/placement.hpp"
 
 namespace couplet::fluid {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/output/statistics.hpp"
+#include "fluid_solver/output/derived.hpp"
 
 #include <cmath>
 #include <limits>

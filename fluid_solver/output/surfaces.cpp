@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/output/surfaces.hpp"
+#include "fluid_solver/output/output.hpp"
 
 #include <algorithm>
 
 #include "fluid_solver/output/derived.hpp"
-#include "fluid_solver/output/output.hpp"
 
 namespace couplet::fluid {
 

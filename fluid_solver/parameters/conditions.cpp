@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/base/text.hpp"
-#include "fluid_solver/parameters/condition.hpp"
+#include "fluid_solver/parameters/parameters.hpp"
 
 namespace couplet::fluid {
 

@@ -11,7 +11,6 @@
 #include "common/fv/expression.hpp"
 #include "common/io/fields/surface_series.hpp"
 #include "common/mesh/periodic_points.hpp"
-#include "fluid_solver/parameters/condition.hpp"
 
 namespace couplet::fluid {
 

@@ -7,7 +7,6 @@
 
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/pressure/term.hpp"
-#include "fluid_solver/pressure/wave_rule.hpp"
 
 namespace couplet::fluid {
 namespace {

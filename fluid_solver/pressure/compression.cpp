@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/pressure/term.hpp"
-#include "fluid_solver/pressure/wave_rule.hpp"
 
 namespace couplet::fluid {
+
 namespace {
 
 /// Weak compressibility in the pressure equation: dp/dt + rho c^2 div u = 0 in every cell, u relative to faces that may
@@ -130,5 +133,177 @@ std::unique_ptr<Term<D>> make_compression(const Scene<D>& scene, const Step<D>& 
 
 template std::unique_ptr<Term<2>> make_compression<2>(const Scene<2>&, const Step<2>&, const Prediction<2>&);
 template std::unique_ptr<Term<3>> make_compression<3>(const Scene<3>&, const Step<3>&, const Prediction<3>&);
+
+namespace {
+
+// Tolerance of y. Its error is missing in the volume's balance.
+constexpr double response_tolerance = 1e-10;
+// Share of the faces' conductance. Cells that follow the volume's pressure up to this share do not determine it.
+constexpr double least_answer = 1e-9;
+
+/// A volume V_0 at rest behind the inlets, at one pressure: dp/dt = rho c^2 (q - q_out)/V_0, q what the inlets' velocity
+/// prescribes, q_out what enters the mesh. Its pressure is that of their faces. By the same rule in time as the cells, in
+/// one step with them: the answer y of the cells to its pressure, A y = G with the conductance G of its faces, gives the
+/// flux before p is solved for, since A p = b + G p_0 makes G.p = y.(b + G p_0) for the symmetric matrix A.
+template <int D>
+class UpstreamVolume final : public Term<D> {
+ public:
+  UpstreamVolume(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction);
+
+  void prepare(const State<D>& from) override;
+  double version() const override { return 1; }
+  /// Solves for y.
+  void respond(PressureEquation<D>& equation) override;
+  /// No pressure at its faces as long as it is not known.
+  void foresee(const State<D>& from, Projected<D>& projected) override;
+  /// Its pressure, onto its faces and into b, which lacks them.
+  void before(Projected<D>& projected, RightSide& side) override;
+  void complete(PressureLevel<D>& level) const override;
+  /// At the pressure of its faces.
+  void start(const Placement<D>& at, PressureLevel<D>& level) const override;
+  using Term<D>::start;
+  /// y is where the next one is looked for: of the accepted level.
+  void accept() override { accepted_ = response_; }
+  void save(io::CheckpointWriter& file) const override {
+    file.write(mesh::Entries::cells, "upstream-response", accepted_);
+  }
+  void load(io::CheckpointReader& file) override;
+
+ private:
+  using Term<D>::scene_;
+  using Term<D>::mesh_;
+  using Term<D>::step_;
+  double begin() const;
+
+  bool trapezoidal_;
+  double stiffness_;  // rho c^2/V_0 [Pa/m^3]
+  double rate_ = 0, past_ = 0, pressure_ = 0;
+  std::vector<double> response_, accepted_;  // y per local cell
+  double faces_ = 0, answer_ = 0;            // sum G, y.G [m]
+};
+
+template <int D>
+UpstreamVolume<D>::UpstreamVolume(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction)
+    : Term<D>(scene, step, prediction),
+      trapezoidal_(scene.parameters.compressibility->scheme == WaveScheme::trapezoidal),
+      stiffness_(scene.fluid.rho * scene.fluid.sound * scene.fluid.sound /
+                 scene.parameters.compressibility->upstream_volume) {}
+
+template <int D>
+void UpstreamVolume<D>::respond(PressureEquation<D>& equation) {
+  const Placement<D>& at = scene_.around(step_);
+  std::vector<double> side(mesh_.cells.n_owned(), 0.0);
+  double sums[2] = {};
+  for (const auto& [first, count] : scene_.boundary.upstream_patches())
+    for (Index f = mesh_.n_interior + first; f < mesh_.n_interior + first + count; ++f) {
+      side[mesh_.owner[f]] += at.conductance[f];
+      sums[0] += at.conductance[f];
+    }
+  response_.resize(mesh_.cells.n_local(), 0.0);
+  equation.solve(at, side, response_, response_tolerance, std::numeric_limits<double>::min());
+  for (std::size_t c = 0; c < side.size(); ++c) sums[1] += response_[c] * side[c];
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  faces_ = sums[0];
+  answer_ = sums[1];
+}
+
+template <int D>
+double UpstreamVolume<D>::begin() const {
+  const PressureLevel<D>& level = *step_.by.pressure[0];
+  return level.end.empty() ? level.upstream : level.upstream_end;
+}
+
+template <int D>
+void UpstreamVolume<D>::prepare(const State<D>& from) {
+  rate_ = wave_rate(step_, trapezoidal_);
+  past_ = pressure_ = 0;
+  if (!(rate_ > 0)) return;
+  pressure_ = step_.by.pressure[0]->upstream;
+  if (!trapezoidal_) {
+    const WaveRule rule = wave_rule(step_);
+    for (std::size_t k = 0; k < rule.past.size(); ++k)
+      if (rule.past[k] != 0) past_ += rule.past[k] * step_.by.pressure[k]->upstream;
+    return;
+  }
+  double flux = 0;
+  for (const auto& [first, count] : scene_.boundary.upstream_patches())
+    for (Index b = first; b < first + count; ++b) {
+      const Index f = mesh_.n_interior + b;
+      flux += from.phi[f] - from.w[b].dot(from.placement->area[f]);
+    }
+  past_ = -rate_ * begin() - stiffness_ * parallel::sum(mesh_.comm, flux);
+}
+
+template <int D>
+void UpstreamVolume<D>::foresee(const State<D>&, Projected<D>& out) {
+  for (const auto& [first, count] : scene_.boundary.upstream_patches())
+    std::fill_n(out.boundary.begin() + first, count, 0.0);
+}
+
+template <int D>
+void UpstreamVolume<D>::before(Projected<D>& out, RightSide& side) {
+  const Placement<D>& at = *step_.to;
+  const double factor = step_.dt / scene_.fluid.rho;
+  double flux = 0;  // into the volume, but for what its pressure drives
+  for (const auto& [first, count] : scene_.boundary.upstream_patches())
+    for (Index b = first; b < first + count; ++b) {
+      const Index f = mesh_.n_interior + b;
+      flux += out.phi[f] - out.w[b].dot(at.area[f]);
+    }
+  for (std::size_t c = 0; c < side.b.size(); ++c) flux += factor * response_[c] * side.b[c];
+  flux = parallel::sum(mesh_.comm, flux);
+  const double open = faces_ - answer_;
+  if (rate_ > 0 || open > least_answer * faces_)
+    pressure_ = (stiffness_ * flux - past_) / (rate_ + stiffness_ * factor * open);
+  const double change = pressure_ - (step_.by.pressure[0] ? step_.by.pressure[0]->upstream : 0);
+  double square = 0;
+  for (const auto& [first, count] : scene_.boundary.upstream_patches())
+    for (Index b = first; b < first + count; ++b) {
+      const Index f = mesh_.n_interior + b;
+      out.boundary[b] = pressure_;
+      side.b[mesh_.owner[f]] += at.conductance[f] * pressure_;
+      square += std::pow(at.conductance[f] * change, 2);
+    }
+  // In a fluid at rest there may be nothing but the volume's pressure.
+  const double size = std::sqrt(parallel::sum(mesh_.comm, square));
+  if (side.size >= 0) side.size = std::hypot(side.size, size);
+}
+
+template <int D>
+void UpstreamVolume<D>::start(const Placement<D>& at, PressureLevel<D>& level) const {
+  double sums[2] = {};
+  for (const auto& [first, count] : scene_.boundary.upstream_patches())
+    for (Index b = first; b < first + count; ++b) {
+      const double area = at.area[mesh_.n_interior + b].norm();
+      sums[0] += area * level.boundary[b], sums[1] += area;
+    }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  level.upstream = sums[0] / sums[1];
+}
+
+template <int D>
+void UpstreamVolume<D>::complete(PressureLevel<D>& level) const {
+  level.upstream = pressure_;
+  if (trapezoidal_) level.upstream_end = step_.by.pressure[0] ? 2 * pressure_ - begin() : pressure_;
+}
+
+template <int D>
+void UpstreamVolume<D>::load(io::CheckpointReader& file) {
+  response_ = file.read_or_none(mesh::Entries::cells, "upstream-response", 1);
+  accepted_ = response_;
+}
+
+}  // namespace
+
+template <int D>
+std::unique_ptr<Term<D>> make_upstream_volume(const Scene<D>& scene, const Step<D>& step,
+                                              const Prediction<D>& prediction) {
+  return std::make_unique<UpstreamVolume<D>>(scene, step, prediction);
+}
+
+template std::unique_ptr<Term<2>> make_upstream_volume<2>(const Scene<2>&, const Step<2>&,
+                                                          const Prediction<2>&);
+template std::unique_ptr<Term<3>> make_upstream_volume<3>(const Scene<3>&, const Step<3>&,
+                                                          const Prediction<3>&);
 
 }  // namespace couplet::fluid

@@ -7,7 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/state/largest_cell.hpp"
+#include "fluid_solver/state/placement.hpp"
 
 namespace couplet::fluid {
 

@@ -6,7 +6,7 @@
 
 #include "common/linalg/acceleration.hpp"
 #include "fluid_solver/pressure/term.hpp"
-#include "fluid_solver/state/face_sums.hpp"
+#include "fluid_solver/state/placement.hpp"
 
 namespace couplet::fluid {
 

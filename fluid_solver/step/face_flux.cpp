@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The predicted face fluxes and what they remember of the mean velocities.
-#include "fluid_solver/step/face_flux.hpp"
+#include "fluid_solver/step/stages.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -7,8 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/motion/turning_walls.hpp"
-#include "fluid_solver/step/fluid_checks.hpp"
+#include "fluid_solver/motion/rotation.hpp"
 
 namespace couplet::fluid {
 namespace {

@@ -7,8 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "common/coupling/participant.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/motion/mesh_path.hpp"
+#include "fluid_solver/boundary/boundary.hpp"
+#include "fluid_solver/motion/scene.hpp"
 #include "fluid_solver/step/fractional_step.hpp"
 #include "fluid_solver/step/step_size.hpp"
 
@@ -128,5 +130,26 @@ class Fluid {
   Vectors<D> given_turn_, turn_;  // at the step's end: what set_turn() gave; of all walls. Empty: none
   FluidStatistics statistics_;
 };
+
+/// Resolves `surface: auto` of bodies. Throws Error if two bodies differ.
+FluidParameters with_surfaces(FluidParameters parameters, bool moving);
+
+/// Throws Error for effects that do not go together; where one leaves a single choice of another, sets it. `moving`: the
+/// mesh will move. Collective.
+template <int D>
+void check_together(const mesh::Mesh& mesh, const Boundary<D>& boundary, FluidParameters& parameters,
+                    bool moving);
+
+/// An incompressible fluid without an outlet lets no wall move that would change its volume, unless something sets
+/// its pressure level (`volume-level`). Throws Error for a fluid whose volume is trapped, or that asks for a level it
+/// does not need. Collective.
+template <int D>
+void check_cavity(const Fluid<D>& fluid, coupling::Scheme scheme);
+
+/// What the given velocities let into the fluid at t^{n+1} and t^n [m^3/s], for each of the interface's faces (face
+/// by face, two values) its share by area: the sums are the inflows. Collective.
+template <int D>
+std::vector<double> inflow_shares(const Fluid<D>& fluid, const std::vector<Index>& faces, double time,
+                                  double dt);
 
 }  // namespace couplet::fluid

@@ -7,13 +7,26 @@
 
 #include "fluid_solver/motion/gaps.hpp"
 #include "fluid_solver/motion/immersed.hpp"
+#include "fluid_solver/motion/scene.hpp"
 #include "fluid_solver/pressure/projection.hpp"
 #include "fluid_solver/step/energy_guard.hpp"
-#include "fluid_solver/step/face_flux.hpp"
-#include "fluid_solver/step/loads.hpp"
-#include "fluid_solver/step/predictor.hpp"
+#include "fluid_solver/step/stages.hpp"
 
 namespace couplet::fluid {
+
+/// Forces on what is outside the fluid, per boundary face [N]: the momentum that the fluid's own equation lets through the wall,
+/// +p_b S^{n+1/2} with the scheme's wall pressure and the whole viscous flux mu g (u_P - w) with its weights in time. A pressure
+/// extrapolated from the cells and the tangential flux alone differ from it by a layer of the splitting, of first order in the step and
+/// the mesh.
+template <int D>
+struct Loads {
+  Vectors<D> pressure;  ///< and the normal part of the viscous flux
+  Vectors<D> viscous;   ///< its tangential part
+
+  /// Sets the forces of a step from a level, after its projection.
+  void set(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
+           const Projected<D>& projected, const State<D>& from);
+};
 
 // clang-format off
 /// One step of the non-incremental projection method on a moving mesh, in three stages, so that a semi-implicit coupling can repeat the

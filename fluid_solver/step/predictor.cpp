@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Everything before the face fluxes and the pressure equation.
-#include "fluid_solver/step/predictor.hpp"
+#include "fluid_solver/step/stages.hpp"
 
 #include <algorithm>
 #include <cmath>

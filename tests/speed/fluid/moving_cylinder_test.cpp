@@ -9,7 +9,7 @@
 
 #include "common/mesh/load.hpp"
 #include "fluid_solver/step/fluid.hpp"
-#include "mesh_mover/laplacian.hpp"
+#include "mesh_mover/methods.hpp"
 
 namespace couplet::fluid::moving_cylinder_test {
 namespace {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "fluid_solver/parameters/auto_effects.hpp"
+#include "fluid_solver/parameters/effects.hpp"
 #include "solid_solver/effects/auto_effects.hpp"
 
 namespace couplet::testing::choices_test {

@@ -8,8 +8,8 @@
 #include <set>
 
 #include "common/effects/effects.hpp"
-#include "fluid_solver/parameters/effect_cards.hpp"
-#include "mesh_mover/effect_cards.hpp"
+#include "fluid_solver/parameters/effects.hpp"
+#include "mesh_mover/parameters.hpp"
 #include "plate_modal/effect_cards.hpp"
 #include "solid_solver/effects/effect_cards.hpp"
 #include "thermocline/judge/effect_cards.hpp"

@@ -4,7 +4,7 @@
 
 #include "fluid_case.hpp"
 #include "fluid_solver/momentum/rates.hpp"
-#include "fluid_solver/step/loads.hpp"
+#include "fluid_solver/step/fractional_step.hpp"
 
 namespace couplet::fluid::test::face_loops_test {
 using namespace mesh;

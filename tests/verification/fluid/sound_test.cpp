@@ -9,9 +9,9 @@
 
 #include "common/base/error.hpp"
 #include "fluid_case.hpp"
-#include "fluid_solver/diagnostics/ringing.hpp"
+#include "fluid_solver/diagnostics/effects.hpp"
 #include "fluid_solver/output/output.hpp"
-#include "fluid_solver/state/state_io.hpp"
+#include "fluid_solver/state/state.hpp"
 
 namespace couplet::fluid::test::sound_test {
 using namespace mesh;

@@ -6,9 +6,7 @@
 
 #include "fluid_case.hpp"
 #include "fluid_solver/momentum/rates.hpp"
-#include "fluid_solver/momentum/turbulence.hpp"
 #include "fluid_solver/output/derived.hpp"
-#include "fluid_solver/output/statistics.hpp"
 
 namespace couplet::fluid::test::turbulence_test {
 using namespace mesh;

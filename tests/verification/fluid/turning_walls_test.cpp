@@ -7,7 +7,7 @@
 
 #include "common/parallel/collective.hpp"
 #include "fluid_case.hpp"
-#include "fluid_solver/motion/turning_walls.hpp"
+#include "fluid_solver/motion/rotation.hpp"
 #include "participant_case.hpp"
 #include "ring_mesh.hpp"
 #include "tests/support/saved_state.hpp"

@@ -9,8 +9,7 @@
 
 #include "common/base/error.hpp"
 #include "common/mesh/load.hpp"
-#include "mesh_mover/barrier/barrier_motion.hpp"
-#include "mesh_mover/barrier/barrier_system.hpp"
+#include "mesh_mover/barrier.hpp"
 #include "plate_case.hpp"
 #include "tests/support/saved_state.hpp"
 

@@ -8,9 +8,8 @@
 
 #include "common/base/error.hpp"
 #include "common/mesh/load.hpp"
-#include "mesh_mover/curved_slide.hpp"
-#include "mesh_mover/laplacian.hpp"
-#include "mesh_mover/pseudo_solid.hpp"
+#include "mesh_mover/methods.hpp"
+#include "mesh_mover/patches.hpp"
 #include "plate_case.hpp"
 
 namespace couplet::mesh_mover::test::curved_slide_test {

@@ -12,8 +12,8 @@
 #include "common/mesh/load.hpp"
 #include "common/mesh/quality.hpp"
 #include "common/parallel/collective.hpp"
+#include "mesh_mover/methods.hpp"
 #include "mesh_mover/mover.hpp"
-#include "mesh_mover/pseudo_solid.hpp"
 #include "plate_case.hpp"
 
 namespace couplet::mesh_mover::test::motion_test {

@@ -10,7 +10,7 @@
 #include "common/base/error.hpp"
 #include "common/mesh/load.hpp"
 #include "common/parallel/collective.hpp"
-#include "mesh_mover/laplacian.hpp"
+#include "mesh_mover/methods.hpp"
 #include "mesh_mover/mover.hpp"
 #include "tests/support/own_folder.hpp"
 #include "tests/support/saved_state.hpp"

@@ -12,8 +12,7 @@
 #include "common/mesh/load.hpp"
 #include "common/mesh/periodic_points.hpp"
 #include "common/parallel/collective.hpp"
-#include "mesh_mover/laplacian.hpp"
-#include "mesh_mover/pseudo_solid.hpp"
+#include "mesh_mover/methods.hpp"
 #include "plate_case.hpp"
 #include "tests/support/saved_state.hpp"
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/state/state_io.hpp"
+#include "fluid_solver/state/state.hpp"
 
 namespace couplet::fluid {
+
 namespace {
 
 using mesh::Entries;

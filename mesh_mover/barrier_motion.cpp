@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh_mover/barrier/barrier_motion.hpp"
+#include "mesh_mover/barrier.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "common/effects/effects.hpp"
@@ -8,6 +9,16 @@
 #include "fluid_solver/parameters/parameters.hpp"
 
 namespace couplet::fluid {
+
+/// What the cards look at: the parameters, and what the job around the fluid decides.
+struct FluidScene {
+  FluidParameters parameters;
+  bool moving_mesh = false;  ///< the job has a mesh mover
+  bool coupled = false;
+};
+
+using FluidCard = effects::EffectCard<FluidScene>;
+std::span<const FluidCard> fluid_effect_cards();
 
 /// `effects: auto` of a fluid: its dimension, laminar or large-eddy, how the viscous term is stepped, whether pressure waves are
 /// computed, and whether the mesh moves.
