@@ -191,13 +191,13 @@ void FluidParticipant<D>::prepare(const Vectors<D>& w) {
 template <int D>
 coupling::Exchange FluidParticipant<D>::solve(const coupling::Exchange& in) {
   if (!predicted_) points_ = receive_points();
-  const Vectors<D> w = wall_velocity(in);
+  auto [w, turn] = wall_motion(in);
   if (yields() && step_.scheme != coupling::Scheme::standalone) {
     if (fluid_->boundary().asks_for_mass()) take_wall_mass(in);
     fluid_->yield_from(wall_load(in));
   }
   prepare(w);
-  fluid_->set_turn(wall_turn(in));
+  fluid_->set_turn(std::move(turn));
   fluid_->solve_pressure(w, answer());
   if (stands_still()) trial_displacement_ = wall_displacement(in);
   return forces();

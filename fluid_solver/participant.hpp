@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/coupling/interface_map.hpp"
@@ -58,8 +59,7 @@ class FluidParticipant final : public coupling::Participant {
   const Fluid<D>& fluid() const { return *fluid_; }
 
  private:
-  Vectors<D> wall_velocity(const coupling::Exchange& in) const;
-  Vectors<D> wall_turn(const coupling::Exchange& in) const;
+  std::pair<Vectors<D>, Vectors<D>> wall_motion(const coupling::Exchange& in) const;
   std::vector<Vec3> body_velocities(const mesh::Patch& patch) const;
   std::vector<double> wall_load(const coupling::Exchange& in) const;
   void take_wall_mass(const coupling::Exchange& in);
@@ -73,7 +73,6 @@ class FluidParticipant final : public coupling::Participant {
   void set_up_motion();
   void set_up_interface(const mesh::Geometry& geometry);
   void tell_impulse() const;
-  void add_body_velocity(Vectors<D>& w) const;
   std::vector<Vec3> receive_points();
   coupling::Exchange forces() const;
   void tell_sub_steps();

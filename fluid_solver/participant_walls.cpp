@@ -40,56 +40,37 @@ std::vector<Vec3> FluidParticipant<D>::body_velocities(const mesh::Patch& patch)
   return prescribed_->velocities(corners, step_.time + step_.dt, step_.dt);
 }
 
-/// At the faces of bodies the mean of the velocities of their points, as at an interface.
+/// Velocity w of all walls that move, at a face the mean of those of its vertices, and their turn (see turn_of()). Both are
+/// empty if no wall moves. After receive_points().
 template <int D>
-void FluidParticipant<D>::add_body_velocity(Vectors<D>& w) const {
-  for (const mesh::Patch* patch : fluid_->boundary().body_patches())
-    set_face_means<D>(mesh_, *patch, body_velocities(*patch), w);
-}
-
-/// See turn_of(); nothing where no wall turns. After prepare(), which knows the points.
-template <int D>
-Vectors<D> FluidParticipant<D>::wall_turn(const coupling::Exchange& in) const {
+std::pair<Vectors<D>, Vectors<D>> FluidParticipant<D>::wall_motion(const coupling::Exchange& in) const {
   const bool coupled = interface_ && step_.scheme != coupling::Scheme::standalone;
   if (!coupled && !moves_bodies()) return {};
-  Vectors<D> turn(mesh_.boundary.n_owned(), Vec<D>::Zero());
+  Vectors<D> w(mesh_.boundary.n_owned(), Vec<D>::Zero()), turn = w;
   const std::vector<Vec3>& points = points_.empty() ? fluid_->points_at_rest() : points_;
-  for (const mesh::Patch* patch : fluid_->boundary().body_patches())
-    fluid::set_turn<D>(mesh_, *patch, points, body_velocities(*patch), turn);
-  if (!coupled) return turn;
+  for (const mesh::Patch* patch : fluid_->boundary().body_patches()) {
+    const std::vector<Vec3> velocities = body_velocities(*patch);
+    set_face_means<D>(mesh_, *patch, velocities, w);
+    set_turn<D>(mesh_, *patch, points, velocities, turn);
+  }
+  if (!coupled) return {w, turn};
   const std::vector<double> at_points = interface_->scatter_vertices(datum(in, "velocity"), D);
   const std::vector<Index>& faces = interface_->faces();
   std::vector<Vec3> corners, velocities;
   for (std::size_t i = 0; i < faces.size(); ++i) {
+    Vec<D>& mean = w[faces[i] - mesh_.n_interior];
     corners.clear();
     velocities.clear();
     for (const Index v : mesh_.face_points[faces[i]]) corners.push_back(points[v]);
     for (const Index v : interface_vertices_[static_cast<Index>(i)]) {
       velocities.push_back(Vec3::Zero());
       velocities.back().template head<D>() = Eigen::Map<const Vec<D>>(at_points.data() + std::size_t(v) * D);
+      mean += velocities.back().template head<D>();
     }
+    mean /= static_cast<double>(velocities.size());
     turn[faces[i] - mesh_.n_interior] = turn_of<D>(corners, velocities);
   }
-  return turn;
-}
-
-/// w at a face is the mean of the velocities of its vertices.
-template <int D>
-Vectors<D> FluidParticipant<D>::wall_velocity(const coupling::Exchange& in) const {
-  const bool coupled = interface_ && step_.scheme != coupling::Scheme::standalone;
-  if (!coupled && !moves_bodies()) return {};
-  Vectors<D> w(mesh_.boundary.n_owned(), Vec<D>::Zero());
-  if (moves_bodies()) add_body_velocity(w);
-  if (!coupled) return w;
-  const std::vector<double> at_points = interface_->scatter_vertices(datum(in, "velocity"), D);
-  const std::vector<Index>& faces = interface_->faces();
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    const auto vertices = interface_vertices_[static_cast<Index>(i)];
-    Vec<D>& value = w[faces[i] - mesh_.n_interior];
-    for (const Index v : vertices) value += Eigen::Map<const Vec<D>>(at_points.data() + std::size_t(v) * D);
-    value /= static_cast<double>(vertices.size());
-  }
-  return w;
+  return {w, turn};
 }
 
 /// The pressure that the structure has answered to, per boundary face [Pa]; nothing at the very start.
@@ -130,18 +111,14 @@ double FluidParticipant<D>::wall_displacement(const coupling::Exchange& in) cons
 }
 
 template std::vector<Vec3> FluidParticipant<2>::body_velocities(const mesh::Patch&) const;
-template void FluidParticipant<2>::add_body_velocity(Vectors<2>&) const;
-template Vectors<2> FluidParticipant<2>::wall_turn(const coupling::Exchange&) const;
-template Vectors<2> FluidParticipant<2>::wall_velocity(const coupling::Exchange&) const;
-template std::vector<double> FluidParticipant<2>::wall_load(const coupling::Exchange&) const;
-template void FluidParticipant<2>::take_wall_mass(const coupling::Exchange&);
-template double FluidParticipant<2>::wall_displacement(const coupling::Exchange&) const;
 template std::vector<Vec3> FluidParticipant<3>::body_velocities(const mesh::Patch&) const;
-template void FluidParticipant<3>::add_body_velocity(Vectors<3>&) const;
-template Vectors<3> FluidParticipant<3>::wall_turn(const coupling::Exchange&) const;
-template Vectors<3> FluidParticipant<3>::wall_velocity(const coupling::Exchange&) const;
+template std::pair<Vectors<2>, Vectors<2>> FluidParticipant<2>::wall_motion(const coupling::Exchange&) const;
+template std::pair<Vectors<3>, Vectors<3>> FluidParticipant<3>::wall_motion(const coupling::Exchange&) const;
+template std::vector<double> FluidParticipant<2>::wall_load(const coupling::Exchange&) const;
 template std::vector<double> FluidParticipant<3>::wall_load(const coupling::Exchange&) const;
+template void FluidParticipant<2>::take_wall_mass(const coupling::Exchange&);
 template void FluidParticipant<3>::take_wall_mass(const coupling::Exchange&);
+template double FluidParticipant<2>::wall_displacement(const coupling::Exchange&) const;
 template double FluidParticipant<3>::wall_displacement(const coupling::Exchange&) const;
 
 }  // namespace couplet::fluid

@@ -41,8 +41,8 @@ Extent extent_of(const mesh::Mesh& mesh, const mesh::Geometry& g, const mesh::Pa
   return e;
 }
 
-}  // namespace
-
+/// Parabolic: 4 s (1 - s) between the two ends of a line (2-D), 1 - (r/R)^2 on a disc (3-D), scaled to the
+/// mean. Throws Error if the patch is no straight line or no disc. Collective.
 template <int D>
 InletShape<D> inlet_shape(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch,
                           InletProfile profile) {
@@ -67,6 +67,8 @@ InletShape<D> inlet_shape(const mesh::Mesh& mesh, const mesh::Geometry& geometry
   for (double& speed : shape.speed) speed /= mean;
   return shape;
 }
+
+}  // namespace
 
 fv::GridTable velocity_table(const std::filesystem::path& file, fv::GridTable::Outside outside,
                              int dimension) {
@@ -148,10 +150,6 @@ void GivenVelocity<D>::evaluate(double t, std::span<const Vec3> places, Vec<D>* 
   for (std::size_t i = 0; factor != 1 && i < n; ++i) w[i] *= factor;
 }
 
-template InletShape<2> inlet_shape<2>(const mesh::Mesh&, const mesh::Geometry&, const mesh::Patch&,
-                                      InletProfile);
-template InletShape<3> inlet_shape<3>(const mesh::Mesh&, const mesh::Geometry&, const mesh::Patch&,
-                                      InletProfile);
 template class GivenVelocity<2>;
 template class GivenVelocity<3>;
 

@@ -64,12 +64,6 @@ struct InletShape {
   std::vector<double> speed;          ///< per face of the patch; its mean over the area is 1 to round-off
 };
 
-/// Parabolic: 4 s (1 - s) between the two ends of a line (2-D), 1 - (r/R)^2 on a disc (3-D), scaled to the
-/// mean. Throws Error if the patch is no straight line or no disc. Collective.
-template <int D>
-InletShape<D> inlet_shape(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch,
-                          InletProfile profile);
-
 /// The velocity that the keys of a condition give to the faces of a patch.
 template <int D>
 class GivenVelocity {

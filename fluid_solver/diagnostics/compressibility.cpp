@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "common/io/archive.hpp"
 #include "common/parallel/collective.hpp"
@@ -75,18 +74,6 @@ std::optional<Sound> sound_in(const FluidView<D>& view) {
   return sound_of(p.compressibility, p.density, p.viscosity);
 }
 
-/// Largest extent of the points [m]. Collective.
-double size_of(const mesh::Mesh& mesh, std::span<const Vec3> centres) {
-  constexpr double far = std::numeric_limits<double>::max();
-  double square = 0;
-  for (int c = 0; c < mesh.dim; ++c) {
-    double low = far, high = -far;
-    for (const Vec3& x : centres) low = std::min(low, x[c]), high = std::max(high, x[c]);
-    square = std::max(square, std::pow(parallel::max(mesh.comm, high) - parallel::min(mesh.comm, low), 2));
-  }
-  return std::sqrt(square);
-}
-
 /// Waves of pressure: the change of density in an instant, and over the run how walls move and how the pressure answers.
 template <int D>
 class WavesOfPressure final : public diagnostics::Diagnostic {
@@ -136,7 +123,7 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
     const ComplianceWatch::Totals totals = watch_.totals();
     // A plate in the fluid sweeps as much on one side as it leaves on the other.
     const double stroke = std::max(totals.swept, 0.5 * walls[2]);
-    const double size = size_of(view_.mesh, view_.fluid.state().placement->boundary_centre);
+    const double size = largest_extent(view_.mesh, view_.fluid.state().placement->boundary_centre);
     add(report, compliance(density(), stroke, totals.pressure_volume, sound_));
     add(report, wave_time(std::sqrt(walls[1] / walls[0]), size, sound_));
   }

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/diagnostics/error_estimate.hpp"
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
+#include <vector>
 
+#include "common/base/processor_clones.hpp"
+#include "common/coupling/error_parts.hpp"
+#include "common/io/archive.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/diagnostics/differences.hpp"
+#include "common/time/step_errors.hpp"
+#include "fluid_solver/diagnostics/driving.hpp"
+#include "fluid_solver/diagnostics/phase_drift.hpp"
+#include "fluid_solver/diagnostics/view.hpp"
 #include "fluid_solver/pressure/term.hpp"
 
 namespace couplet::fluid {
@@ -37,237 +43,284 @@ struct Fit {
   Vec<D> value() const { return moments.completeOrthogonalDecomposition().solve(values).row(0).transpose(); }
 };
 
+/// Divided differences of u in time. Where nothing drives: rate and its change become those of this step, u is kept.
+template <int D>
+struct Differences {
+  std::span<const double> volume;
+  const Vec<D>* now;
+  Vec<D>*u, *rate, *change;
+  double per_step, per_apart;  ///< per_apart 0: there is no rate yet
+};
+/// Sums over the volume of the squares of u, its rate, the change of that and the change of that, and the volume.
+template <int D>
+COUPLET_PROCESSOR_CLONES std::array<double, 5> renew(const Differences<D>& d) {
+  std::array<double, 5> sums{};
+  for (std::size_t c = 0; c < d.volume.size(); ++c) {
+    const double volume = d.volume[c];
+    const Vec<D> rate = (d.now[c] - d.u[c]) * d.per_step, change = (rate - d.rate[c]) * d.per_apart;
+    sums[0] += volume * d.now[c].squaredNorm();
+    sums[1] += volume * rate.squaredNorm();
+    sums[2] += volume * change.squaredNorm();
+    sums[3] += volume * (change - d.change[c]).squaredNorm();
+    sums[4] += volume;
+    d.u[c] = d.now[c], d.rate[c] = rate, d.change[c] = change;
+  }
+  return sums;
+}
+
+/// What a run leaves in the velocity, over its size, as norms over the volume:
+///   mesh    difference of u from the value that a linear fit through the neighbours of each cell has in it, h^2/4
+///           times the Laplacian of u on equal cells: recovery of the values
+///   step    sum of the local errors 5/12 dt^3 d3u/dt3 of Adams and Bashforth's second order, see StepErrors; of
+///           k sub-steps each k^-3. The flow forgets at the rate at which it is renewed, outflow over volume, and at which
+///           friction takes what work has brought in, (W' - E')/(2 E). Where a clock drives it
+///           (Driving) and it answers linearly (convection is a small share of its rate of change) no error drifts: the sum
+///           of the local errors as vectors, which turn back with each half period, counts if it is less; friction that holds the
+///           flow to its forces, r dt above 1, makes the force's time its own: (w dt)^2/8 of an oscillation. One that nothing
+///           drives and that repeats itself drifts in phase, see PhaseDrift: of this and the sum the larger one counts
+///   linear  what the pressure's solver leaves of the cells' net outflow against what passes through them, times the
+///           square root of the number of cells across: an outflow that alternates moves its neighbours alone, one
+///           that does not the whole field; this is the mean of the two in logarithms
+/// Collective.
+template <int D>
+class FluidErrorEstimate final : public diagnostics::Diagnostic {
+ public:
+  explicit FluidErrorEstimate(const FluidView<D>& view)
+      : view_(view), fluid_(view.fluid), driving_(view.parameters()) {}
+  void observe(diagnostics::Report&) override { accepted(view_.step.dt); }
+  void conclude(diagnostics::Report& report) override { report.errors = parts(); }
+  void visit(io::Archive& archive) override {
+    archive.common("numbers", seen_, judged_, dt_old_, time_, power_, gain_, energy_, work_, held_,
+                   left_of_late_, carried_, changed_, steps_, drift_);
+    for (const auto& [name, vectors] :
+         {std::pair{"left", &left_}, {"rate", &rate_}, {"rate-change", &rate_change_}}) {
+      const std::span<const double> numbers = flat<D>(*vectors);
+      std::vector<double> values(numbers.begin(), numbers.end());
+      archive.field(mesh::Entries::owned_cells, name, values, D);
+      if (!archive.reads()) continue;
+      vectors->clear();
+      for (std::size_t i = 0; i < values.size(); i += D) vectors->emplace_back(values.data() + i);
+    }
+    if (!archive.reads() || seen_ == 0) return;
+    const Vectors<D>& u = fluid_.state().u;
+    u_.assign(u.begin(), u.begin() + fluid_.mesh().cells.n_owned());
+  }
+
+ private:
+  // Divided differences of u at the ends of the last four steps, their lengths nearly alike: the rate over each step,
+  // the change of the rate, the change of that. One loop and one sum over the ranks: a cheap step costs little more.
+  void accepted(double dt) {
+    const auto n = std::size_t(fluid_.mesh().cells.n_owned());
+    const double apart = 0.5 * (dt + dt_old_);
+    const bool knows_third = seen_ > 2;
+    for (Vectors<D>* v : {&u_, &rate_, &rate_change_}) v->resize(n, Vec<D>::Zero());
+    if (driving_.is_possible()) left_.resize(n, Vec<D>::Zero());
+    std::array<double, 8> squares{};
+    const Weights weights = this->weights(dt, apart);
+    sum_differences(1 / dt, 1 / apart, weights, squares);
+    if (knows_third) {
+      for (Index f = fluid_.mesh().n_interior; f < fluid_.mesh().n_flux_faces(); ++f)
+        squares[6] += std::max(0., fluid_.state().phi[f]);
+      MPI_Allreduce(MPI_IN_PLACE, squares.data(), int(squares.size()), MPI_DOUBLE, MPI_SUM,
+                    fluid_.mesh().comm);
+      const auto mean = [&](int k) { return squares[4] > 0 ? std::sqrt(squares[k] / squares[4]) : 0; };
+      const double highest = mean(3) / apart;
+      see_energy(dt);
+      const double sub_step = dt / std::max(1, fluid_.statistics().sub_steps);
+      drift_.add(dt, held_, mean(1), mean(2), adams_bashforth_error * sub_step * sub_step);
+      // Errors leave the flow with the outflow of all its volume, and by friction.
+      const double forgotten = friction() + (squares[4] > 0 ? squares[6] / squares[4] : 0);
+      for (Vec<D>& v : left_) v *= std::exp(-forgotten * dt);
+      const double faded = std::exp(-dt / (window * time_));
+      left_of_late_ = std::max(mean(5), left_of_late_ * faded);
+      carried_ = std::max(mean(7), carried_ * faded), changed_ = std::max(mean(1), changed_ * faded);
+      steps_.add({.error = weights.local * mean(3),
+                  .rate = mean(1),
+                  .size = mean(0),
+                  .dt = dt,
+                  .order = 2,
+                  .below = mean(2),
+                  .highest = highest,
+                  .forgotten = forgotten},
+                 judged_ ? 1 : 3);
+      judged_ = true;
+    }
+    dt_old_ = dt;
+    ++seen_;
+  }
+  coupling::ErrorParts parts() const {
+    coupling::ErrorParts parts;
+    parts.dimension = D;
+    const double speed = size(fluid_.state().u);
+    if (!(speed > 0) || seen_ == 0) return parts;
+    parts.mesh = recovered_difference() / speed;
+    parts.step = step_part();
+    const double across = std::pow(double(fluid_.mesh().cells.n_global()), 1. / D);
+    const auto& known =
+        fluid_.parameters().compressibility;  // the trapezoidal rule knows the divergence before, too
+    const bool open = known && known->scheme == WaveScheme::trapezoidal;
+    parts.linear = (open ? fluid_.parameters().pressure_tolerance : net_outflow()) * std::sqrt(across);
+    return parts;
+  }
+  /// Root mean square over the volume; per local cell.
+  double size(const Vectors<D>& values) const {
+    const std::vector<double>& volume = fluid_.state().placement->volume;
+    double squares = 0, whole = 0;
+    for (Index c = 0; c < fluid_.mesh().cells.n_owned(); ++c) {
+      squares += volume[c] * values[c].squaredNorm();
+      whole += volume[c];
+    }
+    squares = parallel::sum(fluid_.mesh().comm, squares), whole = parallel::sum(fluid_.mesh().comm, whole);
+    return whole > 0 ? std::sqrt(squares / whole) : 0;
+  }
+  /// Of differences of the change of the rate, and of the change itself: local errors of a step, and of one that a clock drives.
+  struct Weights {
+    double local = 0, of_third = 0, of_second = 0;
+  };
+  Weights weights(double dt, double apart) const {
+    const double sub_step = dt / std::max(1, fluid_.statistics().sub_steps), held = friction();
+    const bool implicit = fluid_.state().implicit;
+    const double less = implicit ? 1 / (1 + 0.5 * held * sub_step) : 1;
+    return {.local = adams_bashforth_error * dt * sub_step * sub_step / apart,
+            .of_third = less * driven_error * dt * sub_step * sub_step / apart,
+            .of_second = less * (implicit ? held_error : held_explicitly) * held * dt * sub_step * sub_step};
+  }
+  /// One loop over the cells. `squares`: of u, its rate, the change of that, the change of that; the volume; of what is left, outflow; of
+  /// what is carried.
+  void sum_differences(double per_step, double per_apart, const Weights& weights,
+                       std::array<double, 8>& squares) {
+    const Vectors<D>& u = fluid_.state().u;
+    const std::vector<double>& volume = fluid_.state().placement->volume;
+    const std::size_t n = u_.size();
+    if (seen_ > 0 && !driving_.is_possible()) {
+      const std::array<double, 5> sums =
+          renew(Differences<D>{std::span(volume).first(n), u.data(), u_.data(), rate_.data(),
+                               rate_change_.data(), per_step, seen_ > 1 ? per_apart : 0});
+      std::ranges::copy(sums, squares.begin());
+      return;
+    }
+    const Vectors<D>& carried = fluid_.state().rates_old.rate;  // times the volume; none of other schemes
+    for (std::size_t c = 0; c < n && seen_ > 0; ++c) {
+      const Vec<D> rate = (u[c] - u_[c]) * per_step;
+      const Vec<D> change = seen_ > 1 ? Vec<D>((rate - rate_[c]) * per_apart) : Vec<D>(Vec<D>::Zero());
+      const Vec<D> third = change - rate_change_[c];
+      if (seen_ > 2) {
+        left_[c] += weights.of_third * third + weights.of_second * change;
+        squares[5] += volume[c] * left_[c].squaredNorm();
+        squares[7] += carried.empty() ? volume[c] * rate.squaredNorm() : carried[c].squaredNorm() / volume[c];
+      }
+      squares[0] += volume[c] * u[c].squaredNorm();
+      squares[1] += volume[c] * rate.squaredNorm();
+      squares[2] += volume[c] * change.squaredNorm();
+      squares[3] += volume[c] * third.squaredNorm();
+      squares[4] += volume[c];
+      rate_[c] = rate, rate_change_[c] = change;
+    }
+    std::copy_n(u.begin(), n, u_.begin());
+  }
+  void see_energy(double dt) {
+    const EnergyLedger& ledger = fluid_.state().ledger;
+    time_ += dt;
+    const double share = std::min(1., dt / (window * time_));
+    power_ += share * ((ledger.work - work_) / dt - power_);
+    const double held = std::max(0., ledger.energy);
+    gain_ += share * ((held - held_) / dt - gain_);
+    energy_ += share * (held - energy_);
+    work_ = ledger.work, held_ = held;
+  }
+  /// Rate at which it takes what work brings in [1/s]. The flow's own decay is not in it: it takes the errors along with the solution.
+  double friction() const {
+    // What a flow gains takes no error away; of one that decays the work alone is more than the solution's own way.
+    const double taken = std::max(0., std::min(power_, power_ - gain_));
+    return energy_ > 0 ? taken / (2 * energy_) : 0;
+  }
+  double step_part() const {
+    const double sum = steps_.over_size();
+    if (!(steps_.size() > 0)) return sum;
+    std::vector<Vec3> places;
+    for (const Vec3& x : fluid_.state().placement->boundary_centre) places.push_back(x);
+    const bool acts =
+        driving_.is_possible() && driving_.acts(fluid_.mesh().comm, places, fluid_.state().time, dt_old_);
+    if (acts) return carried_ <= hardly * changed_ ? std::min(sum, left_of_late_ / steps_.size()) : sum;
+    return driving_.moves() ? sum : std::max(sum, drift_.error() / steps_.size());
+  }
+  double recovered_difference() const {
+    const State<D>& s = fluid_.state();
+    const mesh::Mesh& mesh = fluid_.mesh();
+    const Placement<D>& at = *s.placement;
+    std::vector<Fit<D>> fits(mesh.cells.n_local());
+    for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+      const Vec<D> d = (at.area[f] - at.oblique_of(f)) / at.conductance[f];  // S = k + g d
+      const Index owner = mesh.owner[f];
+      if (f >= mesh.n_interior) {
+        fits[owner].add(d, s.u_boundary[f - mesh.n_interior]);
+        continue;
+      }
+      const Index neighbour = mesh.neighbour[f];
+      fits[owner].add(d, s.u[neighbour]);
+      fits[neighbour].add(-d, s.u[owner]);
+    }
+    Vectors<D> gap(mesh.cells.n_local(), Vec<D>::Zero());
+    for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+      if (!s.blocked || !(*s.blocked)[c]) gap[c] = fits[c].value() - s.u[c];
+    return size(gap);
+  }
+  double net_outflow() const {
+    const State<D>& s = fluid_.state();
+    const mesh::Mesh& mesh = fluid_.mesh();
+    std::vector<double> net(mesh.cells.n_local()), through(mesh.cells.n_local());
+    for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+      net[mesh.owner[f]] += s.phi[f], through[mesh.owner[f]] += 0.5 * std::abs(s.phi[f]);
+      if (f >= mesh.n_interior) continue;
+      net[mesh.neighbour[f]] -= s.phi[f], through[mesh.neighbour[f]] += 0.5 * std::abs(s.phi[f]);
+    }
+    if (fluid_.parameters().is_compressible()) add_compression(net);
+    double left = 0, all = 0;
+    for (Index c = 0; c < mesh.cells.n_owned(); ++c) left += net[c] * net[c], all += through[c] * through[c];
+    left = parallel::sum(mesh.comm, left), all = parallel::sum(mesh.comm, all);
+    return all > 0 ? std::sqrt(left / all) : 0;
+  }
+  /// What a compressible fluid takes up is no outflow.
+  void add_compression(std::vector<double>& net) const {
+    const State<D>& s = fluid_.state();
+    if (!s.pressure[1]) return;
+    std::vector<double> times{s.pressure[1]->time};
+    if (s.pressure[2]) times.push_back(s.pressure[2]->time);
+    const WaveRule rule = three_level_rule(s.pressure[0]->time, s.time, times);
+    const double sound = fluid_.parameters().sound_speed(),
+                 bulk = fluid_.parameters().density * sound * sound;
+    for (Index c = 0; c < fluid_.mesh().cells.n_owned(); ++c) {
+      double rate = rule.rate * s.pressure[0]->p[c];
+      for (std::size_t k = 0; k < times.size(); ++k) rate += rule.past[k] * s.pressure[k + 1]->p[c];
+      net[c] += s.placement->volume[c] * rate / bulk;
+    }
+  }
+
+  FluidView<D> view_;
+  const Fluid<D>& fluid_;
+  Vectors<D> u_, rate_, rate_change_;  // u of the last accepted step, first and second differences in time
+  int seen_ = 0;                       // steps that these hold
+  bool judged_ = false;                // a step has been judged
+  double dt_old_ = 0;
+  time::StepErrors steps_;
+  PhaseDrift drift_;
+  double time_ = 0;                           // judged so far [s]
+  double power_ = 0, gain_ = 0, energy_ = 0;  // means of late: work and gain of energy [W], energy [J]
+  double work_ = 0, held_ = 0;                // what the ledger had: work and energy [J]
+  Driving driving_;
+  Vectors<D> left_;          // sum of local errors; empty: nothing drives
+  double left_of_late_ = 0;  // norm, the largest of late
+  double carried_ = 0,
+         changed_ = 0;  // largest of late: the part of the rates that is convection, and the rates [m/s^2]
+};
+
 }  // namespace
-
-/// Root mean square over the volume; per local cell.
-template <int D>
-double FluidErrorEstimate<D>::size(const Vectors<D>& values) const {
-  const std::vector<double>& volume = fluid_.state().placement->volume;
-  double squares = 0, whole = 0;
-  for (Index c = 0; c < fluid_.mesh().cells.n_owned(); ++c) {
-    squares += volume[c] * values[c].squaredNorm();
-    whole += volume[c];
-  }
-  squares = parallel::sum(fluid_.mesh().comm, squares), whole = parallel::sum(fluid_.mesh().comm, whole);
-  return whole > 0 ? std::sqrt(squares / whole) : 0;
-}
-
-template <int D>
-void FluidErrorEstimate<D>::see_energy(double dt) {
-  const EnergyLedger& ledger = fluid_.state().ledger;
-  time_ += dt;
-  const double share = std::min(1., dt / (window * time_));
-  power_ += share * ((ledger.work - work_) / dt - power_);
-  const double held = std::max(0., ledger.energy);
-  gain_ += share * ((held - held_) / dt - gain_);
-  energy_ += share * (held - energy_);
-  work_ = ledger.work, held_ = held;
-}
-
-/// Rate at which it takes what work brings in [1/s]. The flow's own decay is not in it: it takes the errors along with the solution.
-template <int D>
-double FluidErrorEstimate<D>::friction() const {
-  // What a flow gains takes no error away; of one that decays the work alone is more than the solution's own way.
-  const double taken = std::max(0., std::min(power_, power_ - gain_));
-  return energy_ > 0 ? taken / (2 * energy_) : 0;
-}
-
-template <int D>
-auto FluidErrorEstimate<D>::weights(double dt, double apart) const -> Weights {
-  const double sub_step = dt / std::max(1, fluid_.statistics().sub_steps), held = friction();
-  const bool implicit = fluid_.state().implicit;
-  const double less = implicit ? 1 / (1 + 0.5 * held * sub_step) : 1;
-  return {.local = adams_bashforth_error * dt * sub_step * sub_step / apart,
-          .of_third = less * driven_error * dt * sub_step * sub_step / apart,
-          .of_second = less * (implicit ? held_error : held_explicitly) * held * dt * sub_step * sub_step};
-}
-
-/// One loop over the cells. `squares`: of u, its rate, the change of that, the change of that; the volume; of what is left, outflow; of
-/// what is carried.
-template <int D>
-void FluidErrorEstimate<D>::sum_differences(double per_step, double per_apart, const Weights& weights,
-                                            std::array<double, 8>& squares) {
-  const Vectors<D>& u = fluid_.state().u;
-  const std::vector<double>& volume = fluid_.state().placement->volume;
-  const std::size_t n = u_.size();
-  if (seen_ > 0 && !driving_.is_possible()) {
-    const std::array<double, 5> sums =
-        renew(Differences<D>{std::span(volume).first(n), u.data(), u_.data(), rate_.data(),
-                             rate_change_.data(), per_step, seen_ > 1 ? per_apart : 0});
-    std::ranges::copy(sums, squares.begin());
-    return;
-  }
-  const Vectors<D>& carried = fluid_.state().rates_old.rate;  // times the volume; none of other schemes
-  for (std::size_t c = 0; c < n && seen_ > 0; ++c) {
-    const Vec<D> rate = (u[c] - u_[c]) * per_step;
-    const Vec<D> change = seen_ > 1 ? Vec<D>((rate - rate_[c]) * per_apart) : Vec<D>(Vec<D>::Zero());
-    const Vec<D> third = change - rate_change_[c];
-    if (seen_ > 2) {
-      left_[c] += weights.of_third * third + weights.of_second * change;
-      squares[5] += volume[c] * left_[c].squaredNorm();
-      squares[7] += carried.empty() ? volume[c] * rate.squaredNorm() : carried[c].squaredNorm() / volume[c];
-    }
-    squares[0] += volume[c] * u[c].squaredNorm();
-    squares[1] += volume[c] * rate.squaredNorm();
-    squares[2] += volume[c] * change.squaredNorm();
-    squares[3] += volume[c] * third.squaredNorm();
-    squares[4] += volume[c];
-    rate_[c] = rate, rate_change_[c] = change;
-  }
-  std::copy_n(u.begin(), n, u_.begin());
-}
-
-// Divided differences of u at the ends of the last four steps, their lengths nearly alike: the rate over each step,
-// the change of the rate, the change of that. One loop and one sum over the ranks: a cheap step costs little more.
-template <int D>
-void FluidErrorEstimate<D>::accepted(double dt) {
-  const auto n = std::size_t(fluid_.mesh().cells.n_owned());
-  const double apart = 0.5 * (dt + dt_old_);
-  const bool knows_third = seen_ > 2;
-  for (Vectors<D>* v : {&u_, &rate_, &rate_change_}) v->resize(n, Vec<D>::Zero());
-  if (driving_.is_possible()) left_.resize(n, Vec<D>::Zero());
-  std::array<double, 8> squares{};
-  const Weights weights = this->weights(dt, apart);
-  sum_differences(1 / dt, 1 / apart, weights, squares);
-  if (knows_third) {
-    for (Index f = fluid_.mesh().n_interior; f < fluid_.mesh().n_flux_faces(); ++f)
-      squares[6] += std::max(0., fluid_.state().phi[f]);
-    MPI_Allreduce(MPI_IN_PLACE, squares.data(), int(squares.size()), MPI_DOUBLE, MPI_SUM, fluid_.mesh().comm);
-    const auto mean = [&](int k) { return squares[4] > 0 ? std::sqrt(squares[k] / squares[4]) : 0; };
-    const double highest = mean(3) / apart;
-    see_energy(dt);
-    const double sub_step = dt / std::max(1, fluid_.statistics().sub_steps);
-    drift_.add(dt, held_, mean(1), mean(2), adams_bashforth_error * sub_step * sub_step);
-    // Errors leave the flow with the outflow of all its volume, and by friction.
-    const double forgotten = friction() + (squares[4] > 0 ? squares[6] / squares[4] : 0);
-    for (Vec<D>& v : left_) v *= std::exp(-forgotten * dt);
-    const double faded = std::exp(-dt / (window * time_));
-    left_of_late_ = std::max(mean(5), left_of_late_ * faded);
-    carried_ = std::max(mean(7), carried_ * faded), changed_ = std::max(mean(1), changed_ * faded);
-    steps_.add({.error = weights.local * mean(3),
-                .rate = mean(1),
-                .size = mean(0),
-                .dt = dt,
-                .order = 2,
-                .below = mean(2),
-                .highest = highest,
-                .forgotten = forgotten},
-               judged_ ? 1 : 3);
-    judged_ = true;
-  }
-  dt_old_ = dt;
-  ++seen_;
-}
-
-template <int D>
-double FluidErrorEstimate<D>::recovered_difference() const {
-  const State<D>& s = fluid_.state();
-  const mesh::Mesh& mesh = fluid_.mesh();
-  const Placement<D>& at = *s.placement;
-  std::vector<Fit<D>> fits(mesh.cells.n_local());
-  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
-    const Vec<D> d = (at.area[f] - at.oblique_of(f)) / at.conductance[f];  // S = k + g d
-    const Index owner = mesh.owner[f];
-    if (f >= mesh.n_interior) {
-      fits[owner].add(d, s.u_boundary[f - mesh.n_interior]);
-      continue;
-    }
-    const Index neighbour = mesh.neighbour[f];
-    fits[owner].add(d, s.u[neighbour]);
-    fits[neighbour].add(-d, s.u[owner]);
-  }
-  Vectors<D> gap(mesh.cells.n_local(), Vec<D>::Zero());
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-    if (!s.blocked || !(*s.blocked)[c]) gap[c] = fits[c].value() - s.u[c];
-  return size(gap);
-}
-
-/// What a compressible fluid takes up is no outflow.
-template <int D>
-void FluidErrorEstimate<D>::add_compression(std::vector<double>& net) const {
-  const State<D>& s = fluid_.state();
-  if (!s.pressure[1]) return;
-  std::vector<double> times{s.pressure[1]->time};
-  if (s.pressure[2]) times.push_back(s.pressure[2]->time);
-  const WaveRule rule = three_level_rule(s.pressure[0]->time, s.time, times);
-  const double sound = fluid_.parameters().sound_speed(), bulk = fluid_.parameters().density * sound * sound;
-  for (Index c = 0; c < fluid_.mesh().cells.n_owned(); ++c) {
-    double rate = rule.rate * s.pressure[0]->p[c];
-    for (std::size_t k = 0; k < times.size(); ++k) rate += rule.past[k] * s.pressure[k + 1]->p[c];
-    net[c] += s.placement->volume[c] * rate / bulk;
-  }
-}
-
-template <int D>
-double FluidErrorEstimate<D>::net_outflow() const {
-  const State<D>& s = fluid_.state();
-  const mesh::Mesh& mesh = fluid_.mesh();
-  std::vector<double> net(mesh.cells.n_local()), through(mesh.cells.n_local());
-  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
-    net[mesh.owner[f]] += s.phi[f], through[mesh.owner[f]] += 0.5 * std::abs(s.phi[f]);
-    if (f >= mesh.n_interior) continue;
-    net[mesh.neighbour[f]] -= s.phi[f], through[mesh.neighbour[f]] += 0.5 * std::abs(s.phi[f]);
-  }
-  if (fluid_.parameters().is_compressible()) add_compression(net);
-  double left = 0, all = 0;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) left += net[c] * net[c], all += through[c] * through[c];
-  left = parallel::sum(mesh.comm, left), all = parallel::sum(mesh.comm, all);
-  return all > 0 ? std::sqrt(left / all) : 0;
-}
-
-template <int D>
-double FluidErrorEstimate<D>::step_part() const {
-  const double sum = steps_.over_size();
-  if (!(steps_.size() > 0)) return sum;
-  std::vector<Vec3> places;
-  for (const Vec3& x : fluid_.state().placement->boundary_centre) places.push_back(x);
-  const bool acts =
-      driving_.is_possible() && driving_.acts(fluid_.mesh().comm, places, fluid_.state().time, dt_old_);
-  if (acts) return carried_ <= hardly * changed_ ? std::min(sum, left_of_late_ / steps_.size()) : sum;
-  return driving_.moves() ? sum : std::max(sum, drift_.error() / steps_.size());
-}
-
-template <int D>
-coupling::ErrorParts FluidErrorEstimate<D>::parts() const {
-  coupling::ErrorParts parts;
-  parts.dimension = D;
-  const double speed = size(fluid_.state().u);
-  if (!(speed > 0) || seen_ == 0) return parts;
-  parts.mesh = recovered_difference() / speed;
-  parts.step = step_part();
-  const double across = std::pow(double(fluid_.mesh().cells.n_global()), 1. / D);
-  const auto& known =
-      fluid_.parameters().compressibility;  // the trapezoidal rule knows the divergence before, too
-  const bool open = known && known->scheme == WaveScheme::trapezoidal;
-  parts.linear = (open ? fluid_.parameters().pressure_tolerance : net_outflow()) * std::sqrt(across);
-  return parts;
-}
-
-template <int D>
-void FluidErrorEstimate<D>::visit(io::Archive& archive) {
-  archive.common("numbers", seen_, judged_, dt_old_, time_, power_, gain_, energy_, work_, held_,
-                 left_of_late_, carried_, changed_, steps_, drift_);
-  for (const auto& [name, vectors] :
-       {std::pair{"left", &left_}, {"rate", &rate_}, {"rate-change", &rate_change_}}) {
-    const std::span<const double> numbers = flat<D>(*vectors);
-    std::vector<double> values(numbers.begin(), numbers.end());
-    archive.field(mesh::Entries::owned_cells, name, values, D);
-    if (!archive.reads()) continue;
-    vectors->clear();
-    for (std::size_t i = 0; i < values.size(); i += D) vectors->emplace_back(values.data() + i);
-  }
-  if (!archive.reads() || seen_ == 0) return;
-  const Vectors<D>& u = fluid_.state().u;
-  u_.assign(u.begin(), u.begin() + fluid_.mesh().cells.n_owned());
-}
 
 template <int D>
 std::shared_ptr<diagnostics::Diagnostic> flow_error(const FluidView<D>& view) {
   return std::make_shared<FluidErrorEstimate<D>>(view);
 }
 
-template class FluidErrorEstimate<2>;
-template class FluidErrorEstimate<3>;
 template std::shared_ptr<diagnostics::Diagnostic> flow_error(const FluidView<2>&);
 template std::shared_ptr<diagnostics::Diagnostic> flow_error(const FluidView<3>&);
 

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "common/effects/prices.hpp"
 #include "common/parallel/collective.hpp"
@@ -25,6 +27,20 @@ double largest_yplus(const FluidView<D>& view) {
     if (is_wall(view.parameters().boundaries.at(patch.name)))
       largest = std::max(largest, summarise_wall(view.fluid, patch).largest_yplus);
   return largest;
+}
+
+/// 4 volumes over the area of the walls [m]; NaN without walls. Collective.
+template <int D>
+double hydraulic_diameter(const Fluid<D>& fluid) {
+  const mesh::Mesh& mesh = fluid.mesh();
+  const Placement<D>& at = *fluid.state().placement;
+  std::array<double, 2> sums{};
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) sums[0] += at.volume[c];
+  for (const mesh::Patch& patch : mesh.patches)
+    if (is_wall(fluid.parameters().boundaries.at(patch.name)))
+      for (Index f = patch.first; f < patch.first + patch.count; ++f) sums[1] += at.area[f].norm();
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), int(sums.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
+  return sums[1] > 0 ? 4 * sums[0] / sums[1] : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// Largest eddy viscosity over the molecular one.

@@ -2,11 +2,38 @@
 // Walls that move while the mesh is at rest, and gaps that block the flow.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/diagnostics/view.hpp"
-#include "fluid_solver/output/derived.hpp"
 
 namespace couplet::fluid {
+namespace {
+
+/// Largest sum of |w . S| over the sum of |w| |S| of the moving walls of a mesh at rest; NaN without such walls, or
+/// before they move. Collective.
+template <int D>
+double through_moving_walls(const Fluid<D>& fluid) {
+  const mesh::Mesh& mesh = fluid.mesh();
+  const State<D>& s = fluid.state();
+  double worst = std::numeric_limits<double>::quiet_NaN();
+  for (const mesh::Patch& patch : mesh.patches) {
+    if (!is_moving_wall(fluid.parameters().boundaries.at(patch.name))) continue;
+    double through = 0, size = 0;
+    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+      const Vec<D>& w = s.w[f - mesh.n_interior];
+      through += std::abs(w.dot(s.placement->area[f]));
+      size += w.norm() * s.placement->area[f].norm();
+    }
+    through = parallel::sum(mesh.comm, through), size = parallel::sum(mesh.comm, size);
+    if (size > 0) worst = std::isnan(worst) ? through / size : std::max(worst, through / size);
+  }
+  return worst;
+}
+
+}  // namespace
 
 template <int D>
 std::optional<log::Finding> mesh_at_rest(const FluidView<D>& view) {

@@ -26,17 +26,6 @@ struct ViscousRows {
   Index size() const { return static_cast<Index>(diagonal.size()); }
 };
 
-/// y = A x; returns x.y over the owned cells. `x`: per local cell, with ghosts current.
-double multiply(const ViscousRows& a, const Vectors<2>& x, Vectors<2>& y);
-double multiply(const ViscousRows& a, const Vectors<3>& x, Vectors<3>& y);
-
-/// A step of CG: u += alpha s, r -= alpha q; returns r.r.
-double go_along(double alpha, std::span<const double> s, std::span<const double> q, std::span<double> u,
-                std::span<double> r);
-
-/// The next search direction: s = r + gamma s.
-void turn_search(double gamma, std::span<const double> r, std::span<double> s);
-
 /// Share of an eddy viscosity in the matrix: theta dt nu_t at interior faces, nu_t the mean of two cells.
 struct EddyShare {
   const std::vector<double>* eddy = nullptr;  ///< nu_t per local cell [m^2/s]; nullptr if there is none

@@ -63,17 +63,9 @@ template <bool Split, int D>
 }
 
 template <int D>
-[[gnu::always_inline]] inline void rates_by(const mesh::Mesh& mesh, double nu, bool split, const State<D>& s,
-                                            Rates<D>& rates) {
+COUPLET_PROCESSOR_CLONES void rates_pass(const mesh::Mesh& mesh, double nu, bool split, const State<D>& s,
+                                         Rates<D>& rates) {
   split ? face_rates<true>(mesh, nu, s, rates) : face_rates<false>(mesh, nu, s, rates);
-}
-COUPLET_PROCESSOR_CLONES void rates_pass(const mesh::Mesh& mesh, double nu, bool split, const State<2>& s,
-                                         Rates<2>& rates) {
-  rates_by(mesh, nu, split, s, rates);
-}
-COUPLET_PROCESSOR_CLONES void rates_pass(const mesh::Mesh& mesh, double nu, bool split, const State<3>& s,
-                                         Rates<3>& rates) {
-  rates_by(mesh, nu, split, s, rates);
 }
 
 /// (mean u).S, or what `whole` has beyond that.
@@ -88,46 +80,24 @@ template <bool Rest, int D>
   }
 }
 template <int D>
-[[gnu::always_inline]] inline void choose_flux(const mesh::Mesh& mesh, const Vectors<D>& area,
-                                               const Vectors<D>& u, const double* whole, double* flux) {
+COUPLET_PROCESSOR_CLONES void mean_flux_pass(const mesh::Mesh& mesh, const Vectors<D>& area,
+                                             const Vectors<D>& u, const double* whole, double* flux) {
   whole ? mean_fluxes<true>(mesh, area, u, whole, flux) : mean_fluxes<false>(mesh, area, u, nullptr, flux);
-}
-COUPLET_PROCESSOR_CLONES void mean_flux_pass(const mesh::Mesh& mesh, const Vectors<2>& area,
-                                             const Vectors<2>& u, const double* whole, double* flux) {
-  choose_flux<2>(mesh, area, u, whole, flux);
-}
-COUPLET_PROCESSOR_CLONES void mean_flux_pass(const mesh::Mesh& mesh, const Vectors<3>& area,
-                                             const Vectors<3>& u, const double* whole, double* flux) {
-  choose_flux<3>(mesh, area, u, whole, flux);
-}
-
-/// flux += sign times what the mean gradient carries on to the faces' centres. Collective.
-template <int D>
-void carry_on(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
-              const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient, double sign,
-              std::span<double> flux) {
-  if (!at.skewed()) return;
-  velocity_gradient<D>(mesh, at, u, u_boundary, gradient);
-  for (Index f = 0; f < mesh.n_interior; ++f)
-    flux[f] +=
-        sign * 0.5 * ((gradient[mesh.owner[f]] + gradient[mesh.neighbour[f]]) * at.offset(f)).dot(at.area[f]);
 }
 
 }  // namespace
 
 template <int D>
 void mean_flux(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
-               const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient, std::span<double> flux) {
-  mean_flux_pass(mesh, at.area, u, nullptr, flux.data());
-  carry_on<D>(mesh, at, u, u_boundary, gradient, 1, flux);
-}
-
-template <int D>
-void subtract_mean_flux(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
-                        const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient,
-                        std::span<const double> flux, std::span<double> rest) {
-  mean_flux_pass(mesh, at.area, u, flux.data(), rest.data());
-  carry_on<D>(mesh, at, u, u_boundary, gradient, -1, rest);
+               const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient, std::span<double> flux,
+               std::span<const double> whole) {
+  mean_flux_pass<D>(mesh, at.area, u, whole.data(), flux.data());
+  if (!at.skewed()) return;
+  velocity_gradient<D>(mesh, at, u, u_boundary, gradient);
+  const double sign = whole.empty() ? 1 : -1;
+  for (Index f = 0; f < mesh.n_interior; ++f)
+    flux[f] +=
+        sign * 0.5 * ((gradient[mesh.owner[f]] + gradient[mesh.neighbour[f]]) * at.offset(f)).dot(at.area[f]);
 }
 
 template <int D>
@@ -198,10 +168,7 @@ void RateOperator<D>::add_eddies(const TurbulenceParameters& model, const Placem
 template <int D>
 void RateOperator<D>::add_dilatation(const State<D>& s, Vectors<D>& rate) {
   dilatation_.assign(mesh_.cells.n_local(), 0.0);
-  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    dilatation_[mesh_.owner[f]] += s.phi[f];
-    if (f < mesh_.n_interior) dilatation_[mesh_.neighbour[f]] -= s.phi[f];
-  }
+  add_outflow(mesh_, s.phi, dilatation_);
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) rate[c] += 0.5 * dilatation_[c] * s.u[c];
 }
 
@@ -233,25 +200,13 @@ void wall_flux(const mesh::Mesh& mesh, const Placement<D>& at, double viscosity,
   }
 }
 
-template void velocity_gradient<2>(const mesh::Mesh&, const Placement<2>&, const Vectors<2>&,
-                                   const Vectors<2>&, std::vector<Tensor<2>>&);
-template void velocity_gradient<3>(const mesh::Mesh&, const Placement<3>&, const Vectors<3>&,
-                                   const Vectors<3>&, std::vector<Tensor<3>>&);
-template void mean_flux<2>(const mesh::Mesh&, const Placement<2>&, const Vectors<2>&, const Vectors<2>&,
-                           std::vector<Tensor<2>>&, std::span<double>);
-template void mean_flux<3>(const mesh::Mesh&, const Placement<3>&, const Vectors<3>&, const Vectors<3>&,
-                           std::vector<Tensor<3>>&, std::span<double>);
-template void subtract_mean_flux<2>(const mesh::Mesh&, const Placement<2>&, const Vectors<2>&,
-                                    const Vectors<2>&, std::vector<Tensor<2>>&, std::span<const double>,
-                                    std::span<double>);
-template void subtract_mean_flux<3>(const mesh::Mesh&, const Placement<3>&, const Vectors<3>&,
-                                    const Vectors<3>&, std::vector<Tensor<3>>&, std::span<const double>,
-                                    std::span<double>);
+template decltype(velocity_gradient<2>) velocity_gradient<2>;
+template decltype(velocity_gradient<3>) velocity_gradient<3>;
+template decltype(mean_flux<2>) mean_flux<2>;
+template decltype(mean_flux<3>) mean_flux<3>;
+template decltype(wall_flux<2>) wall_flux<2>;
+template decltype(wall_flux<3>) wall_flux<3>;
 template class RateOperator<2>;
 template class RateOperator<3>;
-template void wall_flux<2>(const mesh::Mesh&, const Placement<2>&, double, const Vectors<2>&,
-                           const Vectors<2>&, Vectors<2>&);
-template void wall_flux<3>(const mesh::Mesh&, const Placement<3>&, double, const Vectors<3>&,
-                           const Vectors<3>&, Vectors<3>&);
 
 }  // namespace couplet::fluid

@@ -31,17 +31,12 @@ template <int D>
 void velocity_gradient(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
                        const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient);
 
-/// u.S of the interior faces [m^3/s]: the mean of the cells, on skewed meshes carried on to the face's centre
-/// by the mean gradient (which is filled then; else left alone). Collective.
+/// u.S of the interior faces [m^3/s], or with `whole` what that has beyond it: the mean of the cells, on skewed meshes carried
+/// on to the face's center by the mean gradient (which is filled then, else left alone). Collective.
 template <int D>
 void mean_flux(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
-               const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient, std::span<double> flux);
-
-/// `flux` less the same.
-template <int D>
-void subtract_mean_flux(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
-                        const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient,
-                        std::span<const double> flux, std::span<double> rest);
+               const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient, std::span<double> flux,
+               std::span<const double> whole = {});
 
 /// nu_t (grad u + grad u^T).S at an interior face between p and n [m^4/s^2], force per density. The normal derivative at the face is
 /// the difference of its two cells, in grad u^T too: the mean of their gradients may have the other sign, as beside a wall where

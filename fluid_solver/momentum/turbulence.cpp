@@ -36,9 +36,9 @@ void eddy_viscosity(const TurbulenceParameters& model, const Placement<D>& at,
 
 template double eddy_viscosity<2>(const TurbulenceParameters&, const Tensor<2>&, double);
 template double eddy_viscosity<3>(const TurbulenceParameters&, const Tensor<3>&, double);
-template void eddy_viscosity<2>(const TurbulenceParameters&, const Placement<2>&,
-                                const std::vector<Tensor<2>>&, std::vector<double>&);
-template void eddy_viscosity<3>(const TurbulenceParameters&, const Placement<3>&,
-                                const std::vector<Tensor<3>>&, std::vector<double>&);
+template void eddy_viscosity(const TurbulenceParameters&, const Placement<2>&, const std::vector<Tensor<2>>&,
+                             std::vector<double>&);
+template void eddy_viscosity(const TurbulenceParameters&, const Placement<3>&, const std::vector<Tensor<3>>&,
+                             std::vector<double>&);
 
 }  // namespace couplet::fluid

@@ -31,9 +31,9 @@ template <int D, int Width>
   return sum;
 }
 
+/// y = A x; returns x.y over the owned cells. `x`: per local cell, with ghosts current.
 template <int D>
-[[gnu::always_inline]] inline double multiply_by_width(const ViscousRows& a, const Vectors<D>& x,
-                                                       Vectors<D>& y) {
+COUPLET_PROCESSOR_CLONES double multiply(const ViscousRows& a, const Vectors<D>& x, Vectors<D>& y) {
   switch (a.width) {
     case 3:
       return multiply_rows<D, 3>(a, x, y);
@@ -45,6 +45,32 @@ template <int D>
       return multiply_rows<D, 0>(a, x, y);
   }
 }
+
+/// A step of CG: u += alpha s, r -= alpha q; returns r.r.
+COUPLET_PROCESSOR_CLONES double go_along(double alpha, std::span<const double> s, std::span<const double> q,
+                                         std::span<double> u, std::span<double> r) {
+  std::array<double, 4> sums{};  // side by side, for one register
+  std::size_t i = 0;
+  for (; i + 4 <= s.size(); i += 4)
+    for (std::size_t k = 0; k < 4; ++k) {
+      u[i + k] += alpha * s[i + k];
+      r[i + k] -= alpha * q[i + k];
+      sums[k] += r[i + k] * r[i + k];
+    }
+  for (; i < s.size(); ++i) {
+    u[i] += alpha * s[i];
+    r[i] -= alpha * q[i];
+    sums[0] += r[i] * r[i];
+  }
+  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
+
+/// The next search direction: s = r + gamma s.
+COUPLET_PROCESSOR_CLONES void turn_search(double gamma, std::span<const double> r, std::span<double> s) {
+  for (std::size_t i = 0; i < s.size(); ++i) s[i] = r[i] + gamma * s[i];
+}
+
+constexpr int most_iterations = 2000;
 
 }  // namespace
 
@@ -68,41 +94,6 @@ ViscousRows::ViscousRows(const mesh::Mesh& mesh) : diagonal(mesh.cells.n_owned()
     add(mesh.neighbour[f], mesh.owner[f], f);
   }
 }
-
-COUPLET_PROCESSOR_CLONES double multiply(const ViscousRows& a, const Vectors<2>& x, Vectors<2>& y) {
-  return multiply_by_width<2>(a, x, y);
-}
-COUPLET_PROCESSOR_CLONES double multiply(const ViscousRows& a, const Vectors<3>& x, Vectors<3>& y) {
-  return multiply_by_width<3>(a, x, y);
-}
-
-COUPLET_PROCESSOR_CLONES double go_along(double alpha, std::span<const double> s, std::span<const double> q,
-                                         std::span<double> u, std::span<double> r) {
-  std::array<double, 4> sums{};  // side by side, for one register
-  std::size_t i = 0;
-  for (; i + 4 <= s.size(); i += 4)
-    for (std::size_t k = 0; k < 4; ++k) {
-      u[i + k] += alpha * s[i + k];
-      r[i + k] -= alpha * q[i + k];
-      sums[k] += r[i + k] * r[i + k];
-    }
-  for (; i < s.size(); ++i) {
-    u[i] += alpha * s[i];
-    r[i] -= alpha * q[i];
-    sums[0] += r[i] * r[i];
-  }
-  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
-}
-
-COUPLET_PROCESSOR_CLONES void turn_search(double gamma, std::span<const double> r, std::span<double> s) {
-  for (std::size_t i = 0; i < s.size(); ++i) s[i] = r[i] + gamma * s[i];
-}
-
-namespace {
-
-constexpr int most_iterations = 2000;
-
-}  // namespace
 
 /// Without the boundary in a_->diagonal, with it in inverse_diagonal_.
 template <int D>

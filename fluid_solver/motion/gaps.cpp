@@ -175,6 +175,34 @@ void check_seats(const mesh::Mesh& mesh, const FluidParameters& parameters, std:
   }
 }
 
+/// Widens a box by the points of a patch. Collective.
+void extend(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const Vec3> points, Vec3& low,
+            Vec3& high) {
+  for (Index f = patch.first; f < patch.first + patch.count; ++f)
+    for (const Index v : mesh.face_points[f]) low = low.cwiseMin(points[v]), high = high.cwiseMax(points[v]);
+  MPI_Allreduce(MPI_IN_PLACE, low.data(), 3, MPI_DOUBLE, MPI_MIN, mesh.comm);
+  MPI_Allreduce(MPI_IN_PLACE, high.data(), 3, MPI_DOUBLE, MPI_MAX, mesh.comm);
+}
+
+/// Corners of the faces of all ranks that reach into a box, as segments (2-D) or triangles. Collective.
+std::vector<double> corners_of(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const Vec3> points,
+                               const Vec3& low, const Vec3& high) {
+  std::vector<double> mine;
+  for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+    const auto v = mesh.face_points[f];
+    Vec3 least = points[v[0]], most = least;
+    for (const Index p : v) least = least.cwiseMin(points[p]), most = most.cwiseMax(points[p]);
+    if ((least.array() > high.array()).any() || (most.array() < low.array()).any()) continue;
+    const auto add = [&](std::initializer_list<std::size_t> corner) {
+      for (const std::size_t i : corner)
+        mine.insert(mine.end(), points[v[i]].data(), points[v[i]].data() + 3);
+    };
+    if (mesh.dim == 2) add({0, 1});
+    for (std::size_t i = 2; mesh.dim == 3 && i < v.size(); ++i) add({0, i - 1, i});
+  }
+  return parallel::all_gather(mesh.comm, mine);
+}
+
 bool inside(const Vec3& x, const Vec3& low, const Vec3& high) {
   return (x.array() >= low.array()).all() && (x.array() <= high.array()).all();
 }
@@ -202,7 +230,7 @@ Gaps<D>::Gaps(const mesh::Mesh& mesh, const FluidParameters& parameters, std::sp
                     base::did_you_mean(patch, there, "patches"));
       if (!is_wall(parameters.boundaries.at(patch)))
         throw Error("gaps.{}.between: '{}' is not a wall; a gap lies between two walls.", name, patch);
-      walls_.back()[side].patches.push_back(mesh.find_patch(patch));
+      walls_.back()[side] = mesh.find_patch(patch);
     }
   }
   facts_.resize(names_.size());
@@ -215,38 +243,6 @@ Gaps<D>::Gaps(const mesh::Mesh& mesh, const FluidParameters& parameters, std::sp
 }
 
 template <int D>
-void Gaps<D>::Wall::extend(const mesh::Mesh& mesh, std::span<const Vec3> points, Vec3& low,
-                           Vec3& high) const {
-  for (const mesh::Patch* patch : patches)
-    for (Index f = patch->first; f < patch->first + patch->count; ++f)
-      for (const Index v : mesh.face_points[f])
-        low = low.cwiseMin(points[v]), high = high.cwiseMax(points[v]);
-  MPI_Allreduce(MPI_IN_PLACE, low.data(), 3, MPI_DOUBLE, MPI_MIN, mesh.comm);
-  MPI_Allreduce(MPI_IN_PLACE, high.data(), 3, MPI_DOUBLE, MPI_MAX, mesh.comm);
-}
-
-/// Corners of the faces of all ranks that reach into a box, as segments or triangles.
-template <int D>
-std::vector<double> Gaps<D>::Wall::corners(const mesh::Mesh& mesh, std::span<const Vec3> points,
-                                           const Vec3& low, const Vec3& high) const {
-  std::vector<double> mine;
-  for (const mesh::Patch* patch : patches)
-    for (Index f = patch->first; f < patch->first + patch->count; ++f) {
-      const auto v = mesh.face_points[f];
-      Vec3 least = points[v[0]], most = least;
-      for (const Index p : v) least = least.cwiseMin(points[p]), most = most.cwiseMax(points[p]);
-      if ((least.array() > high.array()).any() || (most.array() < low.array()).any()) continue;
-      const auto add = [&](std::initializer_list<std::size_t> corner) {
-        for (const std::size_t i : corner)
-          mine.insert(mine.end(), points[v[i]].data(), points[v[i]].data() + 3);
-      };
-      if (D == 2) add({0, 1});
-      for (std::size_t i = 2; D == 3 && i < v.size(); ++i) add({0, i - 1, i});
-    }
-  return parallel::all_gather(mesh.comm, mine);
-}
-
-template <int D>
 void Gaps<D>::mark_gap(int gap, std::span<const Vec3> points, const Placement<D>& at) {
   const double limit = limit_[gap];
   Facts& facts = facts_[gap];
@@ -255,14 +251,16 @@ void Gaps<D>::mark_gap(int gap, std::span<const Vec3> points, const Placement<D>
   for (int side = 0; side < 2; ++side) {
     low[side].setConstant(base::infinity);
     high[side].setConstant(-base::infinity);
-    walls_[gap][side].extend(mesh_, points, low[side], high[side]);
+    extend(mesh_, *walls_[gap][side], points, low[side], high[side]);
   }
   // A cell that is blocked is nearer than the limit to both.
   const Vec3 room = Vec3::Constant(limit), from = low[0].cwiseMax(low[1]) - room,
              to = high[0].cwiseMin(high[1]) + room;
   if ((from.array() > to.array()).any()) return;
-  const std::vector<double> one = walls_[gap][0].corners(mesh_, points, from - room, to + room),
-                            other = walls_[gap][1].corners(mesh_, points, from - room, to + room);
+  const auto corners = [&](int side) {
+    return corners_of(mesh_, *walls_[gap][side], points, from - room, to + room);
+  };
+  const std::vector<double> one = corners(0), other = corners(1);
   double least = base::infinity, sums[2] = {0, 0};
   for (Index c = 0; c < mesh_.cells.n_local(); ++c) {
     Vec3 x = Vec3::Zero();

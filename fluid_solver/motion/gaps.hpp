@@ -81,23 +81,17 @@ class Gaps final : public Obstacles<D> {
  private:
   using Obstacles<D>::mesh_;
   using Obstacles<D>::around_;
-  struct Wall {
-    std::vector<const mesh::Patch*> patches;
-    std::vector<double> corners(const mesh::Mesh& mesh, std::span<const Vec3> points, const Vec3& low,
-                                const Vec3& high) const;
-    void extend(const mesh::Mesh& mesh, std::span<const Vec3> points, Vec3& low, Vec3& high) const;
-  };
   bool is_blocked(Index f) const { return is_closed(mesh_.owner[f]) || is_closed(mesh_.neighbour[f]); }
   void mark_gap(int gap, std::span<const Vec3> points, const Placement<D>& at);
 
   GapPockets<D> pockets_;
   bool compressible_;
   std::vector<std::string> names_;
-  std::vector<double> limit_;               // opening [m]
-  std::vector<std::array<Wall, 2>> walls_;  // of each gap
-  std::vector<char> never_;                 // per local cell: it has a face of given pressure
-  std::vector<int> gap_;                    // per local cell the gap that blocks it; below 0: free
-  Vectors<D> velocity_;                     // per local cell, of blocked ones [m/s]
+  std::vector<double> limit_;                             // opening [m]
+  std::vector<std::array<const mesh::Patch*, 2>> walls_;  // of each gap
+  std::vector<char> never_;                               // per local cell: it has a face of given pressure
+  std::vector<int> gap_;  // per local cell the gap that blocks it; below 0: free
+  Vectors<D> velocity_;   // per local cell, of blocked ones [m/s]
   std::vector<Facts> facts_;
   bool active_ = false;   // any cell of any rank is blocked
   bool changed_ = false;  // in this step

@@ -140,17 +140,13 @@ double set_body_start(const mesh::Mesh& mesh, std::span<const Vec3> points, cons
 
 template Vec<2> turn_of<2>(std::span<const Vec3>, std::span<const Vec3>);
 template Vec<3> turn_of<3>(std::span<const Vec3>, std::span<const Vec3>);
-template void set_turn<2>(const mesh::Mesh&, const mesh::Patch&, std::span<const Vec3>, std::span<const Vec3>,
-                          Vectors<2>&);
-template void set_turn<3>(const mesh::Mesh&, const mesh::Patch&, std::span<const Vec3>, std::span<const Vec3>,
-                          Vectors<3>&);
+template decltype(set_turn<2>) set_turn<2>;
+template decltype(set_turn<3>) set_turn<3>;
 template void Boundary<2>::add_turn(const mesh::Mesh&, std::span<const Vec3>, double, Vectors<2>&) const;
 template void Boundary<3>::add_turn(const mesh::Mesh&, std::span<const Vec3>, double, Vectors<3>&) const;
 template void set_face_means<2>(const mesh::Mesh&, const mesh::Patch&, std::span<const Vec3>, Vectors<2>&);
 template void set_face_means<3>(const mesh::Mesh&, const mesh::Patch&, std::span<const Vec3>, Vectors<3>&);
-template double set_body_start<2>(const mesh::Mesh&, std::span<const Vec3>, const Boundary<2>&,
-                                  const fv::MotionParameters&, double, Vectors<2>&, Vectors<2>&);
-template double set_body_start<3>(const mesh::Mesh&, std::span<const Vec3>, const Boundary<3>&,
-                                  const fv::MotionParameters&, double, Vectors<3>&, Vectors<3>&);
+template decltype(set_body_start<2>) set_body_start<2>;
+template decltype(set_body_start<3>) set_body_start<3>;
 
 }  // namespace couplet::fluid

@@ -72,38 +72,6 @@ WallSummary summarise_wall(const Fluid<D>& fluid, const mesh::Patch& patch) {
 }
 
 template <int D>
-double through_moving_walls(const Fluid<D>& fluid) {
-  const mesh::Mesh& mesh = fluid.mesh();
-  const State<D>& s = fluid.state();
-  double worst = std::numeric_limits<double>::quiet_NaN();
-  for (const mesh::Patch& patch : mesh.patches) {
-    if (!is_moving_wall(fluid.parameters().boundaries.at(patch.name))) continue;
-    double through = 0, size = 0;
-    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
-      const Vec<D>& w = s.w[f - mesh.n_interior];
-      through += std::abs(w.dot(s.placement->area[f]));
-      size += w.norm() * s.placement->area[f].norm();
-    }
-    through = parallel::sum(mesh.comm, through), size = parallel::sum(mesh.comm, size);
-    if (size > 0) worst = std::isnan(worst) ? through / size : std::max(worst, through / size);
-  }
-  return worst;
-}
-
-template <int D>
-double hydraulic_diameter(const Fluid<D>& fluid) {
-  const mesh::Mesh& mesh = fluid.mesh();
-  const Placement<D>& at = *fluid.state().placement;
-  std::array<double, 2> sums{};
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) sums[0] += at.volume[c];
-  for (const mesh::Patch& patch : mesh.patches)
-    if (is_wall(fluid.parameters().boundaries.at(patch.name)))
-      for (Index f = patch.first; f < patch.first + patch.count; ++f) sums[1] += at.area[f].norm();
-  MPI_Allreduce(MPI_IN_PLACE, sums.data(), int(sums.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
-  return sums[1] > 0 ? 4 * sums[0] / sums[1] : std::numeric_limits<double>::quiet_NaN();
-}
-
-template <int D>
 Coefficients force_coefficients(const Fluid<D>& fluid, const CoefficientParameters& c) {
   const mesh::Mesh& mesh = fluid.mesh();
   Vec3 sums[2] = {Vec3::Zero(), Vec3::Zero()};  // force, moment
@@ -158,76 +126,18 @@ EnergyBudget energy_budget(const Fluid<D>& fluid) {
   return {sums[0], sums[1], sums[2], sums[3]};
 }
 
-namespace {
-
-/// This rank's part; the pressure times the area.
-template <int D>
-void add_faces(const Fluid<D>& fluid, std::span<const double> pressure, const mesh::Patch& patch,
-               std::span<double> sums) {
-  const mesh::Mesh& mesh = fluid.mesh();
-  const State<D>& s = fluid.state();
-  for (Index f = patch.first; f < patch.first + patch.count; ++f) {
-    const Index b = f - mesh.n_interior;
-    const double flux = s.mesh_flux.empty() ? s.phi[f] : s.phi[f] - s.mesh_flux[f];
-    const double area = s.placement->area[f].norm();
-    const Vec<D> momentum = fluid.parameters().density * flux * s.u_boundary[b] + fluid.pressure_force()[b] +
-                            fluid.viscous_force()[b];
-    sums[0] += flux;
-    sums[1] += area * pressure[b];
-    sums[2] += area;
-    for (int a = 0; a < D; ++a) sums[3 + a] += momentum[a];
-  }
-}
-
-}  // namespace
-
-template <int D>
-std::vector<PatchFlux<D>> patch_fluxes(const Fluid<D>& fluid) {
-  constexpr std::size_t width = 3 + D;
-  const mesh::Mesh& mesh = fluid.mesh();
-  const auto pressure = fluid.pressure();
-  if (!pressure || fluid.pressure_force().empty()) return {};
-  std::vector<double> sums(mesh.patches.size() * width, 0);
-  for (std::size_t p = 0; p < mesh.patches.size(); ++p)
-    add_faces(fluid, pressure->boundary, mesh.patches[p], std::span(sums).subspan(p * width, width));
-  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
-  std::vector<PatchFlux<D>> result;
-  for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
-    const double* of_patch = sums.data() + p * width;
-    if (!(of_patch[2] > 0)) continue;
-    result.push_back({mesh.patches[p].name, of_patch[0], Eigen::Map<const Vec<D>>(of_patch + 3),
-                      of_patch[1] / of_patch[2], of_patch[2]});
-  }
-  return result;
-}
-
-template <int D>
-FlowArea flow_area(const PatchFlux<D>& from, const PatchFlux<D>& to, double density) {
-  const double mass = -density * from.volume, drop = from.mean_pressure - to.mean_pressure,
-               area = mass / std::sqrt(2 * density * std::abs(drop)) * (drop < 0 ? -1 : 1);
-  return {mass, drop, drop != 0 ? area : std::numeric_limits<double>::quiet_NaN()};
-}
-
-template double hydraulic_diameter<2>(const Fluid<2>&);
-template double hydraulic_diameter<3>(const Fluid<3>&);
-template double through_moving_walls<2>(const Fluid<2>&);
-template double through_moving_walls<3>(const Fluid<3>&);
-template std::vector<double> vorticity<2>(const std::vector<Tensor<2>>&);
-template std::vector<double> vorticity<3>(const std::vector<Tensor<3>>&);
-template std::vector<double> q_criterion<2>(const std::vector<Tensor<2>>&);
-template std::vector<double> q_criterion<3>(const std::vector<Tensor<3>>&);
-template std::vector<std::array<double, 2>> wall_units<2>(const Fluid<2>&);
-template std::vector<std::array<double, 2>> wall_units<3>(const Fluid<3>&);
-template WallSummary summarise_wall<2>(const Fluid<2>&, const mesh::Patch&);
-template WallSummary summarise_wall<3>(const Fluid<3>&, const mesh::Patch&);
-template Coefficients force_coefficients<2>(const Fluid<2>&, const CoefficientParameters&);
-template Coefficients force_coefficients<3>(const Fluid<3>&, const CoefficientParameters&);
-template EnergyBudget energy_budget<2>(const Fluid<2>&);
-template EnergyBudget energy_budget<3>(const Fluid<3>&);
-template FlowArea flow_area<2>(const PatchFlux<2>&, const PatchFlux<2>&, double);
-template FlowArea flow_area<3>(const PatchFlux<3>&, const PatchFlux<3>&, double);
-template std::vector<PatchFlux<2>> patch_fluxes<2>(const Fluid<2>&);
-template std::vector<PatchFlux<3>> patch_fluxes<3>(const Fluid<3>&);
+template decltype(vorticity<2>) vorticity<2>;
+template decltype(vorticity<3>) vorticity<3>;
+template decltype(q_criterion<2>) q_criterion<2>;
+template decltype(q_criterion<3>) q_criterion<3>;
+template decltype(wall_units<2>) wall_units<2>;
+template decltype(wall_units<3>) wall_units<3>;
+template decltype(summarise_wall<2>) summarise_wall<2>;
+template decltype(summarise_wall<3>) summarise_wall<3>;
+template decltype(force_coefficients<2>) force_coefficients<2>;
+template decltype(force_coefficients<3>) force_coefficients<3>;
+template decltype(energy_budget<2>) energy_budget<2>;
+template decltype(energy_budget<3>) energy_budget<3>;
 
 template <int D>
 Quantities<D>::Quantities(const Fluid<D>& fluid) : fluid_(fluid), pressure_(fluid.pressure()) {

@@ -71,15 +71,6 @@ WallSummary summarise_wall(const Fluid<D>& fluid, const mesh::Patch& patch);
 template <int D>
 std::vector<std::array<double, 2>> wall_units(const Fluid<D>& fluid);
 
-/// Largest sum of |w . S| over the sum of |w| |S| of the moving walls of a mesh at rest; NaN without such walls, or
-/// before they move. Collective.
-template <int D>
-double through_moving_walls(const Fluid<D>& fluid);
-
-/// 4 volumes over the area of the walls [m]; NaN without walls. Collective.
-template <int D>
-double hydraulic_diameter(const Fluid<D>& fluid);
-
 /// Coefficients of drag, lift and moment: sum F.d / (q A), sum F.l / (q A), sum ((x - c) x F).a / (q A L) of
 /// the forces on some walls, means over the last step.
 struct Coefficients {
@@ -98,31 +89,6 @@ struct EnergyBudget {
 };
 template <int D>
 EnergyBudget energy_budget(const Fluid<D>& fluid);
-
-/// Fluxes through a patch out of the fluid, relative to the patch where it moves.
-template <int D>
-struct PatchFlux {
-  std::string patch;
-  double volume = 0;                   ///< [m^3/s]
-  Vec<D> momentum = Vec<D>::Zero();    ///< rho sum u phi plus the load on what is outside [N]
-  double mean_pressure = 0, area = 0;  ///< [Pa], over the area; [m^2]
-};
-
-/// Area that an ideal flow would need to carry the same mass with the same difference of pressure, (KA)_e in [thesis] eq. (4.35).
-struct FlowArea {
-  double mass_flow = 0;      ///< into the fluid through the first patch [kg/s]
-  double pressure_drop = 0;  ///< mean pressures of the first less the second patch [Pa]
-  double area =
-      0;  ///< [m^2]; negative where the flow goes against the pressure; NaN where there is no difference
-};
-template <int D>
-FlowArea flow_area(const PatchFlux<D>& from, const PatchFlux<D>& to, double density);
-
-/// Fluxes of all patches with faces: volume, carried momentum and pressure at the accepted time, loads (those of forces.csv) as
-/// means over the last step; in a steady flow without body forces the sums of volume and momentum are zero. Nothing
-/// before the first step. Collective.
-template <int D>
-std::vector<PatchFlux<D>> patch_fluxes(const Fluid<D>& fluid);
 
 /// A field of the fluid as files, probes and samples show it.
 struct Quantity {

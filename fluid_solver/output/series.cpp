@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "common/base/constants.hpp"
 #include "common/base/error.hpp"
@@ -17,7 +19,7 @@ namespace couplet::fluid {
 
 namespace {
 
-using Walls = std::vector<const mesh::Patch*>;
+using WallPatches = std::vector<const mesh::Patch*>;
 
 /// Adds the components of a vector.
 template <int D>
@@ -28,7 +30,7 @@ void add_to_row(Row& row, const std::string& name, const char* unit, const doubl
 
 /// Forces of the fluid on each wall, means over the coupling step.
 template <int D>
-Row forces(const Fluid<D>& fluid, const Walls& walls) {
+Row forces(const Fluid<D>& fluid, const WallPatches& walls) {
   const mesh::Mesh& mesh = fluid.mesh();
   std::vector<Vec<D>> totals;  // pressure, friction of each wall
   for (const mesh::Patch* patch : walls)
@@ -60,7 +62,7 @@ Row coefficients(const Fluid<D>& fluid) {
 }
 
 template <int D>
-Row wall_layers(const Fluid<D>& fluid, const Walls& walls) {
+Row wall_layers(const Fluid<D>& fluid, const WallPatches& walls) {
   Row row;
   for (const mesh::Patch* patch : walls) {
     const WallSummary w = summarise_wall(fluid, *patch);
@@ -72,20 +74,65 @@ Row wall_layers(const Fluid<D>& fluid, const Walls& walls) {
   return row;
 }
 
+/// Fluxes through a patch out of the fluid, relative to the patch where it moves: at the accepted time, but for the loads,
+/// which are means over the last step as in forces.csv. In a steady flow without body forces volumes and momenta of all
+/// patches add up to zero.
+template <int D>
+struct PatchFlux {
+  std::string patch;
+  double volume = 0;                 ///< [m^3/s]
+  Vec<D> momentum = Vec<D>::Zero();  ///< rho sum u phi plus the load on what is outside [N]
+  double pressure = 0;               ///< mean over the area [Pa]
+};
+
+/// Of all patches with faces; none before the first step. Collective.
+template <int D>
+std::vector<PatchFlux<D>> patch_fluxes(const Fluid<D>& fluid) {
+  const mesh::Mesh& mesh = fluid.mesh();
+  const State<D>& s = fluid.state();
+  const auto pressure = fluid.pressure();
+  if (!pressure || fluid.pressure_force().empty()) return {};
+  constexpr int width = 3 + D;
+  std::vector<std::array<double, width>> sums(mesh.patches.size());  // area, volume, p S, momentum
+  for (std::size_t p = 0; p < sums.size(); ++p) {
+    const mesh::Patch& patch = mesh.patches[p];
+    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+      const Index b = f - mesh.n_interior;
+      const double flux = s.mesh_flux.empty() ? s.phi[f] : s.phi[f] - s.mesh_flux[f];
+      const double area = s.placement->area[f].norm();
+      sums[p][0] += area;
+      sums[p][1] += flux;
+      sums[p][2] += area * pressure->boundary[b];
+      Eigen::Map<Vec<D>>(&sums[p][3]) += fluid.parameters().density * flux * s.u_boundary[b] +
+                                         fluid.pressure_force()[b] + fluid.viscous_force()[b];
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()) * width, MPI_DOUBLE, MPI_SUM,
+                mesh.comm);
+  std::vector<PatchFlux<D>> result;
+  for (std::size_t p = 0; p < sums.size(); ++p)
+    if (const auto& sum = sums[p]; sum[0] > 0)
+      result.push_back({mesh.patches[p].name, sum[1], Eigen::Map<const Vec<D>>(&sum[3]), sum[2] / sum[0]});
+  return result;
+}
+
 template <int D>
 Row fluxes(const Fluid<D>& fluid) {
   Row row;
   for (const PatchFlux<D>& flux : patch_fluxes(fluid)) {
     row.emplace_back(flux.patch + " volume [m^3/s]", flux.volume);
     add_to_row<D>(row, flux.patch + " momentum", "N", flux.momentum.data());
-    row.emplace_back(flux.patch + " mean pressure [Pa]", flux.mean_pressure);
+    row.emplace_back(flux.patch + " mean pressure [Pa]", flux.pressure);
   }
   return row;
 }
 
+/// Area that an ideal flow would need to carry the same mass with the same difference of pressure, (KA)_e in [thesis] eq.
+/// (4.35): negative where the flow goes against the pressure, NaN where there is no difference.
 template <int D>
 Row flow_areas(const Fluid<D>& fluid) {
   Row row;
+  const double density = fluid.parameters().density;
   const std::vector<PatchFlux<D>> all = patch_fluxes(fluid);
   if (all.empty()) return row;
   const auto of = [&](const std::string& patch) -> const PatchFlux<D>& {
@@ -94,10 +141,13 @@ Row flow_areas(const Fluid<D>& fluid) {
     return *found;
   };
   for (const auto& [name, area] : fluid.parameters().output.flow_areas) {
-    const FlowArea now = flow_area(of(area.from), of(area.to), fluid.parameters().density);
-    row.insert(row.end(), {{name + " mass flow [kg/s]", now.mass_flow},
-                           {name + " pressure drop [Pa]", now.pressure_drop},
-                           {name + " effective area [m^2]", now.area}});
+    const PatchFlux<D>& from = of(area.from);
+    const double mass = -density * from.volume, drop = from.pressure - of(area.to).pressure;
+    const double ideal = mass / std::sqrt(2 * density * std::abs(drop)) * (drop < 0 ? -1 : 1);
+    row.insert(row.end(), {{name + " mass flow [kg/s]", mass},
+                           {name + " pressure drop [Pa]", drop},
+                           {name + " effective area [m^2]",
+                            drop != 0 ? ideal : std::numeric_limits<double>::quiet_NaN()}});
   }
   return row;
 }
@@ -108,8 +158,8 @@ struct CellSums {
 };
 
 template <int D>
-[[gnu::always_inline]] inline CellSums sums_of(std::span<const double> volume, const double* outflow,
-                                               const Vec<D>* u) {
+COUPLET_PROCESSOR_CLONES CellSums sum_cells(std::span<const double> volume, const double* outflow,
+                                            const Vec<D>* u) {
   CellSums sums;
   for (std::size_t c = 0; c < volume.size(); ++c) {
     const double out = std::abs(outflow[c]);
@@ -119,14 +169,6 @@ template <int D>
     if (out > sums.worst * volume[c]) sums.worst = out / volume[c];
   }
   return sums;
-}
-COUPLET_PROCESSOR_CLONES CellSums sum_cells(std::span<const double> volume, const double* outflow,
-                                            const Vec<2>* u) {
-  return sums_of<2>(volume, outflow, u);
-}
-COUPLET_PROCESSOR_CLONES CellSums sum_cells(std::span<const double> volume, const double* outflow,
-                                            const Vec<3>* u) {
-  return sums_of<3>(volume, outflow, u);
 }
 
 /// Volume, energy and divergence.
@@ -138,15 +180,13 @@ Row balance(const Fluid<D>& fluid) {
   enum { inflow, outflow, volume, energy, divergence, taken_up };
   double sums[6] = {};
   std::vector<double> out(mesh.cells.n_local(), 0.0);
-  subtract_outflow(mesh, -1, s.phi, out);
-  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
-    out[mesh.owner[f]] += s.phi[f];
+  add_outflow(mesh, s.phi, out);
+  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
     (s.phi[f] < 0 ? sums[inflow] : sums[outflow]) += std::abs(s.phi[f]);
-  }
   if (s.blocked)  // held by their gaps as a whole
     for (Index c = 0; c < mesh.cells.n_owned(); ++c)
       if ((*s.blocked)[c]) out[c] = 0;
-  const CellSums over_cells = sum_cells(volumes, out.data(), s.u.data());
+  const CellSums over_cells = sum_cells<D>(volumes, out.data(), s.u.data());
   sums[divergence] = over_cells.divergence, sums[volume] = over_cells.volume;
   sums[energy] = 0.5 * fluid.parameters().density * over_cells.squares;
   if (s.pressure[0]) sums[taken_up] = s.pressure[0]->taken_up;
@@ -203,7 +243,7 @@ Row gaps(const Fluid<D>& fluid) {
 }  // namespace
 
 template <int D>
-std::vector<SeriesTable> tables_of(const Fluid<D>& fluid, const Walls& walls) {
+std::vector<SeriesTable> tables_of(const Fluid<D>& fluid, const WallPatches& walls) {
   const FluidParameters& p = fluid.parameters();
   std::vector<SeriesTable> all;
   const auto add = [&](bool wanted, const char* file, const auto& row) {
@@ -222,7 +262,7 @@ std::vector<SeriesTable> tables_of(const Fluid<D>& fluid, const Walls& walls) {
   return all;
 }
 
-template std::vector<SeriesTable> tables_of<2>(const Fluid<2>&, const Walls&);
-template std::vector<SeriesTable> tables_of<3>(const Fluid<3>&, const Walls&);
+template std::vector<SeriesTable> tables_of<2>(const Fluid<2>&, const WallPatches&);
+template std::vector<SeriesTable> tables_of<3>(const Fluid<3>&, const WallPatches&);
 
 }  // namespace couplet::fluid

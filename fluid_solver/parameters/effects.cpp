@@ -140,7 +140,7 @@ std::span<const FluidCard> fluid_effect_cards() { return cards; }
 
 namespace {
 
-constexpr double slow = 0.3;  // of the audit: travel time of sound over 1/omega
+constexpr double slow_waves = 0.3;  // of the audit: travel time of sound over 1/omega
 constexpr int most_samples = 2000, places = 4;
 
 /// Root mean square rate of what is prescribed over its root mean square about the mean [1/s]; 0: it does not change.
@@ -182,16 +182,16 @@ double largest_rate(const FluidParameters& p, const mesh::MeshFacts& mesh,
   return rate;
 }
 
-}  // namespace
-
+/// Decides whether pressure waves are computed: where sound takes longer across the mesh than 0.3/omega of what boundaries and
+/// motions prescribe, where gaps shut off an inlet, and where an interface moves in a fluid without an outlet.
 effects::EffectChoice choose_waves(const FluidParameters& p, const mesh::MeshFacts& mesh,
                                    const effects::ChoiceScene& scene) {
   const auto without = [](std::string reason) {
-    return effects::EffectChoice{"compressibility", "", "none, incompressible", std::move(reason), false};
+    return effects::EffectChoice{"compressibility", "", "none, incompressible", std::move(reason)};
   };
   const auto with = [](std::string reason) {
-    return effects::EffectChoice{"compressibility", "{scheme: three-level}", "three-level", std::move(reason),
-                                 false};
+    return effects::EffectChoice{"compressibility", "{scheme: three-level}", "three-level",
+                                 std::move(reason)};
   };
   const auto has = [&p](const auto& fact) {
     return std::ranges::any_of(p.boundaries, [&](const auto& b) { return fact(b.second); });
@@ -213,13 +213,11 @@ effects::EffectChoice choose_waves(const FluidParameters& p, const mesh::MeshFac
   const std::string reason =
       fmt::format("sound crosses {} in {:.2g} s = {:.2g} of 1/omega of what is prescribed", sound->of,
                   mesh.largest_side() / sound->speed, phase);
-  if (phase > slow) return with(reason);
+  if (phase > slow_waves) return with(reason);
   return without(scene.coupled && velocity_by(GivenBy::structure)
                      ? reason + "; the run reports if the compliance or the waves matter to the interface"
                      : reason);
 }
-
-namespace {
 
 constexpr double laminar = 2300;  // of a channel or pipe
 constexpr double resolved = 10;   // cell Reynolds number of a mesh that needs no model
@@ -253,7 +251,7 @@ double speed_of(const FluidParameters& p, const mesh::MeshFacts& mesh, double en
 
 effects::EffectChoice turbulence(const FluidParameters& p, const mesh::MeshFacts& mesh, double speed) {
   const auto without = [](std::string reason) {
-    return effects::EffectChoice{"turbulence", "", "none, laminar", std::move(reason), false};
+    return effects::EffectChoice{"turbulence", "", "none, laminar", std::move(reason)};
   };
   if (mesh.dim == 2) return without("eddies are three-dimensional");
   if (!(speed > 0)) return without("no boundary or initial condition sets a speed");
@@ -267,8 +265,7 @@ effects::EffectChoice turbulence(const FluidParameters& p, const mesh::MeshFacts
         fmt::format("the mesh resolves it: Reynolds number {:.3g}, {:.2g} per cell", reynolds, cell));
   return {"turbulence", "{model: wale}", "wale",
           fmt::format("Reynolds number {:.3g}, {:.3g} per cell: the mesh does not resolve the eddies",
-                      reynolds, cell),
-          false};
+                      reynolds, cell)};
 }
 
 /// Explicit diffusion holds to nu dt (sum of 4/h^2) <= 1, convection to about half a cell a step: the implicit term costs about
@@ -283,19 +280,18 @@ effects::EffectChoice viscous(const FluidParameters& p, const mesh::MeshFacts& m
   return {"viscous", rungs ? "explicit" : word, rungs ? "explicit" : word,
           rungs ? "'scheme: runge-kutta' is explicit"
                 : fmt::format("diffusion allows steps of {:.2g} s, convection of {:.2g} s", diffusion,
-                              convection),
-          false};
+                              convection)};
 }
 
 effects::EffectChoice mesh_motion(const FluidParameters& p, const effects::ChoiceScene& scene) {
-  if (scene.has_mover) return {"", "", "moving mesh", "'coupling.mesh' names a mesh mover", false};
-  if (p.motion) return {"", "", "moving mesh", "'motion' prescribes it", false};
+  if (scene.has_mover) return {"", "", "moving mesh", "'coupling.mesh' names a mesh mover"};
+  if (p.motion) return {"", "", "moving mesh", "'motion' prescribes it"};
   const bool interface = std::ranges::any_of(
       p.boundaries, [](const auto& b) { return condition_of(b.second).velocity == GivenBy::structure; });
   if (scene.coupled && interface)
     return {"", "", "mesh at rest",
-            "no mesh mover: the run reports if the interface moves by more than a tenth of a cell", false};
-  return {"", "", "mesh at rest", "nothing moves", false};
+            "no mesh mover: the run reports if the interface moves by more than a tenth of a cell"};
+  return {"", "", "mesh at rest", "nothing moves"};
 }
 
 }  // namespace
@@ -304,7 +300,7 @@ std::vector<effects::EffectChoice> choose_effects(const FluidParameters& p, cons
                                                   const effects::ChoiceScene& scene) {
   const double speed = speed_of(p, mesh, scene.end_time);
   return {{"dimension", std::to_string(mesh.dim), std::to_string(mesh.dim),
-           mesh.dim == 2 ? "the mesh has two-dimensional cells only" : "the mesh has volumes", false},
+           mesh.dim == 2 ? "the mesh has two-dimensional cells only" : "the mesh has volumes"},
           turbulence(p, mesh, speed),
           viscous(p, mesh, speed),
           choose_waves(p, mesh, scene),

@@ -28,11 +28,6 @@ std::vector<effects::EffectChoice> choose_effects(const FluidParameters& paramet
                                                   const mesh::MeshFacts& mesh,
                                                   const effects::ChoiceScene& scene);
 
-/// Decides whether pressure waves are computed: where sound takes longer across the mesh than 0.3/omega of what boundaries and
-/// motions prescribe, where gaps shut off an inlet, and where an interface moves in a fluid without an outlet.
-effects::EffectChoice choose_waves(const FluidParameters& parameters, const mesh::MeshFacts& mesh,
-                                   const effects::ChoiceScene& scene);
-
 /// Estimates the cost from configs/cavity and taylor-green-3d on one rank.
 effects::ExpectedCost expected_cost(const FluidParameters& parameters, const mesh::MeshFacts& mesh);
 

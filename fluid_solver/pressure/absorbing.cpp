@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "common/parallel/collective.hpp"
@@ -14,18 +13,6 @@ namespace {
 // Default time of the means, in travel times of sound across the mesh.
 constexpr double mean_times = 10;
 
-/// Largest extent of the mesh [m]. Collective.
-double mesh_extent(const mesh::Mesh& mesh, std::span<const Vec3> points) {
-  constexpr double far = std::numeric_limits<double>::max();
-  double size = 0;
-  for (int c = 0; c < mesh.dim; ++c) {
-    double low = far, high = -far;
-    for (const Vec3& x : points) low = std::min(low, x[c]), high = std::max(high, x[c]);
-    size = std::max(size, parallel::max(mesh.comm, high) - parallel::min(mesh.comm, low));
-  }
-  return size;
-}
-
 /// Boundaries that let pressure waves out: with v the speed outward at a face beyond what is given there, at t^{n+1/2}
 ///   outlet: p_b = p_given + rho c (v - mean v),  v = phi/S
 ///   inlet:  rho c v = p_b - mean p_b,            v = (w - given).n
@@ -34,18 +21,116 @@ double mesh_extent(const mesh::Mesh& mesh, std::span<const Vec3> points) {
 template <int D>
 class AbsorbingBoundaries final : public Term<D> {
  public:
-  AbsorbingBoundaries(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction);
+  AbsorbingBoundaries(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction)
+      : Term<D>(scene, step, prediction) {
+    const double size = largest_extent(scene.mesh, scene.points_at_rest);
+    mean_time_ = scene.parameters.compressibility->mean_time.value_or(mean_times * size / scene.fluid.sound);
+  }
 
-  void prepare(const State<D>& from) override;
+  /// The means move by their filter as if the last half step went on.
+  void prepare(const State<D>& from) override {
+    before_ = &from.openings;
+    weight_ = middle_weights(step_.dt, step_.by.dt_old);
+    const std::vector<double> rest(from.w.size(), 0.0);
+    means_of(from.openings.now, step_.by.pressure[0] ? step_.by.pressure[0]->boundary : rest, *from.placement,
+             mean_);
+    const double moved = -std::expm1(-0.5 * step_.dt / mean_time_);
+    for (std::size_t i = 0; i < mean_.size(); ++i) {
+      const double last = from.openings.mean[i];
+      mean_[i] = last + moved * (mean_[i] - last);
+    }
+  }
   double version() const override { return weight_[0] * step_.dt; }
-  void add_to_diagonal(Diagonal& diagonal) override;
-  void foresee(const State<D>& from, Projected<D>& projected) override;
+  void add_to_diagonal(Diagonal& diagonal) override {
+    diagonal.faces.resize(prediction_.w.size(), 0.);
+    for (const auto& [faces, inlet] : scene_.boundary.absorbing_patches())
+      for (Index b = faces.first; b < faces.first + faces.count; ++b)
+        diagonal.faces[b] += (share(b) - (inlet ? 0 : 1)) * step_.to->conductance[mesh_.n_interior + b];
+  }
+  void foresee(const State<D>& from, Projected<D>& out) override {
+    const Placement<D>& at = *step_.to;
+    const double impedance = scene_.fluid.rho * scene_.fluid.sound;
+    std::size_t i = 0;
+    for (const auto& [faces, inlet] : scene_.boundary.absorbing_patches()) {
+      const double mean = mean_[i++];
+      for (Index b = faces.first; b < faces.first + faces.count; ++b) {
+        if (!inlet) {
+          out.boundary[b] += impedance * (past(b) - mean);
+          continue;
+        }
+        // p_b = p_P + source - inertia (w - w^n).n
+        const Index f = mesh_.n_interior + b, p = mesh_.owner[f];
+        const double area = at.area[f].norm(), g = at.conductance[f],
+                     inertia = scene_.fluid.rho * area / (g * step_.dt);
+        const Vec<D> n = at.area[f] / area;
+        double source = 0;
+        if (!prediction_.force.empty()) source += scene_.fluid.rho * prediction_.force[p].dot(at.area[f]) / g;
+        if (!out.gradient.empty()) source -= out.gradient[p].dot(at.oblique_of(f)) / g;
+        const double pressure = source - mean - inertia * (out.w[b] - from.w[b]).dot(n);
+        out.w[b] += (pressure - impedance * past(b)) / (weight_[0] * impedance + inertia) * n;
+        out.phi[f] = out.w[b].dot(at.area[f]);
+      }
+    }
+  }
   /// Subtracts at faces of given pressure what their answer takes away.
-  void before(Projected<D>& projected, RightSide& side) override;
-  void after(Projected<D>& projected) override;
+  void before(Projected<D>& out, RightSide& side) override {
+    for (const auto& [faces, inlet] : scene_.boundary.absorbing_patches()) {
+      if (inlet) continue;
+      for (Index b = faces.first; b < faces.first + faces.count; ++b) {
+        const Index f = mesh_.n_interior + b;
+        const double more =
+            scene_.fluid.rho / step_.dt * out.phi[f] - step_.to->conductance[f] * out.boundary[b];
+        side.b[mesh_.owner[f]] += (1 - share(b)) * more;
+      }
+    }
+  }
+  void after(Projected<D>& out) override {
+    const Placement<D>& at = *step_.to;
+    const double factor = step_.dt / scene_.fluid.rho;
+    for (const auto& [faces, inlet] : scene_.boundary.absorbing_patches())
+      for (Index b = faces.first; b < faces.first + faces.count; ++b) {
+        const Index f = mesh_.n_interior + b;
+        const double area = at.area[f].norm(), g = at.conductance[f], p = out.p[mesh_.owner[f]];
+        if (inlet) {
+          out.w[b] += factor * share(b) * g * p / area * (at.area[f] / area);
+          out.phi[f] = out.w[b].dot(at.area[f]);
+        } else {
+          const double flux = share(b) * (out.phi[f] - factor * g * (out.boundary[b] - p));
+          out.boundary[b] += weight_[0] * scene_.fluid.rho * scene_.fluid.sound * flux / area;
+        }
+      }
+  }
   /// Sets state.openings.
-  void commit(const Projected<D>& projected, State<D>& state) const override;
-  void start(State<D>& state) const override;
+  void commit(const Projected<D>& out, State<D>& s) const override {
+    const Placement<D>& at = *step_.to;
+    Vectors<D> given(out.w.size(), Vec<D>::Zero());
+    scene_.boundary.velocity_at(step_.end(), at.boundary_centre, given);
+    std::vector<double> means, now;
+    means_of(s.openings.now, out.boundary, *s.placement, means);
+    s.openings.old.swap(s.openings.now);
+    s.openings.now.assign(out.w.size(), 0.0);
+    for (const auto& [faces, inlet] : scene_.boundary.absorbing_patches())
+      for (Index b = faces.first; b < faces.first + faces.count; ++b) {
+        const Index f = mesh_.n_interior + b;
+        const double area = at.area[f].norm();
+        s.openings.now[b] = (inlet ? (out.w[b] - given[b]).dot(at.area[f]) : out.phi[f]) / area;
+      }
+    means_of(s.openings.now, out.boundary, at, now);
+    const double moved = -std::expm1(-step_.dt / mean_time_);
+    for (std::size_t i = 0; i < now.size(); ++i)
+      s.openings.mean[i] += moved * (0.5 * (means[i] + now[i]) - s.openings.mean[i]);
+  }
+  void start(State<D>& s) const override {
+    s.openings.now.assign(s.w.size(), 0.0);
+    for (const auto& [faces, inlet] : scene_.boundary.absorbing_patches())
+      for (Index b = faces.first; b < faces.first + faces.count && !inlet; ++b) {
+        const Index f = mesh_.n_interior + b;
+        s.openings.now[b] = s.phi[f] / s.placement->area[f].norm();
+      }
+    s.openings.old = s.openings.now;
+    const std::vector<double> rest(s.w.size(), 0.0);
+    means_of(s.openings.now, s.pressure[0] ? s.pressure[0]->boundary : rest, *s.placement, s.openings.mean);
+  }
   using Term<D>::start;
 
  private:
@@ -53,170 +138,35 @@ class AbsorbingBoundaries final : public Term<D> {
   using Term<D>::mesh_;
   using Term<D>::step_;
   using Term<D>::prediction_;
-  double share(Index b) const;
-  double past(Index b) const;
+  double share(Index b) const {
+    const Index f = mesh_.n_interior + b;
+    const double area = step_.to->area[f].norm();
+    return 1 / (1 + weight_[0] * scene_.fluid.sound * step_.dt * step_.to->conductance[f] / area);
+  }
+  double past(Index b) const { return weight_[1] * before_->now[b] + weight_[2] * before_->old[b]; }
+  /// Over each patch: of v at outlets, of p at inlets.
   void means_of(const std::vector<double>& v, const std::vector<double>& p, const Placement<D>& at,
-                std::vector<double>& means) const;
+                std::vector<double>& means) const {
+    const auto& patches = scene_.boundary.absorbing_patches();
+    std::vector<double> sums(2 * patches.size(), 0.0);
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+      const auto& [faces, inlet] = patches[i];
+      for (Index b = faces.first; b < faces.first + faces.count; ++b) {
+        const double area = at.area[mesh_.n_interior + b].norm();
+        sums[2 * i] += area * (inlet ? p : v)[b];
+        sums[2 * i + 1] += area;
+      }
+    }
+    MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, mesh_.comm);
+    means.resize(patches.size());
+    for (std::size_t i = 0; i < patches.size(); ++i) means[i] = sums[2 * i] / sums[2 * i + 1];
+  }
 
   double mean_time_;                       // [s]
   std::array<double, 3> weight_{};         // of v at t^{n+1}, t^n, t^{n-1}
   const OpeningsState* before_ = nullptr;  // of level n
   std::vector<double> mean_;               // at t^{n+1/2}, per patch
 };
-
-template <int D>
-AbsorbingBoundaries<D>::AbsorbingBoundaries(const Scene<D>& scene, const Step<D>& step,
-                                            const Prediction<D>& prediction)
-    : Term<D>(scene, step, prediction) {
-  const double size = mesh_extent(scene.mesh, scene.points_at_rest);
-  mean_time_ = scene.parameters.compressibility->mean_time.value_or(mean_times * size / scene.fluid.sound);
-}
-
-/// Over each patch: of v at outlets, of p at inlets.
-template <int D>
-void AbsorbingBoundaries<D>::means_of(const std::vector<double>& v, const std::vector<double>& p,
-                                      const Placement<D>& at, std::vector<double>& means) const {
-  const auto& patches = scene_.boundary.absorbing_patches();
-  std::vector<double> sums(2 * patches.size(), 0.0);
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    const auto& [faces, inlet] = patches[i];
-    for (Index b = faces.first; b < faces.first + faces.count; ++b) {
-      const double area = at.area[mesh_.n_interior + b].norm();
-      sums[2 * i] += area * (inlet ? p : v)[b];
-      sums[2 * i + 1] += area;
-    }
-  }
-  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, mesh_.comm);
-  means.resize(patches.size());
-  for (std::size_t i = 0; i < patches.size(); ++i) means[i] = sums[2 * i] / sums[2 * i + 1];
-}
-
-/// The means move by their filter as if the last half step went on.
-template <int D>
-void AbsorbingBoundaries<D>::prepare(const State<D>& from) {
-  before_ = &from.openings;
-  weight_ = middle_weights(step_.dt, step_.by.dt_old);
-  const std::vector<double> rest(from.w.size(), 0.0);
-  means_of(from.openings.now, step_.by.pressure[0] ? step_.by.pressure[0]->boundary : rest, *from.placement,
-           mean_);
-  const double moved = -std::expm1(-0.5 * step_.dt / mean_time_);
-  for (std::size_t i = 0; i < mean_.size(); ++i) {
-    const double last = from.openings.mean[i];
-    mean_[i] = last + moved * (mean_[i] - last);
-  }
-}
-
-template <int D>
-double AbsorbingBoundaries<D>::share(Index b) const {
-  const Index f = mesh_.n_interior + b;
-  const double area = step_.to->area[f].norm();
-  return 1 / (1 + weight_[0] * scene_.fluid.sound * step_.dt * step_.to->conductance[f] / area);
-}
-
-template <int D>
-double AbsorbingBoundaries<D>::past(Index b) const {
-  return weight_[1] * before_->now[b] + weight_[2] * before_->old[b];
-}
-
-template <int D>
-void AbsorbingBoundaries<D>::add_to_diagonal(Diagonal& diagonal) {
-  diagonal.faces.resize(prediction_.w.size(), 0.);
-  for (const auto& [faces, inlet] : scene_.boundary.absorbing_patches())
-    for (Index b = faces.first; b < faces.first + faces.count; ++b)
-      diagonal.faces[b] += (share(b) - (inlet ? 0 : 1)) * step_.to->conductance[mesh_.n_interior + b];
-}
-
-template <int D>
-void AbsorbingBoundaries<D>::foresee(const State<D>& from, Projected<D>& out) {
-  const Placement<D>& at = *step_.to;
-  const double impedance = scene_.fluid.rho * scene_.fluid.sound;
-  std::size_t i = 0;
-  for (const auto& [faces, inlet] : scene_.boundary.absorbing_patches()) {
-    const double mean = mean_[i++];
-    for (Index b = faces.first; b < faces.first + faces.count; ++b) {
-      if (!inlet) {
-        out.boundary[b] += impedance * (past(b) - mean);
-        continue;
-      }
-      // p_b = p_P + source - inertia (w - w^n).n
-      const Index f = mesh_.n_interior + b, p = mesh_.owner[f];
-      const double area = at.area[f].norm(), g = at.conductance[f],
-                   inertia = scene_.fluid.rho * area / (g * step_.dt);
-      const Vec<D> n = at.area[f] / area;
-      double source = 0;
-      if (!prediction_.force.empty()) source += scene_.fluid.rho * prediction_.force[p].dot(at.area[f]) / g;
-      if (!out.gradient.empty()) source -= out.gradient[p].dot(at.oblique_of(f)) / g;
-      const double pressure = source - mean - inertia * (out.w[b] - from.w[b]).dot(n);
-      out.w[b] += (pressure - impedance * past(b)) / (weight_[0] * impedance + inertia) * n;
-      out.phi[f] = out.w[b].dot(at.area[f]);
-    }
-  }
-}
-
-template <int D>
-void AbsorbingBoundaries<D>::before(Projected<D>& out, RightSide& side) {
-  for (const auto& [faces, inlet] : scene_.boundary.absorbing_patches()) {
-    if (inlet) continue;
-    for (Index b = faces.first; b < faces.first + faces.count; ++b) {
-      const Index f = mesh_.n_interior + b;
-      const double more =
-          scene_.fluid.rho / step_.dt * out.phi[f] - step_.to->conductance[f] * out.boundary[b];
-      side.b[mesh_.owner[f]] += (1 - share(b)) * more;
-    }
-  }
-}
-
-template <int D>
-void AbsorbingBoundaries<D>::after(Projected<D>& out) {
-  const Placement<D>& at = *step_.to;
-  const double factor = step_.dt / scene_.fluid.rho;
-  for (const auto& [faces, inlet] : scene_.boundary.absorbing_patches())
-    for (Index b = faces.first; b < faces.first + faces.count; ++b) {
-      const Index f = mesh_.n_interior + b;
-      const double area = at.area[f].norm(), g = at.conductance[f], p = out.p[mesh_.owner[f]];
-      if (inlet) {
-        out.w[b] += factor * share(b) * g * p / area * (at.area[f] / area);
-        out.phi[f] = out.w[b].dot(at.area[f]);
-      } else {
-        const double flux = share(b) * (out.phi[f] - factor * g * (out.boundary[b] - p));
-        out.boundary[b] += weight_[0] * scene_.fluid.rho * scene_.fluid.sound * flux / area;
-      }
-    }
-}
-
-template <int D>
-void AbsorbingBoundaries<D>::commit(const Projected<D>& out, State<D>& s) const {
-  const Placement<D>& at = *step_.to;
-  Vectors<D> given(out.w.size(), Vec<D>::Zero());
-  scene_.boundary.velocity_at(step_.end(), at.boundary_centre, given);
-  std::vector<double> means, now;
-  means_of(s.openings.now, out.boundary, *s.placement, means);
-  s.openings.old.swap(s.openings.now);
-  s.openings.now.assign(out.w.size(), 0.0);
-  for (const auto& [faces, inlet] : scene_.boundary.absorbing_patches())
-    for (Index b = faces.first; b < faces.first + faces.count; ++b) {
-      const Index f = mesh_.n_interior + b;
-      const double area = at.area[f].norm();
-      s.openings.now[b] = (inlet ? (out.w[b] - given[b]).dot(at.area[f]) : out.phi[f]) / area;
-    }
-  means_of(s.openings.now, out.boundary, at, now);
-  const double moved = -std::expm1(-step_.dt / mean_time_);
-  for (std::size_t i = 0; i < now.size(); ++i)
-    s.openings.mean[i] += moved * (0.5 * (means[i] + now[i]) - s.openings.mean[i]);
-}
-
-template <int D>
-void AbsorbingBoundaries<D>::start(State<D>& s) const {
-  s.openings.now.assign(s.w.size(), 0.0);
-  for (const auto& [faces, inlet] : scene_.boundary.absorbing_patches())
-    for (Index b = faces.first; b < faces.first + faces.count && !inlet; ++b) {
-      const Index f = mesh_.n_interior + b;
-      s.openings.now[b] = s.phi[f] / s.placement->area[f].norm();
-    }
-  s.openings.old = s.openings.now;
-  const std::vector<double> rest(s.w.size(), 0.0);
-  means_of(s.openings.now, s.pressure[0] ? s.pressure[0]->boundary : rest, *s.placement, s.openings.mean);
-}
 
 }  // namespace
 
@@ -226,9 +176,7 @@ std::unique_ptr<Term<D>> make_absorbing_boundaries(const Scene<D>& scene, const 
   return std::make_unique<AbsorbingBoundaries<D>>(scene, step, prediction);
 }
 
-template std::unique_ptr<Term<2>> make_absorbing_boundaries<2>(const Scene<2>&, const Step<2>&,
-                                                               const Prediction<2>&);
-template std::unique_ptr<Term<3>> make_absorbing_boundaries<3>(const Scene<3>&, const Step<3>&,
-                                                               const Prediction<3>&);
+template decltype(make_absorbing_boundaries<2>) make_absorbing_boundaries<2>;
+template decltype(make_absorbing_boundaries<3>) make_absorbing_boundaries<3>;
 
 }  // namespace couplet::fluid

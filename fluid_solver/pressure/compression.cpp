@@ -21,107 +21,83 @@ namespace {
 template <int D>
 class Compression final : public Term<D> {
  public:
-  Compression(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction);
+  Compression(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction)
+      : Term<D>(scene, step, prediction),
+        trapezoidal_(scene.parameters.compressibility->scheme == WaveScheme::trapezoidal) {}
 
-  void prepare(const State<D>& from) override;
+  void prepare(const State<D>& from) override {
+    const Index owned = mesh_.cells.n_owned();
+    rate_ = wave_rate(step_, trapezoidal_);
+    storage_.assign(owned, 0.0);
+    if (!step_.by.pressure[0]) return;
+    set_past(from);
+    const double factor = rate_ / (scene_.fluid.sound * scene_.fluid.sound * step_.dt);
+    for (Index c = 0; c < owned; ++c) storage_[c] = factor * step_.to->volume[c];
+    scene_.obstacles->clear(storage_);
+  }
   bool sets_level() const override { return rate_ > 0; }
   double version() const override { return (rate_ > 0 ? rate_ : -1) / step_.dt; }
-  void add_to_diagonal(Diagonal& diagonal) override;
+  void add_to_diagonal(Diagonal& diagonal) override {
+    if (sets_level()) diagonal.cells = storage_;
+  }
   /// The size of b less what of it holds p as it was is what the step changes.
-  void before(Projected<D>& projected, RightSide& side) override;
-  void complete(PressureLevel<D>& level) const override;
+  void before(Projected<D>&, RightSide& side) override {
+    if (!sets_level()) return;
+    std::vector<double>& b = side.b;
+    double square = 0;
+    for (std::size_t c = 0; c < b.size(); ++c) {
+      double changed = b[c];
+      if (storage_[c] > 0) {
+        b[c] -= storage_[c] / rate_ * past_[c];
+        changed = b[c] - storage_[c] * step_.by.pressure[0]->p[c];
+      }
+      square += changed * changed;
+    }
+    side.size = std::sqrt(parallel::sum(mesh_.comm, square));
+  }
+  void complete(PressureLevel<D>& level) const override {
+    if (sets_level())
+      for (std::size_t c = 0; c < storage_.size(); ++c)
+        level.taken_up += storage_[c] * step_.dt / scene_.fluid.rho * (level.p[c] + past_[c] / rate_);
+    if (!trapezoidal_) return;
+    level.end = level.p;
+    if (step_.by.pressure[0]) {
+      const std::vector<double>& p = begin();
+      for (std::size_t c = 0; c < level.p.size(); ++c) level.end[c] = 2 * level.p[c] - p[c];
+    }
+  }
 
  private:
   using Term<D>::scene_;
   using Term<D>::mesh_;
   using Term<D>::step_;
-  void set_past(const State<D>& from);
-  const std::vector<double>& begin() const;
+  void set_past(const State<D>& from) {
+    const Index owned = mesh_.cells.n_owned();
+    past_.assign(mesh_.cells.n_local(), 0.0);
+    if (trapezoidal_) {
+      add_outflow(mesh_, from.phi, past_);
+      const double bulk = scene_.fluid.rho * scene_.fluid.sound * scene_.fluid.sound;
+      const std::vector<double>& p = begin();
+      for (Index c = 0; c < owned; ++c) past_[c] = bulk * past_[c] / from.placement->volume[c] - rate_ * p[c];
+      return;
+    }
+    const WaveRule rule = wave_rule(step_);
+    for (std::size_t k = 0; k < rule.past.size(); ++k) {
+      if (rule.past[k] == 0) continue;
+      const std::vector<double>& p = step_.by.pressure[k]->p;
+      for (Index c = 0; c < owned; ++c) past_[c] += rule.past[k] * p[c];
+    }
+  }
+  /// p at the begin of the step, for the trapezoidal rule.
+  const std::vector<double>& begin() const {
+    const PressureLevel<D>& level = *step_.by.pressure[0];
+    return level.end.empty() ? level.p : level.end;
+  }
 
   bool trapezoidal_;
   double rate_ = 0;                     // of p in dp/dt at the end of the step [1/s]
   std::vector<double> past_, storage_;  // per owned cell [Pa/s], [m]; nothing is stored in closed cells
 };
-
-template <int D>
-Compression<D>::Compression(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction)
-    : Term<D>(scene, step, prediction),
-      trapezoidal_(scene.parameters.compressibility->scheme == WaveScheme::trapezoidal) {}
-
-/// p at the begin of the step, for the trapezoidal rule.
-template <int D>
-const std::vector<double>& Compression<D>::begin() const {
-  const PressureLevel<D>& level = *step_.by.pressure[0];
-  return level.end.empty() ? level.p : level.end;
-}
-
-template <int D>
-void Compression<D>::set_past(const State<D>& from) {
-  const Index owned = mesh_.cells.n_owned();
-  past_.assign(mesh_.cells.n_local(), 0.0);
-  if (trapezoidal_) {
-    for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-      past_[mesh_.owner[f]] += from.phi[f];
-      if (f < mesh_.n_interior) past_[mesh_.neighbour[f]] -= from.phi[f];
-    }
-    const double bulk = scene_.fluid.rho * scene_.fluid.sound * scene_.fluid.sound;
-    const std::vector<double>& p = begin();
-    for (Index c = 0; c < owned; ++c) past_[c] = bulk * past_[c] / from.placement->volume[c] - rate_ * p[c];
-    return;
-  }
-  const WaveRule rule = wave_rule(step_);
-  for (std::size_t k = 0; k < rule.past.size(); ++k) {
-    if (rule.past[k] == 0) continue;
-    const std::vector<double>& p = step_.by.pressure[k]->p;
-    for (Index c = 0; c < owned; ++c) past_[c] += rule.past[k] * p[c];
-  }
-}
-
-template <int D>
-void Compression<D>::prepare(const State<D>& from) {
-  const Index owned = mesh_.cells.n_owned();
-  rate_ = wave_rate(step_, trapezoidal_);
-  storage_.assign(owned, 0.0);
-  if (!step_.by.pressure[0]) return;
-  set_past(from);
-  const double factor = rate_ / (scene_.fluid.sound * scene_.fluid.sound * step_.dt);
-  for (Index c = 0; c < owned; ++c) storage_[c] = factor * step_.to->volume[c];
-  scene_.obstacles->clear(storage_);
-}
-
-template <int D>
-void Compression<D>::add_to_diagonal(Diagonal& diagonal) {
-  if (sets_level()) diagonal.cells = storage_;
-}
-
-template <int D>
-void Compression<D>::before(Projected<D>&, RightSide& side) {
-  if (!sets_level()) return;
-  std::vector<double>& b = side.b;
-  double square = 0;
-  for (std::size_t c = 0; c < b.size(); ++c) {
-    double changed = b[c];
-    if (storage_[c] > 0) {
-      b[c] -= storage_[c] / rate_ * past_[c];
-      changed = b[c] - storage_[c] * step_.by.pressure[0]->p[c];
-    }
-    square += changed * changed;
-  }
-  side.size = std::sqrt(parallel::sum(mesh_.comm, square));
-}
-
-template <int D>
-void Compression<D>::complete(PressureLevel<D>& level) const {
-  if (sets_level())
-    for (std::size_t c = 0; c < storage_.size(); ++c)
-      level.taken_up += storage_[c] * step_.dt / scene_.fluid.rho * (level.p[c] + past_[c] / rate_);
-  if (!trapezoidal_) return;
-  level.end = level.p;
-  if (step_.by.pressure[0]) {
-    const std::vector<double>& p = begin();
-    for (std::size_t c = 0; c < level.p.size(); ++c) level.end[c] = 2 * level.p[c] - p[c];
-  }
-}
 
 }  // namespace
 
@@ -148,32 +124,116 @@ constexpr double least_answer = 1e-9;
 template <int D>
 class UpstreamVolume final : public Term<D> {
  public:
-  UpstreamVolume(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction);
+  UpstreamVolume(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction)
+      : Term<D>(scene, step, prediction),
+        trapezoidal_(scene.parameters.compressibility->scheme == WaveScheme::trapezoidal),
+        stiffness_(scene.fluid.rho * scene.fluid.sound * scene.fluid.sound /
+                   scene.parameters.compressibility->upstream_volume) {}
 
-  void prepare(const State<D>& from) override;
+  void prepare(const State<D>& from) override {
+    rate_ = wave_rate(step_, trapezoidal_);
+    past_ = pressure_ = 0;
+    if (!(rate_ > 0)) return;
+    pressure_ = step_.by.pressure[0]->upstream;
+    if (!trapezoidal_) {
+      const WaveRule rule = wave_rule(step_);
+      for (std::size_t k = 0; k < rule.past.size(); ++k)
+        if (rule.past[k] != 0) past_ += rule.past[k] * step_.by.pressure[k]->upstream;
+      return;
+    }
+    double flux = 0;
+    for (const auto& [first, count] : scene_.boundary.upstream_patches())
+      for (Index b = first; b < first + count; ++b) {
+        const Index f = mesh_.n_interior + b;
+        flux += from.phi[f] - from.w[b].dot(from.placement->area[f]);
+      }
+    past_ = -rate_ * begin() - stiffness_ * parallel::sum(mesh_.comm, flux);
+  }
   double version() const override { return 1; }
   /// Solves for y.
-  void respond(PressureEquation<D>& equation) override;
+  void respond(PressureEquation<D>& equation) override {
+    const Placement<D>& at = scene_.around(step_);
+    std::vector<double> side(mesh_.cells.n_owned(), 0.0);
+    double sums[2] = {};
+    for (const auto& [first, count] : scene_.boundary.upstream_patches())
+      for (Index f = mesh_.n_interior + first; f < mesh_.n_interior + first + count; ++f) {
+        side[mesh_.owner[f]] += at.conductance[f];
+        sums[0] += at.conductance[f];
+      }
+    response_.resize(mesh_.cells.n_local(), 0.0);
+    equation.solve(at, side, response_, response_tolerance, std::numeric_limits<double>::min());
+    for (std::size_t c = 0; c < side.size(); ++c) sums[1] += response_[c] * side[c];
+    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+    faces_ = sums[0];
+    answer_ = sums[1];
+  }
   /// No pressure at its faces as long as it is not known.
-  void foresee(const State<D>& from, Projected<D>& projected) override;
+  void foresee(const State<D>&, Projected<D>& out) override {
+    for (const auto& [first, count] : scene_.boundary.upstream_patches())
+      std::fill_n(out.boundary.begin() + first, count, 0.0);
+  }
   /// Its pressure, onto its faces and into b, which lacks them.
-  void before(Projected<D>& projected, RightSide& side) override;
-  void complete(PressureLevel<D>& level) const override;
+  void before(Projected<D>& out, RightSide& side) override {
+    const Placement<D>& at = *step_.to;
+    const double factor = step_.dt / scene_.fluid.rho;
+    double flux = 0;  // into the volume, but for what its pressure drives
+    for (const auto& [first, count] : scene_.boundary.upstream_patches())
+      for (Index b = first; b < first + count; ++b) {
+        const Index f = mesh_.n_interior + b;
+        flux += out.phi[f] - out.w[b].dot(at.area[f]);
+      }
+    for (std::size_t c = 0; c < side.b.size(); ++c) flux += factor * response_[c] * side.b[c];
+    flux = parallel::sum(mesh_.comm, flux);
+    const double open = faces_ - answer_;
+    if (rate_ > 0 || open > least_answer * faces_)
+      pressure_ = (stiffness_ * flux - past_) / (rate_ + stiffness_ * factor * open);
+    const double change = pressure_ - (step_.by.pressure[0] ? step_.by.pressure[0]->upstream : 0);
+    double square = 0;
+    for (const auto& [first, count] : scene_.boundary.upstream_patches())
+      for (Index b = first; b < first + count; ++b) {
+        const Index f = mesh_.n_interior + b;
+        out.boundary[b] = pressure_;
+        side.b[mesh_.owner[f]] += at.conductance[f] * pressure_;
+        square += std::pow(at.conductance[f] * change, 2);
+      }
+    // In a fluid at rest there may be nothing but the volume's pressure.
+    const double size = std::sqrt(parallel::sum(mesh_.comm, square));
+    if (side.size >= 0) side.size = std::hypot(side.size, size);
+  }
+  void complete(PressureLevel<D>& level) const override {
+    level.upstream = pressure_;
+    if (trapezoidal_) level.upstream_end = step_.by.pressure[0] ? 2 * pressure_ - begin() : pressure_;
+  }
   /// At the pressure of its faces.
-  void start(const Placement<D>& at, PressureLevel<D>& level) const override;
+  void start(const Placement<D>& at, PressureLevel<D>& level) const override {
+    double sums[2] = {};
+    for (const auto& [first, count] : scene_.boundary.upstream_patches())
+      for (Index b = first; b < first + count; ++b) {
+        const double area = at.area[mesh_.n_interior + b].norm();
+        sums[0] += area * level.boundary[b], sums[1] += area;
+      }
+    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+    level.upstream = sums[0] / sums[1];
+  }
   using Term<D>::start;
   /// y is where the next one is looked for: of the accepted level.
   void accept() override { accepted_ = response_; }
   void save(io::CheckpointWriter& file) const override {
     file.write(mesh::Entries::cells, "upstream-response", accepted_);
   }
-  void load(io::CheckpointReader& file) override;
+  void load(io::CheckpointReader& file) override {
+    response_ = file.read_or_none(mesh::Entries::cells, "upstream-response", 1);
+    accepted_ = response_;
+  }
 
  private:
   using Term<D>::scene_;
   using Term<D>::mesh_;
   using Term<D>::step_;
-  double begin() const;
+  double begin() const {
+    const PressureLevel<D>& level = *step_.by.pressure[0];
+    return level.end.empty() ? level.upstream : level.upstream_end;
+  }
 
   bool trapezoidal_;
   double stiffness_;  // rho c^2/V_0 [Pa/m^3]
@@ -181,117 +241,6 @@ class UpstreamVolume final : public Term<D> {
   std::vector<double> response_, accepted_;  // y per local cell
   double faces_ = 0, answer_ = 0;            // sum G, y.G [m]
 };
-
-template <int D>
-UpstreamVolume<D>::UpstreamVolume(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction)
-    : Term<D>(scene, step, prediction),
-      trapezoidal_(scene.parameters.compressibility->scheme == WaveScheme::trapezoidal),
-      stiffness_(scene.fluid.rho * scene.fluid.sound * scene.fluid.sound /
-                 scene.parameters.compressibility->upstream_volume) {}
-
-template <int D>
-void UpstreamVolume<D>::respond(PressureEquation<D>& equation) {
-  const Placement<D>& at = scene_.around(step_);
-  std::vector<double> side(mesh_.cells.n_owned(), 0.0);
-  double sums[2] = {};
-  for (const auto& [first, count] : scene_.boundary.upstream_patches())
-    for (Index f = mesh_.n_interior + first; f < mesh_.n_interior + first + count; ++f) {
-      side[mesh_.owner[f]] += at.conductance[f];
-      sums[0] += at.conductance[f];
-    }
-  response_.resize(mesh_.cells.n_local(), 0.0);
-  equation.solve(at, side, response_, response_tolerance, std::numeric_limits<double>::min());
-  for (std::size_t c = 0; c < side.size(); ++c) sums[1] += response_[c] * side[c];
-  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-  faces_ = sums[0];
-  answer_ = sums[1];
-}
-
-template <int D>
-double UpstreamVolume<D>::begin() const {
-  const PressureLevel<D>& level = *step_.by.pressure[0];
-  return level.end.empty() ? level.upstream : level.upstream_end;
-}
-
-template <int D>
-void UpstreamVolume<D>::prepare(const State<D>& from) {
-  rate_ = wave_rate(step_, trapezoidal_);
-  past_ = pressure_ = 0;
-  if (!(rate_ > 0)) return;
-  pressure_ = step_.by.pressure[0]->upstream;
-  if (!trapezoidal_) {
-    const WaveRule rule = wave_rule(step_);
-    for (std::size_t k = 0; k < rule.past.size(); ++k)
-      if (rule.past[k] != 0) past_ += rule.past[k] * step_.by.pressure[k]->upstream;
-    return;
-  }
-  double flux = 0;
-  for (const auto& [first, count] : scene_.boundary.upstream_patches())
-    for (Index b = first; b < first + count; ++b) {
-      const Index f = mesh_.n_interior + b;
-      flux += from.phi[f] - from.w[b].dot(from.placement->area[f]);
-    }
-  past_ = -rate_ * begin() - stiffness_ * parallel::sum(mesh_.comm, flux);
-}
-
-template <int D>
-void UpstreamVolume<D>::foresee(const State<D>&, Projected<D>& out) {
-  for (const auto& [first, count] : scene_.boundary.upstream_patches())
-    std::fill_n(out.boundary.begin() + first, count, 0.0);
-}
-
-template <int D>
-void UpstreamVolume<D>::before(Projected<D>& out, RightSide& side) {
-  const Placement<D>& at = *step_.to;
-  const double factor = step_.dt / scene_.fluid.rho;
-  double flux = 0;  // into the volume, but for what its pressure drives
-  for (const auto& [first, count] : scene_.boundary.upstream_patches())
-    for (Index b = first; b < first + count; ++b) {
-      const Index f = mesh_.n_interior + b;
-      flux += out.phi[f] - out.w[b].dot(at.area[f]);
-    }
-  for (std::size_t c = 0; c < side.b.size(); ++c) flux += factor * response_[c] * side.b[c];
-  flux = parallel::sum(mesh_.comm, flux);
-  const double open = faces_ - answer_;
-  if (rate_ > 0 || open > least_answer * faces_)
-    pressure_ = (stiffness_ * flux - past_) / (rate_ + stiffness_ * factor * open);
-  const double change = pressure_ - (step_.by.pressure[0] ? step_.by.pressure[0]->upstream : 0);
-  double square = 0;
-  for (const auto& [first, count] : scene_.boundary.upstream_patches())
-    for (Index b = first; b < first + count; ++b) {
-      const Index f = mesh_.n_interior + b;
-      out.boundary[b] = pressure_;
-      side.b[mesh_.owner[f]] += at.conductance[f] * pressure_;
-      square += std::pow(at.conductance[f] * change, 2);
-    }
-  // In a fluid at rest there may be nothing but the volume's pressure.
-  const double size = std::sqrt(parallel::sum(mesh_.comm, square));
-  if (side.size >= 0) side.size = std::hypot(side.size, size);
-}
-
-template <int D>
-void UpstreamVolume<D>::start(const Placement<D>& at, PressureLevel<D>& level) const {
-  double sums[2] = {};
-  for (const auto& [first, count] : scene_.boundary.upstream_patches())
-    for (Index b = first; b < first + count; ++b) {
-      const double area = at.area[mesh_.n_interior + b].norm();
-      sums[0] += area * level.boundary[b], sums[1] += area;
-    }
-  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-  level.upstream = sums[0] / sums[1];
-}
-
-template <int D>
-void UpstreamVolume<D>::complete(PressureLevel<D>& level) const {
-  level.upstream = pressure_;
-  if (trapezoidal_) level.upstream_end = step_.by.pressure[0] ? 2 * pressure_ - begin() : pressure_;
-}
-
-template <int D>
-void UpstreamVolume<D>::load(io::CheckpointReader& file) {
-  response_ = file.read_or_none(mesh::Entries::cells, "upstream-response", 1);
-  accepted_ = response_;
-}
 
 }  // namespace
 
@@ -301,9 +250,7 @@ std::unique_ptr<Term<D>> make_upstream_volume(const Scene<D>& scene, const Step<
   return std::make_unique<UpstreamVolume<D>>(scene, step, prediction);
 }
 
-template std::unique_ptr<Term<2>> make_upstream_volume<2>(const Scene<2>&, const Step<2>&,
-                                                          const Prediction<2>&);
-template std::unique_ptr<Term<3>> make_upstream_volume<3>(const Scene<3>&, const Step<3>&,
-                                                          const Prediction<3>&);
+template decltype(make_upstream_volume<2>) make_upstream_volume<2>;
+template decltype(make_upstream_volume<3>) make_upstream_volume<3>;
 
 }  // namespace couplet::fluid

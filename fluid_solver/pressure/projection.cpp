@@ -377,10 +377,9 @@ std::shared_ptr<PressureLevel<D>> PressureProjection<D>::pressure_level(
 template <int D>
 void PressureProjection<D>::solve_initial(const Placement<D>& at) {
   side_.b.assign(mesh_.cells.n_local(), 0.0);
-  double size = 0;
-  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+  double size = subtract_outflow(mesh_, 1, out_.phi, side_.b);
+  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
     side_.b[mesh_.owner[f]] -= out_.phi[f];
-    if (f < mesh_.n_interior) side_.b[mesh_.neighbour[f]] += out_.phi[f];
     size += out_.phi[f] * out_.phi[f];
   }
   scene_.obstacles->before(side_.b, out_.p);

@@ -125,21 +125,19 @@ class Term {
 
 // The terms, each in the file of its name.
 
+template <int D>
+using MakeTerm = std::unique_ptr<Term<D>>(const Scene<D>&, const Step<D>&, const Prediction<D>&);
 /// Walls of known mass (Robin condition). Collective.
 template <int D>
-std::unique_ptr<Term<D>> make_yielding_walls(const Scene<D>& scene, const Step<D>& step,
-                                             const Prediction<D>& prediction);
+MakeTerm<D> make_yielding_walls;
 /// Openings that let pressure waves out. Collective.
 template <int D>
-std::unique_ptr<Term<D>> make_absorbing_boundaries(const Scene<D>& scene, const Step<D>& step,
-                                                   const Prediction<D>& prediction);
-/// Weak compressibility.
+MakeTerm<D> make_absorbing_boundaries;
+/// Weak compressibility in the cells.
 template <int D>
-std::unique_ptr<Term<D>> make_compression(const Scene<D>& scene, const Step<D>& step,
-                                          const Prediction<D>& prediction);
+MakeTerm<D> make_compression;
 /// A volume behind the inlets.
 template <int D>
-std::unique_ptr<Term<D>> make_upstream_volume(const Scene<D>& scene, const Step<D>& step,
-                                              const Prediction<D>& prediction);
+MakeTerm<D> make_upstream_volume;
 
 }  // namespace couplet::fluid

@@ -112,8 +112,8 @@ namespace {
 /// and no energy comes of it. e = -U/6, U = (u - Du/6).S makes the fluxes of second order beside it those of fourth. Friction
 /// likewise: q = nu (g_1 x - g_2 y)/6 out of the middle, to each side by its conductance.
 template <int D>
-[[gnu::always_inline]] inline void circulate(std::span<const Link> links, const Vec<D>* area, double nu,
-                                             const Vec<D>* u, Vec<D>* rate) {
+COUPLET_PROCESSOR_CLONES void circulate(std::span<const Link> links, const Vec<D>* area, double nu,
+                                        const Vec<D>* u, Vec<D>* rate) {
   const Link *link = links.data(), *const end = link + links.size();
   while (link != end) {
     const Index c = link->cell;
@@ -134,14 +134,6 @@ template <int D>
     rate[c] += sum;
   }
 }
-COUPLET_PROCESSOR_CLONES void circulation_pass(std::span<const Link> links, const Vec<2>* area, double nu,
-                                               const Vec<2>* u, Vec<2>* rate) {
-  circulate<2>(links, area, nu, u, rate);
-}
-COUPLET_PROCESSOR_CLONES void circulation_pass(std::span<const Link> links, const Vec<3>* area, double nu,
-                                               const Vec<3>* u, Vec<3>* rate) {
-  circulate<3>(links, area, nu, u, rate);
-}
 
 /// to -= n (n.Du)/(6 V) of each link; V null: 1.
 template <bool Weighted, int D>
@@ -159,18 +151,10 @@ template <bool Weighted, int D>
   }
 }
 template <int D>
-[[gnu::always_inline]] inline void choose_weights(std::span<const Link> links, const Vec<D>* area,
-                                                  const double* volume, const Vec<D>* u, Vec<D>* to) {
+COUPLET_PROCESSOR_CLONES void difference_pass(std::span<const Link> links, const Vec<D>* area,
+                                              const double* volume, const Vec<D>* u, Vec<D>* to) {
   volume ? subtract_differences<true, D>(links, area, volume, u, to)
          : subtract_differences<false, D>(links, area, nullptr, u, to);
-}
-COUPLET_PROCESSOR_CLONES void difference_pass(std::span<const Link> links, const Vec<2>* area,
-                                              const double* volume, const Vec<2>* u, Vec<2>* to) {
-  choose_weights<2>(links, area, volume, u, to);
-}
-COUPLET_PROCESSOR_CLONES void difference_pass(std::span<const Link> links, const Vec<3>* area,
-                                              const double* volume, const Vec<3>* u, Vec<3>* to) {
-  choose_weights<3>(links, area, volume, u, to);
 }
 
 }  // namespace
@@ -178,14 +162,14 @@ COUPLET_PROCESSOR_CLONES void difference_pass(std::span<const Link> links, const
 template <int D>
 void FourthOrder<D>::add_rates(const State<D>& s, double nu, Vectors<D>& rate) const {
   std::fill(rate.begin() + mesh_.cells.n_owned(), rate.end(), Vec<D>::Zero());
-  circulation_pass(lines_.links, s.placement->area.data(), nu, s.u.data(), rate.data());
+  circulate<D>(lines_.links, s.placement->area.data(), nu, s.u.data(), rate.data());
   mesh_.cells.add_to_owners(flat<D>(rate), D);
 }
 
 template <int D>
 const Vectors<D>& FourthOrder<D>::flux_velocity(const Placement<D>& at, const Vectors<D>& u) {
   flux_velocity_ = u;
-  difference_pass(lines_.links, at.area.data(), nullptr, u.data(), flux_velocity_.data());
+  difference_pass<D>(lines_.links, at.area.data(), nullptr, u.data(), flux_velocity_.data());
   mesh_.cells.update_ghosts(flat<D>(flux_velocity_), D);
   return flux_velocity_;
 }
@@ -194,7 +178,7 @@ template <int D>
 void FourthOrder<D>::sharpen(const Placement<D>& at, Vectors<D>& gradient) const {
   Vectors<D> whole(gradient.size());
   for (std::size_t c = 0; c < whole.size(); ++c) whole[c] = at.volume[c] * gradient[c];
-  difference_pass(lines_.links, at.area.data(), at.volume.data(), whole.data(), gradient.data());
+  difference_pass<D>(lines_.links, at.area.data(), at.volume.data(), whole.data(), gradient.data());
   mesh_.cells.update_ghosts(flat<D>(gradient), D);
 }
 

@@ -153,6 +153,17 @@ std::shared_ptr<const Placement<D>> make_placement(const mesh::Mesh& mesh, std::
   return make_placement<D>(mesh, mesh::compute_geometry(mesh, {points.begin(), points.end()}));
 }
 
+double largest_extent(const mesh::Mesh& mesh, std::span<const Vec3> points) {
+  constexpr double far = std::numeric_limits<double>::max();
+  double size = 0;
+  for (int c = 0; c < mesh.dim; ++c) {
+    double low = far, high = -far;
+    for (const Vec3& x : points) low = std::min(low, x[c]), high = std::max(high, x[c]);
+    size = std::max(size, parallel::max(mesh.comm, high) - parallel::min(mesh.comm, low));
+  }
+  return size;
+}
+
 template <int D>
 std::shared_ptr<const Placement<D>> translated(const Placement<D>& from, const Vec3& by) {
   auto placement = std::make_shared<Placement<D>>(from);
@@ -175,10 +186,8 @@ std::shared_ptr<const Placement<D>> in_the_middle(const mesh::Mesh& mesh, const 
   return placement;
 }
 
-template std::shared_ptr<const Placement<2>> in_the_middle<2>(const mesh::Mesh&, const Placement<2>&,
-                                                              std::span<const char>);
-template std::shared_ptr<const Placement<3>> in_the_middle<3>(const mesh::Mesh&, const Placement<3>&,
-                                                              std::span<const char>);
+template decltype(in_the_middle<2>) in_the_middle<2>;
+template decltype(in_the_middle<3>) in_the_middle<3>;
 template std::shared_ptr<const Placement<2>> translated<2>(const Placement<2>&, const Vec3&);
 template std::shared_ptr<const Placement<3>> translated<3>(const Placement<3>&, const Vec3&);
 template std::shared_ptr<const Placement<2>> make_placement<2>(const mesh::Mesh&, const mesh::Geometry&);
@@ -198,6 +207,11 @@ COUPLET_PROCESSOR_CLONES double subtract_outflow(const mesh::Mesh& mesh, double 
     size += flux[f] * flux[f];
   }
   return size;
+}
+
+void add_outflow(const mesh::Mesh& mesh, std::span<const double> phi, std::span<double> sum) {
+  subtract_outflow(mesh, -1, phi, sum);
+  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) sum[mesh.owner[f]] += phi[f];
 }
 
 namespace {
@@ -228,27 +242,19 @@ template <bool Corrects, int D>
   }
 }
 
+}  // namespace
+
 template <int D>
-[[gnu::always_inline]] inline void choose(const mesh::Mesh& mesh, const Placement<D>& at,
-                                          std::span<const double> p, const FluxCorrection* correction,
-                                          Vectors<D>& sum) {
+COUPLET_PROCESSOR_CLONES void add_pressure(const mesh::Mesh& mesh, const Placement<D>& at,
+                                           std::span<const double> p, const FluxCorrection* correction,
+                                           Vectors<D>& sum) {
   if (correction)
     add_pressures<true>(mesh, at, p.data(), *correction, sum);
   else
     add_pressures<false>(mesh, at, p.data(), FluxCorrection{}, sum);
 }
 
-}  // namespace
-
-COUPLET_PROCESSOR_CLONES void add_pressure(const mesh::Mesh& mesh, const Placement<2>& at,
-                                           std::span<const double> p, const FluxCorrection* correction,
-                                           Vectors<2>& sum) {
-  choose(mesh, at, p, correction, sum);
-}
-COUPLET_PROCESSOR_CLONES void add_pressure(const mesh::Mesh& mesh, const Placement<3>& at,
-                                           std::span<const double> p, const FluxCorrection* correction,
-                                           Vectors<3>& sum) {
-  choose(mesh, at, p, correction, sum);
-}
+template decltype(add_pressure<2>) add_pressure<2>;
+template decltype(add_pressure<3>) add_pressure<3>;
 
 }  // namespace couplet::fluid

@@ -79,6 +79,9 @@ template <int D>
 std::shared_ptr<const Placement<D>> in_the_middle(const mesh::Mesh& mesh, const Placement<D>& from,
                                                   std::span<const char> faces);
 
+/// Largest side of the box around points [m]. Collective.
+double largest_extent(const mesh::Mesh& mesh, std::span<const Vec3> points);
+
 /// The cell of all ranks in which something is largest.
 struct LargestCell {
   double value = 0;
@@ -131,6 +134,8 @@ inline std::string largest_entry(const LargestCell& of) {
 /// sum -= factor times what flows out by phi; gives the sum of the squares of phi.
 double subtract_outflow(const mesh::Mesh& mesh, double factor, std::span<const double> phi,
                         std::span<double> sum);
+/// sum += what flows out by phi through all faces, those of the boundary included.
+void add_outflow(const mesh::Mesh& mesh, std::span<const double> phi, std::span<double> sum);
 /// phi -= factor g (p_N - p_P).
 struct FluxCorrection {
   double factor;
@@ -138,9 +143,8 @@ struct FluxCorrection {
   double* phi;
 };
 /// sum += p_f S, p_f linear between the cells; `correction`: made in the same pass; nullptr for none.
-void add_pressure(const mesh::Mesh& mesh, const Placement<2>& at, std::span<const double> p,
-                  const FluxCorrection* correction, Vectors<2>& sum);
-void add_pressure(const mesh::Mesh& mesh, const Placement<3>& at, std::span<const double> p,
-                  const FluxCorrection* correction, Vectors<3>& sum);
+template <int D>
+void add_pressure(const mesh::Mesh& mesh, const Placement<D>& at, std::span<const double> p,
+                  const FluxCorrection* correction, Vectors<D>& sum);
 
 }  // namespace couplet::fluid

@@ -8,90 +8,57 @@ namespace {
 using mesh::Entries;
 
 template <class T>
-auto doubles_of(T& values) {
-  using Value = std::remove_reference_t<decltype(values.front())>;
-  using Double = std::conditional_t<std::is_const_v<Value>, const double, double>;
-  if constexpr (std::is_same_v<std::remove_const_t<Value>, double>) {
-    return std::span<Double>(values);
-  } else {
-    return std::span<Double>(values.empty() ? nullptr : values.front().data(),
-                             values.size() * Value::SizeAtCompileTime);
-  }
+std::span<double> doubles_of(std::vector<T>& values) {
+  if constexpr (std::is_same_v<T, double>)
+    return values;
+  else
+    return {values.empty() ? nullptr : values.front().data(), values.size() * T::SizeAtCompileTime};
 }
 
-/// Writes what a visit names.
-struct Save {
-  io::CheckpointWriter& file;
-  template <class T>
-  void operator()(const std::string& name, const T& value) {
-    file.write_scalar(name, static_cast<double>(value));
-  }
-  template <class T>
-  void count(const std::string& name, const T& value, std::size_t) {
-    (*this)(name, value);
-  }
-  template <class T>
-  void operator()(Entries entries, const std::string& name, const T& values, bool) {
-    file.write(entries, name, doubles_of(values));
-  }
-  void optional(Entries entries, const std::string& name, const std::vector<double>& values) {
-    file.write(entries, name, values);
-  }
-  void common(const std::string& name, const std::vector<double>& values) { file.write_common(name, values); }
-  template <int D>
-  const PressureLevel<D>& level(const std::shared_ptr<const PressureLevel<D>>& level) {
-    return *level;
-  }
-};
+/// Saves or loads what a visit names. Fields have their full size where they are said to be there, and are empty elsewhere.
+struct StateFile {
+  io::CheckpointWriter* out;
+  io::CheckpointReader* in;
+  const mesh::Mesh* mesh;  ///< with `in`
 
-/// Reads what a visit names. Fields have their full size where they are said to be there, and are empty elsewhere.
-struct Load {
-  io::CheckpointReader& file;
-  const mesh::Mesh& mesh;
   template <class T>
   void operator()(const std::string& name, T& value) {
-    if constexpr (std::is_same_v<T, bool>)
-      value = file.read_scalar(name) != 0;
+    if (out)
+      out->write_scalar(name, static_cast<double>(value));
     else
-      value = file.read_scalar(name);
+      value = static_cast<T>(in->read_scalar(name));
   }
   template <class T>
   void count(const std::string& name, T& value, std::size_t most) {
-    value = static_cast<T>(file.read_count(name, most));
+    if (out)
+      out->write_scalar(name, static_cast<double>(value));
+    else
+      value = static_cast<T>(in->read_count(name, most));
   }
   template <class T>
   void operator()(Entries entries, const std::string& name, T& values, bool is_there) {
+    if (out) return out->write(entries, name, doubles_of(values));
     values.resize(is_there ? size_of(entries) : 0);
-    file.read(entries, name, doubles_of(values));
-  }
-  void optional(Entries entries, const std::string& name, std::vector<double>& values) {
-    values = file.read_or_none(entries, name, 1);
-  }
-  void common(const std::string& name, std::vector<double>& values) { values = file.read_common(name); }
-  template <int D>
-  PressureLevel<D>& level(std::shared_ptr<const PressureLevel<D>>& level) {
-    const auto fresh = std::make_shared<PressureLevel<D>>();
-    level = fresh;
-    return *fresh;
+    in->read(entries, name, doubles_of(values));
   }
   std::size_t size_of(Entries entries) const {
     switch (entries) {
       case Entries::cells:
-        return mesh.cells.n_local();
+        return mesh->cells.n_local();
       case Entries::owned_boundary:
-        return mesh.boundary.n_owned();
+        return mesh->boundary.n_owned();
       case Entries::flux_faces:
-        return mesh.n_flux_faces();
+        return mesh->n_flux_faces();
       case Entries::interior_faces:
-        return mesh.n_interior;
+        return mesh->n_interior;
       default:
-        return mesh.points.n_local();
+        return mesh->points.n_local();
     }
   }
 };
 
-template <class Level, class F>
-void visit_level(Level& level, const std::string& name, bool compressible, F& f) {
+template <int D>
+void visit_level(PressureLevel<D>& level, const std::string& name, bool compressible, StateFile& f) {
   f(name + "-time", level.time);
   f(Entries::cells, name, level.p, true);
   f(Entries::owned_boundary, name + "-boundary", level.boundary, true);
@@ -105,9 +72,9 @@ void visit_level(Level& level, const std::string& name, bool compressible, F& f)
   f(name + "-upstream-end", level.upstream_end);
 }
 
-/// `S`: State, const for Save. The placement follows from the points.
-template <class S, class F>
-void visit(S& s, bool moving, bool compressible, F f) {
+/// The placement follows from the points.
+template <int D>
+void visit(State<D>& s, bool moving, bool compressible, StateFile f) {
   std::size_t levels = 0;
   while (levels < s.pressure.size() && s.pressure[levels]) ++levels;
   bool has_mesh_flux = !s.mesh_flux.empty(), has_memory = !s.memory.empty();
@@ -131,8 +98,12 @@ void visit(S& s, bool moving, bool compressible, F f) {
   f(Entries::owned_boundary, "boundary-velocity", s.u_boundary, true);
   f(Entries::flux_faces, "flux", s.phi, true);
   f(Entries::interior_faces, "flux-memory", s.memory, has_memory);
-  for (std::size_t k = 0; k < levels; ++k)
-    visit_level(f.level(s.pressure[k]), "pressure-" + std::to_string(k), compressible, f);
+  for (std::size_t k = 0; k < levels; ++k) {
+    const auto level = f.out ? std::const_pointer_cast<PressureLevel<D>>(s.pressure[k])
+                             : std::make_shared<PressureLevel<D>>();
+    visit_level(*level, "pressure-" + std::to_string(k), compressible, f);
+    s.pressure[k] = level;
+  }
   if (s.dt_old > 0) {
     f(Entries::cells, "old-velocity", s.u_old, true);
     f(Entries::owned_boundary, "old-boundary-velocity", s.u_boundary_old, true);
@@ -146,32 +117,38 @@ void visit(S& s, bool moving, bool compressible, F f) {
     f(Entries::flux_faces, "mesh-flux", s.mesh_flux, has_mesh_flux);
   }
   if (!compressible) return;
-  f.optional(Entries::owned_boundary, "openings", s.openings.now);
-  f.optional(Entries::owned_boundary, "openings-old", s.openings.old);
-  f.common("openings-mean", s.openings.mean);
+  if (f.out) {
+    f.out->write(Entries::owned_boundary, "openings", s.openings.now);
+    f.out->write(Entries::owned_boundary, "openings-old", s.openings.old);
+    f.out->write_common("openings-mean", s.openings.mean);
+  } else {
+    s.openings.now = f.in->read_or_none(Entries::owned_boundary, "openings", 1);
+    s.openings.old = f.in->read_or_none(Entries::owned_boundary, "openings-old", 1);
+    s.openings.mean = f.in->read_common("openings-mean");
+  }
 }
 
 }  // namespace
 
 template <int D>
 void write_state(io::CheckpointWriter& file, const State<D>& s, bool compressible) {
-  visit(s, !s.points.empty() || !s.mesh_flux.empty(), compressible, Save{file});
+  // A visit that writes changes nothing.
+  visit(const_cast<State<D>&>(s), !s.points.empty() || !s.mesh_flux.empty(), compressible,
+        {&file, nullptr, nullptr});
 }
 
 template <int D>
 State<D> read_state(io::CheckpointReader& file, const mesh::Mesh& mesh,
                     std::shared_ptr<const Placement<D>> at_rest, bool compressible) {
   State<D> s;
-  visit(s, !at_rest, compressible, Load{file, mesh});
+  visit(s, !at_rest, compressible, {nullptr, &file, &mesh});
   s.placement = at_rest ? std::move(at_rest) : make_placement<D>(mesh, s.points);
   return s;
 }
 
 template void write_state<2>(io::CheckpointWriter&, const State<2>&, bool);
 template void write_state<3>(io::CheckpointWriter&, const State<3>&, bool);
-template State<2> read_state<2>(io::CheckpointReader&, const mesh::Mesh&, std::shared_ptr<const Placement<2>>,
-                                bool);
-template State<3> read_state<3>(io::CheckpointReader&, const mesh::Mesh&, std::shared_ptr<const Placement<3>>,
-                                bool);
+template decltype(read_state<2>) read_state<2>;
+template decltype(read_state<3>) read_state<3>;
 
 }  // namespace couplet::fluid

@@ -28,7 +28,7 @@ constexpr double remembered = 0.85;
 
 /// sum V |u|^2, in four partial sums, so that additions do not wait for each other.
 template <int D>
-[[gnu::always_inline]] inline double sum_squares(std::span<const double> volume, const Vec<D>* u) {
+COUPLET_PROCESSOR_CLONES double sum_squares(std::span<const double> volume, const Vec<D>* u) {
   std::array<double, 4> sum{};
   std::size_t c = 0;
   for (; c + 4 <= volume.size(); c += 4)
@@ -36,18 +36,12 @@ template <int D>
   for (; c < volume.size(); ++c) sum[0] += volume[c] * u[c].squaredNorm();
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
-COUPLET_PROCESSOR_CLONES double squares_pass(std::span<const double> volume, const Vec<2>* u) {
-  return sum_squares<2>(volume, u);
-}
-COUPLET_PROCESSOR_CLONES double squares_pass(std::span<const double> volume, const Vec<3>* u) {
-  return sum_squares<3>(volume, u);
-}
 
 }  // namespace
 
 template <int D>
 double EnergyGuard<D>::kinetic(const Placement<D>& at, const Vectors<D>& u) const {
-  return 0.5 * rho_ * squares_pass(std::span(at.volume).first(mesh_.cells.n_owned()), u.data());
+  return 0.5 * rho_ * sum_squares<D>(std::span(at.volume).first(mesh_.cells.n_owned()), u.data());
 }
 
 template <int D>
@@ -218,9 +212,7 @@ std::string likely_cause(const mesh::Mesh& mesh, const Boundary<D>& boundary, co
 
 template class EnergyGuard<2>;
 template class EnergyGuard<3>;
-template std::string likely_cause<2>(const mesh::Mesh&, const Boundary<2>&, const EnergyStep<2>&, Index,
-                                     double, bool, double);
-template std::string likely_cause<3>(const mesh::Mesh&, const Boundary<3>&, const EnergyStep<3>&, Index,
-                                     double, bool, double);
+template decltype(likely_cause<2>) likely_cause<2>;
+template decltype(likely_cause<3>) likely_cause<3>;
 
 }  // namespace couplet::fluid

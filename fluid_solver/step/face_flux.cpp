@@ -180,8 +180,8 @@ void FaceFlux<D>::remember(State<D>& s) {
     s.memory.swap(fading_);
   } else {
     s.memory.resize(mesh_.n_interior);
-    subtract_mean_flux<D>(mesh_, *step_.to, scene_.flux_velocity(*step_.to, s.u), s.u_boundary,
-                          gradient_.values, s.phi, s.memory);
+    mean_flux<D>(mesh_, *step_.to, scene_.flux_velocity(*step_.to, s.u), s.u_boundary, gradient_.values,
+                 s.memory, s.phi);
     if (step_.to->skewed()) gradient_.number = s.number;
   }
   scene_.obstacles->correct_memory(s);

@@ -56,7 +56,7 @@ COUPLET_PROCESSOR_CLONES void velocity_pass(std::span<const double> predicted, d
 
 /// Infinity if one is not finite.
 template <int D>
-[[gnu::always_inline]] inline double find_largest_square(std::span<const Vec<D>> u) {
+COUPLET_PROCESSOR_CLONES double largest_square(std::span<const Vec<D>> u) {
   double largest = 0, all = 0;
   for (const Vec<D>& v : u) {
     const double square = v.squaredNorm();
@@ -64,12 +64,6 @@ template <int D>
     all += square;
   }
   return std::isfinite(all) ? largest : std::numeric_limits<double>::infinity();
-}
-COUPLET_PROCESSOR_CLONES double largest_square(std::span<const Vec<2>> u) {
-  return find_largest_square<2>(u);
-}
-COUPLET_PROCESSOR_CLONES double largest_square(std::span<const Vec<3>> u) {
-  return find_largest_square<3>(u);
 }
 
 }  // namespace
@@ -305,8 +299,7 @@ EnergyStep<D> FractionalStep<D>::energy_step(const State<D>& from) const {
 
 template <int D>
 typename FractionalStep<D>::Judgement FractionalStep<D>::judge(const State<D>& from) const {
-  const std::span<const Vec<D>> u(u_.data(), mesh_.cells.n_owned());
-  const double fastest = largest_square(u);
+  const double fastest = largest_square<D>({u_.data(), std::size_t(mesh_.cells.n_owned())});
   double given = 0;
   for (const Vec<D>& w : projected_.w) given = std::max(given, w.squaredNorm());
   double largest[2] = {fastest, given};

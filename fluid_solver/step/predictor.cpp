@@ -17,9 +17,8 @@ constexpr double c_modified = 1.0 / 16;
 
 /// u + (a R + b R_old)/V, what an explicit step on a mesh at rest without forces comes to; R_old null: without.
 template <int D>
-[[gnu::always_inline]] inline void go_explicitly(std::span<const double> volume, const Vectors<D>& u,
-                                                 double a, const Vec<D>* rate, double b, const Vec<D>* old,
-                                                 Vectors<D>& to) {
+COUPLET_PROCESSOR_CLONES void explicit_pass(std::span<const double> volume, const Vectors<D>& u, double a,
+                                            const Vec<D>* rate, double b, const Vec<D>* old, Vectors<D>& to) {
   const Vec<D>* from = u.data();
   Vec<D>* result = to.data();
   for (std::size_t c = 0; c < volume.size(); ++c) {
@@ -29,14 +28,6 @@ template <int D>
     else
       result[c] = from[c] + now * rate[c];
   }
-}
-COUPLET_PROCESSOR_CLONES void explicit_pass(std::span<const double> volume, const Vectors<2>& u, double a,
-                                            const Vec<2>* rate, double b, const Vec<2>* old, Vectors<2>& to) {
-  go_explicitly<2>(volume, u, a, rate, b, old, to);
-}
-COUPLET_PROCESSOR_CLONES void explicit_pass(std::span<const double> volume, const Vectors<3>& u, double a,
-                                            const Vec<3>* rate, double b, const Vec<3>* old, Vectors<3>& to) {
-  go_explicitly<3>(volume, u, a, rate, b, old, to);
 }
 
 }  // namespace
@@ -68,8 +59,9 @@ void Predictor<D>::predict(const State<D>& from) {
   out_.viscous_flux.resize(out_.w.size());
   const bool forced = !body_force_.empty() || scene_.frame;
   if (!moving && !implicit && !given && !forced) {
-    explicit_pass(std::span(from.placement->volume).first(mesh_.cells.n_owned()), from.u, dt * e0,
-                  out_.rates.rate.data(), dt * e1, ratio > 0 ? from.rates_old.rate.data() : nullptr, out_.u);
+    explicit_pass<D>(std::span(from.placement->volume).first(mesh_.cells.n_owned()), from.u, dt * e0,
+                     out_.rates.rate.data(), dt * e1, ratio > 0 ? from.rates_old.rate.data() : nullptr,
+                     out_.u);
     return set_explicit_friction(from, e0, e1);
   }
   const std::vector<double>& volume = from.placement->volume;

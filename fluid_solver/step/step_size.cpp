@@ -78,10 +78,6 @@ double round_down(double value) {
   return std::floor(value / unit) * unit;
 }
 
-}  // namespace
-
-namespace {
-
 const LimitTable& implicit_table() {
   static const LimitTable table;
   return table;
@@ -129,14 +125,14 @@ double StepSize<D>::friction_limit(Index cell, double angle, double size) const 
                                       : base::infinity;
 }
 
-// The stress nu_t (grad u + grad u^T) has at most twice the rate of nu_t grad u.
+/// Adds the stress nu_t (grad u + grad u^T), which has at most twice the rate of nu_t grad u.
 template <int D>
 void StepSize<D>::add_eddies(const State<D>& s) {
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
     const double rate = 2 * (s.eddy[p] + s.eddy[n]) * s.placement->conductance[f];
-    eddy_[p] += rate;
-    eddy_[n] += rate;
+    rates_[p][1] += rate;
+    rates_[n][1] += rate;
   }
 }
 
@@ -170,7 +166,6 @@ double StepSize<D>::add_rates(const State<D>& s, bool peclet) {
     for (Vec<2>& rate : rates_) rate = Vec<2>(fourth_convection * rate[0], fourth_friction * rate[1]);
     for (double& number : peclet_of_) number *= fourth_convection;
   }
-  eddy_.assign(s.eddy.size(), 0.0);
   if (!s.eddy.empty()) add_eddies(s);
   return largest;
 }
@@ -181,17 +176,27 @@ double StepSize<D>::frame_limit() const {
   return frame_rate_ > 0 ? explicit_limit(std::numbers::pi / 2, scheme_) / frame_rate_ : base::infinity;
 }
 
+/// Calls use(cell, convection, diffusion) with the rates [1/s] of each owned cell that is not blocked.
+template <int D>
+template <class Use>
+void StepSize<D>::for_rates(const State<D>& s, const Use& use) const {
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    if (s.blocked && (*s.blocked)[c]) continue;
+    const double volume = s.placement->volume[c];
+    use(c, rates_[c][0] / volume, rates_[c][1] / volume);
+  }
+}
+
 template <int D>
 double StepSize<D>::explicit_viscous_limit(const State<D>& s) {
   add_rates(s, false);
   double least = base::infinity;
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    if (s.blocked && (*s.blocked)[c]) continue;
-    const Vec<2> rate = (rates_[c] + Vec<2>(0, eddy_.empty() ? 0 : eddy_[c])) / s.placement->volume[c];
-    const double lowest = lowest_limit(rate[0], rate[1], scheme_);
-    if (lowest * lowest < least * least * rate.squaredNorm())
-      least = std::min(least, explicit_limit(std::atan2(rate[0], rate[1]), scheme_) / rate.norm());
-  }
+  for_rates(s, [&](Index, double convection, double diffusion) {
+    const double lowest = lowest_limit(convection, diffusion, scheme_),
+                 square = convection * convection + diffusion * diffusion;
+    if (lowest * lowest < least * least * square)
+      least = std::min(least, explicit_limit(std::atan2(convection, diffusion), scheme_) / std::sqrt(square));
+  });
   return round_down(std::min(parallel::min(mesh_.comm, least), frame_limit()));
 }
 
@@ -216,23 +221,19 @@ bool StepSize<D>::explicit_viscous_limit_is_below(double size, const State<D>& s
 
 template <int D>
 StepLimits StepSize<D>::limits(const State<D>& s) {
-  const Placement<D>& at = *s.placement;
   const double largest = add_rates(s, true);
   const double lowest_implicit = implicit_table().least();
   double least[3] = {base::infinity, base::infinity, -largest};
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    if (s.blocked && (*s.blocked)[c]) continue;
-    const double convection = rates_[c][0] / at.volume[c];
-    const double eddy = eddy_.empty() ? 0 : eddy_[c] / at.volume[c];
-    const double diffusion = rates_[c][1] / at.volume[c] + eddy;
-    const double size = std::sqrt(convection * convection + diffusion * diffusion);
-    if (lowest_limit(convection, diffusion, scheme_) < least[0] * size)
+  for_rates(s, [&](Index c, double convection, double diffusion) {
+    const double size = std::sqrt(convection * convection + diffusion * diffusion),
+                 lowest = lowest_limit(convection, diffusion, scheme_);
+    if (lowest < least[0] * size)
       least[0] = std::min(least[0], explicit_limit(std::atan2(convection, diffusion), scheme_) / size);
-    if (few_faces_[c] && longest_implicit * lowest_limit(convection, diffusion, scheme_) < least[1] * size)
+    if (few_faces_[c] && longest_implicit * lowest < least[1] * size)
       least[1] = std::min(least[1], friction_limit(c, std::atan2(convection, diffusion), size));
     if (lowest_implicit < least[1] * convection)
       least[1] = std::min(least[1], implicit_convective_limit(4 / peclet_of_[c]) / convection);
-  }
+  });
   MPI_Allreduce(MPI_IN_PLACE, least, 3, MPI_DOUBLE, MPI_MIN, mesh_.comm);
   peclet_ = -least[2];
   for (double& limit : std::span(least, 2)) limit = std::min(limit, frame_limit());
@@ -241,29 +242,22 @@ StepLimits StepSize<D>::limits(const State<D>& s) {
 
 template <int D>
 StepLimiter StepSize<D>::limiter(const State<D>& s, bool implicit) {
-  const Placement<D>& at = *s.placement;
   add_rates(s, implicit);
   StepLimiter found{base::infinity};
-  Index where = -1;
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    if (s.blocked && (*s.blocked)[c]) continue;
-    const double convection = rates_[c][0] / at.volume[c];
-    const double eddy = eddy_.empty() ? 0 : eddy_[c] / at.volume[c];
-    const double diffusion = rates_[c][1] / at.volume[c] + eddy;
-    const double size = std::hypot(convection, diffusion);
-    const double angle = std::atan2(convection, diffusion);
+  for_rates(s, [&](Index c, double convection, double diffusion) {
+    const double size = std::hypot(convection, diffusion), angle = std::atan2(convection, diffusion);
     double limit = size > 0 ? explicit_limit(angle, scheme_) / size : base::infinity;
     bool friction = diffusion > convection;
     if (implicit) {
+      const double own = friction_limit(c, angle, size);
       limit = convection > 0 ? implicit_convective_limit(4 / peclet_of_[c]) / convection : base::infinity;
-      friction = false;
-      if (const double own = friction_limit(c, angle, size); own < limit) limit = own, friction = true;
+      friction = own < limit;
+      limit = std::min(limit, own);
     }
-    if (limit >= found.limit) continue;
+    if (limit >= found.limit) return;
     found = {limit, mesh_.cell_id[c], Vec3::Zero(), friction};
-    where = c;
-  }
-  if (where >= 0) found.place.template head<D>() = at.centre[where];
+    found.place.template head<D>() = s.placement->centre[c];
+  });
   const std::vector<StepLimiter> all = parallel::all_gather(mesh_.comm, std::vector<StepLimiter>{found});
   return *std::ranges::min_element(all, [](const StepLimiter& a, const StepLimiter& b) {
     return a.limit != b.limit ? a.limit < b.limit : a.cell < b.cell;

@@ -55,6 +55,8 @@ class StepSize {
   double explicit_viscous_limit(const State<D>& state);
   double add_rates(const State<D>& state, bool peclet);
   void add_eddies(const State<D>& state);
+  template <class Use>
+  void for_rates(const State<D>& state, const Use& use) const;
   double frame_limit() const;
   double friction_limit(Index cell, double angle, double size) const;
   const mesh::Mesh& mesh_;
@@ -64,7 +66,7 @@ class StepSize {
   bool fourth_ = false;                  // operators of fourth order
   std::vector<std::uint8_t> few_faces_;  // of each owned cell: fewer than a box has
   Vectors<2> rates_;                     // of convection and diffusion
-  std::vector<double> eddy_, peclet_of_;
+  std::vector<double> peclet_of_;
   Index stiff_face_ = -1;  // with the largest g/V of those looked at last
   double peclet_ = 0;
 };
