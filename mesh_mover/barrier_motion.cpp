@@ -36,150 +36,177 @@ linalg::LinearOptions options_of(const mesh::Mesh& mesh, const linalg::LinearOpt
   return options;
 }
 
+/// Mesh motion that cannot fold: the points minimise the distortion of the cells from their reference shapes,
+///   sum_s V_s (V/mean V)^-chi (|F|^2 + |F^-1|^2 - 2 D),
+/// over the simplices s of the cells, which is infinite where one turns flat. Newton's method with the Hessian without
+/// its negative part [teran2005, smith2019] from the last solve's mesh; each step is cut where a simplex would lose
+/// nine tenths of its volume. What remains of the boundary's way is part of each step, so that the boundary moves as
+/// far at once as the cells at it let it; where it has arrived, the energy falls from step to step.
+class BarrierMotion final : public MotionMethod {
+ public:
+  /// `volumes`: V per local cell; empty: those of the mesh. Throws Error if no patch holds the mesh.
+  BarrierMotion(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters,
+                std::span<const double> volumes)
+      : mesh_(mesh),
+        dim_(mesh.dim),
+        simplices_(make_simplices(mesh, geometry, parameters.stiffening,
+                                  volumes.empty() ? std::span(geometry.volume) : volumes)),
+        held_(find_held_points(mesh, geometry, parameters)),
+        system_(mesh, geometry, simplices_, held_),
+        displacement_(std::size_t(mesh.points.n_local()) * mesh.dim, 0.0) {
+    solver_ = std::make_unique<linalg::LinearSolver>("the mesh displacement", system_.matrix(),
+                                                     options_of(mesh, parameters.linear));
+  }
+
+  std::vector<double> solve(std::span<const double> prescribed) override {
+    last_ = {};
+    std::vector<double> u = displacement_, way(u.size(), 0.0);
+    const std::vector<double> none(u.size(), 0.0);
+    direction_.assign(u.size(), 0.0);
+    trial_.assign(u.size(), 0.0);
+    energy_ = system_.energy(u);
+    bool arrived = remaining(prescribed, u, way) == 0, relaxed = true;
+    double before = std::numeric_limits<double>::infinity();
+    for (int step = 0; step < most_steps; ++step) {
+      if (!arrived && relaxed) {
+        arrived = advance(u, way, true) == 1;
+        if (arrived)
+          arrive(prescribed, u);
+        else
+          remaining(prescribed, u, way);
+        relaxed = arrived;
+        continue;
+      }
+      const bool whole = advance(u, none, false) == 1;
+      const double change = -slope_ / (simplices_.total + energy_);
+      relaxed = change < nearly_at_rest;
+      if (arrived && whole && (change < at_rest || (change < slowly_at_rest && change > slow * before))) {
+        displacement_ = u;
+        return u;
+      }
+      before = change;
+      if (energy_ > most_energy * simplices_.total) break;
+    }
+    const Vec3 x = system_.worst_place(u);
+    throw SolveFailure(
+        "method: barrier: no valid mesh was found; the cells near ({:.6g}, {:.6g}, {:.6g}) m leave "
+        "no room for the motion. Try a smaller time step, or let the walls there slide (type: slip).",
+        x.x(), x.y(), x.z());
+  }
+  linalg::SolveStatistics last() const override { return last_; }
+  void save(io::CheckpointWriter& file) const override {
+    const linalg::PreconditionerMemory memory = solver_->memory();
+    file.write(mesh::Entries::points, "barrier", displacement_);
+    file.write(mesh::Entries::points, "barrier-factors", factored_at_);
+    file.write_scalar("barrier-factors-exact", factored_ == BarrierSystem::Hessian::exact ? 1 : 0);
+    file.write_scalar("barrier-factors-due", memory.is_due || factored_at_.empty() ? 1 : 0);
+    file.write_scalar("barrier-factors-most", memory.most_iterations);
+  }
+  void load(io::CheckpointReader& file) override {
+    file.read(mesh::Entries::points, "barrier", displacement_);
+    factored_at_ = file.read_or_none(mesh::Entries::points, "barrier-factors", std::size_t(dim_));
+    const bool exact = file.read_scalar("barrier-factors-exact") > 0;
+    factored_ = exact ? BarrierSystem::Hessian::exact : BarrierSystem::Hessian::projected;
+    linalg::PreconditionerMemory memory;
+    memory.is_due = file.read_scalar("barrier-factors-due") > 0;
+    memory.most_iterations = int(file.read_scalar("barrier-factors-most"));
+    if (!memory.is_due)
+      system_.assemble(factored_at_, std::vector<double>(displacement_.size(), 0.0), residual_, factored_);
+    solver_->restore(memory);
+  }
+
+ private:
+  /// The remaining way of held directions; its largest component over all ranks. Collective.
+  double remaining(std::span<const double> prescribed, std::span<const double> u,
+                   std::vector<double>& way) const {
+    double most = 0;
+    for (Index v = 0; v < mesh_.points.n_local(); ++v) {
+      if (held_.moved[v].isZero(0)) continue;
+      Vec3 left = Vec3::Zero();
+      for (int c = 0; c < dim_; ++c)
+        left[c] = prescribed[std::size_t(v) * dim_ + c] - u[std::size_t(v) * dim_ + c];
+      left = held_.moved[v] * left;
+      for (int c = 0; c < dim_; ++c) way[std::size_t(v) * dim_ + c] = left[c];
+      most = std::max(most, left.cwiseAbs().maxCoeff());
+    }
+    return parallel::max(mesh_.comm, most);
+  }
+  /// One Newton step of `u`, with the way or without; the share of it that was taken.
+  double advance(std::vector<double>& u, const std::vector<double>& way, bool moves) {
+    const bool exact = find_direction(u, way, BarrierSystem::Hessian::exact);
+    if (!exact) find_direction(u, way, BarrierSystem::Hessian::projected);
+    for (std::size_t i = 0; i < residual_.size(); ++i) direction_[i] += way[i];
+    mesh_.points.update_ghosts(direction_, dim_);
+    const double limit = system_.largest_step(u, direction_, least_kept);
+    return moves ? line_search(u, limit, most_growth * energy_ + simplices_.total, 0)
+                 : line_search(u, limit, energy_ + 1e-13 * simplices_.total, least_decrease * slope_);
+  }
+  /// direction_ and slope_ at `u`; false if this Hessian gives none that lowers the energy.
+  bool find_direction(const std::vector<double>& u, const std::vector<double>& way,
+                      BarrierSystem::Hessian hessian) {
+    const std::size_t owned = std::size_t(mesh_.points.n_owned()) * dim_;
+    system_.assemble(u, way, residual_, hessian);
+    std::ranges::fill(direction_, 0.0);
+    try {
+      const linalg::SolveStatistics s = solver_->solve(residual_, {direction_.data(), owned});
+      last_.iterations += s.iterations;
+      last_.seconds += s.seconds;
+      if (solver_->preconditioners_built() > built_) {
+        built_ = solver_->preconditioners_built();
+        factored_at_ = u;
+        factored_ = hessian;
+      }
+    } catch (const SolveFailure&) {
+      if (hessian == BarrierSystem::Hessian::projected) throw;
+      solver_->refresh();
+      return false;  // not positive definite
+    }
+    slope_ = 0;
+    for (std::size_t i = 0; i < owned; ++i) slope_ -= residual_[i] * direction_[i];
+    slope_ = parallel::sum(mesh_.comm, slope_);
+    return slope_ <= 0;
+  }
+  /// The largest of 1, 1/2, 1/4, ... times `limit` whose energy is at most `most` + `slope` times it.
+  double line_search(std::vector<double>& u, double limit, double most, double slope) {
+    for (double share = limit; share > shortest_step; share /= 2) {
+      for (std::size_t i = 0; i < u.size(); ++i) trial_[i] = u[i] + share * direction_[i];
+      const double energy = system_.energy(trial_);
+      if (energy <= most + slope * share) {
+        energy_ = energy;
+        u = trial_;
+        return share;
+      }
+    }
+    throw SolveFailure(
+        "method: barrier: Newton's line search failed: no step along its direction lowers the distortion.");
+  }
+  /// To the last bit.
+  void arrive(std::span<const double> prescribed, std::vector<double>& u) const {
+    for (Index v = 0; v < mesh_.points.n_local(); ++v)
+      if (held_.moved[v].topLeftCorner(dim_, dim_).isIdentity(0))
+        for (int c = 0; c < dim_; ++c) u[std::size_t(v) * dim_ + c] = prescribed[std::size_t(v) * dim_ + c];
+  }
+
+  const mesh::Mesh& mesh_;
+  int dim_;
+  Simplices simplices_;
+  HeldPoints held_;
+  BarrierSystem system_;
+  std::unique_ptr<linalg::LinearSolver> solver_;
+  std::vector<double> displacement_;  // dim per local point: of the last solve, which the next starts from
+  std::vector<double> residual_, direction_, trial_;
+  double slope_ = 0, energy_ = 0;
+  int built_ = 0;                    // preconditioners so far
+  std::vector<double> factored_at_;  // displacement whose Hessian the preconditioner is of
+  BarrierSystem::Hessian factored_ = BarrierSystem::Hessian::exact;
+  linalg::SolveStatistics last_;
+};
+
 }  // namespace
 
-BarrierMotion::BarrierMotion(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
-                             const Parameters& parameters, std::span<const double> volumes)
-    : mesh_(mesh),
-      dim_(mesh.dim),
-      simplices_(make_simplices(
-          mesh, geometry, parameters.stiffening,
-          volumes.empty() ? geometry.volume : std::vector<double>(volumes.begin(), volumes.end()))),
-      held_(find_held_points(mesh, geometry, parameters)),
-      system_(mesh, geometry, simplices_, held_),
-      displacement_(std::size_t(mesh.points.n_local()) * mesh.dim, 0.0) {
-  solver_ = std::make_unique<linalg::LinearSolver>("the mesh displacement", system_.matrix(),
-                                                   options_of(mesh, parameters.linear));
-}
-
-double BarrierMotion::remaining(std::span<const double> prescribed, std::span<const double> u,
-                                std::vector<double>& way) const {
-  double most = 0;
-  for (Index v = 0; v < mesh_.points.n_local(); ++v) {
-    if (held_.moved[v].isZero(0)) continue;
-    Vec3 left = Vec3::Zero();
-    for (int c = 0; c < dim_; ++c)
-      left[c] = prescribed[std::size_t(v) * dim_ + c] - u[std::size_t(v) * dim_ + c];
-    left = held_.moved[v] * left;
-    for (int c = 0; c < dim_; ++c) way[std::size_t(v) * dim_ + c] = left[c];
-    most = std::max(most, left.cwiseAbs().maxCoeff());
-  }
-  return parallel::max(mesh_.comm, most);
-}
-
-/// The largest of 1, 1/2, 1/4, ... times `limit` whose energy is at most `most` + `slope` times it.
-double BarrierMotion::line_search(std::vector<double>& u, double limit, double most, double slope) {
-  for (double share = limit; share > shortest_step; share /= 2) {
-    for (std::size_t i = 0; i < u.size(); ++i) trial_[i] = u[i] + share * direction_[i];
-    const double energy = system_.energy(trial_);
-    if (energy <= most + slope * share) {
-      energy_ = energy;
-      u = trial_;
-      return share;
-    }
-  }
-  throw SolveFailure(
-      "method: barrier: Newton's line search failed: no step along its direction lowers the distortion.");
-}
-
-bool BarrierMotion::find_direction(const std::vector<double>& u, const std::vector<double>& way,
-                                   BarrierSystem::Hessian hessian) {
-  const std::size_t owned = std::size_t(mesh_.points.n_owned()) * dim_;
-  system_.assemble(u, way, residual_, hessian);
-  std::ranges::fill(direction_, 0.0);
-  try {
-    const linalg::SolveStatistics s = solver_->solve(residual_, {direction_.data(), owned});
-    last_.iterations += s.iterations;
-    last_.seconds += s.seconds;
-    if (solver_->preconditioners_built() > built_) {
-      built_ = solver_->preconditioners_built();
-      factored_at_ = u;
-      factored_ = hessian;
-    }
-  } catch (const SolveFailure&) {
-    if (hessian == BarrierSystem::Hessian::projected) throw;
-    solver_->refresh();
-    return false;  // not positive definite
-  }
-  slope_ = 0;
-  for (std::size_t i = 0; i < owned; ++i) slope_ -= residual_[i] * direction_[i];
-  slope_ = parallel::sum(mesh_.comm, slope_);
-  return slope_ <= 0;
-}
-
-void BarrierMotion::save(io::CheckpointWriter& file) const {
-  const linalg::PreconditionerMemory memory = solver_->memory();
-  file.write(mesh::Entries::points, "barrier", displacement_);
-  file.write(mesh::Entries::points, "barrier-factors", factored_at_);
-  file.write_scalar("barrier-factors-exact", factored_ == BarrierSystem::Hessian::exact ? 1 : 0);
-  file.write_scalar("barrier-factors-due", memory.is_due || factored_at_.empty() ? 1 : 0);
-  file.write_scalar("barrier-factors-most", memory.most_iterations);
-}
-
-void BarrierMotion::load(io::CheckpointReader& file) {
-  file.read(mesh::Entries::points, "barrier", displacement_);
-  factored_at_ = file.read_or_none(mesh::Entries::points, "barrier-factors", std::size_t(dim_));
-  const bool exact = file.read_scalar("barrier-factors-exact") > 0;
-  factored_ = exact ? BarrierSystem::Hessian::exact : BarrierSystem::Hessian::projected;
-  linalg::PreconditionerMemory memory;
-  memory.is_due = file.read_scalar("barrier-factors-due") > 0;
-  memory.most_iterations = int(file.read_scalar("barrier-factors-most"));
-  if (!memory.is_due)
-    system_.assemble(factored_at_, std::vector<double>(displacement_.size(), 0.0), residual_, factored_);
-  solver_->restore(memory);
-}
-
-double BarrierMotion::advance(std::vector<double>& u, const std::vector<double>& way, bool moves) {
-  const bool exact = find_direction(u, way, BarrierSystem::Hessian::exact);
-  if (!exact) find_direction(u, way, BarrierSystem::Hessian::projected);
-  for (std::size_t i = 0; i < residual_.size(); ++i) direction_[i] += way[i];
-  mesh_.points.update_ghosts(direction_, dim_);
-  const double limit = system_.largest_step(u, direction_, least_kept);
-  return moves ? line_search(u, limit, most_growth * energy_ + simplices_.total, 0)
-               : line_search(u, limit, energy_ + 1e-13 * simplices_.total, least_decrease * slope_);
-}
-
-std::vector<double> BarrierMotion::solve(std::span<const double> prescribed) {
-  last_ = {};
-  std::vector<double> u = displacement_, way(u.size(), 0.0);
-  const std::vector<double> none(u.size(), 0.0);
-  direction_.assign(u.size(), 0.0);
-  trial_.assign(u.size(), 0.0);
-  energy_ = system_.energy(u);
-  bool arrived = remaining(prescribed, u, way) == 0, relaxed = true;
-  double before = std::numeric_limits<double>::infinity();
-  for (int step = 0; step < most_steps; ++step) {
-    if (!arrived && relaxed) {
-      arrived = advance(u, way, true) == 1;
-      if (arrived)
-        arrive(prescribed, u);
-      else
-        remaining(prescribed, u, way);
-      relaxed = arrived;
-      continue;
-    }
-    const bool whole = advance(u, none, false) == 1;
-    const double change = -slope_ / (simplices_.total + energy_);
-    relaxed = change < nearly_at_rest;
-    if (arrived && whole && (change < at_rest || (change < slowly_at_rest && change > slow * before))) {
-      displacement_ = u;
-      return u;
-    }
-    before = change;
-    if (energy_ > most_energy * simplices_.total) break;
-  }
-  const Vec3 x = system_.worst_place(u);
-  throw SolveFailure(
-      "method: barrier: no valid mesh was found; the cells near ({:.6g}, {:.6g}, {:.6g}) m leave "
-      "no room for the motion. Try a smaller time step, or let the walls there slide (type: slip).",
-      x.x(), x.y(), x.z());
-}
-
-/// To the last bit.
-void BarrierMotion::arrive(std::span<const double> prescribed, std::vector<double>& u) const {
-  for (Index v = 0; v < mesh_.points.n_local(); ++v)
-    if (held_.moved[v].topLeftCorner(dim_, dim_).isIdentity(0))
-      for (int c = 0; c < dim_; ++c) u[std::size_t(v) * dim_ + c] = prescribed[std::size_t(v) * dim_ + c];
+std::unique_ptr<MotionMethod> make_barrier(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                                           const Parameters& parameters, std::span<const double> volumes) {
+  return std::make_unique<BarrierMotion>(mesh, geometry, parameters, volumes);
 }
 
 }  // namespace couplet::mesh_mover

@@ -58,15 +58,13 @@ void append(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index cell, 
 }  // namespace
 
 Simplices make_simplices(const mesh::Mesh& mesh, const mesh::Geometry& geometry, double stiffening,
-                         const std::vector<double>& volumes) {
+                         std::span<const double> volumes) {
   Simplices s;
   s.dim = mesh.dim;
-  double volume = 0;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += volumes[c];
-  const double mean = parallel::sum(mesh.comm, volume) / static_cast<double>(mesh.cells.n_global());
+  const std::vector<double> stiffness = stiffness_of(mesh, volumes, stiffening);
   for (Index c = 0; c < mesh.cells.n_local(); ++c) {
-    const double stiffness = std::pow(volumes[c] / mean, -stiffening);
-    mesh.dim == 2 ? append<2>(mesh, geometry, c, stiffness, s) : append<3>(mesh, geometry, c, stiffness, s);
+    mesh.dim == 2 ? append<2>(mesh, geometry, c, stiffness[c], s)
+                  : append<3>(mesh, geometry, c, stiffness[c], s);
     if (c + 1 == mesh.cells.n_owned()) s.n_owned = s.size();
   }
   double total = 0;
@@ -80,12 +78,6 @@ namespace {
 // Cosine above which normals around a point are those of one curved surface (26 degrees), and the part of a normal
 // across what is held already below which it holds nothing new (6 degrees).
 constexpr double same_surface = 0.9, new_direction = 0.1;
-
-template <class Action>
-void for_faces(const mesh::Patch& patch, const Action& action) {
-  for (Index f = patch.first; f < patch.first + patch.count; ++f) action(f);
-  for (Index f = patch.ghost_first; f < patch.ghost_first + patch.ghost_count; ++f) action(f);
-}
 
 /// Mean normals of the surfaces that the face vectors `areas` around a point belong to.
 std::vector<Vec3> surfaces(std::vector<Vec3> areas) {

@@ -45,7 +45,7 @@ Laplacian::Laplacian(const mesh::Mesh& mesh, const mesh::Geometry& geometry, con
       cell_displacement_(std::size_t(mesh.cells.n_local()) * mesh.dim, 0.0) {
   set_kinds(parameters);
   set_weights();
-  set_coefficients(parameters.stiffening, volumes.empty() ? geometry.volume : volumes);
+  set_coefficients(stiffness_of(mesh, volumes.empty() ? geometry.volume : volumes, parameters.stiffening));
 
   for (int c = 0; c < dim_; ++c) {
     for (int same = 0; same < c && !equation_[c]; ++same) {
@@ -102,17 +102,13 @@ void Laplacian::set_kinds(const Parameters& parameters) {
     for (int c = 0; c < dim_; ++c) held[c] = !slides || c == axis;
     held_.push_back(held);
     for (int c = 0; c < dim_; ++c) anything_held[c] = anything_held[c] || held[c];
-    for (const auto& [first, count] :
-         {std::pair{patch.first, patch.count}, {patch.ghost_first, patch.ghost_count}})
-      for (Index f = first; f < first + count; ++f) {
-        patch_of_[f - mesh_.n_interior] = static_cast<int>(p);
-        // A point on several patches: what holds it wins over what moves it, so that corners stay closed.
-        for (const Index v : mesh_.face_points[f])
-          for (int c = 0; c < dim_; ++c) {
-            PointKind& kind = kind_[v][c];
-            if (is_given(motion) && kind == PointKind::interior) kind = PointKind::interface;
-            if (!is_given(motion) && held[c]) kind = PointKind::fixed;
-          }
+    for_faces(patch, [&](Index f) { patch_of_[f - mesh_.n_interior] = static_cast<int>(p); });
+    // A point on several patches: what holds it wins over what moves it, so that corners stay closed.
+    for (const Index v : points_of(mesh_, patch))
+      for (int c = 0; c < dim_; ++c) {
+        PointKind& kind = kind_[v][c];
+        if (is_given(motion) && kind == PointKind::interior) kind = PointKind::interface;
+        if (!is_given(motion) && held[c]) kind = PointKind::fixed;
       }
   }
   share_kinds();
@@ -166,19 +162,25 @@ void Laplacian::set_weights() {
     for (Index i = around_.offset[v]; i < around_.offset[v + 1]; ++i) weight_[i] /= totals[v];
 }
 
-void Laplacian::set_coefficients(double stiffening, std::span<const double> volumes) {
-  const mesh::Geometry& g = geometry_;
+std::vector<double> stiffness_of(const mesh::Mesh& mesh, std::span<const double> volumes, double stiffening) {
   double volume = 0;
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) volume += volumes[c];
-  const double mean = parallel::sum(mesh_.comm, volume) / static_cast<double>(mesh_.cells.n_global());
-  const auto stiffness = [&](Index c) { return std::pow(volumes[c] / mean, -stiffening); };  // (4.12)
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += volumes[c];
+  const double mean = parallel::sum(mesh.comm, volume) / static_cast<double>(mesh.cells.n_global());
+  std::vector<double> stiffness;
+  for (Index c = 0; c < mesh.cells.n_local(); ++c)
+    stiffness.push_back(std::pow(volumes[c] / mean, -stiffening));
+  return stiffness;
+}
+
+void Laplacian::set_coefficients(const std::vector<double>& stiffness) {
+  const mesh::Geometry& g = geometry_;
   coefficient_.resize(mesh_.n_flux_faces());
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
     const bool interior = f < mesh_.n_interior;
     const Index p = mesh_.owner[f];
     const Vec3 to = interior ? Vec3(g.cell_centre[mesh_.neighbour[f]] + mesh_.shift(f)) : g.face_centre[f];
     const Vec3 d = to - g.cell_centre[p];
-    const double e = interior ? (stiffness(p) + stiffness(mesh_.neighbour[f])) / 2 : stiffness(p);
+    const double e = interior ? (stiffness[p] + stiffness[mesh_.neighbour[f]]) / 2 : stiffness[p];
     // A mesh that was moved (incremental form) may have faces that lean over: no negative coefficient.
     const double area = g.face_area[f].norm();
     coefficient_[f] = e * area * area / std::max(g.face_area[f].dot(d), least_cosine * area * d.norm());

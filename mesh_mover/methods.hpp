@@ -8,10 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/elasticity/elastic_kernel.hpp"
-#include "common/elasticity/solve/elastic_preconditioner.hpp"
 #include "common/io/checkpoint.hpp"
-#include "common/linalg/krylov.hpp"
 #include "common/linalg/linear_solver.hpp"
 #include "common/mesh/mesh.hpp"
 #include "common/mesh/periodic_points.hpp"
@@ -33,6 +30,9 @@ class MotionMethod {
   virtual void save(io::CheckpointWriter& file) const = 0;
   virtual void load(io::CheckpointReader& file) = 0;
 };
+
+/// Stiffness (V / mean V)^-chi of thesis (4.12) per local cell, V the `volumes`. Collective.
+std::vector<double> stiffness_of(const mesh::Mesh& mesh, std::span<const double> volumes, double stiffening);
 
 /// Laplacian mesh motion, thesis (4.11)-(4.12): div(E grad d) = 0 for the displacement d relative to the
 /// reference mesh, E = V^-chi of the reference volumes, one equation a component, on cells; points by
@@ -72,7 +72,7 @@ class Laplacian final : public MotionMethod {
   void set_kinds(const Parameters& parameters);
   void share_kinds();
   void set_weights();
-  void set_coefficients(double stiffening, std::span<const double> volumes);
+  void set_coefficients(const std::vector<double>& stiffness);
   double boundary_value(Index face, int component, std::span<const double> prescribed) const;
   /// One component in the cells / at the points / both, for prescribed values that an AffineFit explains.
   void solve_cells(int component, std::span<const double> prescribed, std::vector<double>& cells);
@@ -103,78 +103,16 @@ class Laplacian final : public MotionMethod {
   linalg::SolveStatistics last_;
 };
 
-/// Mesh motion that turns the surroundings of a body with it. Each patch that moves is a body with the centre c
-/// (mean of its points) and the best fit R(theta) of its rotation [kabsch1976]; around it
-///   x' = c + R(s theta) (x - c) + d(x),   s = 1 for r <= r1,  ln(r2/r) / ln(r2/r1),  0 for r >= r2
-/// with r = |x - c|, r1 the radius of the body, r2 that to the nearest point that is held or of another body. A
-/// rotation by s(r) alone changes no volume, whatever its angle: the cells between the radii are sheared, evenly in
-/// this s. d, by the Laplacian of thesis (4.11), (4.12), is what is left of the motion: the translation and
-/// what bends.
-///
-/// Angles beyond half a turn go on from those of the solve before.
-class Rotations final : public MotionMethod {
- public:
-  /// Throws Error where a body has no room to turn.
-  Rotations(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters,
-            std::span<const double> volumes = {});
-
-  std::vector<double> solve(std::span<const double> prescribed) override;
-  linalg::SolveStatistics last() const override { return rest_.last(); }
-  void save(io::CheckpointWriter& file) const override;
-  void load(io::CheckpointReader& file) override;
-
- private:
-  struct Body {
-    std::string name;
-    std::vector<Index> points;    // local
-    Vec3 centre = Vec3::Zero();   // [m]
-    double inner = 0, outer = 0;  // r1, r2 [m]
-    Vec3 theta = Vec3::Zero();    // of the last solve [rad]
-  };
-  void find_bodies(const Parameters& parameters);
-  void find_room(const Parameters& parameters);
-  Vec3 best_rotation(const Body& body, std::span<const double> prescribed) const;
-  /// Displacement by the rotations alone, dim values a local point.
-  std::vector<double> turned() const;
-
-  const mesh::Mesh& mesh_;
-  const mesh::Geometry& geometry_;
-  int dim_;
-  Laplacian rest_;
-  std::vector<Body> bodies_;
-};
-
-/// Mesh motion by the equilibrium of an elastic body without loads, thesis (4.10), (4.12): div sigma = 0,
-/// E = V^-chi, nu given, by the symmetric operator of common/elasticity (its energy has no negative modes on
-/// distorted cells); points by its own vertex values. Patches that slide may lie along any plane.
-class PseudoSolid final : public MotionMethod {
- public:
-  /// `volumes`: V of (4.12) per local cell; empty: those of the mesh. Throws Error if no patch holds the mesh.
-  PseudoSolid(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters,
-              std::span<const double> volumes = {});
-
-  std::vector<double> solve(std::span<const double> prescribed) override;
-  linalg::SolveStatistics last() const override { return last_; }
-  void save(io::CheckpointWriter& file) const override;
-  void load(io::CheckpointReader& file) override;
-
- private:
-  void make_solver(const linalg::LinearOptions& options);
-  /// Displacement of what is held and moved, a known column each; the motion is taken from `prescribed`.
-  std::vector<double> known(std::span<const double> prescribed) const;
-
-  const mesh::Mesh& mesh_;
-  int dim_;
-  linalg::KrylovOptions options_;
-  std::vector<char> given_point_, given_face_;  // per local point, boundary face: it moves as prescribed
-  std::unique_ptr<elastic::ElasticOperator> rows_;
-  std::unique_ptr<elastic::ElasticKernel> kernel_;
-  std::unique_ptr<linalg::SparseMatrix> matrix_;  // with factors_
-  std::unique_ptr<linalg::LinearSolver> factors_;
-  std::unique_ptr<elastic::ElasticPreconditioner> multigrid_;  // or this
-  std::unique_ptr<linalg::KrylovSolver> krylov_;
-  std::vector<double> unknowns_;  // also the next initial guess
-  linalg::SolveStatistics last_;
-};
+// The other methods. `volumes`: V of (4.12) per local cell, empty for those of the mesh. All throw Error if no patch holds the
+// mesh, or if a body has no room to rotate. Collective.
+std::unique_ptr<MotionMethod> make_pseudo_solid(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                                                const Parameters& parameters,
+                                                std::span<const double> volumes = {});
+std::unique_ptr<MotionMethod> make_rotations(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                                             const Parameters& parameters,
+                                             std::span<const double> volumes = {});
+std::unique_ptr<MotionMethod> make_barrier(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                                           const Parameters& parameters,
+                                           std::span<const double> volumes = {});
 
 }  // namespace couplet::mesh_mover

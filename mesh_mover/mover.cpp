@@ -115,13 +115,13 @@ void Mover::make_method() {
       method_ = std::make_unique<Laplacian>(mesh_, *at, parameters_, volumes);
       break;
     case Method::pseudo_solid:
-      method_ = std::make_unique<PseudoSolid>(mesh_, *at, parameters_, volumes);
+      method_ = make_pseudo_solid(mesh_, *at, parameters_, volumes);
       break;
     case Method::barrier:
-      method_ = std::make_unique<BarrierMotion>(mesh_, *at, parameters_, volumes);
+      method_ = make_barrier(mesh_, *at, parameters_, volumes);
       break;
     case Method::rotations:
-      method_ = std::make_unique<Rotations>(mesh_, *at, parameters_, volumes);
+      method_ = make_rotations(mesh_, *at, parameters_, volumes);
       break;
   }
 }

@@ -13,20 +13,23 @@
 
 namespace couplet::mesh_mover {
 
+std::vector<Index> points_of(const mesh::Mesh& mesh, const mesh::Patch& patch) {
+  std::vector<Index> points;
+  for_faces(patch, [&](Index f) {
+    points.insert(points.end(), mesh.face_points[f].begin(), mesh.face_points[f].end());
+  });
+  std::ranges::sort(points);
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return points;
+}
+
 MovingPatches::MovingPatches(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                              const Parameters& parameters)
     : mesh_(mesh), geometry_(geometry) {
   for (const mesh::Patch& patch : mesh.patches) {
     const Boundary& boundary = parameters.boundaries.at(patch.name);
-    if (boundary.motion != BoundaryMotion::moving) continue;
-    Moving moving{{}, fv::PrescribedMotion(boundary.prescribed, mesh.dim)};
-    for (const auto& [first, count] :
-         {std::pair{patch.first, patch.count}, {patch.ghost_first, patch.ghost_count}})
-      for (Index f = first; f < first + count; ++f)
-        moving.points.insert(moving.points.end(), mesh.face_points[f].begin(), mesh.face_points[f].end());
-    std::ranges::sort(moving.points);
-    moving.points.erase(std::unique(moving.points.begin(), moving.points.end()), moving.points.end());
-    patches_.push_back(std::move(moving));
+    if (boundary.motion == BoundaryMotion::moving)
+      patches_.push_back({points_of(mesh, patch), fv::PrescribedMotion(boundary.prescribed, mesh.dim)});
   }
 }
 
@@ -144,25 +147,17 @@ bool is_flat(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh:
 CurvedSlide::CurvedSlide(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters)
     : mesh_(mesh), geometry_(geometry) {
   std::vector<char> held(mesh.points.n_local(), 0);  // by a patch that does not slide
-  const auto for_points = [&](const mesh::Patch& patch, const auto& action) {
-    for (const auto& [first, count] :
-         {std::pair{patch.first, patch.count}, {patch.ghost_first, patch.ghost_count}})
-      for (Index f = first; f < first + count; ++f)
-        for (const Index v : mesh.face_points[f]) action(v);
-  };
   const auto slides = [&](const mesh::Patch& patch) {
     return parameters.boundaries.at(patch.name).motion == BoundaryMotion::slip;
   };
   for (const mesh::Patch& patch : mesh.patches)
-    if (!slides(patch)) for_points(patch, [&](Index v) { held[v] = 1; });
+    if (!slides(patch))
+      for (const Index v : points_of(mesh, patch)) held[v] = 1;
   for (const mesh::Patch& patch : mesh.patches) {
     if (!slides(patch) || is_flat(mesh, geometry, patch)) continue;
     Curved curved;
-    for_points(patch, [&](Index v) {
-      if (!held[v]) curved.points.push_back(v);
-    });
-    std::ranges::sort(curved.points);
-    curved.points.erase(std::unique(curved.points.begin(), curved.points.end()), curved.points.end());
+    curved.points = points_of(mesh, patch);
+    std::erase_if(curved.points, [&](Index v) { return held[v] != 0; });
     std::vector<Part> mine;
     const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
       const Vec3 centre = (a + b + c) / 3;

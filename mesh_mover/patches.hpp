@@ -12,6 +12,15 @@
 
 namespace couplet::mesh_mover {
 
+/// Calls use(face) for the faces of a patch, copies of those of other ranks included.
+template <class Use>
+void for_faces(const mesh::Patch& patch, const Use& use) {
+  for (Index f = patch.first; f < patch.first + patch.count; ++f) use(f);
+  for (Index f = patch.ghost_first; f < patch.ghost_first + patch.ghost_count; ++f) use(f);
+}
+/// Local points of these faces, ascending.
+std::vector<Index> points_of(const mesh::Mesh& mesh, const mesh::Patch& patch);
+
 /// Patches of type `moving`, which the case moves.
 class MovingPatches {
  public:

@@ -36,145 +36,161 @@ Vec3 rotation_vector(const Tensor3& m, const Vec3& before) {
   return angle * axis;
 }
 
-std::vector<Index> points_of(const mesh::Mesh& mesh, const mesh::Patch& patch) {
-  std::vector<Index> points;
-  for (const auto& [first, count] :
-       {std::pair{patch.first, patch.count}, {patch.ghost_first, patch.ghost_count}})
-    for (Index f = first; f < first + count; ++f)
-      points.insert(points.end(), mesh.face_points[f].begin(), mesh.face_points[f].end());
-  std::ranges::sort(points);
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  return points;
-}
+/// Mesh motion that turns the surroundings of a body with it. Each patch that moves is a body with the centre c
+/// (mean of its points) and the best fit R(theta) of its rotation [kabsch1976]; around it
+///   x' = c + R(s theta) (x - c) + d(x),   s = 1 for r <= r1,  ln(r2/r) / ln(r2/r1),  0 for r >= r2
+/// with r = |x - c|, r1 the radius of the body, r2 that to the nearest point that is held or of another body. A
+/// rotation by s(r) alone changes no volume, whatever its angle: the cells between the radii are sheared, evenly in
+/// this s. d, by the Laplacian of thesis (4.11), (4.12), is what is left of the motion: the translation and
+/// what bends.
+///
+/// Angles beyond half a turn go on from those of the solve before.
+class Rotations final : public MotionMethod {
+ public:
+  /// Throws Error where a body has no room to turn.
+  Rotations(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters,
+            std::span<const double> volumes)
+      : mesh_(mesh), geometry_(geometry), dim_(mesh.dim), rest_(mesh, geometry, parameters, volumes) {
+    find_bodies(parameters);
+    find_room(parameters);
+  }
 
-}  // namespace
+  std::vector<double> solve(std::span<const double> prescribed) override {
+    for (Body& body : bodies_) body.theta = best_rotation(body, prescribed);
+    std::vector<double> displacement = turned(), rest(displacement.size(), 0.0);
+    for (const Index v : rest_.interface_points())
+      for (int c = 0; c < dim_; ++c) {
+        const std::size_t i = std::size_t(v) * dim_ + c;
+        rest[i] = prescribed[i] - displacement[i];
+      }
+    const std::vector<double> d = rest_.solve(rest);
+    for (std::size_t i = 0; i < d.size(); ++i) displacement[i] += d[i];
+    return displacement;
+  }
+  linalg::SolveStatistics last() const override { return rest_.last(); }
+  void save(io::CheckpointWriter& file) const override {
+    rest_.save(file);
+    for (const Body& body : bodies_)
+      for (int c = 0; c < 3; ++c)
+        file.write_scalar("rotation-" + std::to_string(c) + "-" + body.name, body.theta[c]);
+  }
+  void load(io::CheckpointReader& file) override {
+    rest_.load(file);
+    for (Body& body : bodies_)
+      for (int c = 0; c < 3; ++c)
+        body.theta[c] = file.read_scalar("rotation-" + std::to_string(c) + "-" + body.name);
+  }
 
-Rotations::Rotations(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters,
-                     std::span<const double> volumes)
-    : mesh_(mesh), geometry_(geometry), dim_(mesh.dim), rest_(mesh, geometry, parameters, volumes) {
-  find_bodies(parameters);
-  find_room(parameters);
-}
-
-void Rotations::find_bodies(const Parameters& parameters) {
-  for (const mesh::Patch& patch : mesh_.patches) {
-    if (!is_given(parameters.boundaries.at(patch.name).motion)) continue;
-    Body body;
-    body.name = patch.name;
-    body.points = points_of(mesh_, patch);
+ private:
+  struct Body {
+    std::string name;
+    std::vector<Index> points;    // local
+    Vec3 centre = Vec3::Zero();   // [m]
+    double inner = 0, outer = 0;  // r1, r2 [m]
+    Vec3 theta = Vec3::Zero();    // of the last solve [rad]
+  };
+  void find_bodies(const Parameters& parameters) {
+    for (const mesh::Patch& patch : mesh_.patches) {
+      if (!is_given(parameters.boundaries.at(patch.name).motion)) continue;
+      Body body;
+      body.name = patch.name;
+      body.points = points_of(mesh_, patch);
+      body.centre = mean(body, [&](Index v) { return geometry_.points[v]; });
+      for (const Index v : body.points)
+        body.inner = std::max(body.inner, (geometry_.points[v] - body.centre).norm());
+      body.inner = parallel::max(mesh_.comm, body.inner);
+      bodies_.push_back(std::move(body));
+    }
+  }
+  void find_room(const Parameters& parameters) {
+    const mesh::PeriodicPoints periodic(mesh_, geometry_);  // nothing turns across them
+    for (Body& body : bodies_) {
+      double nearest = std::numeric_limits<double>::max();
+      for (const mesh::Patch& patch : mesh_.patches)
+        if (patch.name != body.name && parameters.boundaries.at(patch.name).motion != BoundaryMotion::free)
+          for (const Index v : points_of(mesh_, patch))
+            nearest = std::min(nearest, (geometry_.points[v] - body.centre).norm());
+      for (const Index v : periodic.points())
+        nearest = std::min(nearest, (geometry_.points[v] - body.centre).norm());
+      body.outer = parallel::min(mesh_.comm, nearest);
+      if (!(body.outer > least_room * body.inner))
+        throw Error(
+            "method: rotations: patch '{}' extends {:.3g} m from its centre ({:.4g}, {:.4g}, {:.4g}) m, but "
+            "another patch is as close as {:.3g} m: there is no space to rotate. Use 'method: pseudo-solid'.",
+            body.name, body.inner, body.centre.x(), body.centre.y(), body.centre.z(), body.outer);
+      body.outer = std::min(body.outer, 10 * body.inner);
+    }
+    for (const Body& a : bodies_)  // what turns with one body must not turn with another
+      for (const Body& b : bodies_)
+        if (a.name < b.name && (a.centre - b.centre).norm() < a.outer + b.outer)
+          throw Error(
+              "method: rotations: the surroundings of patches '{}' and '{}' overlap; use 'method: "
+              "pseudo-solid', or one name for both if they move as one body.",
+              a.name, b.name);
+  }
+  /// Mean of value(v) over the points of a body. Collective.
+  template <class Value>
+  Vec3 mean(const Body& body, const Value& value) const {
     double sums[4] = {};
     for (const Index v : body.points)
       if (v < mesh_.points.n_owned()) {
-        for (int c = 0; c < 3; ++c) sums[c] += geometry_.points[v][c];
+        const Vec3 here = value(v);
+        for (int c = 0; c < 3; ++c) sums[c] += here[c];
         sums[3] += 1;
       }
     MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-    body.centre = Vec3(sums[0], sums[1], sums[2]) / std::max(sums[3], 1.0);
+    return Vec3(sums[0], sums[1], sums[2]) / std::max(sums[3], 1.0);
+  }
+  Vec3 best_rotation(const Body& body, std::span<const double> prescribed) const {
+    const auto given = [&](Index v) {
+      Vec3 d = Vec3::Zero();
+      for (int c = 0; c < dim_; ++c) d[c] = prescribed[std::size_t(v) * dim_ + c];
+      return d;
+    };
+    const Vec3 shift = mean(body, given);
+    Tensor3 m = Tensor3::Zero();
     for (const Index v : body.points)
-      body.inner = std::max(body.inner, (geometry_.points[v] - body.centre).norm());
-    body.inner = parallel::max(mesh_.comm, body.inner);
-    bodies_.push_back(std::move(body));
+      if (v < mesh_.points.n_owned()) {
+        const Vec3 r = geometry_.points[v] - body.centre;
+        m += (r + given(v) - shift) * r.transpose();
+      }
+    MPI_Allreduce(MPI_IN_PLACE, m.data(), 9, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+    if (dim_ == 3) return rotation_vector(m, body.theta);
+    const double angle = std::atan2(m(1, 0) - m(0, 1), m(0, 0) + m(1, 1));
+    return {0, 0, angle + turn * std::round((body.theta.z() - angle) / turn)};
   }
-}
-
-void Rotations::find_room(const Parameters& parameters) {
-  const mesh::PeriodicPoints periodic(mesh_, geometry_);  // nothing turns across them
-  for (Body& body : bodies_) {
-    double nearest = std::numeric_limits<double>::max();
-    for (const mesh::Patch& patch : mesh_.patches)
-      if (patch.name != body.name && parameters.boundaries.at(patch.name).motion != BoundaryMotion::free)
-        for (const Index v : points_of(mesh_, patch))
-          nearest = std::min(nearest, (geometry_.points[v] - body.centre).norm());
-    for (const Index v : periodic.points())
-      nearest = std::min(nearest, (geometry_.points[v] - body.centre).norm());
-    body.outer = parallel::min(mesh_.comm, nearest);
-    if (!(body.outer > least_room * body.inner))
-      throw Error(
-          "method: rotations: patch '{}' extends {:.3g} m from its centre ({:.4g}, {:.4g}, {:.4g}) m, but "
-          "another patch is as close as {:.3g} m: there is no space to rotate. Use 'method: pseudo-solid'.",
-          body.name, body.inner, body.centre.x(), body.centre.y(), body.centre.z(), body.outer);
-    body.outer = std::min(body.outer, 10 * body.inner);
+  /// Displacement by the rotations alone, dim values a local point.
+  std::vector<double> turned() const {
+    std::vector<double> displacement(std::size_t(mesh_.points.n_local()) * dim_, 0.0);
+    for (const Body& body : bodies_) {
+      const double angle = body.theta.norm();
+      if (angle == 0) continue;
+      const Vec3 axis = body.theta / angle;
+      for (Index v = 0; v < mesh_.points.n_local(); ++v) {
+        const Vec3 r = geometry_.points[v] - body.centre;
+        const double distance = r.norm();
+        if (distance >= body.outer) continue;
+        const double share =
+            distance <= body.inner ? 1 : std::log(body.outer / distance) / std::log(body.outer / body.inner);
+        const Vec3 d = Eigen::AngleAxisd(share * angle, axis) * r - r;
+        for (int c = 0; c < dim_; ++c) displacement[std::size_t(v) * dim_ + c] = d[c];
+      }
+    }
+    return displacement;
   }
-  for (const Body& a : bodies_)  // what turns with one body must not turn with another
-    for (const Body& b : bodies_)
-      if (a.name < b.name && (a.centre - b.centre).norm() < a.outer + b.outer)
-        throw Error(
-            "method: rotations: the surroundings of patches '{}' and '{}' overlap; use 'method: "
-            "pseudo-solid', or one name for both if they move as one body.",
-            a.name, b.name);
-}
 
-Vec3 Rotations::best_rotation(const Body& body, std::span<const double> prescribed) const {
-  const auto given = [&](Index v) {
-    Vec3 d = Vec3::Zero();
-    for (int c = 0; c < dim_; ++c) d[c] = prescribed[std::size_t(v) * dim_ + c];
-    return d;
-  };
-  double sums[4] = {};
-  for (const Index v : body.points)
-    if (v < mesh_.points.n_owned()) {
-      const Vec3 d = given(v);
-      for (int c = 0; c < 3; ++c) sums[c] += d[c];
-      sums[3] += 1;
-    }
-  MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-  const Vec3 shift = Vec3(sums[0], sums[1], sums[2]) / std::max(sums[3], 1.0);
-  Tensor3 m = Tensor3::Zero();
-  for (const Index v : body.points)
-    if (v < mesh_.points.n_owned()) {
-      const Vec3 r = geometry_.points[v] - body.centre;
-      m += (r + given(v) - shift) * r.transpose();
-    }
-  MPI_Allreduce(MPI_IN_PLACE, m.data(), 9, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-  if (dim_ == 3) return rotation_vector(m, body.theta);
-  const double angle = std::atan2(m(1, 0) - m(0, 1), m(0, 0) + m(1, 1));
-  return {0, 0, angle + turn * std::round((body.theta.z() - angle) / turn)};
-}
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
+  int dim_;
+  Laplacian rest_;
+  std::vector<Body> bodies_;
+};
 
-std::vector<double> Rotations::turned() const {
-  std::vector<double> displacement(std::size_t(mesh_.points.n_local()) * dim_, 0.0);
-  for (const Body& body : bodies_) {
-    const double angle = body.theta.norm();
-    if (angle == 0) continue;
-    const Vec3 axis = body.theta / angle;
-    for (Index v = 0; v < mesh_.points.n_local(); ++v) {
-      const Vec3 r = geometry_.points[v] - body.centre;
-      const double distance = r.norm();
-      if (distance >= body.outer) continue;
-      const double share =
-          distance <= body.inner ? 1 : std::log(body.outer / distance) / std::log(body.outer / body.inner);
-      const Vec3 d = Eigen::AngleAxisd(share * angle, axis) * r - r;
-      for (int c = 0; c < dim_; ++c) displacement[std::size_t(v) * dim_ + c] = d[c];
-    }
-  }
-  return displacement;
-}
+}  // namespace
 
-std::vector<double> Rotations::solve(std::span<const double> prescribed) {
-  for (Body& body : bodies_) body.theta = best_rotation(body, prescribed);
-  std::vector<double> displacement = turned(), rest(displacement.size(), 0.0);
-  for (const Index v : rest_.interface_points())
-    for (int c = 0; c < dim_; ++c) {
-      const std::size_t i = std::size_t(v) * dim_ + c;
-      rest[i] = prescribed[i] - displacement[i];
-    }
-  const std::vector<double> d = rest_.solve(rest);
-  for (std::size_t i = 0; i < d.size(); ++i) displacement[i] += d[i];
-  return displacement;
-}
-
-void Rotations::save(io::CheckpointWriter& file) const {
-  rest_.save(file);
-  for (const Body& body : bodies_)
-    for (int c = 0; c < 3; ++c)
-      file.write_scalar("rotation-" + std::to_string(c) + "-" + body.name, body.theta[c]);
-}
-
-void Rotations::load(io::CheckpointReader& file) {
-  rest_.load(file);
-  for (Body& body : bodies_)
-    for (int c = 0; c < 3; ++c)
-      body.theta[c] = file.read_scalar("rotation-" + std::to_string(c) + "-" + body.name);
+std::unique_ptr<MotionMethod> make_rotations(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                                             const Parameters& parameters, std::span<const double> volumes) {
+  return std::make_unique<Rotations>(mesh, geometry, parameters, volumes);
 }
 
 }  // namespace couplet::mesh_mover

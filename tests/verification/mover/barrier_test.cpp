@@ -314,7 +314,7 @@ TEST(Barrier, slides_along_planes_and_edges_of_any_direction) {
   p.boundaries["xmin"].motion = BoundaryMotion::fixed;
   p.boundaries["xmax"].motion = BoundaryMotion::interface;
   p.stiffening = 0;
-  BarrierMotion barrier(mesh, geometry, p);
+  const auto barrier = make_barrier(mesh, geometry, p);
   const auto pushed = [&](double way) {
     std::vector<double> d(std::size_t(mesh.points.n_local()) * 3, 0.0);
     for (Index v = 0; v < mesh.points.n_local(); ++v) {
@@ -323,7 +323,7 @@ TEST(Barrier, slides_along_planes_and_edges_of_any_direction) {
     }
     return d;
   };
-  const std::vector<double> d = barrier.solve(pushed(0.8));
+  const std::vector<double> d = barrier->solve(pushed(0.8));
   double across = 0, along = 0;
   for (Index v = 0; v < mesh.points.n_local(); ++v) {
     const Vec3 x = turn.transpose() * geometry.points[v];
@@ -344,7 +344,7 @@ TEST(Barrier, periodic_patches_are_refused_by_name) {
   for (const Patch& patch : mesh.patches) p.boundaries[patch.name].motion = BoundaryMotion::fixed;
   p.boundaries["ymax"].motion = BoundaryMotion::periodic;
   try {
-    BarrierMotion barrier(mesh, geometry, p);
+    const auto barrier = make_barrier(mesh, geometry, p);
     FAIL() << "accepted";
   } catch (const Error& e) {
     EXPECT_THAT(e.what(), ::testing::HasSubstr("boundaries.ymax"));

@@ -63,8 +63,8 @@ TEST(CurvedSlide, points_stay_on_the_polygon_of_the_patch_however_far_they_slide
     std::vector<double> given(std::size_t(mesh.points.n_local()) * dim, 0.0);
     for (Index v = 0; v < mesh.points.n_local(); ++v)
       if (geometry.points[v].head<2>().norm() < 1 + 1e-9) given[std::size_t(v) * dim] = 0.6;
-    PseudoSolid solid(mesh, geometry, p);
-    std::vector<double> d = solid.solve(given);
+    const auto solid = make_pseudo_solid(mesh, geometry, p);
+    std::vector<double> d = solid->solve(given);
     const Far tangent = of_outer_points(mesh, geometry, d);
     CurvedSlide(mesh, geometry, p).put_back(d);
     const Far after = of_outer_points(mesh, geometry, d);
