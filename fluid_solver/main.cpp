@@ -7,59 +7,54 @@
 #include "fluid_solver/participant.hpp"
 
 int main(int argc, char** argv) {
-  couplet::fluid::FluidParameters parameters;
-  const couplet::app::Program program{
+  using namespace couplet;
+  fluid::FluidParameters parameters;
+  const app::Program program{
       .name = "fluid_solver",
       .description =
           "incompressible or weakly compressible flow on a moving mesh, second order in space and time",
-      .declare = [&](couplet::config::Section& section) { couplet::fluid::declare(section, parameters); },
+      .declare = [&](config::Section& section) { fluid::declare(section, parameters); },
       .make =
-          [&](const couplet::app::ParticipantContext& context) {
-            couplet::mesh::LoadedMesh loaded = couplet::io::load_mesh(
-                context.comm, context.case_folder / parameters.mesh, parameters.dimension,
-                parameters.mesh_parameters, couplet::fluid::periodic_patches(parameters), {}, false,
-                parameters.mesh_scale);
+          [&](const app::ParticipantContext& context) {
+            mesh::LoadedMesh loaded =
+                io::load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension,
+                              parameters.mesh_parameters, fluid::periodic_patches(parameters), {}, false,
+                              parameters.mesh_scale);
             for (auto& [patch, boundary] : parameters.boundaries)  // files lie beside the case
               if (boundary.table)
                 boundary.table->file = (context.case_folder / boundary.table->file).string();
-            couplet::fluid::MotionLink link;
+            fluid::MotionLink link;
             if (context.mesh_peer != MPI_COMM_NULL)
-              link = [peer = context.mesh_peer](const couplet::mesh::Mesh& m,
-                                                std::span<const couplet::Vec3> points) {
-                return couplet::coupling::make_mesh_motion_source(peer, m, points);
+              link = [peer = context.mesh_peer](const mesh::Mesh& m, std::span<const Vec3> points) {
+                return coupling::make_mesh_motion_source(peer, m, points);
               };
-            return couplet::fluid::make_participant(
+            return fluid::make_participant(
                 std::move(loaded), parameters,
                 {context.name, context.output_folder, context.restart_time, context.simulation.fields}, link);
           },
-      .diagnose =
-          [](const couplet::coupling::Participant& participant, couplet::diagnostics::Diagnostics& all) {
-            couplet::fluid::add_diagnostics(participant, all);
-          },
-      .environment = couplet::linalg::petsc_environment,
+      .diagnose = [](const coupling::Participant& participant,
+                     diagnostics::Diagnostics& all) { fluid::add_diagnostics(participant, all); },
+      .environment = linalg::petsc_environment,
       .effects =
-          [&](const couplet::effects::EffectScene& scene) {
-            return couplet::effects::effects_of(
-                "fluid_solver", couplet::fluid::fluid_effect_cards(),
-                couplet::fluid::FluidScene{parameters, scene.has_mover || parameters.motion, scene.coupled});
+          [&](const effects::EffectScene& scene) {
+            return effects::effects_of(
+                "fluid_solver", fluid::fluid_effect_cards(),
+                fluid::FluidScene{parameters, scene.has_mover || parameters.motion, scene.coupled});
           },
       .choose =
-          [&](const couplet::effects::ChoiceScene& scene) {
-            return couplet::fluid::choose_effects(
-                parameters,
-                couplet::io::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters,
-                                           parameters.mesh_scale),
-                scene);
+          [&](const effects::ChoiceScene& scene) {
+            return fluid::choose_effects(parameters,
+                                         io::facts_of_file(scene.folder / parameters.mesh,
+                                                           parameters.mesh_parameters, parameters.mesh_scale),
+                                         scene);
           },
       .expected =
-          [&](const couplet::effects::ChoiceScene& scene) {
-            return couplet::fluid::expected_cost(
-                parameters, couplet::io::facts_of_file(scene.folder / parameters.mesh,
-                                                       parameters.mesh_parameters, parameters.mesh_scale));
+          [&](const effects::ChoiceScene& scene) {
+            return fluid::expected_cost(
+                parameters, io::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters,
+                                              parameters.mesh_scale));
           },
       .problems_of_files =
-          [&](const std::filesystem::path& folder) {
-            return couplet::fluid::problems_of_files(parameters, folder);
-          }};
-  return couplet::app::run_program(argc, argv, program);
+          [&](const std::filesystem::path& folder) { return fluid::problems_of_files(parameters, folder); }};
+  return app::run_program(argc, argv, program);
 }

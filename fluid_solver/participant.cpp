@@ -23,6 +23,9 @@ namespace couplet::fluid {
 
 namespace {
 
+// Sub-steps of a step over those of the step last told in the log, or the other way round.
+constexpr double most_times_as_many = 2;
+
 bool holds_volume(const FluidParameters& p) { return p.volume_level == VolumeLevelBy::structure; }
 
 }  // namespace
@@ -264,32 +267,6 @@ std::vector<std::string> FluidParticipant<D>::finish() {
                       fluid_->parameters().statistics->start)};
 }
 
-template class FluidParticipant<2>;
-template class FluidParticipant<3>;
-
-void add_diagnostics(const coupling::Participant& participant, diagnostics::Diagnostics& all) {
-  if (const auto* flat = dynamic_cast<const FluidParticipant<2>*>(&participant))
-    add_diagnostics(flat->view(), all);
-  else
-    add_diagnostics(dynamic_cast<const FluidParticipant<3>&>(participant).view(), all);
-}
-
-std::unique_ptr<coupling::Participant> make_participant(mesh::LoadedMesh loaded,
-                                                        const FluidParameters& parameters,
-                                                        FluidContext context, const MotionLink& link) {
-  if (parameters.dimension == 2)
-    return std::make_unique<FluidParticipant<2>>(std::move(loaded), parameters, std::move(context), link);
-  return std::make_unique<FluidParticipant<3>>(std::move(loaded), parameters, std::move(context), link);
-}
-
-// What a participant tells of its sub-steps.
-
-namespace {
-
-// Sub-steps of a step over those of the step last told in the log, or the other way round.
-constexpr double most_times_as_many = 2;
-}  // namespace
-
 /// One line where a step took many more parts than when it was last told, or many fewer, with the cell that
 /// asks for them.
 template <int D>
@@ -316,7 +293,22 @@ void FluidParticipant<D>::tell_sub_steps() {
         100 * fluid_->parameters().safety_factor);
 }
 
-template void FluidParticipant<2>::tell_sub_steps();
-template void FluidParticipant<3>::tell_sub_steps();
+template class FluidParticipant<2>;
+template class FluidParticipant<3>;
+
+void add_diagnostics(const coupling::Participant& participant, diagnostics::Diagnostics& all) {
+  if (const auto* flat = dynamic_cast<const FluidParticipant<2>*>(&participant))
+    add_diagnostics(flat->view(), all);
+  else
+    add_diagnostics(dynamic_cast<const FluidParticipant<3>&>(participant).view(), all);
+}
+
+std::unique_ptr<coupling::Participant> make_participant(mesh::LoadedMesh loaded,
+                                                        const FluidParameters& parameters,
+                                                        FluidContext context, const MotionLink& link) {
+  if (parameters.dimension == 2)
+    return std::make_unique<FluidParticipant<2>>(std::move(loaded), parameters, std::move(context), link);
+  return std::make_unique<FluidParticipant<3>>(std::move(loaded), parameters, std::move(context), link);
+}
 
 }  // namespace couplet::fluid

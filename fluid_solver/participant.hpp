@@ -63,7 +63,7 @@ class FluidParticipant final : public coupling::Participant {
   std::vector<Vec3> body_velocities(const mesh::Patch& patch) const;
   std::vector<double> wall_load(const coupling::Exchange& in) const;
   void take_wall_mass(const coupling::Exchange& in);
-  /// By the case, or by a mesh mover that moves some by itself.
+  /// The case moves bodies, or a mesh mover moves some by itself.
   bool moves_bodies() const { return prescribed_ || (motion_ && !fluid_->boundary().body_patches().empty()); }
   bool yields() const { return interface_ && fluid_->boundary().yields(); }
   double wall_displacement(const coupling::Exchange& in) const;
@@ -94,7 +94,7 @@ class FluidParticipant final : public coupling::Participant {
   bool renewed_now_ = false;  // the prediction, in the last pass
   Renewal<D> renewal_;
   Vectors<D> w_;  // of the last pass
-  // Of the interface on a mesh that stands still: largest displacement over the height of the cell there.
+  // Interface on a mesh at rest: largest displacement over the height of the cell there.
   double displacement_ = 0, trial_displacement_ = 0;
   int renewals_ = 0;         // of the prediction, in the last step
   double unseen_share_ = 0;  // error of the friction at the end of the last step, over the load

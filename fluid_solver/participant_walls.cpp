@@ -22,8 +22,8 @@ std::vector<double> datum(const coupling::Exchange& in, const char* name) {
 /// One a corner of each face of the patch, at the end of the step. After receive_points().
 template <int D>
 std::vector<Vec3> FluidParticipant<D>::body_velocities(const mesh::Patch& patch) const {
-  std::vector<Vec3> corners;
   if (!prescribed_) {
+    std::vector<Vec3> corners;
     const std::vector<double>& given = motion_->velocity();
     if (given.empty())
       throw Error("boundaries.{}: the mesh mover does not move this body: set 'type: moving' there.",
@@ -35,9 +35,8 @@ std::vector<Vec3> FluidParticipant<D>::body_velocities(const mesh::Patch& patch)
       }
     return corners;
   }
-  for (Index f = patch.first; f < patch.first + patch.count; ++f)
-    for (const Index v : mesh_.face_points[f]) corners.push_back(fluid_->points_at_rest()[v]);
-  return prescribed_->velocities(corners, step_.time + step_.dt, step_.dt);
+  return prescribed_->velocities(face_corners(mesh_, patch, fluid_->points_at_rest()), step_.time + step_.dt,
+                                 step_.dt);
 }
 
 /// Velocity w of all walls that move, at a face the mean of those of its vertices, and their turn (see turn_of()). Both are

@@ -13,7 +13,7 @@ namespace {
 
 // Share of its volume that a simplex keeps in a step.
 constexpr double least_kept = 0.1;
-// Of a Newton step, -g . d over the energy and the weights: nearly the square of the mean change of the deformation
+// Limits of -g . d of a Newton step over the energy and the weights: nearly the square of the mean change of the deformation
 // gradient. Below the first the mesh is at rest; below the second if it comes to rest slowly, as cells do that are
 // pressed to the verge of buckling; below the third the boundary moves on.
 constexpr double at_rest = 1e-5, slowly_at_rest = 1e-4, nearly_at_rest = 1e-2, slow = 0.1;
@@ -23,7 +23,7 @@ constexpr double linear_tolerance = 3e-3;
 constexpr int most_steps = 200;
 // Energy over the sum of the weights from which on no valid mesh is expected: cells of a thousandth of their width.
 constexpr double most_energy = 1e6;
-// Of the Armijo rule.
+// Constants of the Armijo rule.
 constexpr double least_decrease = 1e-4, shortest_step = 1e-8;
 
 linalg::LinearOptions options_of(const mesh::Mesh& mesh, const linalg::LinearOptions& wanted) {

@@ -39,7 +39,7 @@ class Guard {
   MeshState measure(const mesh::Geometry& moved) const;
   /// Per local cell, of one measure but the angle.
   std::vector<double> of_cells(MeshState::Measure measure, const mesh::Geometry& moved) const;
-  /// What is beyond a limit, as a sentence; empty: nothing. Inverted cells, cells that cross themselves, and what
+  /// Sentence about what is beyond a limit; empty if nothing is: inverted cells, cells that cross themselves, and what
   /// the parameters ask for. Collective.
   std::string refusal(const mesh::Geometry& moved) const;
 

@@ -24,9 +24,9 @@ class MotionMethod {
   /// `prescribed`: dim values per local point, ghosts current, read on patches whose displacement is given.
   /// Result: dim values per local point [m], ghosts up to date. Throws SolveFailure. Collective.
   virtual std::vector<double> solve(std::span<const double> prescribed) = 0;
-  /// Of the last solve.
+  /// Statistics of the last solve.
   virtual linalg::SolveStatistics last() const = 0;
-  /// What the next solve starts from. Collective.
+  /// State that the next solve starts from. Collective.
   virtual void save(io::CheckpointWriter& file) const = 0;
   virtual void load(io::CheckpointReader& file) = 0;
 };

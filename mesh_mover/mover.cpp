@@ -19,7 +19,7 @@ namespace couplet::mesh_mover {
 
 namespace {
 
-// Of the distance of periodic patches: how far apart their sides may move.
+// Largest relative motion of the two sides of periodic patches, as a share of their distance.
 constexpr double most_torn = 1e-9;
 
 mesh::LoadedMesh load_checked(const Parameters& parameters, const app::ParticipantContext& context) {
@@ -168,7 +168,7 @@ void Mover::place() {
   placed_ = true;
 }
 
-/// What is given at one side of periodic patches alone, or otherwise at the other, leaves no mesh.
+/// Refuses a motion that differs between the two sides of periodic patches.
 void Mover::refuse_torn() const {
   if (periodic_.empty()) return;
   const double gap = periodic_.largest_gap(displacement_, mesh_.dim);
@@ -181,7 +181,7 @@ void Mover::refuse_torn() const {
         name_, step_.time, gap);
 }
 
-/// What is wrong with the mesh of displacement_; empty: nothing. Collective.
+/// Says what is wrong with the mesh of displacement_; empty if nothing is. Collective.
 std::string Mover::place_and_judge() {
   placed_ = false;
   curved_.put_back(displacement_);
@@ -293,8 +293,6 @@ void Mover::write_output(double time, int) {
                   {"scaled-jacobian", "1", Place::cells, 1, jacobian},
                   {"edge-ratio", "1", Place::cells, 1, edges}});
 }
-
-// What `method: auto` chooses.
 
 namespace {
 

@@ -40,11 +40,11 @@ class Mover final : public coupling::Participant {
   const std::optional<double>& least_jacobian() const { return least_jacobian_; }
 
   const mesh::Mesh& mesh() const { return mesh_; }
-  /// Of the points as read.
+  /// Geometry of the mesh as read.
   const mesh::Geometry& geometry() const { return geometry_; }
   /// dim values per local point, of the last solve [m].
   const std::vector<double>& displacement() const { return displacement_; }
-  /// Of the mesh of the last solve. Collective.
+  /// Measures of the mesh of the last solve. Collective.
   MeshState state();
 
  private:

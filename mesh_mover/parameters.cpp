@@ -149,19 +149,8 @@ namespace {
 using P = Parameters;
 std::string when(bool on, const char* reason) { return on ? reason : ""; }
 
-bool slips(const P& p) {
-  return std::ranges::any_of(p.boundaries,
-                             [](const auto& b) { return b.second.motion == BoundaryMotion::slip; });
-}
-
-bool joins(const P& p) {
-  return std::ranges::any_of(p.boundaries,
-                             [](const auto& b) { return b.second.motion == BoundaryMotion::periodic; });
-}
-
-bool moves(const P& p) {
-  return std::ranges::any_of(p.boundaries,
-                             [](const auto& b) { return b.second.motion == BoundaryMotion::moving; });
+bool has(const P& p, BoundaryMotion motion) {
+  return std::ranges::any_of(p.boundaries, [&](const auto& b) { return b.second.motion == motion; });
 }
 
 const std::array cards{
@@ -169,11 +158,11 @@ const std::array cards{
          [](const P& p) { return when(p.stiffening > 0, "stiffening"); },
          "a stiffness per face, computed once"},
     Card{"sliding patches", "a boundary of `type: slip`",
-         [](const P& p) { return when(slips(p), "a boundary of type slip"); },
+         [](const P& p) { return when(has(p, BoundaryMotion::slip), "a boundary of type slip"); },
          "a separate matrix for each direction that is held differently; on curved patches the nearest "
          "point of the patch for each mesh point"},
     Card{"periodic patches", "a boundary of `type: periodic`",
-         [](const P& p) { return when(joins(p), "a boundary of type periodic"); },
+         [](const P& p) { return when(has(p, BoundaryMotion::periodic), "a boundary of type periodic"); },
          "a sum over the points of these patches per component and motion"},
     Card{"elastic mesh motion", "`method: pseudo-solid`",
          [](const P& p) { return when(p.method == Method::pseudo_solid, "method: pseudo-solid"); },
@@ -188,7 +177,7 @@ const std::array cards{
          [](const P& p) { return when(p.form == Form::incremental, "form: incremental"); },
          "a second mesh; a new matrix and factors in each step"},
     Card{"prescribed motion of patches", "a boundary of `type: moving`",
-         [](const P& p) { return when(moves(p), "a boundary of type moving"); },
+         [](const P& p) { return when(has(p, BoundaryMotion::moving), "a boundary of type moving"); },
          "its expressions at the patch's points"},
     Card{"limits on cell quality", "a limit in `guard`",
          [](const P& p) { return when(p.guard.judges_shape(), "guard"); },

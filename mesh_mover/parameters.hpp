@@ -40,16 +40,16 @@ enum class Method {
   barrier,       ///< least distortion, infinite for a flat cell
   automatic,     ///< Laplacian, as long as it gives a valid mesh; barrier where it would not
 };
-/// What the displacement is relative to.
+/// Mesh that the displacement is relative to.
 enum class Form {
   automatic,
   total,        ///< the reference mesh: no drift
   incremental,  ///< the mesh of the last step: the thesis's
 };
-/// Of which mesh the volumes of (4.12) are.
+/// Mesh whose volumes (4.12) takes.
 enum class StiffeningVolumes { reference, current };
 
-/// What a moved mesh must keep; 0 or infinity: anything that is not inverted.
+/// Limits of a moved mesh; 0 or infinity allows anything that is not inverted.
 struct GuardParameters {
   double smallest_scaled_jacobian = -1;
   std::optional<double> largest_edge_ratio, largest_angle, largest_area_change, largest_shape_change;
@@ -69,7 +69,7 @@ struct Parameters {
   /// chi of thesis (4.12): stiffness V^-chi of the cells.
   double stiffening = 1.0;
   StiffeningVolumes stiffening_volumes = StiffeningVolumes::reference;
-  /// Of the pseudo-solid.
+  /// Pseudo-solid only.
   double poisson_ratio = 0;
   /// Smallest volume a cell may keep, as a fraction of its reference volume.
   double smallest_volume_ratio = 0.0;

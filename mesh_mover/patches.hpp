@@ -24,7 +24,7 @@ std::vector<Index> points_of(const mesh::Mesh& mesh, const mesh::Patch& patch);
 /// Patches of type `moving`, which the case moves.
 class MovingPatches {
  public:
-  /// By reference.
+  /// Keeps references.
   MovingPatches(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters);
   bool empty() const { return patches_.empty(); }
   /// Into `values`, dim per local point: the displacement of their points from the mesh as read [m].

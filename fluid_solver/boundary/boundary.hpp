@@ -133,8 +133,8 @@ class Boundary {
   }
   /// The structure says these masses (`impedance: structure`), for all its faces of the interface or some.
   bool asks_for_mass() const { return asks_for_mass_; }
-  /// What it said, at boundary faces [kg/m^2]; counts where it was asked. Whether one of this rank's has changed. Throws
-  /// Error if one is not above 0.
+  /// Takes the structure's masses of boundary faces [kg/m^2] where it was asked for them. Returns true if one of this rank's has
+  /// changed. Throws Error if one is not above 0.
   bool set_wall_mass(std::span<const Index> boundary_faces, std::span<const double> masses);
 
   /// Pressure that gave walls which yield their velocity, per boundary face [Pa].

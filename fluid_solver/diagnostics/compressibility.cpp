@@ -15,7 +15,7 @@ namespace couplet::fluid {
 
 namespace {
 
-// What fewer steps show is the start of a motion; what is less of the mean square is rounding.
+// Fewer steps show only the start of a motion, and a smaller share of the mean square is rounding.
 constexpr int judged_steps = 10;
 constexpr double rounding = 1e-9;
 

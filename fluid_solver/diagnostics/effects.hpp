@@ -36,7 +36,7 @@ diagnostics::EffectFinding wave_time(double rate, double size, const Sound& soun
 /// other ranks are the caller's.
 class ComplianceWatch {
  public:
-  /// Of all ranks.
+  /// Sums over all ranks.
   struct Totals {
     double swept = 0;            ///< net volume that the walls have swept [m^3]
     double pressure_volume = 0;  ///< pressure times the volume that it compresses [J]
@@ -44,7 +44,7 @@ class ComplianceWatch {
   /// After a step of length dt [s]. `swept`: volume swept since the start by each face of the moving walls [m^3].
   void add(double dt, const std::vector<double>& swept, const Totals& totals);
 
-  /// Of this rank's faces, sum over them: mean square of the volume that they sweep, of its rate, and the root mean square of
+  /// Sums over this rank's faces: mean square of the volume that they sweep, of its rate, and the root mean square of
   /// the volume; [m^6], [m^6/s^2], [m^3].
   struct Walls {
     double square = 0, rate = 0, size = 0;

@@ -11,8 +11,8 @@
 namespace couplet::fluid {
 namespace {
 
-// Of what went through an opening in either direction: that was no oscillation. Of what went through the largest: that
-// was no trickle.
+// Share of the volume that went through an opening in either direction, above which it was no oscillation, and of the volume
+// through the largest opening, above which it was no trickle.
 constexpr double always = 0.9, much = 0.1;
 
 /// Which way the fluid went through inlets and outlets over the run. Inlets through which fluid left, and outlets through

@@ -31,6 +31,20 @@ Look<D> blocked_cells;
 template <int D>
 Look<D> walls_along_themselves;
 
+/// A diagnostic without memory: what a function finds in the accepted state.
+template <int D>
+class Finds final : public diagnostics::Diagnostic {
+ public:
+  Finds(const FluidView<D>& view, Look<D>* function) : view_(view), function_(function) {}
+  void look(diagnostics::Report& report) override {
+    if (auto finding = function_(view_)) report.findings.push_back(std::move(*finding));
+  }
+
+ private:
+  FluidView<D> view_;
+  Look<D>* function_;
+};
+
 // Diagnostics with memory; nullptr where they do not apply.
 template <int D>
 using Make = std::shared_ptr<diagnostics::Diagnostic>(const FluidView<D>&);

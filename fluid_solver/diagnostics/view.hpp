@@ -48,19 +48,4 @@ std::optional<double> pressure_range(const FluidView<D>& view);
 template <int D>
 void add_diagnostics(const FluidView<D>& view, diagnostics::Diagnostics& all);
 
-/// A diagnostic without memory: what a function finds in the accepted state.
-template <int D>
-class Finds final : public diagnostics::Diagnostic {
- public:
-  using Function = std::optional<log::Finding>(const FluidView<D>&);
-  Finds(const FluidView<D>& view, Function* function) : view_(view), function_(function) {}
-  void look(diagnostics::Report& report) override {
-    if (auto finding = function_(view_)) report.findings.push_back(std::move(*finding));
-  }
-
- private:
-  FluidView<D> view_;
-  Function* function_;
-};
-
 }  // namespace couplet::fluid

@@ -89,6 +89,14 @@ void set_turn(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const 
   }
 }
 
+std::vector<Vec3> face_corners(const mesh::Mesh& mesh, const mesh::Patch& patch,
+                               std::span<const Vec3> points) {
+  std::vector<Vec3> corners;
+  for (Index f = patch.first; f < patch.first + patch.count; ++f)
+    for (const Index v : mesh.face_points[f]) corners.push_back(points[v]);
+  return corners;
+}
+
 /// Adds the walls whose velocity the case gives; the others were added before.
 template <int D>
 void Boundary<D>::add_turn(const mesh::Mesh& mesh, std::span<const Vec3> points, double t,
@@ -96,9 +104,7 @@ void Boundary<D>::add_turn(const mesh::Mesh& mesh, std::span<const Vec3> points,
   for (const GivenVelocity<D>& given : velocity_patches_) {
     if (!given.turns()) continue;
     const mesh::Patch& patch = given.patch();
-    std::vector<Vec3> corners;
-    for (Index f = patch.first; f < patch.first + patch.count; ++f)
-      for (const Index v : mesh.face_points[f]) corners.push_back(points[v]);
+    const std::vector<Vec3> corners = face_corners(mesh, patch, points);
     std::vector<Vec3> velocities(corners.size(), Vec3::Zero());
     Vectors<D> w(corners.size(), Vec<D>::Zero());
     given.evaluate(t, corners, w.data());
@@ -126,10 +132,8 @@ double set_body_start(const mesh::Mesh& mesh, std::span<const Vec3> points, cons
   const double length = io::mesh_size(mesh, points);
   double largest = 0;
   for (const mesh::Patch* patch : boundary.body_patches()) {
-    std::vector<Vec3> corners;
-    for (Index f = patch->first; f < patch->first + patch->count; ++f)
-      for (const Index v : mesh.face_points[f]) corners.push_back(points[v]);
-    const std::vector<Vec3> velocities = prescribed.starting_velocities(corners, time, length);
+    const std::vector<Vec3> velocities =
+        prescribed.starting_velocities(face_corners(mesh, *patch, points), time, length);
     if (!turn.empty()) set_turn<D>(mesh, *patch, points, velocities, turn);
     set_face_means<D>(mesh, *patch, velocities, w);
     for (Index f = patch->first; f < patch->first + patch->count; ++f)

@@ -46,8 +46,8 @@ template <int D>
 void add_centrifugal(const RotatingFrame<D>& frame, const Placement<D>& at, double factor,
                      PressureLevel<D>& level);
 
-/// What a wall's motion along itself and its turning add to the friction on it: the integral of (grad u)^T.n over
-/// a face [m^2/s] from the velocities of its corners alone. Where div u = 0, (grad u)^T.n = (n x grad) x u, and by
+/// Integral of (grad u)^T.n over a face [m^2/s] from the velocities of its corners alone: the share of friction on a wall that
+/// comes from its motion along itself and its rotation. Where div u = 0, (grad u)^T.n = (n x grad) x u, and by
 /// Stokes' theorem its integral is that of dl x u around the face: exact for linear velocities (w x r gives -w x S),
 /// and the edges of a closed wall cancel. `corners` [m], `velocities` [m/s]: one after the other around the face, as
 /// the mesh has them; in two dimensions the places do not count.
@@ -58,6 +58,10 @@ Vec<D> turn_of(std::span<const Vec3> corners, std::span<const Vec3> velocities);
 template <int D>
 void set_turn(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const Vec3> points,
               std::span<const Vec3> velocities, Vectors<D>& turn);
+
+/// Corners of the faces of a patch, one after the other around each face.
+std::vector<Vec3> face_corners(const mesh::Mesh& mesh, const mesh::Patch& patch,
+                               std::span<const Vec3> points);
 
 /// Sets w at the faces of a patch to the means of the velocities of their corners, which stand face by face.
 template <int D>

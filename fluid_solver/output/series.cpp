@@ -85,7 +85,7 @@ struct PatchFlux {
   double pressure = 0;               ///< mean over the area [Pa]
 };
 
-/// Of all patches with faces; none before the first step. Collective.
+/// Returns the fluxes of all patches with faces; none before the first step. Collective.
 template <int D>
 std::vector<PatchFlux<D>> patch_fluxes(const Fluid<D>& fluid) {
   const mesh::Mesh& mesh = fluid.mesh();

@@ -10,7 +10,7 @@
 
 namespace couplet::fluid {
 
-/// What the cards look at: the parameters, and what the job around the fluid decides.
+/// Scene that the cards look at: the parameters, and what the job around the fluid decides.
 struct FluidScene {
   FluidParameters parameters;
   bool moving_mesh = false;  ///< the job has a mesh mover

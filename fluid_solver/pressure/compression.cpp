@@ -99,19 +99,6 @@ class Compression final : public Term<D> {
   std::vector<double> past_, storage_;  // per owned cell [Pa/s], [m]; nothing is stored in closed cells
 };
 
-}  // namespace
-
-template <int D>
-std::unique_ptr<Term<D>> make_compression(const Scene<D>& scene, const Step<D>& step,
-                                          const Prediction<D>& prediction) {
-  return std::make_unique<Compression<D>>(scene, step, prediction);
-}
-
-template std::unique_ptr<Term<2>> make_compression<2>(const Scene<2>&, const Step<2>&, const Prediction<2>&);
-template std::unique_ptr<Term<3>> make_compression<3>(const Scene<3>&, const Step<3>&, const Prediction<3>&);
-
-namespace {
-
 // Tolerance of y. Its error is missing in the volume's balance.
 constexpr double response_tolerance = 1e-10;
 // Share of the faces' conductance. Cells that follow the volume's pressure up to this share do not determine it.
@@ -243,6 +230,15 @@ class UpstreamVolume final : public Term<D> {
 };
 
 }  // namespace
+
+template <int D>
+std::unique_ptr<Term<D>> make_compression(const Scene<D>& scene, const Step<D>& step,
+                                          const Prediction<D>& prediction) {
+  return std::make_unique<Compression<D>>(scene, step, prediction);
+}
+
+template std::unique_ptr<Term<2>> make_compression<2>(const Scene<2>&, const Step<2>&, const Prediction<2>&);
+template std::unique_ptr<Term<3>> make_compression<3>(const Scene<3>&, const Step<3>&, const Prediction<3>&);
 
 template <int D>
 std::unique_ptr<Term<D>> make_upstream_volume(const Scene<D>& scene, const Step<D>& step,

@@ -72,7 +72,7 @@ class PressureEquation {
   bool direct_;         // small 2-D meshes: kept Cholesky factors
   std::unique_ptr<linalg::CellSolver> solver_;
   void fill(std::span<const double> coefficients);
-  // Of a moving mesh: the matrix's diagonal per owned cell, one entry a face, then the couplings; and the preconditioner with those
+  // Moving mesh only: the matrix's diagonal per owned cell, one entry a face, then the couplings; and the preconditioner with those
   // that it was made from: now, and as the accepted level had it.
   std::vector<double> values_;
   struct Lagging {

@@ -137,8 +137,8 @@ template void check_together<3>(const mesh::Mesh&, const Boundary<3>&, FluidPara
 
 namespace {
 
-// Of the area of an interface: up to here it surrounds a body (the rest is where that is clamped), beyond it
-// is the wall of a cavity.
+// Share of an interface's area that faces one way. Up to here it surrounds a body, which is clamped elsewhere; beyond, it is the
+// wall of a cavity.
 constexpr double largest_open_share = 0.3;
 
 /// Share of the interface's area that faces one way, and the area [m^2].

@@ -16,14 +16,14 @@ namespace {
 
 // Share of what passes the boundaries that may be wrong: their rates are means of two levels.
 constexpr double boundary_share = 0.25;
-// Of the pressure's level: what a solver whose tolerance is relative to it may leave. It moves the fluid.
+// Share of the pressure's level that a solver whose tolerance is relative to it may leave. It moves the fluid.
 constexpr double level_share = 1e-4;
 // Excess, in kinetic energies, that is called a blow-up.
 constexpr double largest_excess = 0.5;
 // omega h^2/nu from which friction no longer holds what a turning frame makes (docs/theory.md, frame that turns).
 constexpr double fast_frame = 4;
-// What a sub-step leaves of the energy that an excess is measured by: a flow that turns back is at rest for
-// some steps, where its own energy is no measure.
+// Share of the reference energy that remains after a sub-step. A flow that turns back is at rest for some steps, where its own
+// energy is no measure.
 constexpr double remembered = 0.85;
 
 /// sum V |u|^2, in four partial sums, so that additions do not wait for each other.

@@ -25,7 +25,7 @@ struct EnergyStep {
   const PressureLevel<D>& level;     ///< at t^{n+1/2}
 };
 
-/// What a sub-step did to the kinetic energy.
+/// Change of the kinetic energy in a sub-step.
 struct EnergyJudgement {
   EnergyLedger ledger;         ///< after it
   double gain = 0;             ///< of the kinetic energy in this sub-step [J]

@@ -146,8 +146,8 @@ void check_together(const mesh::Mesh& mesh, const Boundary<D>& boundary, FluidPa
 template <int D>
 void check_cavity(const Fluid<D>& fluid, coupling::Scheme scheme);
 
-/// What the given velocities let into the fluid at t^{n+1} and t^n [m^3/s], for each of the interface's faces (face
-/// by face, two values) its share by area: the sums are the inflows. Collective.
+/// Shares by area of the interface's faces in the inflow of the given velocities at t^{n+1} and t^n [m^3/s], two values per face. Their
+/// sums are the inflows. Collective.
 template <int D>
 std::vector<double> inflow_shares(const Fluid<D>& fluid, const std::vector<Index>& faces, double time,
                                   double dt);
