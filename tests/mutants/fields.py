@@ -32,7 +32,7 @@ FILES = {
     ],
     "ledgers": [
         *_of("solid_solver", "ledger"), *_of("coupler", "mechanics watch_integrals"), *_of("fluid_solver", "energy_guard"),
-        *_of("plate_modal/diagnostics", "load mesh truncation"), *_of("thermocline", "tank report"),
+        *_of("plate_modal/diagnostics", "load mesh truncation"), *_of("thermocline", "tank report front_error"),
     ],
     "loads": [
         *_of("fluid_solver", "loads turning_walls cavity rotating_frame"),

@@ -220,10 +220,6 @@ void PackedBed::filler_temperature(std::vector<double>& mean) const {
     if (run.layer.porosity >= 1) std::copy_n(fluid_.begin() + run.first, run.count, mean.begin() + run.first);
 }
 
-double PackedBed::reynolds(int cell, double mass_flow) const {
-  return c_->closures[c_->grid.layer[cell]].reynolds(fluid_[cell], std::abs(mass_flow) / c_->area);
-}
-
 Inversion inversion_of(const PackedBed& bed) {
   const std::span<const double> fluid = bed.fluid();
   const BedGrid& grid = bed.grid();

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+/// Materials of thesis table 5.1 with its misprints mended, the insulation and foundation materials of a
+/// tank, and materials of the user's own. Temperatures in K, everything in SI.
 
 #include <functional>
 #include <optional>
@@ -9,8 +11,6 @@
 #include "common/config/section.hpp"
 #include "thermocline/material/numerics.hpp"
 
-/// Materials of thesis table 5.1 with its misprints mended, the insulation and foundation materials of a
-/// tank, and materials of the user's own. Temperatures in K, everything in SI.
 namespace couplet::thermocline {
 
 // Unit and usual magnitudes of quantities that several elements have.

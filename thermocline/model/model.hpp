@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <limits>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "thermocline/model/parameters.hpp"
@@ -29,22 +27,24 @@ struct TankSetup {
 /// Foundation and soil as layers of a column.
 std::vector<ColumnLayer> ground_layers(const GroundParameters& parameters);
 
-enum class Element { bed, preparation, shell, insulation, ullage, ground, mechanics };
-inline constexpr std::array<const char*, 7> element_names{
-    "bed", "closures", "shell", "insulation", "ullage", "ground", "filler mechanics"};
-
-/// Seconds spent in each element and the work done; for the closing table.
-struct Speed {
-  std::array<double, element_names.size()> seconds{};
-  double cell_steps = 0;
-  long bed_steps = 0;
-};
-
 /// Heat that crossed the tank's borders since the start [J].
 struct Ledger {
   double flow = 0, side = 0, roof = 0, ground = 0;  ///< flow: into the bed; the others are losses
   double bed = 0;                                   ///< all that went into the bed
   double turnover = 0;                              ///< sum of the absolute values
+  double losses() const { return side + roof + ground; }
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(flow, side, roof, ground, bed, turnover);
+  }
+};
+
+/// What happened in a step of the simulation.
+struct TankStep {
+  std::vector<BedStep> bed;  ///< steps of the bed
+  /// Coldest and hottest fluid after any exchange of the elements [K], and the largest inversion.
+  double coldest = std::numeric_limits<double>::infinity(), hottest = 0;
+  Inversion inversion;
 };
 
 /// The elements of a tank and how they exchange heat. Explicit: over an exchange step each element sees the
@@ -56,9 +56,8 @@ class TankModel {
  public:
   TankModel(std::shared_ptr<const TankSetup> setup, const Weather& weather);
 
-  /// From t to t + dt. Appends the steps of the bed.
-  void advance(double t, double dt, FlowControl& control, const Weather& weather, std::vector<BedStep>& steps,
-               Speed& speed);
+  /// From t to t + dt.
+  TankStep advance(double t, double dt, FlowControl& control, const Weather& weather);
 
   const TankSetup& setup() const { return *setup_; }
   const PackedBed& bed() const { return bed_; }
@@ -83,45 +82,46 @@ class TankModel {
   /// Heat content of all elements at `t` above the temperature they started from [J].
   double energy(double t) const;
   /// Errors of the energy balance of the tank, and of the bed alone, since the start [J].
-  double imbalance(double t) const { return energy(t) - start_energy_ - (ledger_.flow - losses()); }
+  double imbalance(double t) const { return energy(t) - start_energy_ - (ledger_.flow - ledger_.losses()); }
   double bed_imbalance() const { return bed_.energy(reference_) - start_bed_ - ledger_.bed; }
-  double losses() const { return ledger_.side + ledger_.roof + ledger_.ground; }
-  /// Largest inversion since the start [K] and when and where it was.
-  struct Worst {
-    double depth = 0, z = 0, time = 0;
-  };
-  const Worst& inversion() const { return inversion_; }
-  /// Coldest and hottest that the fluid has been [K].
-  std::pair<double, double> fluid_range() const { return {coldest_, hottest_}; }
-  /// First time that the fluid left its limits: a sentence, or empty. Cleared by reading.
-  std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
-
-  /// State by name, for checkpoints.
-  std::vector<std::pair<std::string, std::vector<double>>> state() const;
-  void restore(const std::function<std::vector<double>(const std::string&)>& read);
+  /// The whole state, for checkpoints.
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(bed_, side_, soil_, ledger_, reference_, start_energy_, start_bed_, from_liquid_,
+            wall_to_ullage_);
+    visit_values(numbers, owed_, into_blanket_);
+    if (shell_) visit_values(numbers, shell_->temperature());
+    if (mechanics_) numbers(*mechanics_);
+    if (contact_) numbers(*contact_);
+    if (insulation_) visit_values(numbers, insulation_->temperature());
+    if (roof_) visit_values(numbers, roof_->temperature());
+    if (ground_) visit_values(numbers, ground_->temperature());
+    if (ullage_) numbers(*ullage_);
+  }
+  /// Makes everything that follows from a state that was loaded.
+  void resume();
 
  private:
-  /// Calls f with each name and its parts.
-  template <class Self, class F>
-  static void visit(Self& self, F&& f);
-  struct Held {                         // a flux held until a time
-    double until = 0, in = 0, out = 0;  // [s], [W]
+  /// A flux held until a time [s]: what it takes from inside and gives outside [W].
+  struct Held {
+    double until = 0, in = 0, out = 0;
+    template <class Numbers>
+    void visit(Numbers& numbers) {
+      numbers(until, in, out);
+    }
   };
-  double exchange(double t, double longest, FlowControl& control, const Weather& weather,
-                  std::vector<BedStep>& steps, Speed& speed);
+  double exchange(double t, double longest, FlowControl& control, const Weather& weather, TankStep& step);
   double stable_exchange() const;
   double cell_capacity(int cell) const;
   void step_insulation(double t, double h, const Ambient& air);
   void step_ground(double t, double h);
   void step_ullage(double h, const Ambient& air);
   void step_shell(double h);
-  void step_bed(double t, double end, FlowControl& control, const Weather& weather,
-                std::vector<BedStep>& steps, Speed& speed);
+  void step_bed(double t, double end, FlowControl& control, const Weather& weather, TankStep& step);
   void update_pressure();
   void update_stress();
   const InnerPressure& pressure() const { return pressure_ ? *pressure_ : setup_->pressure; }
-  void watch(double t);
-  void watch_wall(double t);
+  void record_fluid(double t, TankStep& step) const;
   double upper_wall() const;
 
   std::shared_ptr<const TankSetup> setup_;
@@ -143,11 +143,6 @@ class TankModel {
   double from_liquid_ = 0, wall_to_ullage_ = 0, ullage_coefficient_ = 0;
   double reference_ = 0, start_energy_ = 0, start_bed_ = 0;
   Ledger ledger_;
-  Worst inversion_;
-  double coldest_ = std::numeric_limits<double>::infinity(), hottest_ = 0;
-  bool warned_hot_ = false, warned_cold_ = false, warned_metal_ = false, warned_range_ = false,
-       warned_fluid_ = false;
-  std::vector<std::string> warnings_;
 };
 
 }  // namespace couplet::thermocline

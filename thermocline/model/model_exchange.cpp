@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One exchange step of the tank: the elements in turn.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -9,23 +8,6 @@
 #include "thermocline/model/model.hpp"
 
 namespace couplet::thermocline {
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-/// Adds the time until the end of the scope to an element.
-class Stopwatch final {
- public:
-  Stopwatch(Speed& speed, Element element) : seconds_(speed.seconds[std::size_t(element)]) {}
-  ~Stopwatch() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
-  Stopwatch(const Stopwatch&) = delete;
-
- private:
-  double& seconds_;
-  Clock::time_point start_ = Clock::now();
-};
-
-}  // namespace
 
 /// Fluid and filler of a cell of the bed [J/(m^2 K)].
 double TankModel::cell_capacity(int i) const {
@@ -57,33 +39,26 @@ double TankModel::stable_exchange() const {
   return step;
 }
 
-double TankModel::exchange(double t, double h, FlowControl& control, const Weather& weather,
-                           std::vector<BedStep>& steps, Speed& speed) {
+double TankModel::exchange(double t, double h, FlowControl& control, const Weather& weather, TankStep& step) {
   const double tiny = 1e-9 * h;
   const Ambient air = weather.at(t + h / 2);
   if (insulation_) {
-    const Stopwatch watch(speed, Element::insulation);
     if (side_.until <= t + tiny) step_insulation(t, h, air);
     if (side_.until > t + tiny) h = std::min(h, side_.until - t);
   }
   if (ground_) {
-    const Stopwatch watch(speed, Element::ground);
     if (soil_.until <= t + tiny) step_ground(t, h);
     if (soil_.until > t + tiny) h = std::min(h, soil_.until - t);
   }
-  if (ullage_) {
-    const Stopwatch watch(speed, Element::ullage);
-    step_ullage(h, air);
-  }
+  if (ullage_) step_ullage(h, air);
   // Heat that the shell took in the step before: the wall sees the bed at the end of each step, so that both have
   // the same time when the filler meets the wall; the bed, far heavier, pays one step later.
   for (std::size_t i = 0; i < source_.size(); ++i) source_[i] = -owed_[i] / h;
   source_.back() -= from_liquid_;
   source_.front() -= soil_.in;
   bed_.set_source(source_);
-  step_bed(t, t + h, control, weather, steps, speed);
+  step_bed(t, t + h, control, weather, step);
   if (shell_) {
-    const Stopwatch watch(speed, Element::shell);
     step_shell(h);
     update_pressure();
   }
@@ -91,11 +66,10 @@ double TankModel::exchange(double t, double h, FlowControl& control, const Weath
   ledger_.ground += soil_.out * h;
   ledger_.turnover += (std::abs(side_.out) + std::abs(soil_.out)) * h;
   if (mechanics_) {
-    const Stopwatch watch(speed, Element::mechanics);
     bed_.filler_temperature(filler_);
     mechanics_->update(shell_->temperature(), filler_);
   }
-  watch(t + h);
+  record_fluid(t + h, step);
   return h;
 }
 
@@ -202,8 +176,7 @@ void refuse_hopeless_flow(double mass_flow, double limit, double span) {
 
 }  // namespace
 
-void TankModel::step_bed(double t, double end, FlowControl& control, const Weather& weather,
-                         std::vector<BedStep>& steps, Speed& speed) {
+void TankModel::step_bed(double t, double end, FlowControl& control, const Weather& weather, TankStep& step) {
   const double tiny = 1e-9 * (end - t);
   bool prepared = false;
   // With a density of temperature the capacities are renewed so often that none changes by a thousandth.
@@ -222,14 +195,12 @@ void TankModel::step_bed(double t, double end, FlowControl& control, const Weath
     const bool other_flow = (m == 0) != (now == 0) || m * now < 0 || std::abs(m - now) > 0.1 * std::abs(now);
     const bool too_long = bed_.prepared().dt > 1.05 * limit || t + bed_.prepared().dt > until + tiny;
     if (!prepared || other_flow || too_long) {
-      const Stopwatch watch(speed, Element::preparation);
       const double steps_left = std::ceil((until - t) / limit * (1 - 1e-9));
       refuse_hopeless_flow(m, limit, until - t);
       bed_.prepare((until - t) / std::max(1.0, steps_left), m);
       prepared = true;
     }
     s.dt = bed_.prepared().dt;
-    const Stopwatch watch(speed, Element::bed);
     const PackedBed::StepHeat heat = bed_.step(m, s.flow.inlet_temperature);
     s.outlet_temperature = heat.outlet;
     ledger_.flow += heat.by_flow;
@@ -240,9 +211,7 @@ void TankModel::step_bed(double t, double end, FlowControl& control, const Weath
       s.pressure_loss = loss.loss();
       s.pump_power = pump_power(loss, setup_->fluid, bed_.bottom(), m, setup_->parameters.pump->efficiency);
     }
-    steps.push_back(s);
-    speed.cell_steps += bed_.grid().size();
-    ++speed.bed_steps;
+    step.bed.push_back(s);
     t += s.dt;
   }
   if (setup_->parameters.bed.mix_inversions) bed_.mix_inversions();

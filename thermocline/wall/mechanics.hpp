@@ -66,9 +66,9 @@ class FillerMechanics : public FillerOnWall {
   void update(std::span<const double> wall, std::span<const double> grains);
   int ever_passive() const;  ///< rings that have yielded
 
-  template <class Self, class F>
-  static void visit(Self& self, F&& f) {
-    f(self.strain_, self.grains_, self.hoop_, self.lateral_, self.contact_, self.slip_);
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    visit_values(numbers, strain_, grains_, hoop_, lateral_, contact_, slip_);
   }
 
  private:
@@ -102,9 +102,10 @@ class ContactMechanics : public FillerOnWall {
   void update(std::span<const double> radial, std::span<const double> wall, std::span<const double> grains);
   std::span<const double> pressure() const { return total_; }  ///< p_f + p_s [Pa]
 
-  template <class Self, class F>
-  static void visit(Self& self, F&& f) {
-    f(self.begun_, self.strain_, self.slip_, self.grains_, self.lateral_, self.given_wall_, self.contact_);
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(begun_);
+    visit_values(numbers, strain_, slip_, grains_, lateral_, given_wall_, contact_);
   }
   /// Computes the pressure and the stress that follow from the state.
   void finish();

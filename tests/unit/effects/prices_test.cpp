@@ -12,7 +12,7 @@
 #include "mesh_mover/effect_cards.hpp"
 #include "plate_modal/effect_cards.hpp"
 #include "solid_solver/effects/effect_cards.hpp"
-#include "thermocline/judge/effect_cards.hpp"
+#include "thermocline/effect_cards.hpp"
 
 namespace couplet::testing::prices_test {
 using namespace effects;

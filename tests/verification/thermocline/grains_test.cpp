@@ -25,9 +25,9 @@ Sphere cool(double biot, int shells, double dt_fourier, double first_fourier) {
   p.initial_temperature = 300;
   PackedBed bed(p, constant_fluid(1e12, 1e6, 0.5), filler, 1);  // a fluid that never warms
   const std::vector<double> cold(1, 300);
-  std::vector<double> state = numbers_of(bed);
-  for (std::size_t j = 1; j < state.size(); ++j) state[j] = 400;
-  set_numbers(state, "bed", bed);
+  std::vector<double> state = base::to_numbers(bed);
+  for (int j = 1; j <= shells; ++j) state[std::size_t(j)] = 400;
+  base::from_numbers(state, bed, "bed");
   bed.resume();
   const auto table = read_columns("sphere_biot.csv");
   Sphere result;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "thermocline/judge/effect_cards.hpp"
+#include "thermocline/effect_cards.hpp"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "common/effects/effects.hpp"
-#include "thermocline/judge/elsewhere.hpp"
+#include "thermocline/model/elements.hpp"
 
 namespace couplet::thermocline {
 

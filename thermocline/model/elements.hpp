@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <memory>
+#include <vector>
 
+#include "common/app/case/check_files.hpp"
 #include "common/app/program.hpp"
 #include "common/coupling/participant.hpp"
 #include "thermocline/model/parameters.hpp"
@@ -45,6 +48,13 @@ struct ElementParameters {
   BlanketElementParameters blanket;
 };
 void declare(config::Section& section, ElementParameters& parameters);
+
+/// The parameters with the rows of flow.file. Throws Error with file:line.
+TankParameters with_files(TankParameters parameters, const std::filesystem::path& case_folder);
+/// For --check: weather and rows of flows that are missing or broken, a sun that nobody can place.
+std::vector<app::ProblemOfKey> problems_of_files(const ElementParameters& parameters,
+                                                 const std::filesystem::path& case_folder);
+
 std::unique_ptr<coupling::Participant> make_element(const ElementParameters& parameters,
                                                     const app::ParticipantContext& context);
 
