@@ -26,8 +26,6 @@ MUTANTS = [
            "half_slope(2 * (t[0] - inlet), t[1] - t[0])", "half_slope(t[0] - inlet, t[1] - t[0])", "verification_thermocline_bed"),
     Mutant("Wakao's 1.1 is 1.0 where the bed takes it", "thermocline/bed/closures.cpp",
            "n.film_flow = 1.1 * k", "n.film_flow = 1.0 * k", "verification_thermocline_grains"),
-    Mutant("Wakao's 1.1 is 1.0 in the formula", "thermocline/bed/closures.cpp",
-           "return 2 + 1.1 * std::cbrt", "return 2 + 1.0 * std::cbrt", "verification_thermocline_grains"),
     # Guards: each taken away must be missed.
     Mutant("the fluid's energy guard is silent", "fluid_solver/step/fractional_step.cpp",
            "const bool created = judgement_.energy.out_of_bounds", "const bool created = false && judgement_.energy.out_of_bounds",

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
 #include "thermocline/diagnostics/tank_diagnostic.hpp"
 
@@ -14,7 +15,8 @@ class WallMechanics final : public TankDiagnostic {
   using TankDiagnostic::TankDiagnostic;
   void conclude(diagnostics::Report& report) override {
     const TankModel& m = view_.model;
-    if (!m.mechanics() && !m.contact()) {
+    const FillerOnWall* filler = m.filler_on_wall();
+    if (!filler) {
       const auto [low, high] = std::ranges::minmax(m.shell()->temperature());
       const Steel& steel = *m.setup().steel;
       const double strain =
@@ -25,7 +27,7 @@ class WallMechanics final : public TankDiagnostic {
           celsius(high), celsius(low), 1e-6 * steel.youngs_modulus(low) * std::max(0.0, strain)));
       return;
     }
-    const auto slip = m.mechanics() ? m.mechanics()->slip() : m.contact()->slip();
+    const std::span<const double> slip = filler->slip();
     const std::size_t i = std::max_element(slip.begin(), slip.end()) - slip.begin();
     report.sentences.push_back(fmt::format(
         "filler: {} of {} rings have reached the passive limit; max cumulative displacement of the grains by "

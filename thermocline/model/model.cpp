@@ -36,27 +36,27 @@ TankModel::TankModel(std::shared_ptr<const TankSetup> setup, const Weather& weat
   const Ambient air = weather.at(0);
   const int n = bed_.grid().size();
   bed_.prepare(1, 0);
-  reference_ = bed_.bottom();
-  owed_.assign(n, 0.0), source_.assign(n, 0.0);
+  ledger_.reference = bed_.bottom();
+  owed_.assign(n, 0.0), work_.source.assign(n, 0.0);
   if (p.shell) {
     const int rings = setup_->rings->size();
     std::vector<double> wall(rings, bed_.top());
     std::copy(bed_.fluid().begin(), bed_.fluid().end(), wall.begin());
-    shell_.emplace(*setup_->rings, *setup_->steel);
-    shell_->set_temperature(wall);
-    into_blanket_.assign(rings, 0.0), from_wall_.assign(rings, 0.0);
+    wall_.emplace(*setup_->rings, *setup_->steel);
+    wall_->shell.set_temperature(wall);
+    into_blanket_.assign(rings, 0.0);
     if (p.insulation) {
       const double radius = p.diameter / 2 + setup_->rings->thickness.front();
       insulation_.emplace(*p.insulation, setup_->rings->dz, radius);
       insulation_->set_steady(wall, air.temperature);
     }
     update_pressure();
-    hoop_ = active_hoop(*setup_->rings, setup_->filler, pressure());
-    bed_.filler_temperature(filler_);
+    bed_.filler_temperature(work_.filler);
     if (p.external_wall)
-      contact_.emplace(*setup_->rings, *setup_->steel, setup_->filler, pressure(), wall, filler_);
+      wall_->contact.emplace(*setup_->rings, *setup_->steel, setup_->filler, pressure(), wall, work_.filler);
     else if (p.mechanics)
-      mechanics_.emplace(*setup_->rings, *setup_->steel, setup_->filler, pressure(), wall, filler_);
+      wall_->mechanics.emplace(*setup_->rings, *setup_->steel, setup_->filler, pressure(), wall,
+                               work_.filler);
     update_stress();
   }
   if (p.ullage) {
@@ -74,27 +74,29 @@ TankModel::TankModel(std::shared_ptr<const TankSetup> setup, const Weather& weat
     ground_.emplace(ground_layers(*p.ground), bed_.area());
     ground_->set_steady(bed_.bottom(), deep_temperature_);
   }
-  start_energy_ = energy(0);
-  start_bed_ = bed_.energy(reference_);
+  ledger_.start = energy(0);
+  ledger_.start_of_bed = bed_.energy(ledger_.reference);
 }
 
 void TankModel::resume() {
   bed_.resume();
-  if (shell_) update_pressure();
-  if (contact_) contact_->finish();
+  if (!wall_) return;
+  update_pressure();
+  if (wall_->contact) wall_->contact->finish();
   update_stress();
 }
 
 double TankModel::energy(double t) const {
-  double sum = bed_.energy(reference_);
+  const double reference = ledger_.reference;
+  double sum = bed_.energy(reference);
   for (const double owed : owed_) sum -= owed;
   // A held flux is already in the temperatures of the insulation or the ground until its step ends.
   const auto ahead = [&](const Held& h) { return h.until > t ? (h.in - h.out) * (h.until - t) : 0; };
-  if (shell_) sum += shell_->energy(reference_);
-  if (insulation_) sum += insulation_->energy(reference_) - ahead(side_);
-  if (roof_) sum += roof_->energy(reference_);
-  if (ullage_) sum += ullage_->energy(reference_);
-  if (ground_) sum += ground_->energy(reference_) - ahead(soil_);
+  if (wall_) sum += wall_->shell.energy(reference);
+  if (insulation_) sum += insulation_->energy(reference) - ahead(side_);
+  if (roof_) sum += roof_->energy(reference);
+  if (ullage_) sum += ullage_->energy(reference);
+  if (ground_) sum += ground_->energy(reference) - ahead(bottom_);
   return sum;
 }
 
@@ -113,8 +115,8 @@ TankStep TankModel::advance(double t, double dt, FlowControl& control, const Wea
 }
 
 void TankModel::update_contact(std::span<const double> radial) {
-  bed_.filler_temperature(filler_);
-  contact_->update(radial, shell_->temperature(), filler_);
+  bed_.filler_temperature(work_.filler);
+  wall_->contact->update(radial, wall_->shell.temperature(), work_.filler);
   update_stress();
 }
 
@@ -128,20 +130,17 @@ void TankModel::hold_side(std::span<const double> from_rings) {
 void TankModel::update_pressure() {
   if (!bed_.has_real_density()) return;
   const TankParameters& p = setup_->parameters;
-  pressure_ = inner_pressure(*setup_->rings, bed_.grid(), setup_->fluid, setup_->filler,
-                             p.ullage ? p.ullage->gas.gauge_pressure : 0, bed_.fluid());
-  if (mechanics_) mechanics_->load(*pressure_);
-  if (contact_) contact_->load(*pressure_);
-  if (!mechanics_ && !contact_) hoop_ = active_hoop(*setup_->rings, setup_->filler, *pressure_);
+  wall_->pressure = inner_pressure(*setup_->rings, bed_.grid(), setup_->fluid, setup_->filler,
+                                   p.ullage ? p.ullage->gas.gauge_pressure : 0, bed_.fluid());
+  if (FillerOnWall* filler = wall_->filler()) filler->load(*wall_->pressure);
 }
 
 void TankModel::update_stress() {
-  if (!shell_) return;
-  const std::span<const double> hoop = mechanics_ ? mechanics_->hoop()
-                                       : contact_ ? contact_->hoop()
-                                                  : std::span<const double>(hoop_);
-  wall_stress(*setup_->rings, *setup_->steel, pressure(), setup_->parameters.shell->roof_pressure, hoop,
-              shell_->temperature(), stress_);
+  if (!wall_) return;
+  std::vector<double> active;
+  if (!wall_->filler()) active = active_hoop(*setup_->rings, setup_->filler, pressure());
+  wall_stress(*setup_->rings, *setup_->steel, pressure(), setup_->parameters.shell->roof_pressure,
+              wall_->filler() ? wall_->filler()->hoop() : active, wall_->shell.temperature(), wall_->stress);
 }
 
 void TankModel::record_fluid(double t, TankStep& step) const {

@@ -32,10 +32,12 @@ struct Ledger {
   double flow = 0, side = 0, roof = 0, ground = 0;  ///< flow: into the bed; the others are losses
   double bed = 0;                                   ///< all that went into the bed
   double turnover = 0;                              ///< sum of the absolute values
+  double reference = 0;                             ///< temperature from which heat contents count [K]
+  double start = 0, start_of_bed = 0;  ///< heat contents at the start, of the tank and of its bed
   double losses() const { return side + roof + ground; }
   template <class Numbers>
   void visit(Numbers& numbers) {
-    numbers(flow, side, roof, ground, bed, turnover);
+    numbers(flow, side, roof, ground, bed, turnover, reference, start, start_of_bed);
   }
 };
 
@@ -61,38 +63,39 @@ class TankModel {
 
   const TankSetup& setup() const { return *setup_; }
   const PackedBed& bed() const { return bed_; }
-  const std::optional<Shell>& shell() const { return shell_; }
-  const std::optional<FillerMechanics>& mechanics() const { return mechanics_; }
-  const std::optional<ContactMechanics>& contact() const { return contact_; }
+  /// The wall and what the filler does to it; nullptr if the tank has no such element.
+  const Shell* shell() const { return wall_ ? &wall_->shell : nullptr; }
+  const FillerOnWall* filler_on_wall() const { return wall_ ? wall_->filler() : nullptr; }
+  const ContactMechanics* contact() const { return wall_ && wall_->contact ? &*wall_->contact : nullptr; }
   /// With an external wall: the filler's pressure at the end of a step from the wall's radial displacement
   /// [m] at its begin, a value a ring; empty if the wall has not answered yet.
   void update_contact(std::span<const double> radial);
   /// With elements elsewhere: the heat that they take from now on [W], of each ring and of the bottom. An
   /// empty list leaves what was.
   void hold_side(std::span<const double> from_rings);
-  void hold_bottom(double heat) { soil_.in = soil_.out = heat; }
+  void hold_bottom(double heat) { bottom_.in = bottom_.out = heat; }
   /// Coefficient between the lowest cell and the plate below it [W/(m^2 K)], and the longest time [s] for which a flux
   /// made from it may be held.
   double plate_coefficient() const;
   double stable_ground() const;
-  const WallStress& stress() const { return stress_; }
+  const WallStress& stress() const { return wall_->stress; }  ///< of a tank with a shell
   const std::optional<Column>& ground() const { return ground_; }
-  const std::optional<Ullage>& ullage() const { return ullage_; }
   const Ledger& ledger() const { return ledger_; }
   /// Heat content of all elements at `t` above the temperature they started from [J].
   double energy(double t) const;
   /// Errors of the energy balance of the tank, and of the bed alone, since the start [J].
-  double imbalance(double t) const { return energy(t) - start_energy_ - (ledger_.flow - ledger_.losses()); }
-  double bed_imbalance() const { return bed_.energy(reference_) - start_bed_ - ledger_.bed; }
+  double imbalance(double t) const { return energy(t) - ledger_.start - (ledger_.flow - ledger_.losses()); }
+  double bed_imbalance() const { return bed_.energy(ledger_.reference) - ledger_.start_of_bed - ledger_.bed; }
   /// The whole state, for checkpoints.
   template <class Numbers>
   void visit(Numbers& numbers) {
-    numbers(bed_, side_, soil_, ledger_, reference_, start_energy_, start_bed_, from_liquid_,
-            wall_to_ullage_);
+    numbers(bed_, side_, bottom_, ledger_, gas_heat_.from_liquid, gas_heat_.from_wall);
     visit_values(numbers, owed_, into_blanket_);
-    if (shell_) visit_values(numbers, shell_->temperature());
-    if (mechanics_) numbers(*mechanics_);
-    if (contact_) numbers(*contact_);
+    if (wall_) {
+      visit_values(numbers, wall_->shell.temperature());
+      if (wall_->mechanics) numbers(*wall_->mechanics);
+      if (wall_->contact) numbers(*wall_->contact);
+    }
     if (insulation_) visit_values(numbers, insulation_->temperature());
     if (roof_) visit_values(numbers, roof_->temperature());
     if (ground_) visit_values(numbers, ground_->temperature());
@@ -120,29 +123,42 @@ class TankModel {
   void step_bed(double t, double end, FlowControl& control, const Weather& weather, TankStep& step);
   void update_pressure();
   void update_stress();
-  const InnerPressure& pressure() const { return pressure_ ? *pressure_ : setup_->pressure; }
+  const InnerPressure& pressure() const { return wall_->pressure ? *wall_->pressure : setup_->pressure; }
   void record_fluid(double t, TankStep& step) const;
   double upper_wall() const;
 
+  /// The shell, and the filler against it or against a wall that another program computes.
+  struct Wall {
+    Wall(const Rings& rings, const Steel& steel) : shell(rings, steel) {}
+    FillerOnWall* filler() {
+      return mechanics ? static_cast<FillerOnWall*>(&*mechanics) : contact ? &*contact : nullptr;
+    }
+    const FillerOnWall* filler() const { return const_cast<Wall*>(this)->filler(); }
+    Shell shell;
+    std::optional<FillerMechanics> mechanics;
+    std::optional<ContactMechanics> contact;
+    std::optional<InnerPressure> pressure;  // that of now, if the fluid's density follows its temperature
+    WallStress stress;
+  };
+  /// Vectors that an exchange step overwrites before it reads them.
+  struct Work {
+    std::vector<double> source, from_wall;  // [W]
+    std::vector<double> filler;             // [K]
+  };
+
   std::shared_ptr<const TankSetup> setup_;
   PackedBed bed_;
-  std::optional<Shell> shell_;
-  std::optional<FillerMechanics> mechanics_;
-  std::optional<ContactMechanics> contact_;
+  std::optional<Wall> wall_;
   std::optional<Insulation> insulation_;
   std::optional<Column> roof_, ground_;
   std::optional<Ullage> ullage_;
-  double deep_temperature_ = 0;
-  Held side_, soil_;
-  WallStress stress_;
-  std::optional<InnerPressure> pressure_;  // that of now, if the fluid's density follows its temperature
-  std::vector<double> hoop_;
-  // Heat flows during an exchange step [W].
-  std::vector<double> into_blanket_, from_wall_, source_, filler_;
+  double deep_temperature_ = 0;  // below the ground [K]
+  Held side_, bottom_;
+  std::vector<double> into_blanket_;  // heat flow from each ring [W]
   std::vector<double> owed_;  // heat the shell has taken and the bed has yet to give, a value a cell [J]
-  double from_liquid_ = 0, wall_to_ullage_ = 0, ullage_coefficient_ = 0;
-  double reference_ = 0, start_energy_ = 0, start_bed_ = 0;
+  Ullage::Heat gas_heat_;     // during an exchange step
   Ledger ledger_;
+  Work work_;
 };
 
 }  // namespace couplet::thermocline

@@ -31,7 +31,7 @@ double TankModel::stable_exchange() const {
   if (!ullage_) return step;
   const double strongest = 100;  // of gas and radiation together at any temperature of interest [W/(m^2 K)]
   step = std::min(step, 0.5 * cell_capacity(bed_.grid().size() - 1) / strongest);
-  if (!shell_) return step;
+  if (!wall_) return step;
   const Steel& steel = *setup_->steel;
   for (int i = setup_->rings->in_bed; i < setup_->rings->size(); ++i)
     step = std::min(
@@ -47,27 +47,28 @@ double TankModel::exchange(double t, double h, FlowControl& control, const Weath
     if (side_.until > t + tiny) h = std::min(h, side_.until - t);
   }
   if (ground_) {
-    if (soil_.until <= t + tiny) step_ground(t, h);
-    if (soil_.until > t + tiny) h = std::min(h, soil_.until - t);
+    if (bottom_.until <= t + tiny) step_ground(t, h);
+    if (bottom_.until > t + tiny) h = std::min(h, bottom_.until - t);
   }
   if (ullage_) step_ullage(h, air);
   // Heat that the shell took in the step before: the wall sees the bed at the end of each step, so that both have
   // the same time when the filler meets the wall; the bed, far heavier, pays one step later.
-  for (std::size_t i = 0; i < source_.size(); ++i) source_[i] = -owed_[i] / h;
-  source_.back() -= from_liquid_;
-  source_.front() -= soil_.in;
-  bed_.set_source(source_);
+  std::vector<double>& source = work_.source;
+  for (std::size_t i = 0; i < source.size(); ++i) source[i] = -owed_[i] / h;
+  source.back() -= gas_heat_.from_liquid;
+  source.front() -= bottom_.in;
+  bed_.set_source(source);
   step_bed(t, t + h, control, weather, step);
-  if (shell_) {
+  if (wall_) {
     step_shell(h);
     update_pressure();
   }
   ledger_.side += side_.out * h;
-  ledger_.ground += soil_.out * h;
-  ledger_.turnover += (std::abs(side_.out) + std::abs(soil_.out)) * h;
-  if (mechanics_) {
-    bed_.filler_temperature(filler_);
-    mechanics_->update(shell_->temperature(), filler_);
+  ledger_.ground += bottom_.out * h;
+  ledger_.turnover += (std::abs(side_.out) + std::abs(bottom_.out)) * h;
+  if (wall_ && wall_->mechanics) {
+    bed_.filler_temperature(work_.filler);
+    wall_->mechanics->update(wall_->shell.temperature(), work_.filler);
   }
   record_fluid(t + h, step);
   return h;
@@ -82,7 +83,7 @@ void TankModel::step_insulation(double t, double h, const Ambient& air) {
   // The film belongs to the surface temperature; one correction is enough for so weak a dependence.
   Film film = side_film(p.insulation->outside, air.temperature + 5, outer, height, air);
   film = side_film(p.insulation->outside, insulation_->outer_surface(film), outer, height, air);
-  const double lost = insulation_->step(step, shell_->temperature(), film, into_blanket_);
+  const double lost = insulation_->step(step, wall_->shell.temperature(), film, into_blanket_);
   side_ = {t + step, 0, lost / step};
   for (const double q : into_blanket_) side_.in += q;
 }
@@ -100,15 +101,15 @@ void TankModel::step_ground(double t, double h) {
   const Film plate{plate_coefficient(), bed_.bottom()};
   const Film deep{std::numeric_limits<double>::infinity(), deep_temperature_};
   const Column::Heat heat = ground_->step(step, plate, deep);
-  soil_ = {t + step, heat.inner / step, heat.outer / step};
+  bottom_ = {t + step, heat.inner / step, heat.outer / step};
 }
 
 double TankModel::upper_wall() const {
-  if (!shell_) return bed_.top();
+  if (!wall_) return bed_.top();
   const Rings& rings = *setup_->rings;
   double sum = 0, height = 0;
   for (int i = rings.in_bed; i < rings.size(); ++i)
-    sum += rings.dz[i] * shell_->temperature()[i], height += rings.dz[i];
+    sum += rings.dz[i] * wall_->shell.temperature()[i], height += rings.dz[i];
   return sum / height;
 }
 
@@ -120,7 +121,7 @@ void TankModel::step_ullage(double h, const Ambient& air) {
   constexpr double most_parts = 8;
   const bool light = h > most_parts * limit;
   const int parts = light ? 1 : std::max(1, int(std::ceil(h / limit)));
-  from_liquid_ = wall_to_ullage_ = ullage_coefficient_ = 0;
+  gas_heat_ = {};
   for (int k = 0; k < parts; ++k) {
     double roof_cell = roof_ ? roof_->inner_temperature() : 0;
     double conductance = roof_ ? roof_->inner_conductance() * roof_->area() : 0;
@@ -132,9 +133,9 @@ void TankModel::step_ullage(double h, const Ambient& air) {
     }
     const Ullage::Heat heat =
         ullage_->step(h / parts, bed_.top(), upper_wall(), roof_cell, conductance, air.pressure);
-    from_liquid_ += heat.from_liquid / parts;
-    wall_to_ullage_ += heat.from_wall / parts;
-    ullage_coefficient_ += heat.wall_coefficient / parts;
+    gas_heat_.from_liquid += heat.from_liquid / parts;
+    gas_heat_.from_wall += heat.from_wall / parts;
+    gas_heat_.wall_coefficient += heat.wall_coefficient / parts;
     if (!roof_) continue;
     Film film = roof_film(p.insulation->outside, air.temperature + 5, p.diameter, air);
     film = roof_film(p.insulation->outside, roof_->outer_surface(film), p.diameter, air);
@@ -142,23 +143,24 @@ void TankModel::step_ullage(double h, const Ambient& air) {
     ledger_.roof += lost;
     ledger_.turnover += std::abs(lost);
   }
-  if (!shell_) {  // a wall without a model of its own gives what it gets from the liquid beside it
-    from_liquid_ += wall_to_ullage_;
-    wall_to_ullage_ = 0;
+  if (!wall_) {  // a wall without a model of its own gives what it gets from the liquid beside it
+    gas_heat_.from_liquid += gas_heat_.from_wall;
+    gas_heat_.from_wall = 0;
   }
 }
 
 void TankModel::step_shell(double h) {
   const Rings& rings = *setup_->rings;
-  from_wall_ = into_blanket_;
+  work_.from_wall = into_blanket_;
   // Rings above the bed: the mean flux, and more from those warmer than the mean.
   double upper = 0;
   for (int i = rings.in_bed; i < rings.size(); ++i) upper += rings.surface(i);
   const double mean = upper_wall();
   for (int i = rings.in_bed; i < rings.size(); ++i)
-    from_wall_[i] += rings.surface(i) *
-                     (wall_to_ullage_ / upper + ullage_coefficient_ * (shell_->temperature()[i] - mean));
-  shell_->step(h, bed_.fluid(), bed_.wall_coefficient(), from_wall_, owed_);
+    work_.from_wall[i] +=
+        rings.surface(i) *
+        (gas_heat_.from_wall / upper + gas_heat_.wall_coefficient * (wall_->shell.temperature()[i] - mean));
+  wall_->shell.step(h, bed_.fluid(), bed_.wall_coefficient(), work_.from_wall, owed_);
   for (double& heat : owed_) heat *= h;
 }
 

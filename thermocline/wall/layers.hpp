@@ -37,7 +37,6 @@ class Column {
 
   /// Steady profile between two surface temperatures.
   void set_steady(double inner, double outer);
-  void set_uniform(double temperature) { temperature_.assign(temperature_.size(), temperature); }
   double energy(double reference) const;  ///< [J]
   /// Conductance of the inner and the outer half cell [W/(m^2 K)].
   double inner_conductance() const;

@@ -117,10 +117,6 @@ void FillerMechanics::update(std::span<const double> wall, std::span<const doubl
     hoop_[i] = (fluid_[i] + active_[i]) * per_pressure_[i];
 }
 
-int FillerMechanics::ever_passive() const {
-  return int(std::count_if(slip_.begin(), slip_.end(), [](double s) { return s > 0; }));
-}
-
 std::vector<double> active_hoop(const Rings& rings, const Filler& filler, const InnerPressure& p) {
   std::vector<double> hoop;
   const double ka = rankine_active(filler);

@@ -64,7 +64,6 @@ class FillerMechanics : public FillerOnWall {
                   std::span<const double> wall, std::span<const double> grains);
 
   void update(std::span<const double> wall, std::span<const double> grains);
-  int ever_passive() const;  ///< rings that have yielded
 
   template <class Numbers>
   void visit(Numbers& numbers) {
