@@ -6,7 +6,7 @@
 #include "common/mesh/load.hpp"
 #include "plate_modal/diagnostics/motion.hpp"
 #include "plate_modal/diagnostics/view.hpp"
-#include "plate_modal/model/outline.hpp"
+#include "plate_modal/model/midsurface.hpp"
 
 namespace couplet::plate {
 namespace {

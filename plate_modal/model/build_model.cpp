@@ -15,7 +15,7 @@
 #include "common/mesh/quality.hpp"
 #include "common/modes/modes_file.hpp"
 #include "common/modes/surface_parts.hpp"
-#include "plate_modal/model/outline.hpp"
+#include "plate_modal/model/midsurface.hpp"
 
 namespace couplet::plate {
 namespace {

@@ -10,8 +10,6 @@
 
 namespace couplet::plate {
 
-enum class Support { free, clamped, simply_supported, symmetry };
-
 /// What a cell is made of.
 struct PlateCell {
   double thickness = 0;       ///< h [m]
