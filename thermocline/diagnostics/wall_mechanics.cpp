@@ -15,7 +15,7 @@ class WallMechanics final : public TankDiagnostic {
   using TankDiagnostic::TankDiagnostic;
   void conclude(diagnostics::Report& report) override {
     const TankModel& m = view_.model;
-    const FillerOnWall* filler = m.filler_on_wall();
+    const FillerMechanics* filler = m.mechanics();
     if (!filler) {
       const auto [low, high] = std::ranges::minmax(m.shell()->temperature());
       const Steel& steel = *m.setup().steel;

@@ -19,7 +19,7 @@ class WallStrength final : public TankDiagnostic {
     look_at_temperature(report);
     constexpr double every = 2 * 3600;  // [s]
     const bool is_due = std::floor(view_.time() / every + 1e-9) != std::floor(view_.step.time / every + 1e-9);
-    if (view_.model.contact() || !is_due) return;
+    if (view_.parameters().external_wall || !is_due) return;
     const WallStress& stress = view_.model.stress();
     const WallBending bent = wall_bending(rings(), steel(), stress.hoop, view_.model.shell()->temperature());
     const YieldShares now = yield_shares(stress, bent, steel().poissons_ratio);
@@ -57,7 +57,7 @@ class WallStrength final : public TankDiagnostic {
                       "('external-wall')"});
   }
   void conclude(diagnostics::Report& report) override {
-    if (view_.model.contact()) return;
+    if (view_.parameters().external_wall) return;
     // beta^4 = 3 (1 - nu^2)/(a^2 e^2): edge effects of a cylinder fade as exp(-beta z).
     const double nu = steel().poissons_ratio, e = std::ranges::max(rings().thickness);
     std::string line = fmt::format("bending of the wall neglected: it smooths variations within {:.2f} m",

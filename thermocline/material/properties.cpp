@@ -82,14 +82,16 @@ double air_heat_between(double from, double to) {
   return heat(to) - heat(from);
 }
 
+double air_conductivity(double t) { return 0.0241 * std::pow(t / 273.15, 1.5) * (273.15 + 194) / (t + 194); }
+double air_viscosity(double t) {
+  return 1.716e-5 * std::pow(t / 273.15, 1.5) * (273.15 + 110.4) / (t + 110.4);
+}
+
 Fluid air_at(double pressure, double reference_temperature, double specific_heat) {
   constexpr double gas_constant = 287.05;
-  Fluid air{"air",
-            pressure / (gas_constant * reference_temperature),
-            specific_heat,
-            [](double t) { return 0.0241 * std::pow(t / 273.15, 1.5) * (273.15 + 194) / (t + 194); },
-            [](double t) { return 1.716e-5 * std::pow(t / 273.15, 1.5) * (273.15 + 110.4) / (t + 110.4); },
-            150,
+  Fluid air{"air",         pressure / (gas_constant * reference_temperature),
+            specific_heat, air_conductivity,
+            air_viscosity, 150,
             1500};
   air.gas_constant = gas_constant, air.pressure = pressure;
   return air;

@@ -125,8 +125,7 @@ class BlanketModel {
     if (const auto* wall = find(in, "wall-temperature")) wall_ = *wall;
     const Ambient air = weather.at(step.time + step.dt / 2);
     const double outer = p_.diameter + 2 * p_.insulation.thickness;
-    Film film = side_film(p_.insulation.outside, air.temperature + 5, outer, p_.height, air);
-    film = side_film(p_.insulation.outside, blanket_.outer_surface(film), outer, p_.height, air);
+    const Film film = side_film_on(blanket_, p_.insulation.outside, outer, p_.height, air);
     passed_ += blanket_.step(step.dt, wall_, film, heat_);
     for (const double q : heat_) taken_ += q * step.dt;
     return {{"wall-heat", heat_}};
@@ -228,12 +227,7 @@ void declare_surroundings(config::Section& s, double& initial, WeatherParameters
 }  // namespace
 
 void declare(config::Section& s, GroundElementParameters& p) {
-  s.value("diameter", p.diameter)
-      .unit("m")
-      .plausible(0.01, 300)
-      .positive()
-      .required()
-      .doc("inner diameter of the tank");
+  as_tank_length(s.value("diameter", p.diameter)).doc("inner diameter of the tank");
   s.section(
       "ground", [&p](config::Section& q) { declare(q, p.ground); }, "foundation and soil under the tank");
   declare_surroundings(s, p.initial_temperature, p.ambient,
@@ -243,13 +237,8 @@ void declare(config::Section& s, GroundElementParameters& p) {
 }
 
 void declare(config::Section& s, BlanketElementParameters& p) {
-  s.value("diameter", p.diameter)
-      .unit("m")
-      .plausible(0.01, 300)
-      .positive()
-      .required()
-      .doc("outer diameter of the wall");
-  s.value("height", p.height).unit("m").plausible(0.01, 300).positive().required().doc("height of the wall");
+  as_tank_length(s.value("diameter", p.diameter)).doc("outer diameter of the wall");
+  as_tank_length(s.value("height", p.height)).doc("height of the wall");
   s.value("sections", p.sections).range(1, 100000).doc("number of sections along the wall");
   s.section(
       "insulation", [&p](config::Section& q) { declare(q, p.insulation); }, "blanket around the wall");

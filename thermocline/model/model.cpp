@@ -42,7 +42,7 @@ TankModel::TankModel(std::shared_ptr<const TankSetup> setup, const Weather& weat
     const int rings = setup_->rings->size();
     std::vector<double> wall(rings, bed_.top());
     std::copy(bed_.fluid().begin(), bed_.fluid().end(), wall.begin());
-    wall_.emplace(*setup_->rings, *setup_->steel);
+    wall_.emplace(Wall{Shell(*setup_->rings, *setup_->steel)});
     wall_->shell.set_temperature(wall);
     into_blanket_.assign(rings, 0.0);
     if (p.insulation) {
@@ -52,11 +52,9 @@ TankModel::TankModel(std::shared_ptr<const TankSetup> setup, const Weather& weat
     }
     update_pressure();
     bed_.filler_temperature(work_.filler);
-    if (p.external_wall)
-      wall_->contact.emplace(*setup_->rings, *setup_->steel, setup_->filler, pressure(), wall, work_.filler);
-    else if (p.mechanics)
-      wall_->mechanics.emplace(*setup_->rings, *setup_->steel, setup_->filler, pressure(), wall,
-                               work_.filler);
+    if (p.mechanics)
+      wall_->filler.emplace(*setup_->rings, *setup_->steel, setup_->filler, pressure(), wall, work_.filler,
+                            p.external_wall.has_value());
     update_stress();
   }
   if (p.ullage) {
@@ -82,7 +80,7 @@ void TankModel::resume() {
   bed_.resume();
   if (!wall_) return;
   update_pressure();
-  if (wall_->contact) wall_->contact->finish();
+  if (wall_->filler) wall_->filler->finish();
   update_stress();
 }
 
@@ -116,7 +114,7 @@ TankStep TankModel::advance(double t, double dt, FlowControl& control, const Wea
 
 void TankModel::update_contact(std::span<const double> radial) {
   bed_.filler_temperature(work_.filler);
-  wall_->contact->update(radial, wall_->shell.temperature(), work_.filler);
+  wall_->filler->update(wall_->shell.temperature(), work_.filler, radial);
   update_stress();
 }
 
@@ -132,15 +130,15 @@ void TankModel::update_pressure() {
   const TankParameters& p = setup_->parameters;
   wall_->pressure = inner_pressure(*setup_->rings, bed_.grid(), setup_->fluid, setup_->filler,
                                    p.ullage ? p.ullage->gas.gauge_pressure : 0, bed_.fluid());
-  if (FillerOnWall* filler = wall_->filler()) filler->load(*wall_->pressure);
+  if (wall_->filler) wall_->filler->load(*wall_->pressure);
 }
 
 void TankModel::update_stress() {
   if (!wall_) return;
   std::vector<double> active;
-  if (!wall_->filler()) active = active_hoop(*setup_->rings, setup_->filler, pressure());
+  if (!wall_->filler) active = active_hoop(*setup_->rings, setup_->filler, pressure());
   wall_stress(*setup_->rings, *setup_->steel, pressure(), setup_->parameters.shell->roof_pressure,
-              wall_->filler() ? wall_->filler()->hoop() : active, wall_->shell.temperature(), wall_->stress);
+              wall_->filler ? wall_->filler->hoop() : active, wall_->shell.temperature(), wall_->stress);
 }
 
 void TankModel::record_fluid(double t, TankStep& step) const {

@@ -65,8 +65,7 @@ class TankModel {
   const PackedBed& bed() const { return bed_; }
   /// The wall and what the filler does to it; nullptr if the tank has no such element.
   const Shell* shell() const { return wall_ ? &wall_->shell : nullptr; }
-  const FillerOnWall* filler_on_wall() const { return wall_ ? wall_->filler() : nullptr; }
-  const ContactMechanics* contact() const { return wall_ && wall_->contact ? &*wall_->contact : nullptr; }
+  const FillerMechanics* mechanics() const { return wall_ && wall_->filler ? &*wall_->filler : nullptr; }
   /// With an external wall: the filler's pressure at the end of a step from the wall's radial displacement
   /// [m] at its begin, a value a ring; empty if the wall has not answered yet.
   void update_contact(std::span<const double> radial);
@@ -93,8 +92,7 @@ class TankModel {
     visit_values(numbers, owed_, into_blanket_);
     if (wall_) {
       visit_values(numbers, wall_->shell.temperature());
-      if (wall_->mechanics) numbers(*wall_->mechanics);
-      if (wall_->contact) numbers(*wall_->contact);
+      if (wall_->filler) numbers(*wall_->filler);
     }
     if (insulation_) visit_values(numbers, insulation_->temperature());
     if (roof_) visit_values(numbers, roof_->temperature());
@@ -127,18 +125,13 @@ class TankModel {
   void record_fluid(double t, TankStep& step) const;
   double upper_wall() const;
 
-  /// The shell, and the filler against it or against a wall that another program computes.
+  /// The shell and the filler against it.
   struct Wall {
-    Wall(const Rings& rings, const Steel& steel) : shell(rings, steel) {}
-    FillerOnWall* filler() {
-      return mechanics ? static_cast<FillerOnWall*>(&*mechanics) : contact ? &*contact : nullptr;
-    }
-    const FillerOnWall* filler() const { return const_cast<Wall*>(this)->filler(); }
     Shell shell;
-    std::optional<FillerMechanics> mechanics;
-    std::optional<ContactMechanics> contact;
-    std::optional<InnerPressure> pressure;  // that of now, if the fluid's density follows its temperature
-    WallStress stress;
+    std::optional<FillerMechanics> filler = {};
+    std::optional<InnerPressure> pressure =
+        {};  // that of now, if the fluid's density follows its temperature
+    WallStress stress = {};
   };
   /// Vectors that an exchange step overwrites before it reads them.
   struct Work {

@@ -66,9 +66,9 @@ double TankModel::exchange(double t, double h, FlowControl& control, const Weath
   ledger_.side += side_.out * h;
   ledger_.ground += bottom_.out * h;
   ledger_.turnover += (std::abs(side_.out) + std::abs(bottom_.out)) * h;
-  if (wall_ && wall_->mechanics) {
+  if (wall_ && wall_->filler && !setup_->parameters.external_wall) {
     bed_.filler_temperature(work_.filler);
-    wall_->mechanics->update(wall_->shell.temperature(), work_.filler);
+    wall_->filler->update(wall_->shell.temperature(), work_.filler);
   }
   record_fluid(t + h, step);
   return h;
@@ -80,9 +80,7 @@ void TankModel::step_insulation(double t, double h, const Ambient& air) {
   const Rings& rings = *setup_->rings;
   const double height = rings.z.back() + rings.dz.back() / 2;
   const double outer = p.diameter + 2 * (rings.thickness.front() + p.insulation->thickness);
-  // The film belongs to the surface temperature; one correction is enough for so weak a dependence.
-  Film film = side_film(p.insulation->outside, air.temperature + 5, outer, height, air);
-  film = side_film(p.insulation->outside, insulation_->outer_surface(film), outer, height, air);
+  const Film film = side_film_on(*insulation_, p.insulation->outside, outer, height, air);
   const double lost = insulation_->step(step, wall_->shell.temperature(), film, into_blanket_);
   side_ = {t + step, 0, lost / step};
   for (const double q : into_blanket_) side_.in += q;
@@ -126,9 +124,8 @@ void TankModel::step_ullage(double h, const Ambient& air) {
     double roof_cell = roof_ ? roof_->inner_temperature() : 0;
     double conductance = roof_ ? roof_->inner_conductance() * roof_->area() : 0;
     if (light) {
-      Film outer = roof_film(p.insulation->outside, air.temperature + 5, p.diameter, air);
-      outer = roof_film(p.insulation->outside, roof_->outer_surface(outer), p.diameter, air);
-      const Film answer = roof_->inner_response(h, outer);
+      const Film answer =
+          roof_->inner_response(h, roof_film_on(*roof_, p.insulation->outside, p.diameter, air));
       roof_cell = answer.reference, conductance = answer.coefficient * roof_->area();
     }
     const Ullage::Heat heat =
@@ -137,8 +134,7 @@ void TankModel::step_ullage(double h, const Ambient& air) {
     gas_heat_.from_wall += heat.from_wall / parts;
     gas_heat_.wall_coefficient += heat.wall_coefficient / parts;
     if (!roof_) continue;
-    Film film = roof_film(p.insulation->outside, air.temperature + 5, p.diameter, air);
-    film = roof_film(p.insulation->outside, roof_->outer_surface(film), p.diameter, air);
+    const Film film = roof_film_on(*roof_, p.insulation->outside, p.diameter, air);
     const double lost = roof_->step(h / parts, heat.into_roof, film).outer;
     ledger_.roof += lost;
     ledger_.turnover += std::abs(lost);

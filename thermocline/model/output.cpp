@@ -27,7 +27,7 @@ double flowing(const BedStep& step, double kelvin) {
 /// The value of a ring beside grains; 0 above them and without filler mechanics.
 template <class Values>
 double beside_grains(const TankModel& m, std::size_t ring, Values values) {
-  const FillerOnWall* filler = m.filler_on_wall();
+  const FillerMechanics* filler = m.mechanics();
   return filler && ring < filler->contact().size() ? double(values(*filler)[ring]) : 0;
 }
 
@@ -77,11 +77,11 @@ TankOutputFiles::TankOutputFiles(const TankModel& model, const std::filesystem::
             {"yield strength [Pa]", [](const Place& v) { return v.m.stress().yield[v.i]; }},
             {"filler pressure [Pa]",
              [](const Place& v) {
-               return beside_grains(v.m, v.i, [](const FillerOnWall& filler) { return filler.lateral(); });
+               return beside_grains(v.m, v.i, [](const FillerMechanics& filler) { return filler.lateral(); });
              }},
             {"contact [0 active; 1 rigid; 2 passive]",
              [](const Place& v) {
-               return beside_grains(v.m, v.i, [](const FillerOnWall& filler) { return filler.contact(); });
+               return beside_grains(v.m, v.i, [](const FillerMechanics& filler) { return filler.contact(); });
              }}},
         restart_time);
   if (model.ground())

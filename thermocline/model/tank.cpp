@@ -127,7 +127,7 @@ std::vector<Tank::Given> Tank::given() const {
   std::vector<Given> all;
   if (p.external_wall) {
     all.push_back({"temperature", "K", wall_->to_sections(next_.shell()->temperature())});
-    all.push_back({"pressure", "Pa", wall_->to_sections(next_.contact()->pressure())});
+    all.push_back({"pressure", "Pa", wall_->to_sections(next_.mechanics()->pressure())});
   }
   if (p.elsewhere && p.elsewhere->insulation) {
     const Rings& rings = *next_.setup().rings;

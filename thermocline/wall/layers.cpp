@@ -225,6 +225,17 @@ double Insulation::outer_surface(const Film& outside) const {
   return sum / height;
 }
 
+Film side_film_on(const Insulation& blanket, const OutsideParameters& p, double diameter, double height,
+                  const Ambient& air) {
+  const Film first = side_film(p, air.temperature + 5, diameter, height, air);
+  return side_film(p, blanket.outer_surface(first), diameter, height, air);
+}
+
+Film roof_film_on(const Column& roof, const OutsideParameters& p, double diameter, const Ambient& air) {
+  const Film first = roof_film(p, air.temperature + 5, diameter, air);
+  return roof_film(p, roof.outer_surface(first), diameter, air);
+}
+
 void declare(config::Section& section, InsulationParameters& p) {
   declare_section(section, "material", p.material, "of the blanket");
   as_thickness(section.value("thickness", p.thickness))

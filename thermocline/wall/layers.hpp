@@ -105,4 +105,10 @@ class Insulation {
 
 void declare(config::Section& section, InsulationParameters& parameters);
 
+// Films on the surfaces of these layers. A film belongs to the surface temperature; one correction is enough for so weak a
+// dependence.
+Film side_film_on(const Insulation& blanket, const OutsideParameters& p, double diameter, double height,
+                  const Ambient& air);
+Film roof_film_on(const Column& roof, const OutsideParameters& p, double diameter, const Ambient& air);
+
 }  // namespace couplet::thermocline

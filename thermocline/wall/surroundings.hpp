@@ -4,6 +4,7 @@
 #include <array>
 
 #include "common/config/section.hpp"
+#include "thermocline/material/properties.hpp"
 #include "thermocline/weather/weather.hpp"
 
 namespace couplet::thermocline {

@@ -21,6 +21,13 @@ double limited_slope(double before, double here, double after) {
   return std::copysign(size, left);
 }
 
+/// Sine of the sun's height at a time [s] of the clock that starts at 00:00 of `first_day`.
+double sun_over(const WeatherHours::Site& site, int first_day, double clock) {
+  const double solar = clock + site.solar_ahead, whole_days = std::floor(solar / seconds_a_day);
+  return sine_of_sun_height(site.latitude, first_day + int(whole_days),
+                            (solar - whole_days * seconds_a_day) / seconds_an_hour);
+}
+
 /// Which hour of the record each hour of the period is. A shift moves the record's hours to a later clock.
 std::vector<std::size_t> chosen_hours(const WeatherHours& record, const WeatherPeriod& period, int shift) {
   const int first = record.first_day, days = record.days();
@@ -65,8 +72,8 @@ std::vector<std::string> doubts_about_sun(const WeatherHours& record) {
   if (record.dni.size() >= fortnight && *std::max_element(record.dni.begin(), record.dni.end()) <= 0)
     return {fmt::format("{}: no direct irradiance in any of its {} days", record.source, record.days())};
   if (!record.site) return {};
-  constexpr double hour = 3600, day = hours_a_day * hour;  // [s]
-  constexpr double farthest_clock = 3;                     // [h]: 45 degrees
+  constexpr double hour = 3600;         // [s]
+  constexpr double farthest_clock = 3;  // [h]: 45 degrees
   // A degree below the horizon: refraction and the size of the sun's disc.
   constexpr double horizon = -0.02, most_in_the_dark = 0.01;
   std::vector<std::string> all;
@@ -81,11 +88,8 @@ std::vector<std::string> doubts_about_sun(const WeatherHours& record) {
   for (std::size_t h = 0; h < record.dni.size(); ++h) {
     if (record.dni[h] <= 0) continue;
     double highest = -1;
-    for (const double part : {0.0, 0.5, 1.0}) {
-      const double solar = (double(h) + part) * hour + site.solar_ahead, whole_days = std::floor(solar / day);
-      highest = std::max(highest, sine_of_sun_height(site.latitude, record.first_day + int(whole_days),
-                                                     (solar - whole_days * day) / hour));
-    }
+    for (const double part : {0.0, 0.5, 1.0})
+      highest = std::max(highest, sun_over(site, record.first_day, (double(h) + part) * hour));
     total += record.dni[h];
     if (highest < horizon) dark += record.dni[h];
   }
@@ -147,11 +151,7 @@ Ambient Weather::at(double t) const {
 
 double Weather::sun_height(double t) const {
   if (!hours_.site) return 0;
-  const double solar = t - shift_hours_ * seconds_an_hour + hours_.site->solar_ahead,
-               day = hours_a_day * seconds_an_hour;
-  const double whole_days = std::floor(solar / day);
-  return std::max(0., sine_of_sun_height(hours_.site->latitude, first_day_ + static_cast<int>(whole_days),
-                                         (solar - whole_days * day) / seconds_an_hour));
+  return std::max(0., sun_over(*hours_.site, first_day_, t - shift_hours_ * seconds_an_hour));
 }
 
 /// Within the first period: integral of the line mean + slope (x - 1/2), x the share of the hour gone.

@@ -54,7 +54,7 @@ TEST(SolarOne, the_filler_yields_only_where_the_closed_form_says_so) {
   int below_surface = 0;
   double worst = 0;
   for (int i = 0; i < rings.in_bed; ++i) {
-    const double slip = m.filler_on_wall()->slip()[i];
+    const double slip = m.mechanics()->slip()[i];
     if (slip == 0) continue;
     const double strain =
         steel.thermal_strain(hot) - steel.thermal_strain(cold) - m.setup().filler.expansion * (hot - cold);
@@ -65,8 +65,8 @@ TEST(SolarOne, the_filler_yields_only_where_the_closed_form_says_so) {
     ++below_surface;
     worst = std::max(worst, slip * rings.diameter / 2 * 1000);
   }
-  RecordProperty("rings", std::to_string(std::ranges::count_if(m.filler_on_wall()->slip(),
-                                                               [](double s) { return s > 0; })));
+  RecordProperty(
+      "rings", std::to_string(std::ranges::count_if(m.mechanics()->slip(), [](double s) { return s > 0; })));
   RecordProperty("below_surface", std::to_string(below_surface));
   RecordProperty("millimetres", fmt::format("{:.3f}", worst));
   EXPECT_LT(worst, 0.5);
