@@ -288,6 +288,15 @@ Built build_model(const Parameters& p, const PlateContext& context, const mesh::
     add_modes(built, *plate, p, context);
     if (p.analysis != Parameters::Analysis::modal) built.plate = std::move(plate);
   });
+  modes::ModalModel& m = built.model;
+  std::vector<double> numbers{m.mass, built.stretch_limit};
+  for (auto* part : {&numbers, &m.frequency, &m.vertex_shape, &m.face_shape, &m.participation,
+                     &m.face_density, &built.kinks})
+    mesh::broadcast(context.comm, *part);
+  m.mass = numbers[0], built.stretch_limit = numbers[1];
+  mesh::broadcast(context.comm, m.vertices);
+  mesh::broadcast(context.comm, m.faces.offset);
+  mesh::broadcast(context.comm, m.faces.index);
   return built;
 }
 

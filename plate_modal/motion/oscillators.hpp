@@ -65,7 +65,7 @@ class Oscillators final {
   /// A state at rest with these displacements and rates.
   ModalState start(std::vector<double> q, std::vector<double> v) const;
   /// From `now` over dt to `next`; `load(t, Q)` fills the loads on the modes at t within the step. Throws
-  /// SolveFailure if Newton's method does not end. Collective.
+  /// SolveFailure if Newton's method does not end.
   using LoadAt = std::function<void(double, std::span<double>)>;
   void step(const ModalState& now, double dt, const LoadAt& load, ModalState& next);
 

@@ -28,7 +28,7 @@ FILES = {
         *_of("coupler", "mapping sparse_map transfer search cavity_wall links conjugate_map "
                         "face_weights slopes surface_rows"),
         *_of("common/modes", "facing rigid_motion surface_parts modal_checks"),
-        *_of("plate_modal", "skin midsurface share"),
+        *_of("plate_modal", "skin midsurface surface"),
     ],
     "ledgers": [
         *_of("solid_solver", "ledger"), *_of("coupler", "mechanics watch_integrals"), *_of("fluid_solver", "energy_guard"),
