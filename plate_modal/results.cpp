@@ -65,7 +65,7 @@ Vec3 place_in(const modes::ModalModel& model, const SurfacePlace& place) {
   return x;
 }
 
-/// What a mesh in other lengths would show at once.
+/// Logs the size, which shows at once a mesh in other lengths.
 void tell_size(const Structure& structure) {
   const modes::ModalModel& model = structure.model();
   const Vec3 side = modes::extent_of(model);

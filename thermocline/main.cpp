@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
 #include "thermocline/diagnostics/tank_diagnostic.hpp"
-#include "thermocline/effect_cards.hpp"
+#include "thermocline/model/elements.hpp"
 
 int main(int argc, char** argv) {
   couplet::thermocline::ElementParameters parameters;

@@ -189,7 +189,7 @@ bool reuse_modes(Built& built, const std::filesystem::path& file, const std::str
   return false;
 }
 
-/// What a user who draws a curved edge by straight lines should know; empty: there is none.
+/// Notes what a user who draws a curved edge by straight lines should know.
 void look_at_corners(Built& built, const Midsurface& surface, const std::vector<Support>& support) {
   const std::vector<OutlinePoint> outline = outline_of(surface);
   const std::vector<Index> corners = blunt_corners(surface, outline, support);

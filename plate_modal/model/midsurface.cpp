@@ -169,7 +169,7 @@ double turn_between(const Midsurface& s, int first, int second) {
   return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
 }
 
-/// What a curve turns between the middle of its last edge and its end, from the turn before that edge. Where nothing is
+/// Angle by which a curve turns between the middle of its last edge and its end, from the turn before that edge. Where nothing is
 /// known of that (the curve has one edge, or a sharp corner lies there) the curve goes on as a circle over a point within it, and as a
 /// line up to a point between two curves.
 double turn_to_end(const Midsurface& s, int edge, int beyond, int other, double turn_here) {

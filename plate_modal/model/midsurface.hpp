@@ -53,7 +53,7 @@ std::vector<OutlinePoint> outline_of(const Midsurface& surface);
 /// [blum1980], and the error falls as h^(2 (mu - 1)).
 double order_at_corner(double kink);
 
-/// What a mesh leaves of the deflection, over the deflection: `gap` where the outline is smooth or rectangular, h^2 in kind;
+/// Error that a mesh leaves in the deflection, over the deflection: `gap` where the outline is smooth or rectangular, h^2 in kind;
 /// at corners, `kinks`, as much more as their order is less. Within a factor of 2 of the errors of a hexagon (5 and 10 edges a
 /// side), a rhombus of 30 degrees and polygons of 12 sides; corners of less than 20 degrees count by their turn.
 double with_corners(double gap, std::span<const double> kinks);

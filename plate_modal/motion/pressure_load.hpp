@@ -29,7 +29,7 @@ class PressureLoad final {
   /// no structure sees.
   void at(double t, std::span<double> load) const;
 
-  /// Of one of the two sides at a place and time [Pa]. Throws as at().
+  /// Pressure of one of the two sides at a place and time [Pa]. Throws as at().
   double value(const fv::Expression& side, const Vec3& x, double t) const;
   /// Pressures at x on a face of this area, those that push against its normal [Pa].
   double push(const Vec3& area, const Vec3& x, double t) const;

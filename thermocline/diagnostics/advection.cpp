@@ -44,8 +44,7 @@ class FirstOrderAdvection final : public TankDiagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> advection(const TankView& view,
-                                                   const std::shared_ptr<Extremes>& seen) {
+Made advection(const TankView& view, const Seen& seen) {
   return std::make_shared<FirstOrderAdvection>(view, seen);
 }
 

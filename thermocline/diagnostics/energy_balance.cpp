@@ -37,8 +37,7 @@ class EnergyBalance final : public TankDiagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> energy_balance(const TankView& view,
-                                                        const std::shared_ptr<Extremes>& seen) {
+Made energy_balance(const TankView& view, const Seen& seen) {
   return std::make_shared<EnergyBalance>(view, seen);
 }
 

@@ -45,9 +45,6 @@ class FluidRange final : public TankDiagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> fluid_range(const TankView& view,
-                                                     const std::shared_ptr<Extremes>& seen) {
-  return std::make_shared<FluidRange>(view, seen);
-}
+Made fluid_range(const TankView& view, const Seen& seen) { return std::make_shared<FluidRange>(view, seen); }
 
 }  // namespace couplet::thermocline

@@ -108,9 +108,6 @@ class FrontError final : public TankDiagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> front_error(const TankView& view,
-                                                     const std::shared_ptr<Extremes>& seen) {
-  return std::make_shared<FrontError>(view, seen);
-}
+Made front_error(const TankView& view, const Seen& seen) { return std::make_shared<FrontError>(view, seen); }
 
 }  // namespace couplet::thermocline

@@ -53,7 +53,7 @@ class Gas final : public TankDiagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> gas(const TankView& view, const std::shared_ptr<Extremes>& seen) {
+Made gas(const TankView& view, const Seen& seen) {
   return view.fluid().is_gas() ? std::make_shared<Gas>(view, seen) : nullptr;
 }
 

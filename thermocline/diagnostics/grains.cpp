@@ -71,8 +71,6 @@ class ResolvedGrains final : public TankDiagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> grains(const TankView& view, const std::shared_ptr<Extremes>& seen) {
-  return std::make_shared<ResolvedGrains>(view, seen);
-}
+Made grains(const TankView& view, const Seen& seen) { return std::make_shared<ResolvedGrains>(view, seen); }
 
 }  // namespace couplet::thermocline

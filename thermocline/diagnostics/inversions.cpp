@@ -43,9 +43,6 @@ class Inversions final : public TankDiagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> inversions(const TankView& view,
-                                                    const std::shared_ptr<Extremes>& seen) {
-  return std::make_shared<Inversions>(view, seen);
-}
+Made inversions(const TankView& view, const Seen& seen) { return std::make_shared<Inversions>(view, seen); }
 
 }  // namespace couplet::thermocline

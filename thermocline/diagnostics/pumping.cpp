@@ -74,9 +74,6 @@ class Pumping final : public TankDiagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> pumping(const TankView& view,
-                                                 const std::shared_ptr<Extremes>& seen) {
-  return std::make_shared<Pumping>(view, seen);
-}
+Made pumping(const TankView& view, const Seen& seen) { return std::make_shared<Pumping>(view, seen); }
 
 }  // namespace couplet::thermocline

@@ -36,8 +36,7 @@ class NeglectedLosses final : public TankDiagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> surroundings(const TankView& view,
-                                                      const std::shared_ptr<Extremes>& seen) {
+Made surroundings(const TankView& view, const Seen& seen) {
   return std::make_shared<NeglectedLosses>(view, seen);
 }
 

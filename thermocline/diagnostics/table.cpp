@@ -8,7 +8,7 @@
 
 namespace couplet::thermocline {
 
-using Make = std::shared_ptr<diagnostics::Diagnostic>(const TankView&, const std::shared_ptr<Extremes>&);
+using Make = Made(const TankView&, const Seen&);
 Make energy_balance, fluid_range, inversions, gas, grains, advection, pumping, wall_strength, wall_mechanics,
     surroundings, unused_input, front_error;
 
@@ -29,10 +29,7 @@ class ExtremesOfRun final : public TankDiagnostic {
   void visit(io::Archive& archive) override { archive.common("extremes", *seen_); }
 };
 
-std::shared_ptr<diagnostics::Diagnostic> extremes(const TankView& view,
-                                                  const std::shared_ptr<Extremes>& seen) {
-  return std::make_shared<ExtremesOfRun>(view, seen);
-}
+Made extremes(const TankView& view, const Seen& seen) { return std::make_shared<ExtremesOfRun>(view, seen); }
 
 struct TableRow {
   const char* name;

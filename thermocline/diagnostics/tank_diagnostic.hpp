@@ -19,11 +19,13 @@ struct Extremes {
   }
 };
 
+using Seen = std::shared_ptr<Extremes>;
+using Made = std::shared_ptr<diagnostics::Diagnostic>;
+
 /// Reads the tank and the extremes of its run.
 class TankDiagnostic : public diagnostics::Diagnostic {
  public:
-  TankDiagnostic(const TankView& view, std::shared_ptr<Extremes> seen)
-      : view_(view), seen_(std::move(seen)) {}
+  TankDiagnostic(const TankView& view, Seen seen) : view_(view), seen_(std::move(seen)) {}
 
  protected:
   const PackedBed& bed() const { return view_.model.bed(); }
@@ -39,7 +41,7 @@ class TankDiagnostic : public diagnostics::Diagnostic {
             const std::string& sentence) const;
 
   TankView view_;
-  std::shared_ptr<Extremes> seen_;
+  Seen seen_;
 };
 
 /// Adds the diagnostics of a tank.

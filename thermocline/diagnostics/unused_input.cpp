@@ -13,7 +13,7 @@ namespace {
 /// that the report could not use.
 class UnusedInput final : public TankDiagnostic {
  public:
-  UnusedInput(const TankView& view, const std::shared_ptr<Extremes>& seen)
+  UnusedInput(const TankView& view, const Seen& seen)
       : TankDiagnostic(view, seen), flowed_(view.parameters().flow.rows.size(), 0) {}
   void observe(diagnostics::Report&) override {
     for (const BedStep& s : view_.happened.bed) {
@@ -75,8 +75,7 @@ class UnusedInput final : public TankDiagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> unused_input(const TankView& view,
-                                                      const std::shared_ptr<Extremes>& seen) {
+Made unused_input(const TankView& view, const Seen& seen) {
   return std::make_shared<UnusedInput>(view, seen);
 }
 

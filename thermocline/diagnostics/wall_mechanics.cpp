@@ -39,8 +39,7 @@ class WallMechanics final : public TankDiagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> wall_mechanics(const TankView& view,
-                                                        const std::shared_ptr<Extremes>& seen) {
+Made wall_mechanics(const TankView& view, const Seen& seen) {
   return view.model.shell() ? std::make_shared<WallMechanics>(view, seen) : nullptr;
 }
 

@@ -112,8 +112,7 @@ class WallStrength final : public TankDiagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> wall_strength(const TankView& view,
-                                                       const std::shared_ptr<Extremes>& seen) {
+Made wall_strength(const TankView& view, const Seen& seen) {
   return view.model.shell() ? std::make_shared<WallStrength>(view, seen) : nullptr;
 }
 

@@ -55,7 +55,7 @@ class GroundModel {
     i.gives = {{"bottom-heat", "W", coupling::Interface::Place::faces, 1}};
     return i;
   }
-  /// What the tank says against the geometry here: a sentence, or empty.
+  /// Contradiction between the geometry here and that of the tank, as a sentence, or empty.
   std::string contradiction(const coupling::Exchange& in) const {
     return other_length(find(in, "tank-diameter"), "diameter", p_.diameter, 1e-3, " (inside)");
   }
@@ -146,7 +146,7 @@ class BlanketModel {
   double air_ = 0, start_ = 0, taken_ = 0, passed_ = 0;  // [K], [J]
 };
 
-/// What both have in common: a state that only accepted steps change. Rank 0 has the data and computes.
+/// Common part of both: a state that only accepted steps change. Rank 0 has the data and computes.
 template <class Model>
 class ElementParticipant final : public coupling::Participant {
  public:

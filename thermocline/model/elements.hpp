@@ -3,11 +3,13 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "common/app/case/check_files.hpp"
 #include "common/app/program.hpp"
 #include "common/coupling/participant.hpp"
+#include "common/effects/effects.hpp"
 #include "thermocline/model/parameters.hpp"
 
 /// Elements of a tank as participants of their own: the tank gives temperatures, they give the heat back that
@@ -40,7 +42,7 @@ struct BlanketElementParameters {
 };
 void declare(config::Section& section, BlanketElementParameters& parameters);
 
-/// What one `thermocline` computes.
+/// Element that one `thermocline` computes, with its parameters.
 struct ElementParameters {
   enum class Type { tank, ground, insulation } type = Type::tank;
   TankParameters tank;
@@ -48,6 +50,8 @@ struct ElementParameters {
   BlanketElementParameters blanket;
 };
 void declare(config::Section& section, ElementParameters& parameters);
+/// The effects that a tank can simulate, for --explain and docs/effects.md.
+std::span<const effects::EffectCard<ElementParameters>> effect_cards();
 
 /// The parameters with the rows of flow.file. Throws Error with file:line.
 TankParameters with_files(TankParameters parameters, const std::filesystem::path& case_folder);

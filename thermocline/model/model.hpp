@@ -41,7 +41,7 @@ struct Ledger {
   }
 };
 
-/// What happened in a step of the simulation.
+/// Steps of the bed and extremes of the fluid in a step of the simulation.
 struct TankStep {
   std::vector<BedStep> bed;  ///< steps of the bed
   /// Coldest and hottest fluid after any exchange of the elements [K], and the largest inversion.

@@ -183,8 +183,7 @@ void TankModel::step_bed(double t, double end, FlowControl& control, const Weath
   while (end - t > tiny) {
     BedStep s;
     s.t = t;
-    s.ambient = weather.at(t);
-    s.flow = control.decide(t, bed_.top(), bed_.bottom(), s.ambient);
+    s.flow = control.decide(t, bed_.top(), bed_.bottom(), weather.at(t));
     const double m = s.flow.mass_flow, limit = bed_.largest_step(m), now = bed_.prepared().mass_flow;
     if (t > block - tiny) prepared = false, block = t + renewal;
     const double until = std::min(block, s.flow.until > t + tiny ? std::min(end, s.flow.until) : end);

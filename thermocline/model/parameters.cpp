@@ -93,8 +93,8 @@ void declare_elements(config::Section& section, TankParameters& p) {
   declare_section(section, "filler", p.filler, "grains of the bed; default: quartzite");
   declare_section(section, "bed", p.bed, "fluid and filler");
   declare_section(section, "shell", p.shell, "metal wall of rings");
-  section.optional_section<FillerMechanicsParameters>(
-      "filler-mechanics", p.mechanics, [](config::Section&, FillerMechanicsParameters&) {},
+  section.optional_section<Present>(
+      "filler-mechanics", p.mechanics, [](config::Section&, Present&) {},
       "the filler follows the wall outwards and resists inwards, between Rankine's active and passive states");
   declare_section(
       section, "external-wall", p.external_wall,

@@ -50,7 +50,6 @@ class FlowControl {
 struct BedStep {
   double t = 0, dt = 0;           ///< [s]
   Flow flow;                      ///< as decided at t
-  Ambient ambient;                ///< at t
   double outlet_temperature = 0;  ///< mean of what left during the step [K]; the inlet's at rest
   double pressure_loss = 0;       ///< across the bed [Pa]; 0 where nobody asked for it
   double pump_power = 0;          ///< [W]

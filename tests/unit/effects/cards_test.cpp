@@ -9,7 +9,7 @@
 #include "coupler/parameters/schedule.hpp"
 #include "fluid_solver/diagnostics/compliance.hpp"
 #include "fluid_solver/parameters/effect_cards.hpp"
-#include "plate_modal/effect_cards.hpp"
+#include "plate_modal/model/parameters.hpp"
 #include "solid_solver/diagnostics/effects.hpp"
 #include "solid_solver/effects/effect_cards.hpp"
 
