@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plate_modal/effect_cards.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +17,7 @@ std::string when(bool on, const char* reason) { return on ? reason : ""; }
 bool is_dynamic(const S& s) { return s.parameters.analysis == Parameters::Analysis::dynamic; }
 std::string dynamic_asked_by(const S& s) { return when(is_dynamic(s), "analysis: dynamic"); }
 
-/// What a contact over the whole of a plate lasts at least, and the steps in it; modes of a file tell it in a run.
+/// Shortest contact over the whole of a plate and the steps in it; modes of a file tell it in a run.
 std::string contact_asked_by(const S& s) {
   const Parameters& p = s.parameters;
   if (!p.contact) return "";
@@ -33,7 +31,7 @@ std::string contact_asked_by(const S& s) {
                      shortest / s.time_step);
 }
 
-/// What a run judges without having it.
+/// Effect that a run judges without having it.
 PlateCard left_out(const char* name, const char* key, const char* judged_by) {
   return {name, key, [](const S&) { return std::string(); }, {}, judged_by};
 }

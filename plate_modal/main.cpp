@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
 #include "common/linalg/petsc.hpp"
-#include "plate_modal/effect_cards.hpp"
 #include "plate_modal/structure.hpp"
 
 int main(int argc, char** argv) {

@@ -32,8 +32,10 @@ std::array<double, 3> nearest_in_triangle(const Vec3& a, const Vec3& b, const Ve
   return {va / sum, vb / sum, vc / sum};
 }
 
-/// The whole surface on rank 0 as a mesh to be written; the other ranks hold nothing of it.
-mesh::Mesh surface_mesh(MPI_Comm comm, const modes::ModalModel& model) {
+/// The whole surface on rank 0 as a mesh to be written; the other ranks write nothing of it.
+mesh::Mesh surface_mesh(MPI_Comm comm, const modes::ModalModel& whole) {
+  const modes::ModalModel none;
+  const modes::ModalModel& model = parallel::comm_rank(comm) == 0 ? whole : none;
   mesh::Mesh mesh;
   mesh.comm = comm;
   mesh.dim = 3;
@@ -63,7 +65,7 @@ Vec3 place_in(const modes::ModalModel& model, const SurfacePlace& place) {
   return x;
 }
 
-/// What a mesh in other lengths would show at once.
+/// Logs the size, which shows at once a mesh in other lengths.
 void tell_size(const Structure& structure) {
   const modes::ModalModel& model = structure.model();
   const Vec3 side = modes::extent_of(model);
@@ -96,6 +98,10 @@ SurfacePlace nearest_place(const modes::ModalModel& model, const Vec3& point) {
     }
   }
   return best;
+}
+
+std::vector<Vec3> PlateResults::places() const {
+  return root_ ? structure_.model().vertices : std::vector<Vec3>();
 }
 
 PlateResults::PlateResults(const Structure& structure)
@@ -163,12 +169,12 @@ void PlateResults::write_frequencies() {
 
 void PlateResults::write_shapes() {
   const modes::ModalModel& model = structure_.model();
-  const std::size_t n = structure_.share().n_modes();
-  io::FieldWriter writer(surface_, model.vertices, structure_.context().output_folder, "modes-shapes", false,
+  const std::size_t n = model.n_modes();
+  io::FieldWriter writer(surface_, places(), structure_.context().output_folder, "modes-shapes", false,
                          std::numeric_limits<double>::quiet_NaN());
   for (std::size_t m = 0; m < n; ++m) {
-    std::vector<double> shape(model.vertex_shape.size() / n);
-    const double largest = root_ ? modes::largest_displacement(model, m) : 1;
+    std::vector<double> shape(3 * surface_.point_id.size());
+    const double largest = modes::largest_displacement(model, m);
     for (std::size_t i = 0; i < shape.size(); ++i) shape[i] = model.vertex_shape[i * n + m] / largest;
     writer.write(double(m + 1), {}, {{"mode", "", io::OutputField::Place::points, 3, shape}});
   }
@@ -178,14 +184,14 @@ void PlateResults::write_fields(double time) {
   if (!active_ || !structure_.parameters().output.fields ||
       structure_.parameters().analysis == Parameters::Analysis::modal)
     return;
-  const std::vector<double> u = structure_.displacement(),
-                            v = structure_.share().gather_vertices(structure_.state().v);
-  std::vector<Vec3> places = structure_.model().vertices;
-  for (std::size_t i = 0; i < places.size(); ++i) places[i] += Vec3(&u[3 * i]);
+  std::vector<double> u, v;
+  if (root_) u = structure_.displacement(), v = structure_.surface().motion(structure_.state().v);
+  std::vector<Vec3> moved = places();
+  for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += Vec3(&u[3 * i]);
   if (!fields_)
-    fields_.emplace(surface_, structure_.model().vertices, structure_.context().output_folder,
-                    structure_.context().name, true, structure_.context().restart_time);
-  fields_->write(time, places,
+    fields_.emplace(surface_, places(), structure_.context().output_folder, structure_.context().name, true,
+                    structure_.context().restart_time);
+  fields_->write(time, moved,
                  {{"displacement", "m", io::OutputField::Place::points, 3, u},
                   {"velocity", "m/s", io::OutputField::Place::points, 3, v}});
 }
@@ -193,10 +199,10 @@ void PlateResults::write_fields(double time) {
 void PlateResults::write_series(double time) {
   if (!active_ || structure_.parameters().analysis == Parameters::Analysis::modal || structure_.repeats())
     return;
-  const std::vector<double> u = structure_.displacement();
-  if (structure_.contact()) write_contact(time);
   if (!root_) return;
-  const int n = structure_.share().n_modes();
+  const std::vector<double>& u = structure_.displacement();
+  if (structure_.contact()) write_contact(time);
+  const int n = structure_.surface().n_modes();
   const ModalState& state = structure_.state();
   std::vector<std::string> columns{"time [s]"};
   for (const std::string& one : numbered("q", n, " [sqrt(kg) m]")) columns.push_back(one);
@@ -235,9 +241,8 @@ void PlateResults::write_energies(double time) {
 void PlateResults::write_contact(double time) {
   Contact::Result seat;
   structure_.contact()->look(structure_.state().q, seat);
-  if (root_)
-    series(contact_, "contact.csv", {"time [s]", "force [N]", "penetration [m]", "energy [J]"})
-        .row(std::vector<double>{time, seat.total, seat.penetration, seat.energy});
+  series(contact_, "contact.csv", {"time [s]", "force [N]", "penetration [m]", "energy [J]"})
+      .row(std::vector<double>{time, seat.total, seat.penetration, seat.energy});
 }
 
 }  // namespace couplet::plate

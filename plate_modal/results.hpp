@@ -31,6 +31,7 @@ class PlateResults final {
   void write_series(double time);
 
  private:
+  std::vector<Vec3> places() const;  // of the vertices, on rank 0
   void write_frequencies();
   void write_shapes();
   void write_contact(double time);

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/base/numbers.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/load.hpp"
 #include "plate_modal/results.hpp"
@@ -24,13 +27,32 @@ Parameters with_unit_directions(Parameters p) {
   return p;
 }
 
+/// A restart with changes may have taken away the seat, or moved it, or the gravity: the energy that the structure has
+/// in the new scene is where its balance starts from.
+void take_changed_energy(const Oscillators& oscillators, bool tells, ModalState& state) {
+  Energies& kept = state.energies;
+  const Energies now = oscillators.start(state.q, state.v).energies;
+  const double scale =
+      std::abs(kept.kinetic) + std::abs(kept.strain) + std::abs(kept.gravity) + std::abs(kept.contact);
+  const double jump = now.contact - kept.contact + now.gravity - kept.gravity;
+  if (!(std::abs(now.contact - kept.contact) + std::abs(now.gravity - kept.gravity) > 1e-9 * scale)) return;
+  if (tells)
+    log::warn(
+        "energy: with the changes of this restart the seat stores {:.4g} J instead of {:.4g} J, and gravity "
+        "{:.4g} J instead of {:.4g} J: this jump of {:.4g} J is not part of the balance.",
+        now.contact, kept.contact, now.gravity, kept.gravity, jump);
+  kept.contact = now.contact;
+  kept.gravity = now.gravity;
+  kept.initial += jump;
+}
+
 }  // namespace
 
 Structure::Structure(Parameters parameters, PlateContext context, const mesh::RawMesh* raw)
     : parameters_(with_unit_directions(std::move(parameters))),
       context_(std::move(context)),
       built_(build_model(parameters_, context_, raw)),
-      share_(std::make_unique<Share>(context_.comm, built_.model)) {
+      surface_(std::move(built_.model)) {
   const Parameters& p = parameters_;
   if (parallel::comm_rank(context_.comm) == 0) {
     if (!built_.outline.empty()) log::warn("{}", built_.outline);
@@ -41,27 +63,80 @@ Structure::Structure(Parameters parameters, PlateContext context, const mesh::Ra
           "or along a stiff direction, needs many: export twice as many, and compare.");
     if (built_.reused) log::info("reusing the modes of {}", (context_.output_folder / "modes.h5").string());
   }
-  if (p.analysis == Parameters::Analysis::static_ && share_->omega().front() == 0)
+  if (p.analysis == Parameters::Analysis::static_ && surface_.omega().front() == 0)
     throw Error(
         "The structure moves as a rigid body (mode 1 has zero frequency): a static analysis needs supports "
         "that prevent this.");
-  gravity_.assign(share_->n_modes(), 0);
-  if (!p.gravity.empty()) gravity_ = share_->participation(Vec3(p.gravity.data()));
+  gravity_.assign(surface_.n_modes(), 0);
+  if (!p.gravity.empty()) gravity_ = surface_.participation(Vec3(p.gravity.data()));
   if (p.contact) make_contact();
   if (p.load && (p.load->upper || p.load->lower))
-    pressure_ = std::make_unique<PressureLoad>(*share_, *p.load, p.placement.normal(), context_.name);
+    pressure_ = std::make_unique<PressureLoad>(surface_, *p.load, p.placement.normal(), context_.name);
   oscillators_ =
-      std::make_unique<Oscillators>(share_->omega(), damping(), gravity_, p.time_scheme, contact_.get());
+      std::make_unique<Oscillators>(surface_.omega(), damping(), gravity_, p.time_scheme, contact_.get());
   state_ = trial_ = initial_state();
   if (contact_ && !p.contact->starts_inside) refuse_wound_springs();
   results_ = std::make_unique<PlateResults>(*this);
-  displacement_ = share_->gather_vertices(state_.q);
+  displacement_ = surface_.motion(state_.q);
 }
 
 Structure::~Structure() = default;
 
+/// A seat in which the structure stands at the start has wound springs: energy that nobody asked for.
+void Structure::refuse_wound_springs() const {
+  double size = 0;
+  for (const Vec3& x : surface_.centres()) size = std::max(size, (x - surface_.centres().front()).norm());
+  const Contact::Place place = contact_->deepest(state_.q);
+  if (place.depth <= 1e-9 * size) return;
+  throw Error(
+      "contact: initially the structure is {:.3g} m inside the seat, deepest at ({:g}, {:g}, {:g}). Lower "
+      "'height' (it counts from the origin along the direction; a side of a plate is half a thickness from "
+      "its mid-surface), or set 'starts-inside: true' if these springs are meant to push from the start.",
+      place.depth, place.centre.x(), place.centre.y(), place.centre.z());
+}
+
+/// The seat, and what a step should be for it.
+void Structure::make_contact() {
+  const Parameters& p = parameters_;
+  contact_ = std::make_unique<Contact>(surface_, *p.contact, p.placement.normal(),
+                                       p.contact->stiffness ? 0 : seat_stiffness(p));
+  const double shortest = std::numbers::pi / std::sqrt(contact_->largest_stiffness());
+  if (parallel::comm_rank(context_.comm) != 0) return;
+  const double steps = shortest / context_.time_step;
+  const std::string text = fmt::format(
+      "contact: over all faces it lasts {:.3g} s (pi sqrt(m / kappa)), over part of them longer", shortest);
+  if (std::isnan(steps))
+    log::info("{}.", text);
+  else if (steps >= 10)
+    log::info("{}: {:.3g} steps of it.", text, steps);
+  else
+    log::warn(
+        "{}: {:.2g} steps of it. Twenty resolve the speed after it to 1 %: 'simulation.time-step: {:.2g} s'.",
+        text, steps, shortest / 20);
+}
+
+std::vector<double> Structure::damping() const {
+  const Damping d = parameters_.damping.value_or(Damping{});
+  std::vector<double> c;
+  for (const double omega : surface_.omega())
+    c.push_back(2 * d.ratio * omega + d.mass + d.stiffness * omega * omega);
+  return c;
+}
+
+ModalState Structure::initial_state() const {
+  std::vector<double> q(surface_.n_modes(), 0), v = surface_.participation(parameters_.initial_velocity);
+  if (std::ssize(parameters_.initial_amplitudes) > std::ssize(q))
+    throw Error("initial-amplitudes: {} are given for {} modes.", parameters_.initial_amplitudes.size(),
+                q.size());
+  for (std::size_t m = 0; m < parameters_.initial_amplitudes.size(); ++m)
+    q[m] = parameters_.initial_amplitudes[m] / modes::largest_displacement(model(), m);
+  return oscillators_->start(std::move(q), std::move(v));
+}
+
 coupling::Interface Structure::initialise() {
-  coupling::Interface interface = share_->describe();
+  coupling::Interface interface;
+  interface.dim = 3;
+  if (parallel::comm_rank(context_.comm) == 0) interface = surface_.describe();
   interface.takes = {{"pressure-force", "N", coupling::Interface::Place::faces},
                      {"viscous-force", "N", coupling::Interface::Place::faces}};
   interface.gives = {{"displacement", "m", coupling::Interface::Place::vertices},
@@ -86,15 +161,22 @@ void Structure::refuse_made_energy() const {
           : "a smaller 'simulation.time-step'");
 }
 
+/// Rank 0's forces on the faces, 3 each, on every rank; empty if nobody gives any.
+std::vector<double> Structure::received(const coupling::Exchange& in, const char* name) const {
+  const auto given = in.find(name);
+  std::vector<double> force = given == in.end() ? std::vector<double>{} : given->second;
+  mesh::broadcast(context_.comm, force);
+  if (!force.empty() && force.size() != 3 * surface_.n_faces())
+    throw Error("The structure received {} force values, but its surface has {} faces with 3 components.",
+                force.size(), surface_.n_faces());
+  return force;
+}
+
 coupling::Exchange Structure::solve(const coupling::Exchange& in) {
-  std::vector<double> fluid(share_->n_modes(), 0);
-  for (const char* name : {"pressure-force", "viscous-force"}) {
-    const auto given = in.find(name);
-    share_->add_load(share_->scatter_faces(given == in.end() ? std::vector<double>{} : given->second), fluid);
-  }
-  share_->sum(fluid);
-  const auto given = in.find("pressure-force");
-  fluid_force_ = given == in.end() ? std::vector<double>{} : given->second;
+  std::vector<double> fluid(surface_.n_modes(), 0);
+  fluid_force_ = received(in, "pressure-force");
+  surface_.add_load(fluid_force_, fluid);
+  surface_.add_load(received(in, "viscous-force"), fluid);
   pressure_acts_ = false;
   if (parameters_.analysis == Parameters::Analysis::dynamic) {
     // A partner's load is its mean over the step: that of the middle. Schemes that solve later continue it from the middle of the last step.
@@ -117,12 +199,12 @@ coupling::Exchange Structure::solve(const coupling::Exchange& in) {
     solve_static(step_.time + step_.dt, fluid);
   }
   coupling::Exchange out;
-  std::vector<double> u = share_->gather_vertices(trial_.q), v = share_->gather_vertices(trial_.v);
-  if (parallel::comm_rank(context_.comm) != 0) return out;
+  std::vector<double> u = surface_.motion(trial_.q);
   trial_displacement_ = direct_.empty() ? u : direct_;
+  if (parallel::comm_rank(context_.comm) != 0) return out;
   out["displacement"] = std::move(u);
-  out["velocity"] = std::move(v);
-  if (parameters_.surface_density) out["surface-density"] = built_.model.face_density;
+  out["velocity"] = surface_.motion(trial_.v);
+  if (parameters_.surface_density) out["surface-density"] = model().face_density;
   return out;
 }
 
@@ -136,7 +218,7 @@ void Structure::solve_static(double t, std::span<const double> fluid) {
   std::vector<double> load(fluid.size(), 0);
   if (pressure_) add_pressure(t, load);
   for (std::size_t m = 0; m < load.size(); ++m) {
-    trial_.q[m] = (load[m] + fluid[m] + gravity_[m]) / (share_->omega()[m] * share_->omega()[m]);
+    trial_.q[m] = (load[m] + fluid[m] + gravity_[m]) / (surface_.omega()[m] * surface_.omega()[m]);
     trial_.v[m] = 0;
   }
   // Equal loads give the same answer again.
@@ -148,19 +230,21 @@ void Structure::solve_static(double t, std::span<const double> fluid) {
     return;
   }
   solved_ = trial_.q;
-  std::vector<double> by_modes = share_->gather_vertices(trial_.q);
   mesh::on_root(context_.comm, [&] {
-    if (!built_.plate) return;
-    direct_ = direct_deflection(t);
-    Deflection& d = deflection_.emplace(Deflection{});
-    for (std::size_t i = 0; i < direct_.size(); ++i) {
-      d.direct = std::max(d.direct, std::abs(direct_[i]));
-      d.by_modes = std::max(d.by_modes, std::abs(by_modes[i]));
-      d.apart = std::max(d.apart, std::abs(direct_[i] - by_modes[i]));
-    }
-    log::info("static deflection: max {:.6e} m; by {} modes {:.6e} m; max difference {:.2e} m", d.direct,
-              share_->n_modes(), d.by_modes, d.apart);
+    if (built_.plate) direct_ = direct_deflection(t);
   });
+  mesh::broadcast(context_.comm, direct_);
+  if (direct_.empty()) return;
+  const std::vector<double> by_modes = surface_.motion(trial_.q);
+  Deflection& d = deflection_.emplace(Deflection{});
+  for (std::size_t i = 0; i < direct_.size(); ++i) {
+    d.direct = std::max(d.direct, std::abs(direct_[i]));
+    d.by_modes = std::max(d.by_modes, std::abs(by_modes[i]));
+    d.apart = std::max(d.apart, std::abs(direct_[i] - by_modes[i]));
+  }
+  if (parallel::comm_rank(context_.comm) == 0)
+    log::info("static deflection: max {:.6e} m; by {} modes {:.6e} m; max difference {:.2e} m", d.direct,
+              surface_.n_modes(), d.by_modes, d.apart);
 }
 
 std::vector<double> Structure::direct_deflection(double t) const {
@@ -178,6 +262,27 @@ coupling::StepReport Structure::accept_step() {
   Energies& e = state_.energies;
   e.largest = std::max(e.largest, e.own());
   return {.dt = step_.dt, .iterations = oscillators_->newton_iterations(), .energy = e.total()};
+}
+
+void Structure::save(io::CheckpointWriter& file) const {
+  file.write_common("omega", surface_.omega());
+  file.write_common("state", base::to_numbers(state_));
+}
+
+void Structure::load(io::CheckpointReader& file) {
+  if (file.read_common("omega") != surface_.omega())
+    throw Error(
+        "The checkpoint was written with other modes than this run uses: mesh, material, thickness, "
+        "supports or the number of modes differ.");
+  const ModalState fresh = initial_state();
+  base::from_numbers(file.read_common("state"), state_, "modes");
+  for (const auto part :
+       {&ModalState::q, &ModalState::v, &ModalState::a, &ModalState::q_old, &ModalState::v_old})
+    if ((state_.*part).size() != (fresh.*part).size())
+      throw Error("The checkpoint was written with another time scheme than this run uses.");
+  take_changed_energy(*oscillators_, parallel::comm_rank(context_.comm) == 0, state_);
+  trial_ = state_;
+  displacement_ = surface_.motion(state_.q);
 }
 
 void Structure::write_output(double time, int) { results_->write_fields(time); }

@@ -30,22 +30,23 @@ class Structure final : public coupling::Participant {
 
   /// View for diagnostics. It refers to this structure, which must outlive it.
   PlateView view() const {
-    return {parameters_, built_, *share_,       *oscillators_, contact_.get(), pressure_.get(), step_,
-            trial_,      state_, displacement_, deflection_,   fluid_force_,   pressure_acts_};
+    return {parameters_, context_.comm, built_, surface_,      *oscillators_, contact_.get(), pressure_.get(),
+            step_,       trial_,        state_, displacement_, deflection_,   fluid_force_,   pressure_acts_};
   }
   const Parameters& parameters() const { return parameters_; }
   const PlateContext& context() const { return context_; }
-  const Share& share() const { return *share_; }
+  const Surface& surface() const { return surface_; }
   const ModalState& state() const { return state_; }
-  const modes::ModalModel& model() const { return built_.model; }  ///< on rank 0
+  const modes::ModalModel& model() const { return surface_.model(); }
   const Contact* contact() const { return contact_.get(); }
-  const std::optional<Deflection>& deflection() const { return deflection_; }  ///< static analysis; on rank 0
+  const std::optional<Deflection>& deflection() const { return deflection_; }  ///< static analysis
   bool repeats() const { return repeats_; }  ///< a static analysis has found the answer of the step before
-  const std::vector<double>& displacement() const { return displacement_; }  ///< [m], 3 a vertex, on rank 0
+  const std::vector<double>& displacement() const { return displacement_; }  ///< [m], 3 a vertex
 
  private:
   std::vector<double> damping() const;
   ModalState initial_state() const;
+  std::vector<double> received(const coupling::Exchange& in, const char* name) const;
   void make_contact();
   void refuse_wound_springs() const;
   void add_pressure(double t, std::span<double> load);
@@ -56,20 +57,20 @@ class Structure final : public coupling::Participant {
   Parameters parameters_;
   PlateContext context_;
   Built built_;
-  std::unique_ptr<Share> share_;
+  Surface surface_;
   std::unique_ptr<Contact> contact_;  // none: no seat in this scene
   std::unique_ptr<Oscillators> oscillators_;
   std::unique_ptr<PressureLoad> pressure_;  // none: no pressures of the case
   std::vector<double> gravity_;
   ModalState state_, trial_;
-  // Displacements of the vertices on rank 0 [m], 3 each: at the accepted time, and in the last solve().
+  // Displacements of the vertices [m], 3 each: at the accepted time, and in the last solve().
   std::vector<double> displacement_, trial_displacement_;
-  std::vector<double> direct_;  // static deflection of the plate itself, 3 a vertex on rank 0
+  std::vector<double> direct_;  // static deflection of the plate itself, 3 a vertex
   std::optional<Deflection> deflection_;
   std::vector<double> solved_;  // static analysis: the modes that direct_ and deflection_ belong to
   bool repeats_ = false;
   coupling::Step step_;
-  std::vector<double> fluid_force_;  // pressure forces of the last solve(), 3 a face on rank 0
+  std::vector<double> fluid_force_;  // pressure forces of the last solve(), 3 a face
   bool pressure_acts_ = false;       // a prescribed pressure was not 0 somewhere in the last solve()
   std::unique_ptr<PlateResults> results_;
 };

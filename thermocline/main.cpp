@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
-#include "thermocline/judge/effect_cards.hpp"
-#include "thermocline/judge/elsewhere.hpp"
-#include "thermocline/judge/files.hpp"
-#include "thermocline/judge/table.hpp"
+#include "thermocline/diagnostics/tank_diagnostic.hpp"
+#include "thermocline/model/elements.hpp"
 
 int main(int argc, char** argv) {
   couplet::thermocline::ElementParameters parameters;
@@ -16,7 +14,11 @@ int main(int argc, char** argv) {
           [&](const couplet::app::ParticipantContext& context) {
             return couplet::thermocline::make_element(parameters, context);
           },
-      .diagnose = couplet::thermocline::add_diagnostics,
+      .diagnose =
+          [](const couplet::coupling::Participant& participant, couplet::diagnostics::Diagnostics& all) {
+            if (const auto* tank = dynamic_cast<const couplet::thermocline::Tank*>(&participant))
+              add_diagnostics(tank->view(), all);
+          },
       .effects =
           [&](const couplet::effects::EffectScene&) {
             return couplet::effects::effects_of("thermocline", couplet::thermocline::effect_cards(),

@@ -3,7 +3,6 @@
 
 #include <array>
 
-#include "coupler/parameters/effect_cards.hpp"
 
 namespace couplet::coupler {
 namespace {

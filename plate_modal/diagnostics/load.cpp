@@ -7,7 +7,6 @@
 
 #include "common/base/error.hpp"
 #include "common/io/archive.hpp"
-#include "common/mesh/load.hpp"
 #include "plate_modal/diagnostics/motion.hpp"
 #include "plate_modal/diagnostics/view.hpp"
 
@@ -47,7 +46,7 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
   explicit PrescribedPressures(const PlateView& view) : view_(view) {}
   void observe(diagnostics::Report&) override {
     has_acted_ = has_acted_ || view_.pressure_acts;
-    if (const auto t = time_to_look(view_)) look_at_modes(*t);
+    if (const auto t = time_to_look(view_)) look_at_faces(*t);
     // A load that differs from place to place costs an expression for each face, so it is not looked at in each step.
     const GlobalIndex steps = view_.step.number + 1;
     if (view_.is_dynamic() && view_.pressure->changes_in_time() &&
@@ -95,18 +94,12 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
   double within_faces() const { return fine_ > 0 ? std::sqrt(within_ / fine_) : unknown; }
   /// Adds what the pressures at t do to the modes: with one force in the middle of each face, if each force lay along the
   /// motion of its face, and with sixteen points per face.
-  void look_at_modes(double t) {
-    std::vector<double> sums{part_, most_, within_, fine_};
-    mesh::on_root(view_.comm(), [&] { add_faces(t, sums); });
-    mesh::broadcast(view_.comm(), sums);
-    part_ = sums[0], most_ = sums[1], within_ = sums[2], fine_ = sums[3];
-  }
-  void add_faces(double t, std::vector<double>& sums) const {
-    const modes::ModalModel& model = view_.built.model;
+  void look_at_faces(double t) {
+    const modes::ModalModel& model = view_.model();
     const PressureLoad& pressure = *view_.pressure;
     const std::size_t n = model.n_modes();
     std::vector<double> middle(n, 0), most(n, 0), fine(n, 0);
-    const std::vector<Vec3> areas = modes::face_areas(model), centres = modes::face_centres(model);
+    const std::vector<Vec3>&areas = view_.surface.areas(), &centres = view_.surface.centres();
     try {
       for (std::size_t f = 0; f < areas.size(); ++f) {
         const double at_middle = pressure.push(areas[f], centres[f], t);
@@ -128,17 +121,17 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
     }
     double of_middle = 0, of_fine = 0;
     for (std::size_t m = 0; m < n; ++m) {
-      sums[0] += middle[m] * middle[m], sums[1] += most[m] * most[m];
-      const double omega = view_.share.omega()[m], weight = 1 / (omega * omega + view_.first_elastic());
+      part_ += middle[m] * middle[m], most_ += most[m] * most[m];
+      const double omega = view_.surface.omega()[m], weight = 1 / (omega * omega + view_.first_elastic());
       of_middle += weight * middle[m] * middle[m], of_fine += weight * fine[m] * fine[m];
-      if (!pressure.is_uniform()) sums[2] += weight * (fine[m] - middle[m]) * (fine[m] - middle[m]);
+      if (!pressure.is_uniform()) within_ += weight * (fine[m] - middle[m]) * (fine[m] - middle[m]);
     }
-    if (!pressure.is_uniform()) sums[3] += std::max(of_fine, of_middle);
+    if (!pressure.is_uniform()) fine_ += std::max(of_fine, of_middle);
   }
   /// Compares the load in the middle of the step with its mean over some samples of the step.
   void look_within_step(int samples) {
     const double start = view_.step.time, dt = view_.step.dt;
-    std::vector<double> middle(view_.share.omega().size()), mean(middle.size(), 0), one(middle);
+    std::vector<double> middle(view_.surface.omega().size()), mean(middle.size(), 0), one(middle);
     double squares = 0;
     ++samples_;
     try {

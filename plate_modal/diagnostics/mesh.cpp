@@ -3,10 +3,9 @@
 
 #include <cmath>
 
-#include "common/mesh/load.hpp"
 #include "plate_modal/diagnostics/motion.hpp"
 #include "plate_modal/diagnostics/view.hpp"
-#include "plate_modal/model/outline.hpp"
+#include "plate_modal/model/midsurface.hpp"
 
 namespace couplet::plate {
 namespace {
@@ -43,13 +42,9 @@ std::vector<double> mesh_gaps(const modes::ModalModel& model, std::size_t cells,
 class MeshOfModes final : public diagnostics::Diagnostic {
  public:
   MeshOfModes(const PlateView& view, std::shared_ptr<const Motion> motion)
-      : view_(view), motion_(std::move(motion)), kinks_(view.built.kinks) {
-    mesh::on_root(view.comm(), [&] {
-      if (!view.parameters.modes_file)
-        gaps_ = mesh_gaps(view.built.model, view.n_cells(), view.parameters.placement.normal());
-    });
-    mesh::broadcast(view.comm(), gaps_);
-    mesh::broadcast(view.comm(), kinks_);
+      : view_(view), motion_(std::move(motion)) {
+    if (!view.parameters.modes_file)
+      gaps_ = mesh_gaps(view.model(), view.n_cells(), view.parameters.placement.normal());
   }
   /// At the end only: a mean over the first steps is one of the load's start, whose waves are short.
   void conclude(diagnostics::Report& report) override {
@@ -67,19 +62,20 @@ class MeshOfModes final : public diagnostics::Diagnostic {
   /// Mean over the modes by their share of the motion; of a modal analysis that of the highest mode.
   double mesh_gap() const {
     if (gaps_.empty()) return unknown;
-    if (view_.parameters.analysis == Parameters::Analysis::modal) return with_corners(gaps_.back(), kinks_);
+    if (view_.parameters.analysis == Parameters::Analysis::modal)
+      return with_corners(gaps_.back(), view_.built.kinks);
     double all = 0, apart = 0;
     for (std::size_t m = 0; m < gaps_.size(); ++m) {
       const double moved = motion_ ? motion_->moved(m) : view_.state.q[m] * view_.state.q[m];
       all += moved;
       apart += moved * gaps_[m] * gaps_[m];
     }
-    return all > 0 ? with_corners(std::sqrt(apart / all), kinks_) : unknown;
+    return all > 0 ? with_corners(std::sqrt(apart / all), view_.built.kinks) : unknown;
   }
 
   PlateView view_;
   std::shared_ptr<const Motion> motion_;
-  std::vector<double> gaps_, kinks_;  // gaps_: of each mode; empty for modes of a file
+  std::vector<double> gaps_;  // of each mode; empty for modes of a file
 };
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "common/io/archive.hpp"
-#include "common/mesh/load.hpp"
 #include "common/modes/modal_model.hpp"
 #include "plate_modal/diagnostics/motion.hpp"
 #include "plate_modal/diagnostics/view.hpp"
@@ -25,20 +24,11 @@ class PlateTheory final : public diagnostics::Diagnostic {
  public:
   PlateTheory(const PlateView& view, std::shared_ptr<const Motion> motion)
       : view_(view), motion_(std::move(motion)) {
-    const modes::ModalModel& model = view.built.model;
-    const std::vector<double>& omega = view.share.omega();
-    std::vector<double> flat(2, 0);  // size, limit of the stretch; rotation of each mode
-    mesh::on_root(view.comm(), [&] {
-      for (const Vec3& x : model.vertices) flat[0] = std::max(flat[0], (x - model.vertices.front()).norm());
-      flat[1] = view.built.stretch_limit;
-      for (std::size_t m = 0; m < omega.size(); ++m) {
-        const Vec3 turn = omega[m] == 0 ? modes::rigid_motion(model, m).rotation : Vec3(Vec3::Zero());
-        flat.insert(flat.end(), turn.begin(), turn.end());
-      }
-    });
-    mesh::broadcast(view.comm(), flat);
-    size_ = flat[0], stretch_limit_ = flat[1];
-    for (std::size_t m = 0; m < omega.size(); ++m) rotations_.emplace_back(&flat[2 + 3 * m]);
+    const modes::ModalModel& model = view.model();
+    const std::vector<double>& omega = view.surface.omega();
+    for (const Vec3& x : model.vertices) size_ = std::max(size_, (x - model.vertices.front()).norm());
+    for (std::size_t m = 0; m < omega.size(); ++m)
+      rotations_.push_back(omega[m] == 0 ? modes::rigid_motion(model, m).rotation : Vec3(Vec3::Zero()));
   }
   void observe(diagnostics::Report&) override {
     displacement_ = std::max(displacement_, largest_of(view_.displacement));
@@ -47,17 +37,15 @@ class PlateTheory final : public diagnostics::Diagnostic {
     rotation_ = std::max(rotation_, turn.norm());
   }
   void look(diagnostics::Report& report) override {
-    std::vector<double> displacement{displacement_};
-    mesh::broadcast(view_.comm(), displacement);
-    look_at_rotation(report, displacement[0] / size_);
-    if (stretch_limit_ > 0) look_at_stretch(report, displacement[0] / view_.parameters.thickness);
+    look_at_rotation(report, displacement_ / size_);
+    if (view_.built.stretch_limit > 0) look_at_stretch(report, displacement_ / view_.parameters.thickness);
     if (!view_.parameters.modes_file && view_.is_dynamic()) look_at_plane(report);
     if (!view_.parameters.modes_file) look_at_shear(report);
   }
   void visit(io::Archive& archive) override { archive.common("largest", displacement_, rotation_); }
 
  private:
-  bool moves_freely() const { return view_.share.omega().front() == 0; }
+  bool moves_freely() const { return view_.surface.omega().front() == 0; }
 
   // A body that moves as a whole may go far, but it must not rotate far: a mode moves it along its tangent, so that
   // 0.25 rad stretch it by 1 / cos, 3 %. A clamped strip whose tip has moved by a quarter of its length has rotated there
@@ -80,7 +68,7 @@ class PlateTheory final : public diagnostics::Diagnostic {
   void look_at_stretch(diagnostics::Report& report, double deflection) const {
     const double stiffening = 0.5 * deflection * deflection;
     report_neglected(
-        report, "stretch of the mid-surface", deflection, stretch_limit_,
+        report, "stretch of the mid-surface", deflection, view_.built.stretch_limit,
         fmt::format("held on opposite sides: max deflection / thickness = {:.2g}", deflection),
         "unless its edges may slide in its plane, stretching stiffens it noticeably: use a program for "
         "finite strain",
@@ -110,7 +98,7 @@ class PlateTheory final : public diagnostics::Diagnostic {
   // omega by 2 % where half a wave, pi / k, is ten thicknesses long.
   void look_at_shear(diagnostics::Report& report) const {
     const double omega =
-        motion_ ? motion_->evidence(view_.step.is_last).last_mode_omega : view_.share.omega().back();
+        motion_ ? motion_->evidence(view_.step.is_last).last_mode_omega : view_.surface.omega().back();
     const double ratio = thickness_over_wave(omega);
     report_neglected(report, "shear and rotary inertia", ratio, 0.1,
                      fmt::format("thickness / half the wavelength of the highest mode {1} = {0:.2g}", ratio,
@@ -138,10 +126,10 @@ class PlateTheory final : public diagnostics::Diagnostic {
 
   PlateView view_;
   std::shared_ptr<const Motion> motion_;
-  double size_ = 0, stretch_limit_ = 0;
+  double size_ = 0;
   std::vector<Vec3> rotations_;  // of each rigid mode [1/(sqrt(kg) m)], 0 for the others
   double displacement_ = 0,
-         rotation_ = 0;  // largest of any vertex, on rank 0 [m]; of the body as a whole [rad]
+         rotation_ = 0;  // largest of any vertex [m]; of the body as a whole [rad]
 };
 
 }  // namespace

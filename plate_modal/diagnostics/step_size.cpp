@@ -70,7 +70,7 @@ class StepError final : public diagnostics::Diagnostic {
   /// Rate at which the damping takes away what moves as the modes do now [1/s].
   double rate_of_decay() const {
     const std::span<const double> c = view_.oscillators.damping();
-    const std::vector<double>&omega = view_.share.omega(), &v = view_.state.v;
+    const std::vector<double>&omega = view_.surface.omega(), &v = view_.state.v;
     double lost = 0, all = 0;
     for (std::size_t m = 0; m < c.size(); ++m) {
       // The slower of two rates beyond the critical damping.

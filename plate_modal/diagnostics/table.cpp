@@ -33,21 +33,21 @@ constexpr std::array table_rows{TableRow{"balance-of-energies", balance_of_energ
 }  // namespace
 
 void add_diagnostics(const PlateView& view, diagnostics::Diagnostics& all) {
-  const auto motion = view.is_dynamic() ? std::make_shared<Motion>(view.share.omega()) : nullptr;
+  const auto motion = view.is_dynamic() ? std::make_shared<Motion>(view.surface.omega()) : nullptr;
   for (const TableRow& row : table_rows)
     if (auto one = row.estimates && !all.with_errors() ? nullptr : row.make(view, motion))
       all.add(row.name, std::move(one));
 }
 
 double PlateView::first_elastic() const {
-  for (const double omega : share.omega())
+  for (const double omega : surface.omega())
     if (omega > 0) return omega * omega;
   return 1;
 }
 
 std::size_t PlateView::n_cells() const {
   std::size_t faces = 0;  // the rims of a plate stand for no mass
-  for (const double density : built.model.face_density) faces += density > 0;
+  for (const double density : model().face_density) faces += density > 0;
   return parameters.wetted == Wetted::both ? faces / 2 : faces;
 }
 

@@ -26,14 +26,14 @@ class TruncatedModes final : public diagnostics::Diagnostic {
   TruncatedModes(const PlateView& view, std::shared_ptr<const Motion> motion)
       : view_(view),
         motion_(std::move(motion)),
-        shift_(view.share.omega().front() == 0 ? view.first_elastic() : 0) {}
+        shift_(view.surface.omega().front() == 0 ? view.first_elastic() : 0) {}
   void observe(diagnostics::Report&) override {
     if (!motion_ || view_.parameters.modes_file) return;
     const auto t = time_to_look(view_);
     if (!t) return;
     std::vector<double> sums{left_out_, all_};
-    mesh::on_root(view_.comm(), [&] { add_compliance(*t, sums); });
-    mesh::broadcast(view_.comm(), sums);
+    mesh::on_root(view_.comm, [&] { add_compliance(*t, sums); });
+    mesh::broadcast(view_.comm, sums);
     left_out_ = sums[0], all_ = sums[1];
   }
   void look(diagnostics::Report& report) override {
@@ -75,7 +75,7 @@ class TruncatedModes final : public diagnostics::Diagnostic {
     solver_->solve(load, u);
     double all = 0, kept = 0;
     for (std::size_t i = 0; i < u.size(); ++i) all += load[i] * u[i];
-    const std::vector<double>&omega = view_.share.omega(), &shape = view_.built.model.face_shape;
+    const std::vector<double>&omega = view_.surface.omega(), &shape = view_.model().face_shape;
     const std::size_t n = omega.size();
     for (std::size_t m = 0; m < n; ++m) {
       double on_mode = 0;
@@ -90,15 +90,14 @@ class TruncatedModes final : public diagnostics::Diagnostic {
   }
   /// In a static analysis the deflection itself is known.
   void look_at_deflection(diagnostics::Report& report) const {
-    std::vector<double> apart{unknown};
-    if (const auto& d = view_.deflection; d && d->direct > 0) apart[0] = d->apart / d->direct;
-    mesh::broadcast(view_.comm(), apart);
+    const auto& d = view_.deflection;
+    const double apart = d && d->direct > 0 ? d->apart / d->direct : unknown;
     report_neglected(
-        report, "deflection beyond the modes", apart[0], 0.05,
-        fmt::format("truncation error of the deflection = {:.2g}", apart[0]),
+        report, "deflection beyond the modes", apart, 0.05,
+        fmt::format("truncation error of the deflection = {:.2g}", apart),
         "fields and probes show the full deflection, but modal.csv and the interface only the modes: keep "
         "more modes ('modes.number')",
-        apart[0]);
+        apart);
   }
   // A mode answers a load of frequency f as 1 / (1 - (f / f_mode)^2): at two thirds of its own frequency with 1.8 times
   // what the static measure counts, and near it without limit.
@@ -115,8 +114,8 @@ class TruncatedModes final : public diagnostics::Diagnostic {
     const Vec3& v = view_.parameters.initial_velocity;
     if (!(v.norm() > 0)) return;
     double kept = 0;
-    for (const double one : view_.share.participation(v)) kept += one * one;
-    const double lost = std::max(0.0, 1 - kept / (view_.share.mass() * v.squaredNorm()));
+    for (const double one : view_.surface.participation(v)) kept += one * one;
+    const double lost = std::max(0.0, 1 - kept / (view_.model().mass * v.squaredNorm()));
     report_neglected(
         report, "initial velocity beyond the modes", lost, 0.1,
         fmt::format("initial kinetic energy outside the modes = {:.2g}", lost),

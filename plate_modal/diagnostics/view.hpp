@@ -19,24 +19,24 @@ namespace couplet::plate {
 /// Everything that diagnostics may read of a structure, as it is after the last accepted step.
 struct PlateView {
   const Parameters& parameters;
-  const Built& built;  ///< on rank 0
-  const Share& share;
+  MPI_Comm comm;
+  const Built& built;
+  const Surface& surface;
   const Oscillators& oscillators;
   const Contact* contact;        ///< nullptr if there is no seat
   const PressureLoad* pressure;  ///< nullptr if the case prescribes no pressures
   const coupling::Step& step;
   const ModalState &before, &state;         ///< at the start and at the end of the step
-  const std::vector<double>& displacement;  ///< of the vertices [m], 3 each, on rank 0
+  const std::vector<double>& displacement;  ///< of the vertices [m], 3 each
   const std::optional<Deflection>& deflection;
-  const std::vector<double>&
-      fluid_force;            ///< pressure forces on the faces [N], 3 each, on rank 0; may be empty
-  const bool& pressure_acts;  ///< a prescribed pressure was not 0 somewhere in the step
+  const std::vector<double>& fluid_force;  ///< pressure forces on the faces [N], 3 each; may be empty
+  const bool& pressure_acts;               ///< a prescribed pressure was not 0 somewhere in the step
 
   bool is_dynamic() const { return parameters.analysis == Parameters::Analysis::dynamic; }
-  MPI_Comm comm() const { return share.comm(); }
+  const modes::ModalModel& model() const { return surface.model(); }
   /// Square of the first angular frequency above 0 [1/s^2]; 1 if there is none.
   double first_elastic() const;
-  /// Cells of the mid-surface, which are the first faces of the surface. On rank 0.
+  /// Cells of the mid-surface, which are the first faces of the surface.
   std::size_t n_cells() const;
 };
 

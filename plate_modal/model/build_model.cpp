@@ -15,7 +15,7 @@
 #include "common/mesh/quality.hpp"
 #include "common/modes/modes_file.hpp"
 #include "common/modes/surface_parts.hpp"
-#include "plate_modal/model/outline.hpp"
+#include "plate_modal/model/midsurface.hpp"
 
 namespace couplet::plate {
 namespace {
@@ -189,7 +189,7 @@ bool reuse_modes(Built& built, const std::filesystem::path& file, const std::str
   return false;
 }
 
-/// What a user who draws a curved edge by straight lines should know; empty: there is none.
+/// Notes what a user who draws a curved edge by straight lines should know.
 void look_at_corners(Built& built, const Midsurface& surface, const std::vector<Support>& support) {
   const std::vector<OutlinePoint> outline = outline_of(surface);
   const std::vector<Index> corners = blunt_corners(surface, outline, support);
@@ -288,6 +288,15 @@ Built build_model(const Parameters& p, const PlateContext& context, const mesh::
     add_modes(built, *plate, p, context);
     if (p.analysis != Parameters::Analysis::modal) built.plate = std::move(plate);
   });
+  modes::ModalModel& m = built.model;
+  std::vector<double> numbers{m.mass, built.stretch_limit};
+  for (auto* part : {&numbers, &m.frequency, &m.vertex_shape, &m.face_shape, &m.participation,
+                     &m.face_density, &built.kinks})
+    mesh::broadcast(context.comm, *part);
+  m.mass = numbers[0], built.stretch_limit = numbers[1];
+  mesh::broadcast(context.comm, m.vertices);
+  mesh::broadcast(context.comm, m.faces.offset);
+  mesh::broadcast(context.comm, m.faces.index);
   return built;
 }
 

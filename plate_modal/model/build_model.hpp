@@ -20,12 +20,12 @@ struct PlateContext {
   double time_step = std::numeric_limits<double>::quiet_NaN();  ///< of the run; NaN: not known
 };
 
-/// What the configuration describes, on rank 0 (the model is empty elsewhere).
+/// Structure that the configuration describes.
 struct Built {
   modes::ModalModel model;
-  std::unique_ptr<PlateModel> plate;  ///< of a mesh, but for a modal analysis
+  std::unique_ptr<PlateModel> plate;  ///< of a mesh, but for a modal analysis; on rank 0
   bool reused = false;                ///< modes of an earlier run
-  /// Of a plate with two held edges or more: deflection over thickness from which its stretch matters; 0: it has none.
+  /// Deflection over thickness from which the stretch of a plate with two held edges matters; 0 if there are none.
   double stretch_limit = 0;
   std::vector<double> kinks;  ///< at blunt corners of hinged edges [rad]
   std::string outline;        ///< what the user should know of the outline, or nothing

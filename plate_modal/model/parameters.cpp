@@ -11,19 +11,17 @@
 namespace couplet::plate {
 namespace {
 
-/// What the plate is made of, and how thick it is.
+config::Key& as_density(config::Key&& key) { return key.unit("kg/m^3").plausible(1, 25000); }
+config::Key& as_modulus(config::Key&& key) { return key.unit("Pa").plausible(1, 2e12); }
+config::Key& as_thickness(config::Key&& key) { return key.unit("m").plausible(1e-7, 10); }
+
+/// Material and thickness.
 void declare_layers(config::Section& s, Parameters& p) {
   s.section(
       "material",
       [&](config::Section& m) {
-        m.value("density", p.material.density)
-            .unit("kg/m^3")
-            .plausible(1, 25000)
-            .not_negative()
-            .doc("density");
-        m.value("youngs-modulus", p.material.youngs_modulus)
-            .unit("Pa")
-            .plausible(1, 2e12)
+        as_density(m.value("density", p.material.density)).not_negative().doc("density");
+        as_modulus(m.value("youngs-modulus", p.material.youngs_modulus))
             .not_negative()
             .doc("Young's modulus");
         m.value("poissons-ratio", p.material.poissons_ratio).range(-0.99, 0.499).doc("Poisson's ratio");
@@ -31,29 +29,15 @@ void declare_layers(config::Section& s, Parameters& p) {
                 "density");
       },
       "isotropic material of the plate; needed with 'mesh'");
-  s.value("thickness", p.thickness)
-      .unit("m")
-      .plausible(1e-7, 10)
+  as_thickness(s.value("thickness", p.thickness))
       .not_negative()
       .doc("thickness of the plate; needed with 'mesh'");
   s.map<Zone>(
       "zones", p.zones,
       [](config::Section& z, Zone& v) {
-        z.value("thickness", v.thickness)
-            .unit("m")
-            .plausible(1e-7, 10)
-            .positive()
-            .doc("instead of the plate's");
-        z.value("density", v.density)
-            .unit("kg/m^3")
-            .plausible(1, 25000)
-            .positive()
-            .doc("instead of the plate's");
-        z.value("youngs-modulus", v.youngs_modulus)
-            .unit("Pa")
-            .plausible(1, 2e12)
-            .positive()
-            .doc("instead of the plate's");
+        as_thickness(z.value("thickness", v.thickness)).positive().doc("instead of the plate's");
+        as_density(z.value("density", v.density)).positive().doc("instead of the plate's");
+        as_modulus(z.value("youngs-modulus", v.youngs_modulus)).positive().doc("instead of the plate's");
       },
       "zone", "parts of the mesh (physical surfaces) that differ from the rest");
 }
@@ -96,7 +80,7 @@ void declare_place(config::Section& s, Parameters& p) {
             .doc("direction of the mesh's y, of any length; the plate's normal is x cross y");
         q.check(
             [&]() -> std::string {
-              // By their largest components first: the square of a small length is 0.
+              // Scaled by their largest components first: the square of a small length is 0.
               const Vec3 x = p.placement.x.stableNormalized(), y = p.placement.y.stableNormalized();
               return x.norm() > 0.5 && y.norm() > 0.5 && std::abs(x.dot(y)) < 1e-9
                          ? ""

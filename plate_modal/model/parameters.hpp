@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "common/config/section.hpp"
 #include "common/contact/contact.hpp"
+#include "common/effects/effects.hpp"
 #include "common/time/time_scheme.hpp"
 #include "plate_modal/model/skin.hpp"
 
@@ -29,7 +32,7 @@ struct Zone {
   std::optional<double> thickness, density, youngs_modulus;
 };
 
-/// Of every mode: ratio + (mass / omega + stiffness omega) / 2 of the critical damping.
+/// Damping of every mode, over the critical one: ratio + (mass / omega + stiffness omega) / 2.
 struct Damping {
   double ratio = 0, mass = 0, stiffness = 0;
 };
@@ -77,5 +80,15 @@ struct Parameters {
 
 /// The keys of `participants.<name>` of a plate_modal.
 void declare(config::Section& section, Parameters& parameters);
+
+/// Scene of the effect cards: the parameters, and whether a coupler gives the forces of a fluid.
+struct PlateScene {
+  Parameters parameters;
+  bool coupled = false;
+  double time_step = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN: not known
+};
+using PlateCard = effects::EffectCard<PlateScene>;
+/// The effects that a modal structure can simulate beside its modes, for --explain and docs/effects.md.
+std::span<const PlateCard> plate_effect_cards();
 
 }  // namespace couplet::plate

@@ -9,7 +9,7 @@
 #include "common/base/constants.hpp"
 #include "common/base/error.hpp"
 #include "common/linalg/linear_solver.hpp"
-#include "plate_modal/model/outline.hpp"
+#include "plate_modal/model/midsurface.hpp"
 
 namespace couplet::plate {
 namespace {

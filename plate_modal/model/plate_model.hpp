@@ -10,9 +10,7 @@
 
 namespace couplet::plate {
 
-enum class Support { free, clamped, simply_supported, symmetry };
-
-/// What a cell is made of.
+/// Thickness and material of a cell.
 struct PlateCell {
   double thickness = 0;       ///< h [m]
   double density = 0;         ///< rho [kg/m^3]

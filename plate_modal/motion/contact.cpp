@@ -8,7 +8,6 @@
 #include "common/base/error.hpp"
 #include "common/contact/contact.hpp"
 #include "common/fv/expression.hpp"
-#include "common/parallel/collective.hpp"
 
 namespace couplet::plate {
 namespace {
@@ -18,13 +17,13 @@ constexpr double least_cosine_to_seat = 0.5;
 
 }  // namespace
 
-Contact::Contact(const Share& share, const ContactParameters& p, const Vec3& normal, double stiffness)
-    : share_(share), rule_(p.rule), n_modes_(share.n_modes()) {
+Contact::Contact(const Surface& surface, const ContactParameters& p, const Vec3& normal, double stiffness)
+    : rule_(p.rule), n_modes_(surface.n_modes()) {
   const Vec3 direction = p.direction.empty() ? normal : Vec3(p.direction[0], p.direction[1], p.direction[2]);
   std::vector<std::size_t> faces;
   const fv::Expression height(p.height, "contact.height"), where(p.where, "contact.where");
-  for (std::size_t f = 0; f < share.n_faces(); ++f) {
-    const Vec3 &x = share.centres()[f], &area = share.areas()[f];
+  for (std::size_t f = 0; f < surface.n_faces(); ++f) {
+    const Vec3 &x = surface.centres()[f], &area = surface.areas()[f];
     const double towards = -area.dot(direction);
     if (towards < least_cosine_to_seat * area.norm() || !(where(x, 0) > 0)) continue;
     faces.push_back(f);
@@ -33,21 +32,23 @@ Contact::Contact(const Share& share, const ContactParameters& p, const Vec3& nor
     kappa_.push_back(p.stiffness.value_or(p.scale * stiffness) * towards);
     for (int m = 0; m < n_modes_; ++m) {
       double along = 0;
-      for (int c = 0; c < 3; ++c) along += direction[c] * share.face_shape(f)[std::size_t(c) * n_modes_ + m];
+      for (int c = 0; c < 3; ++c)
+        along += direction[c] * surface.face_shape(f)[std::size_t(c) * n_modes_ + m];
       shape_.push_back(along);
     }
   }
-  if (couplet::parallel::sum(share.comm(), GlobalIndex(gap_.size())) == 0)
+  if (gap_.empty())
     throw Error("contact: no face of the structure points towards the seat. Check 'direction' and 'where'.");
-  refuse_sliding(direction, faces);
+  refuse_sliding(surface, direction, faces);
 }
 
 /// A seat pushes along its direction. Faces that the modes move across it alone (the rim of a plate that looks at a
 /// seat beside it) would sink through it without a force that anything feels.
-void Contact::refuse_sliding(const Vec3& direction, std::span<const std::size_t> faces) const {
+void Contact::refuse_sliding(const Surface& surface, const Vec3& direction,
+                             std::span<const std::size_t> faces) const {
   double moves[2] = {0, 0};  // along the direction, in all
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    const auto shape = share_.face_shape(faces[i]);
+    const auto shape = surface.face_shape(faces[i]);
     for (int m = 0; m < n_modes_; ++m) {
       const double along = shape_[i * n_modes_ + m];
       moves[0] += kappa_[i] * along * along;
@@ -57,7 +58,6 @@ void Contact::refuse_sliding(const Vec3& direction, std::span<const std::size_t>
       }
     }
   }
-  share_.sum(moves);
   const double cosine = std::sqrt(moves[0] / moves[1]);
   if (cosine >= least_cosine_to_seat) return;
   throw Error(
@@ -68,15 +68,10 @@ void Contact::refuse_sliding(const Vec3& direction, std::span<const std::size_t>
 }
 
 Contact::Place Contact::deepest(std::span<const double> q) const {
-  std::vector<double> here{-std::numeric_limits<double>::infinity(), 0, 0, 0};
+  Place deepest{-std::numeric_limits<double>::infinity()};
   for (std::size_t f = 0; f < gap_.size(); ++f)
-    if (const double delta = penetration(f, q); delta > here[0])
-      here = {delta, centre_[f].x(), centre_[f].y(), centre_[f].z()};
-  const std::vector<double> all = parallel::all_gather(share_.comm(), here);
-  std::size_t best = 0;
-  for (std::size_t i = 0; i < all.size(); i += 4)
-    if (all[i] > all[best]) best = i;
-  return {all[best], Vec3(&all[best + 1])};
+    if (const double delta = penetration(f, q); delta > deepest.depth) deepest = {delta, centre_[f]};
+  return deepest;
 }
 
 double Contact::stiffness_of_impact(std::span<const double> from, std::span<const double> q,
@@ -88,7 +83,6 @@ double Contact::stiffness_of_impact(std::span<const double> from, std::span<cons
     seen += kappa_[f] * along * along;
   }
   const double square = force.squaredNorm();
-  seen = couplet::parallel::sum(share_.comm(), seen);
   return square > 0 ? seen / square : 0;
 }
 
@@ -97,7 +91,6 @@ double Contact::largest_stiffness() const {
   for (std::size_t f = 0; f < gap_.size(); ++f)
     all.selfadjointView<Eigen::Lower>().rankUpdate(
         Eigen::Map<const Eigen::VectorXd>(shape_.data() + f * n_modes_, n_modes_), kappa_[f]);
-  share_.sum({all.data(), std::size_t(n_modes_) * n_modes_});
   // Power iteration: a percent is enough, and it comes from below by less.
   Eigen::VectorXd x = Eigen::VectorXd::Ones(n_modes_).normalized();
   double value = 0;
@@ -130,25 +123,18 @@ void Contact::evaluate(std::span<const double> from, std::span<const double> q, 
     r.force += kappa_[f] * force * shape;
     r.tangent.selfadjointView<Eigen::Lower>().rankUpdate(shape, kappa_[f] * slope);
   }
-  share_.sum({r.force.data(), std::size_t(n)});
-  share_.sum({r.tangent.data(), std::size_t(n) * n});
   r.tangent.triangularView<Eigen::StrictlyUpper>() = r.tangent.transpose();
 }
 
 void Contact::look(std::span<const double> q, Result& r) const {
-  double sums[2] = {0, 0};
-  double deepest = 0;
+  r.energy = r.total = r.penetration = 0;
   for (std::size_t f = 0; f < gap_.size(); ++f) {
     const double delta = penetration(f, q);
     if (!(delta > 0)) continue;
-    sums[0] += 0.5 * kappa_[f] * delta * delta;
-    sums[1] += kappa_[f] * delta;
-    deepest = std::max(deepest, delta);
+    r.energy += 0.5 * kappa_[f] * delta * delta;
+    r.total += kappa_[f] * delta;
+    r.penetration = std::max(r.penetration, delta);
   }
-  share_.sum(sums);
-  r.energy = sums[0];
-  r.total = sums[1];
-  r.penetration = couplet::parallel::max(share_.comm(), deepest);
 }
 
 }  // namespace couplet::plate

@@ -12,7 +12,7 @@ namespace couplet::plate {
 namespace {
 
 constexpr int most_iterations = 60;
-/// Of the residual over the terms it is made of: what is left is their rounding.
+/// Residual over the terms that it is made of, which is their rounding.
 constexpr double newton_tolerance = 1e-13;
 
 }  // namespace

@@ -22,7 +22,7 @@ struct Energies {
   double largest =
       0;  ///< that the scheme did not make, or work of the loads: the most that the structure had so far
   double total() const { return kinetic + strain + gravity + contact; }
-  /// What the scheme made or lost: of the structure together with the seat's springs.
+  /// Energy that the scheme made or lost, of the structure together with the seat's springs.
   double mismatch() const { return total() - initial - load_work + damping_loss; }
   /// Kinetic, strain and contact energy without what the scheme made, or the work of the loads: whichever is more.
   double own() const {
@@ -65,12 +65,12 @@ class Oscillators final {
   /// A state at rest with these displacements and rates.
   ModalState start(std::vector<double> q, std::vector<double> v) const;
   /// From `now` over dt to `next`; `load(t, Q)` fills the loads on the modes at t within the step. Throws
-  /// SolveFailure if Newton's method does not end. Collective.
+  /// SolveFailure if Newton's method does not end.
   using LoadAt = std::function<void(double, std::span<double>)>;
   void step(const ModalState& now, double dt, const LoadAt& load, ModalState& next);
 
   int newton_iterations() const { return iterations_; }  ///< of the last step, most of its stages
-  /// Of the last solve, in its last stage: fluid and prescribed pressures on each mode.
+  /// Fluid and prescribed pressures on each mode, in the last stage of the last solve.
   std::span<const double> load() const { return load_; }
   std::span<const double> damping() const { return damping_; }
   const Contact::Result& seat() const { return seat_; }  ///< at the end of the last step

@@ -3,10 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "common/base/error.hpp"
-#include "common/parallel/collective.hpp"
 
 namespace couplet::plate {
 namespace {
@@ -22,8 +20,8 @@ bool is_on(const Vec3& area, const Vec3& normal, double sign) {
 
 }  // namespace
 
-PressureLoad::PressureLoad(const Share& share, const Load& load, const Vec3& normal, std::string name)
-    : share_(share), normal_(normal), name_(std::move(name)) {
+PressureLoad::PressureLoad(const Surface& surface, const Load& load, const Vec3& normal, std::string name)
+    : surface_(surface), normal_(normal), name_(std::move(name)) {
   if (load.upper) upper_.emplace(*load.upper, "load.upper-pressure");
   if (load.lower) lower_.emplace(*load.lower, "load.lower-pressure");
   int i = 0;
@@ -31,14 +29,12 @@ PressureLoad::PressureLoad(const Share& share, const Load& load, const Vec3& nor
        {std::tuple{&upper_, 1., "upper"}, std::tuple{&lower_, -1., "lower"}}) {
     std::vector<double>& unit = of_one_pascal_[i++];
     if (!*side) continue;
-    const auto faces =
-        std::ranges::count_if(share.areas(), [&](const Vec3& area) { return is_on(area, normal_, sign); });
-    if (couplet::parallel::sum(share.comm(), GlobalIndex(faces)) == 0)
+    if (std::ranges::none_of(surface.areas(), [&](const Vec3& area) { return is_on(area, normal_, sign); }))
       throw Error(
           "load.{}-pressure: the surface of the structure has no face on this side ({:g}, {:g}, {:g}).", name,
           sign * normal.x(), sign * normal.y(), sign * normal.z());
     if ((*side)->uses_space()) continue;
-    unit.assign(share.n_modes(), 0);
+    unit.assign(surface.n_modes(), 0);
     add_faces(fv::Expression(1.0), sign, 0, unit);
   }
 }
@@ -59,17 +55,17 @@ double PressureLoad::push(const Vec3& area, const Vec3& x, double t) const {
 
 void PressureLoad::add_faces(const fv::Expression& side, double sign, double t,
                              std::span<double> load) const {
-  std::vector<double> force(3 * share_.n_faces(), 0);
-  for (std::size_t f = 0; f < share_.n_faces(); ++f) {
-    const Vec3& area = share_.areas()[f];
+  std::vector<double> force(3 * surface_.n_faces(), 0);
+  for (std::size_t f = 0; f < surface_.n_faces(); ++f) {
+    const Vec3& area = surface_.areas()[f];
     if (!is_on(area, normal_, sign)) continue;
-    const double pressure = value(side, share_.centres()[f], t);
+    const double pressure = value(side, surface_.centres()[f], t);
     for (int c = 0; c < 3; ++c) force[3 * f + c] = -pressure * area[c];
   }
-  share_.add_load(force, load);
+  surface_.add_load(force, load);
 }
 
-void PressureLoad::fill(double t, std::span<double> load) const {
+void PressureLoad::at(double t, std::span<double> load) const {
   std::ranges::fill(load, 0);
   int i = 0;
   for (const auto& [side, sign] : {std::pair{&upper_, 1.}, std::pair{&lower_, -1.}}) {
@@ -100,24 +96,6 @@ double PressureLoad::value(const fv::Expression& side, const Vec3& x, double t) 
     fail(fmt::format("a pressure of {:g} Pa is not valid: magnitudes up to {:g} Pa are accepted.", pressure,
                      largest_pressure));
   return pressure;
-}
-
-void PressureLoad::at(double t, std::span<double> load) const {
-  std::string problem;
-  try {
-    fill(t, load);
-  } catch (const Error& error) {
-    problem = error.what();
-    std::ranges::fill(load, std::numeric_limits<double>::quiet_NaN());
-  }
-  share_.sum(load);  // what is no number on one rank is none on any
-  if (!std::ranges::any_of(load, [](double one) { return std::isnan(one); })) return;
-  // The same sentence on every rank: that of the first which has one.
-  if (!problem.empty()) problem += '\n';
-  const std::vector<char> all =
-      parallel::all_gather(share_.comm(), std::vector<char>(problem.begin(), problem.end()));
-  const std::string texts(all.begin(), all.end());
-  throw Error(texts.substr(0, texts.find('\n')));
 }
 
 std::vector<double> cell_pressures(const PlateModel& plate, const Parameters& parameters,

@@ -9,7 +9,7 @@
 
 #include "common/fv/expression.hpp"
 #include "plate_modal/model/parameters.hpp"
-#include "plate_modal/motion/share.hpp"
+#include "plate_modal/motion/surface.hpp"
 
 namespace couplet::plate {
 
@@ -17,29 +17,27 @@ namespace couplet::plate {
 /// everywhere is a number times what 1 Pa does, found once.
 class PressureLoad final {
  public:
-  /// A side are the faces whose normal is within 60 degrees of `normal` (upper) or of its opposite (lower).
-  /// Collective. Throws Error if a side with a pressure has no face.
-  /// `name`: of the participant, for messages.
-  PressureLoad(const Share& share, const Load& load, const Vec3& normal, std::string name = "plate");
+  /// A side are the faces whose normal is within 60 degrees of `normal` (upper) or of its opposite (lower). Throws Error
+  /// if a side with a pressure has no face. `name`: of the participant, for messages.
+  PressureLoad(const Surface& surface, const Load& load, const Vec3& normal, std::string name = "plate");
 
   const std::optional<fv::Expression>& upper() const { return upper_; }
   const std::optional<fv::Expression>& lower() const { return lower_; }
   bool changes_in_time() const;
   bool is_uniform() const;  ///< in space: cheap to ask for
-  /// Loads on the modes at t [N/sqrt(kg)], of all ranks. Collective. Throws Error with key, time and place, the same on
-  /// all ranks, where a pressure has no value or one that no structure sees.
+  /// Loads on the modes at t [N/sqrt(kg)]. Throws Error with key, time and place where a pressure has no value or one that
+  /// no structure sees.
   void at(double t, std::span<double> load) const;
 
-  /// Of one of the two sides at a place and time [Pa]. Throws as at().
+  /// Pressure of one of the two sides at a place and time [Pa]. Throws as at().
   double value(const fv::Expression& side, const Vec3& x, double t) const;
   /// Pressures at x on a face of this area, those that push against its normal [Pa].
   double push(const Vec3& area, const Vec3& x, double t) const;
 
  private:
   void add_faces(const fv::Expression& side, double sign, double t, std::span<double> load) const;
-  void fill(double t, std::span<double> load) const;
 
-  const Share& share_;
+  const Surface& surface_;
   Vec3 normal_;
   std::string name_;
   std::optional<fv::Expression> upper_, lower_;

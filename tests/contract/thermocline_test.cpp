@@ -2,7 +2,7 @@
 // The elements of a tank that are participants of their own.
 #include "common/base/error.hpp"
 #include "tests/contract/contract_suite.hpp"
-#include "thermocline/judge/elsewhere.hpp"
+#include "thermocline/model/elements.hpp"
 
 namespace couplet::contract {
 using namespace coupling;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/fuzz/program.hpp"
-#include "thermocline/judge/elsewhere.hpp"
+#include "thermocline/model/elements.hpp"
 
 namespace couplet::fuzz {
 

@@ -28,11 +28,11 @@ FILES = {
         *_of("coupler", "mapping sparse_map transfer search cavity_wall links conjugate_map "
                         "face_weights slopes surface_rows"),
         *_of("common/modes", "facing rigid_motion surface_parts modal_checks"),
-        *_of("plate_modal", "skin midsurface share"),
+        *_of("plate_modal", "skin midsurface surface"),
     ],
     "ledgers": [
         *_of("solid_solver", "ledger"), *_of("coupler", "mechanics watch_integrals"), *_of("fluid_solver", "energy_guard"),
-        *_of("plate_modal/diagnostics", "load mesh truncation"), *_of("thermocline", "tank report"),
+        *_of("plate_modal/diagnostics", "load mesh truncation"), *_of("thermocline", "tank report front_error"),
     ],
     "loads": [
         *_of("fluid_solver", "loads turning_walls cavity rotating_frame"),

@@ -176,6 +176,7 @@ PackedBed::StepHeat PackedBed::step(double mass_flow, double inlet) {
   if ((c_->advection == Advection::implicit && mass_flow != prepared_.mass_flow) || other_inlet)
     prepare(prepared_.dt, mass_flow);
   StepHeat heat;
+  ++steps_;
   if (c_->advection != Advection::tvd) {
     heat = first_order_step(prepared_.main, flux, inlet, false);
   } else if (!second_order_step(flux, inlet, heat)) {

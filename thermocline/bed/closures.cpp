@@ -11,10 +11,6 @@ const int n_nodes = 257;  // every 4 K over 1000 K
 
 }  // namespace
 
-double wakao_nusselt(double reynolds, double prandtl) {
-  return 2 + 1.1 * std::cbrt(prandtl) * std::pow(reynolds, 0.6);
-}
-
 double zehner_schluender(double porosity, double kappa) {
   const double b = 1.25 * std::pow((1 - porosity) / porosity, 10.0 / 9), n = 1 - b / kappa;
   const double root = std::sqrt(1 - porosity);
@@ -49,6 +45,8 @@ LayerClosure::Node LayerClosure::node_at(double t) const {
   const double pr = mu * fluid_.specific_heat / k, re = d / mu;  // Re per unit flux
   const double stagnant = zehner_schluender(std::min(porosity_, 0.999), filler_.conductivity / k) * k;
   Node n{};
+  // Nu = 2 + 1.1 Pr^(1/3) Re^0.6, Re on the superficial velocity (Wakao and Kaguei 1982, fitted to 15 < Re < 8500; Nu = 2,
+  // pure conduction, at rest).
   n.film_still = 2 * k / d;
   n.film_flow = 1.1 * k / d * std::cbrt(pr) * std::pow(re, 0.6);
   if (parameters_.film_coefficient > 0) n.film_still = parameters_.film_coefficient, n.film_flow = 0;

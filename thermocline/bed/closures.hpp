@@ -26,9 +26,6 @@ struct ClosureParameters {
   double film_coefficient = 0;  ///< between fluid and grains [W/(m^2 K)]; 0: Wakao's correlation
 };
 
-/// Nu = 2 + 1.1 Pr^(1/3) Re^0.6, Re on the superficial velocity (Wakao and Kaguei 1982, fitted to 15 < Re <
-/// 8500; Nu = 2, pure conduction, at rest).
-double wakao_nusselt(double reynolds, double prandtl);
 /// Stagnant conductivity of a packed bed over that of its fluid; kappa = k_s/k_f (Zehner and Schluender
 /// 1970).
 double zehner_schluender(double porosity, double kappa);

@@ -131,15 +131,16 @@ GrainElimination::GrainElimination(const Grains& grains, double tau)
       e.n, [&](auto n) __attribute__((always_inline)) { scatter<n()>(e, c, shells, fluid, to, sums); });
 }
 
-[[gnu::target_clones("avx2", "default")]] void exchange_rows(const ExchangeLayer& layer,
-                                                             const ExchangeInput& in,
+[[gnu::target_clones("avx2", "default")]] void exchange_rows(const Grains& grains, double own, double tau,
+                                                             std::size_t n, const double* capacity,
+                                                             const double* film, const double* dz,
                                                              const ExchangeRows& rows) {
-  const double tau = layer.tau, own = layer.own, area = layer.area, inner = 1 / layer.surface;
+  const double area = grains.area, inner = 1 / grains.surface;
 #pragma GCC ivdep
-  for (std::size_t i = 0; i < in.n; ++i) {
+  for (std::size_t i = 0; i < n; ++i) {
     // Film and outer half shell in series; none without a film.
-    const double h = in.film[i], g = h > 0 ? 1 / (1 / (h * area) + inner) : 0;
-    const double share = 1 / (own + g), beta = g * share, heat = beta * in.dz[i], rate = in.capacity[i] / tau;
+    const double h = film[i], g = h > 0 ? 1 / (1 / (h * area) + inner) : 0;
+    const double share = 1 / (own + g), beta = g * share, heat = beta * dz[i], rate = capacity[i] / tau;
     rows.rate[i] = rate, rows.share[i] = share, rows.beta[i] = beta, rows.heat[i] = heat;
     rows.diagonal[i] = rate + own * heat;  // g (1 - beta), in a form that does not cancel for large g
   }

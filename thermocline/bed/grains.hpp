@@ -66,18 +66,13 @@ void scatter_grains(const GrainElimination& e, const GrainCells& c, const double
 
 // Rows of the matrix of the bed, loops over the cells of a layer without branches.
 
-struct ExchangeLayer {
-  double tau, own, area, surface;  ///< step [s]; of GrainElimination and Grains
-};
-struct ExchangeInput {
-  const double *capacity, *film, *dz;  ///< eps rho c dz [J/(m^2 K)], [W/(m^2 K)], [m]
-  std::size_t n;
-};
 struct ExchangeRows {
   double *rate, *share, *beta, *heat,
       *diagonal;  ///< as in PackedBed::Operator; what the diagonal begins with
 };
-/// Fluid against the eliminated grains, in layers with grains.
-void exchange_rows(const ExchangeLayer& layer, const ExchangeInput& in, const ExchangeRows& rows);
+/// Fluid against the grains of a layer eliminated over the step `tau` [s], in n cells. `capacity`: eps rho c dz [J/(m^2 K)];
+/// `film` [W/(m^2 K)]; `dz` [m].
+void exchange_rows(const Grains& grains, double own, double tau, std::size_t n, const double* capacity,
+                   const double* film, const double* dz, const ExchangeRows& rows);
 
 }  // namespace couplet::thermocline

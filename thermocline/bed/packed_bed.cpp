@@ -133,8 +133,8 @@ void PackedBed::build(Operator& op, double tau) {
     const std::size_t l = &run - c_->grid.runs.data();
     const int i = run.first;
     if (c_->grains[l].area > 0)
-      exchange_rows({tau, op.grains[l].own, c_->grains[l].area, c_->grains[l].surface},
-                    {&capacity_[i], &prepared_.film[i], &c_->grid.dz[i], std::size_t(run.count)},
+      exchange_rows(c_->grains[l], op.grains[l].own, tau, std::size_t(run.count), &capacity_[i],
+                    &prepared_.film[i], &c_->grid.dz[i],
                     {&op.rate[i], &op.share[i], &op.beta[i], &op.heat[i], &work_.diagonal[i]});
     else  // no grains: what stands for them has the fluid's temperature
       for (int k = i; k < i + run.count; ++k)
@@ -218,10 +218,6 @@ void PackedBed::filler_temperature(std::vector<double>& mean) const {
   for (double& t : mean) t /= share;
   for (const BedGrid::Run& run : c_->grid.runs)  // fluid alone: there are no grains
     if (run.layer.porosity >= 1) std::copy_n(fluid_.begin() + run.first, run.count, mean.begin() + run.first);
-}
-
-double PackedBed::reynolds(int cell, double mass_flow) const {
-  return c_->closures[c_->grid.layer[cell]].reynolds(fluid_[cell], std::abs(mass_flow) / c_->area);
 }
 
 Inversion inversion_of(const PackedBed& bed) {

@@ -105,13 +105,7 @@ class PackedBed {
   }
   /// Fluid-wall coefficients of the prepared flow [W/(m^2 K)].
   std::span<const double> wall_coefficient() const { return prepared_.wall; }
-  /// The step, the flow and the wall coefficients of the last steps, for resume().
-  template <class Self, class F>
-  static void visit_prepared(Self& self, F&& f) {
-    f("flow-of-closures", self.prepared_.dt, self.prepared_.mass_flow);
-    f("closures", self.prepared_.wall);
-  }
-  double reynolds(int cell, double mass_flow) const;
+  const LayerClosure& closure(std::size_t run) const { return c_->closures[run]; }
 
   /// Mixes fluid where it is colder than the fluid below it; keeps its heat.
   void mix_inversions();
@@ -119,11 +113,13 @@ class PackedBed {
   /// Steps of the tvd scheme that were taken again at first order in time to stay within bounds; of a bed
   /// that melts, those whose iteration was cut short.
   long fallbacks() const { return fallbacks_; }
+  long steps() const { return steps_; }
 
-  /// Fluid and then the shells, cell by cell.
-  template <class Self, class F>
-  static void visit(Self& self, F&& f) {
-    f(self.fluid_, self.shell_);
+  /// Fluid and shells, and the step, the flow and the wall coefficients of the last steps.
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    visit_values(numbers, fluid_, shell_, prepared_.wall);
+    numbers(prepared_.dt, prepared_.mass_flow, steps_, fallbacks_);
   }
   /// Makes everything that follows from a state that was loaded.
   void resume();
@@ -174,12 +170,12 @@ class PackedBed {
   double source_rate_ = 0;      // largest |source|/capacity [K/s]
   Prepared prepared_;
   Work work_;
-  long fallbacks_ = 0;
+  long steps_ = 0, fallbacks_ = 0;
 };
 
-/// How much colder fluid is than the hottest fluid below it, at most [K], and where [m].
+/// How much colder fluid is than the hottest fluid below it, at most [K], where [m] and when [s].
 struct Inversion {
-  double depth = 0, z = 0;
+  double depth = 0, z = 0, time = 0;
 };
 Inversion inversion_of(const PackedBed& bed);
 

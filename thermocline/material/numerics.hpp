@@ -3,12 +3,8 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <span>
-#include <string>
-#include <type_traits>
+#include <utility>
 #include <vector>
-
-#include "common/base/numbers.hpp"
 
 namespace couplet::thermocline {
 
@@ -116,42 +112,13 @@ inline void Tridiagonal::solve(double* x) const {
 /// two half cells at each face. The diagonal is that of what the cells store, less lower and upper.
 void conduction_rows(std::size_t n, const double* half_resistance, double* lower, double* upper);
 
-/// Numbers, vectors of numbers, and elements with a `visit(self, f)` that calls f with the parts of their state, in
-/// the order in which they stand in a checkpoint. That one function serves for saving and for loading.
-template <class Part>
-void append_numbers(std::vector<double>& to, const Part& part) {
-  if constexpr (requires { Part::visit(part, [](const auto&...) {}); })
-    Part::visit(part, [&](const auto&... parts) { (append_numbers(to, parts), ...); });
-  else if constexpr (requires { part.begin(); })
-    for (const auto& value : part) to.push_back(double(value));
-  else
-    to.push_back(double(part));
-}
-template <class Part>
-void take_numbers(base::SavedNumbers& from, Part& part) {
-  if constexpr (requires { Part::visit(part, [](auto&...) {}); })
-    Part::visit(part, [&](auto&... parts) { (take_numbers(from, parts), ...); });
-  else if constexpr (requires { part.begin(); })
-    for (auto& value : part) take_numbers(from, value);
-  else
-    part = std::is_floating_point_v<Part> ? Part(from.real()) : Part(int(from.count(1e9)));
-}
-template <class... Parts>
-std::vector<double> numbers_of(const Parts&... parts) {
-  std::vector<double> all;
-  (append_numbers(all, parts), ...);
-  return all;
-}
-/// Loads what numbers_of() saved of the same parts. Throws Error if these have another size.
-template <class... Parts>
-void set_numbers(std::span<const double> values, const std::string& name, Parts&... parts) {
-  const std::size_t needed = numbers_of(parts...).size();
-  if (values.size() != needed)
-    throw Error(
-        "The checkpoint's '{}' has {} values, this tank needs {}; run with the same elements and cells.",
-        name, values.size(), needed);
-  base::SavedNumbers from(values, name.c_str());
-  (take_numbers(from, parts), ...);
+/// Visits the values of lists whose lengths follow from grid and elements, for checkpoints.
+template <class Numbers, class... Lists>
+void visit_values(Numbers& numbers, Lists&... lists) {
+  const auto all = [&](auto& list) {
+    for (auto& value : list) numbers(value);
+  };
+  (all(lists), ...);
 }
 
 }  // namespace couplet::thermocline

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+/// Materials of thesis table 5.1 with its misprints mended, the insulation and foundation materials of a
+/// tank, and materials of the user's own. Temperatures in K, everything in SI.
 
 #include <functional>
 #include <optional>
@@ -9,8 +11,6 @@
 #include "common/config/section.hpp"
 #include "thermocline/material/numerics.hpp"
 
-/// Materials of thesis table 5.1 with its misprints mended, the insulation and foundation materials of a
-/// tank, and materials of the user's own. Temperatures in K, everything in SI.
 namespace couplet::thermocline {
 
 // Unit and usual magnitudes of quantities that several elements have.
@@ -19,6 +19,9 @@ inline config::Key& as_difference(config::Key&& key) { return key.unit("K differ
 inline config::Key& as_density(config::Key&& key) { return key.unit("kg/m^3").plausible(0.05, 25000); }
 inline config::Key& as_thickness(config::Key&& key) { return key.unit("m").plausible(1e-4, 30); }
 inline config::Key& as_length(config::Key&& key) { return key.unit("m").plausible(0.01, 100); }
+inline config::Key& as_tank_length(config::Key&& key) {
+  return key.unit("m").plausible(0.01, 300).positive().required();
+}
 inline config::Key& as_step(config::Key&& key) { return key.unit("s").plausible(0.1, 1e5); }
 inline config::Key& as_specific_heat(config::Key&& key) { return key.unit("J/(kg K)").plausible(10, 1e5); }
 inline config::Key& as_conductivity(config::Key&& key) { return key.unit("W/(m K)").plausible(1e-3, 1e7); }
@@ -110,6 +113,9 @@ Fluid caloria_ht43();
 /// density at the reference temperature counts for the little heat that the pores hold, that of the moment
 /// for Ergun.
 Fluid air_at(double pressure, double reference_temperature, double specific_heat = 1075);
+/// Sutherland's laws [W/(m K)], [Pa s].
+double air_conductivity(double temperature);
+double air_viscosity(double temperature);
 /// Heat of a kilogram of dry air between two temperatures [J/kg], by the standard fit of its specific heat:
 /// what a run with a constant is judged by.
 double air_heat_between(double from, double to);

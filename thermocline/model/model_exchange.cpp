@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One exchange step of the tank: the elements in turn.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -9,23 +8,6 @@
 #include "thermocline/model/model.hpp"
 
 namespace couplet::thermocline {
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-/// Adds the time until the end of the scope to an element.
-class Stopwatch final {
- public:
-  Stopwatch(Speed& speed, Element element) : seconds_(speed.seconds[std::size_t(element)]) {}
-  ~Stopwatch() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
-  Stopwatch(const Stopwatch&) = delete;
-
- private:
-  double& seconds_;
-  Clock::time_point start_ = Clock::now();
-};
-
-}  // namespace
 
 /// Fluid and filler of a cell of the bed [J/(m^2 K)].
 double TankModel::cell_capacity(int i) const {
@@ -49,7 +31,7 @@ double TankModel::stable_exchange() const {
   if (!ullage_) return step;
   const double strongest = 100;  // of gas and radiation together at any temperature of interest [W/(m^2 K)]
   step = std::min(step, 0.5 * cell_capacity(bed_.grid().size() - 1) / strongest);
-  if (!shell_) return step;
+  if (!wall_) return step;
   const Steel& steel = *setup_->steel;
   for (int i = setup_->rings->in_bed; i < setup_->rings->size(); ++i)
     step = std::min(
@@ -57,45 +39,38 @@ double TankModel::stable_exchange() const {
   return step;
 }
 
-double TankModel::exchange(double t, double h, FlowControl& control, const Weather& weather,
-                           std::vector<BedStep>& steps, Speed& speed) {
+double TankModel::exchange(double t, double h, FlowControl& control, const Weather& weather, TankStep& step) {
   const double tiny = 1e-9 * h;
   const Ambient air = weather.at(t + h / 2);
   if (insulation_) {
-    const Stopwatch watch(speed, Element::insulation);
     if (side_.until <= t + tiny) step_insulation(t, h, air);
     if (side_.until > t + tiny) h = std::min(h, side_.until - t);
   }
   if (ground_) {
-    const Stopwatch watch(speed, Element::ground);
-    if (soil_.until <= t + tiny) step_ground(t, h);
-    if (soil_.until > t + tiny) h = std::min(h, soil_.until - t);
+    if (bottom_.until <= t + tiny) step_ground(t, h);
+    if (bottom_.until > t + tiny) h = std::min(h, bottom_.until - t);
   }
-  if (ullage_) {
-    const Stopwatch watch(speed, Element::ullage);
-    step_ullage(h, air);
-  }
+  if (ullage_) step_ullage(h, air);
   // Heat that the shell took in the step before: the wall sees the bed at the end of each step, so that both have
   // the same time when the filler meets the wall; the bed, far heavier, pays one step later.
-  for (std::size_t i = 0; i < source_.size(); ++i) source_[i] = -owed_[i] / h;
-  source_.back() -= from_liquid_;
-  source_.front() -= soil_.in;
-  bed_.set_source(source_);
-  step_bed(t, t + h, control, weather, steps, speed);
-  if (shell_) {
-    const Stopwatch watch(speed, Element::shell);
+  std::vector<double>& source = work_.source;
+  for (std::size_t i = 0; i < source.size(); ++i) source[i] = -owed_[i] / h;
+  source.back() -= gas_heat_.from_liquid;
+  source.front() -= bottom_.in;
+  bed_.set_source(source);
+  step_bed(t, t + h, control, weather, step);
+  if (wall_) {
     step_shell(h);
     update_pressure();
   }
   ledger_.side += side_.out * h;
-  ledger_.ground += soil_.out * h;
-  ledger_.turnover += (std::abs(side_.out) + std::abs(soil_.out)) * h;
-  if (mechanics_) {
-    const Stopwatch watch(speed, Element::mechanics);
-    bed_.filler_temperature(filler_);
-    mechanics_->update(shell_->temperature(), filler_);
+  ledger_.ground += bottom_.out * h;
+  ledger_.turnover += (std::abs(side_.out) + std::abs(bottom_.out)) * h;
+  if (wall_ && wall_->filler && !setup_->parameters.external_wall) {
+    bed_.filler_temperature(work_.filler);
+    wall_->filler->update(wall_->shell.temperature(), work_.filler);
   }
-  watch(t + h);
+  record_fluid(t + h, step);
   return h;
 }
 
@@ -105,10 +80,8 @@ void TankModel::step_insulation(double t, double h, const Ambient& air) {
   const Rings& rings = *setup_->rings;
   const double height = rings.z.back() + rings.dz.back() / 2;
   const double outer = p.diameter + 2 * (rings.thickness.front() + p.insulation->thickness);
-  // The film belongs to the surface temperature; one correction is enough for so weak a dependence.
-  Film film = side_film(p.insulation->outside, air.temperature + 5, outer, height, air);
-  film = side_film(p.insulation->outside, insulation_->outer_surface(film), outer, height, air);
-  const double lost = insulation_->step(step, shell_->temperature(), film, into_blanket_);
+  const Film film = side_film_on(*insulation_, p.insulation->outside, outer, height, air);
+  const double lost = insulation_->step(step, wall_->shell.temperature(), film, into_blanket_);
   side_ = {t + step, 0, lost / step};
   for (const double q : into_blanket_) side_.in += q;
 }
@@ -126,15 +99,15 @@ void TankModel::step_ground(double t, double h) {
   const Film plate{plate_coefficient(), bed_.bottom()};
   const Film deep{std::numeric_limits<double>::infinity(), deep_temperature_};
   const Column::Heat heat = ground_->step(step, plate, deep);
-  soil_ = {t + step, heat.inner / step, heat.outer / step};
+  bottom_ = {t + step, heat.inner / step, heat.outer / step};
 }
 
 double TankModel::upper_wall() const {
-  if (!shell_) return bed_.top();
+  if (!wall_) return bed_.top();
   const Rings& rings = *setup_->rings;
   double sum = 0, height = 0;
   for (int i = rings.in_bed; i < rings.size(); ++i)
-    sum += rings.dz[i] * shell_->temperature()[i], height += rings.dz[i];
+    sum += rings.dz[i] * wall_->shell.temperature()[i], height += rings.dz[i];
   return sum / height;
 }
 
@@ -146,45 +119,44 @@ void TankModel::step_ullage(double h, const Ambient& air) {
   constexpr double most_parts = 8;
   const bool light = h > most_parts * limit;
   const int parts = light ? 1 : std::max(1, int(std::ceil(h / limit)));
-  from_liquid_ = wall_to_ullage_ = ullage_coefficient_ = 0;
+  gas_heat_ = {};
   for (int k = 0; k < parts; ++k) {
     double roof_cell = roof_ ? roof_->inner_temperature() : 0;
     double conductance = roof_ ? roof_->inner_conductance() * roof_->area() : 0;
     if (light) {
-      Film outer = roof_film(p.insulation->outside, air.temperature + 5, p.diameter, air);
-      outer = roof_film(p.insulation->outside, roof_->outer_surface(outer), p.diameter, air);
-      const Film answer = roof_->inner_response(h, outer);
+      const Film answer =
+          roof_->inner_response(h, roof_film_on(*roof_, p.insulation->outside, p.diameter, air));
       roof_cell = answer.reference, conductance = answer.coefficient * roof_->area();
     }
     const Ullage::Heat heat =
         ullage_->step(h / parts, bed_.top(), upper_wall(), roof_cell, conductance, air.pressure);
-    from_liquid_ += heat.from_liquid / parts;
-    wall_to_ullage_ += heat.from_wall / parts;
-    ullage_coefficient_ += heat.wall_coefficient / parts;
+    gas_heat_.from_liquid += heat.from_liquid / parts;
+    gas_heat_.from_wall += heat.from_wall / parts;
+    gas_heat_.wall_coefficient += heat.wall_coefficient / parts;
     if (!roof_) continue;
-    Film film = roof_film(p.insulation->outside, air.temperature + 5, p.diameter, air);
-    film = roof_film(p.insulation->outside, roof_->outer_surface(film), p.diameter, air);
+    const Film film = roof_film_on(*roof_, p.insulation->outside, p.diameter, air);
     const double lost = roof_->step(h / parts, heat.into_roof, film).outer;
     ledger_.roof += lost;
     ledger_.turnover += std::abs(lost);
   }
-  if (!shell_) {  // a wall without a model of its own gives what it gets from the liquid beside it
-    from_liquid_ += wall_to_ullage_;
-    wall_to_ullage_ = 0;
+  if (!wall_) {  // a wall without a model of its own gives what it gets from the liquid beside it
+    gas_heat_.from_liquid += gas_heat_.from_wall;
+    gas_heat_.from_wall = 0;
   }
 }
 
 void TankModel::step_shell(double h) {
   const Rings& rings = *setup_->rings;
-  from_wall_ = into_blanket_;
+  work_.from_wall = into_blanket_;
   // Rings above the bed: the mean flux, and more from those warmer than the mean.
   double upper = 0;
   for (int i = rings.in_bed; i < rings.size(); ++i) upper += rings.surface(i);
   const double mean = upper_wall();
   for (int i = rings.in_bed; i < rings.size(); ++i)
-    from_wall_[i] += rings.surface(i) *
-                     (wall_to_ullage_ / upper + ullage_coefficient_ * (shell_->temperature()[i] - mean));
-  shell_->step(h, bed_.fluid(), bed_.wall_coefficient(), from_wall_, owed_);
+    work_.from_wall[i] +=
+        rings.surface(i) *
+        (gas_heat_.from_wall / upper + gas_heat_.wall_coefficient * (wall_->shell.temperature()[i] - mean));
+  wall_->shell.step(h, bed_.fluid(), bed_.wall_coefficient(), work_.from_wall, owed_);
   for (double& heat : owed_) heat *= h;
 }
 
@@ -202,8 +174,7 @@ void refuse_hopeless_flow(double mass_flow, double limit, double span) {
 
 }  // namespace
 
-void TankModel::step_bed(double t, double end, FlowControl& control, const Weather& weather,
-                         std::vector<BedStep>& steps, Speed& speed) {
+void TankModel::step_bed(double t, double end, FlowControl& control, const Weather& weather, TankStep& step) {
   const double tiny = 1e-9 * (end - t);
   bool prepared = false;
   // With a density of temperature the capacities are renewed so often that none changes by a thousandth.
@@ -212,8 +183,7 @@ void TankModel::step_bed(double t, double end, FlowControl& control, const Weath
   while (end - t > tiny) {
     BedStep s;
     s.t = t;
-    s.ambient = weather.at(t);
-    s.flow = control.decide(t, bed_.top(), bed_.bottom(), s.ambient);
+    s.flow = control.decide(t, bed_.top(), bed_.bottom(), weather.at(t));
     const double m = s.flow.mass_flow, limit = bed_.largest_step(m), now = bed_.prepared().mass_flow;
     if (t > block - tiny) prepared = false, block = t + renewal;
     const double until = std::min(block, s.flow.until > t + tiny ? std::min(end, s.flow.until) : end);
@@ -222,14 +192,12 @@ void TankModel::step_bed(double t, double end, FlowControl& control, const Weath
     const bool other_flow = (m == 0) != (now == 0) || m * now < 0 || std::abs(m - now) > 0.1 * std::abs(now);
     const bool too_long = bed_.prepared().dt > 1.05 * limit || t + bed_.prepared().dt > until + tiny;
     if (!prepared || other_flow || too_long) {
-      const Stopwatch watch(speed, Element::preparation);
       const double steps_left = std::ceil((until - t) / limit * (1 - 1e-9));
       refuse_hopeless_flow(m, limit, until - t);
       bed_.prepare((until - t) / std::max(1.0, steps_left), m);
       prepared = true;
     }
     s.dt = bed_.prepared().dt;
-    const Stopwatch watch(speed, Element::bed);
     const PackedBed::StepHeat heat = bed_.step(m, s.flow.inlet_temperature);
     s.outlet_temperature = heat.outlet;
     ledger_.flow += heat.by_flow;
@@ -240,9 +208,7 @@ void TankModel::step_bed(double t, double end, FlowControl& control, const Weath
       s.pressure_loss = loss.loss();
       s.pump_power = pump_power(loss, setup_->fluid, bed_.bottom(), m, setup_->parameters.pump->efficiency);
     }
-    steps.push_back(s);
-    speed.cell_steps += bed_.grid().size();
-    ++speed.bed_steps;
+    step.bed.push_back(s);
     t += s.dt;
   }
   if (setup_->parameters.bed.mix_inversions) bed_.mix_inversions();

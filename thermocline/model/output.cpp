@@ -11,6 +11,7 @@ namespace {
 /// Largest equivalent stress of a ring over its yield strength, and the height of that ring [m].
 std::pair<double, double> worst_stress(const TankModel& m) {
   double worst = 0, place = 0;
+  if (!m.shell()) return {0, 0};
   const WallStress& s = m.stress();
   for (std::size_t i = 0; i < s.equivalent.size(); ++i)
     if (s.equivalent[i] > worst * s.yield[i])
@@ -26,10 +27,8 @@ double flowing(const BedStep& step, double kelvin) {
 /// The value of a ring beside grains; 0 above them and without filler mechanics.
 template <class Values>
 double beside_grains(const TankModel& m, std::size_t ring, Values values) {
-  const auto of = [&](const auto& mechanics) {
-    return ring < mechanics.contact().size() ? double(values(mechanics)[ring]) : 0;
-  };
-  return m.contact() ? of(*m.contact()) : m.mechanics() ? of(*m.mechanics()) : 0;
+  const FillerMechanics* filler = m.mechanics();
+  return filler && ring < filler->contact().size() ? double(values(*filler)[ring]) : 0;
 }
 
 }  // namespace
@@ -78,11 +77,11 @@ TankOutputFiles::TankOutputFiles(const TankModel& model, const std::filesystem::
             {"yield strength [Pa]", [](const Place& v) { return v.m.stress().yield[v.i]; }},
             {"filler pressure [Pa]",
              [](const Place& v) {
-               return beside_grains(v.m, v.i, [](const auto& mechanics) { return mechanics.lateral(); });
+               return beside_grains(v.m, v.i, [](const FillerMechanics& filler) { return filler.lateral(); });
              }},
             {"contact [0 active; 1 rigid; 2 passive]",
              [](const Place& v) {
-               return beside_grains(v.m, v.i, [](const auto& mechanics) { return mechanics.contact(); });
+               return beside_grains(v.m, v.i, [](const FillerMechanics& filler) { return filler.contact(); });
              }}},
         restart_time);
   if (model.ground())

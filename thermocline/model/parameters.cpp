@@ -12,49 +12,36 @@ namespace couplet::thermocline {
 namespace {
 
 void check_together(config::Section& s, TankParameters& p) {
-  s.check([&p] { return p.mechanics && !p.shell ? "requires a shell; add one" : ""; }, "filler-mechanics");
+  const auto refuse = [&](const char* key, const char* why, auto&& is_wrong) {
+    s.check([why, is_wrong] { return is_wrong() ? why : ""; }, key);
+  };
+  const auto is_plant = [&p] { return p.flow.type == FlowParameters::Type::plant; };
+  refuse("filler-mechanics", "requires a shell; add one", [&p] { return p.mechanics && !p.shell; });
+  refuse("external-wall", "requires shell and filler-mechanics",
+         [&p] { return p.external_wall && !(p.shell && p.mechanics); });
+  refuse("report", "requires a plant: set flow: {type: plant, ...} or remove it",
+         [&p, is_plant] { return p.report && !is_plant(); });
   s.check(
-      [&p] {
-        return p.external_wall && !(p.shell && p.mechanics) ? "requires shell and filler-mechanics" : "";
-      },
-      "external-wall");
-  s.check(
-      [&p] {
-        return p.report && p.flow.type != FlowParameters::Type::plant
-                   ? "requires a plant: set flow: {type: plant, ...} or remove it"
-                   : "";
-      },
-      "report");
-  s.check(
-      [&p] {
-        const PlantParameters& plant = p.flow.plant;
-        return p.report && p.flow.type == FlowParameters::Type::plant && plant.hot > plant.cold &&
-                       p.report->thickness_margin >= 0.5 * (plant.hot - plant.cold)
+      [&p, is_plant] {
+        const double step = p.flow.plant.hot - p.flow.plant.cold;
+        return p.report && is_plant() && step > 0 && p.report->thickness_margin >= 0.5 * step
                    ? fmt::format(
                          "thickness-margin is {:g} K, half of the difference between cold and hot ({:g} "
                          "K) or more: nothing is left between the two critical temperatures",
-                         p.report->thickness_margin, plant.hot - plant.cold)
+                         p.report->thickness_margin, step)
                    : "";
       },
       "report");
-  s.check(
-      [&p]() -> std::string {
-        if (!p.elsewhere) return "";
-        if (p.elsewhere->ground && p.ground)
-          return "specifies that the ground is elsewhere; remove 'ground' here";
-        if (p.elsewhere->insulation && p.insulation)
-          return "specifies that the insulation is elsewhere; remove 'insulation' here";
-        return p.elsewhere->insulation && !p.shell ? "requires a shell inside the insulation" : "";
-      },
-      "elsewhere");
-  s.check([&p] { return p.insulation && !p.shell ? "requires a shell; add one" : ""; }, "insulation");
-  s.check(
-      [&p] {
-        return p.fluid.type == FluidParameters::Type::air && p.bed.advection != Advection::implicit
-                   ? "a gas crosses a cell in milliseconds: set bed.advection: implicit"
-                   : "";
-      },
-      "bed");
+  refuse("elsewhere", "specifies that the ground is elsewhere; remove 'ground' here",
+         [&p] { return p.elsewhere && p.elsewhere->ground && p.ground; });
+  refuse("elsewhere", "specifies that the insulation is elsewhere; remove 'insulation' here",
+         [&p] { return p.elsewhere && p.elsewhere->insulation && p.insulation; });
+  refuse("elsewhere", "requires a shell inside the insulation",
+         [&p] { return p.elsewhere && p.elsewhere->insulation && !p.insulation && !p.shell; });
+  refuse("insulation", "requires a shell; add one", [&p] { return p.insulation && !p.shell; });
+  refuse("bed", "a gas crosses a cell in milliseconds: set bed.advection: implicit", [&p] {
+    return p.fluid.type == FluidParameters::Type::air && p.bed.advection != Advection::implicit;
+  });
   s.check([&p] { return forgotten_unit_of_bed(p); }, "bed");
   s.check([&p] { return forgotten_unit_of_flow(p); }, "flow");
   s.check([&p] { return slip_in_tank(p.bed, p.diameter); }, "diameter");
@@ -65,8 +52,7 @@ void check_together(config::Section& s, TankParameters& p) {
   s.check([&p] { return p.insulation ? slip_in_insulation(*p.insulation, p.diameter) : ""; }, "insulation");
   s.check([&p] { return p.ground ? slip_in_ground(*p.ground) : ""; }, "ground");
   s.check([&p] { return season_without_dates(p); }, "flow");
-  s.check([&p] { return p.flow.type == FlowParameters::Type::plant ? slip_in_plant(p.flow.plant) : ""; },
-          "flow");
+  s.check([&p, is_plant] { return is_plant() ? slip_in_plant(p.flow.plant) : ""; }, "flow");
 }
 
 }  // namespace
@@ -107,8 +93,8 @@ void declare_elements(config::Section& section, TankParameters& p) {
   declare_section(section, "filler", p.filler, "grains of the bed; default: quartzite");
   declare_section(section, "bed", p.bed, "fluid and filler");
   declare_section(section, "shell", p.shell, "metal wall of rings");
-  section.optional_section<FillerMechanicsParameters>(
-      "filler-mechanics", p.mechanics, [](config::Section&, FillerMechanicsParameters&) {},
+  section.optional_section<Present>(
+      "filler-mechanics", p.mechanics, [](config::Section&, Present&) {},
       "the filler follows the wall outwards and resists inwards, between Rankine's active and passive states");
   declare_section(
       section, "external-wall", p.external_wall,
@@ -135,12 +121,7 @@ void declare_elements(config::Section& section, TankParameters& p) {
 }  // namespace
 
 void declare(config::Section& section, TankParameters& p) {
-  section.value("diameter", p.diameter)
-      .unit("m")
-      .plausible(0.01, 300)
-      .positive()
-      .required()
-      .doc("inner diameter of the tank");
+  as_tank_length(section.value("diameter", p.diameter)).doc("inner diameter of the tank");
   as_step(section.value("exchange-step", p.exchange_step))
       .not_negative()
       .doc("maximum time between heat exchanges of the elements; 0: once per step of the simulation");

@@ -32,8 +32,6 @@ struct GroundParameters {
   std::optional<double> deep_temperature;  ///< [K]; else the air's annual mean
 };
 
-struct FillerMechanicsParameters {};
-
 /// A section that stands in the YAML, for those that have defaults all through.
 struct Present {};
 
@@ -55,7 +53,7 @@ struct TankParameters {
   Filler filler;
   BedParameters bed;
   std::optional<ShellParameters> shell;
-  std::optional<FillerMechanicsParameters> mechanics;
+  std::optional<Present> mechanics;
   std::optional<ExternalWallParameters> external_wall;
   std::optional<InsulationParameters> insulation;
   std::optional<UllageSpace> ullage;

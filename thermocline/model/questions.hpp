@@ -21,9 +21,6 @@ std::string forgotten_unit_of_flow(const TankParameters& parameters);
 /// cut-off, a flow that can never begin.
 std::vector<std::string> questions(const TankParameters& parameters, const TankModel& model);
 
-/// At the end of a run: layers of capsules whose content neither melted nor froze anywhere, as sentences.
-std::vector<std::string> never_melted(const TankModel& model);
-
 /// Prices that multiply nothing, as sentences.
 std::vector<std::string> prices_for_nothing(const EconomicsParameters& prices, const Inventory& inventory,
                                             bool has_pump);

@@ -41,11 +41,11 @@ Inventory inventory_of(const TankSetup& setup) {
   return all;
 }
 
-/// The flow with the days of its calendar, which are those of the weather.
-FlowParameters dated(FlowParameters flow, const Weather& weather) {
-  flow.plant.start.day = weather.first_day();
-  flow.plant.start.period = int(std::lround(weather.period_length() / seconds_a_day));
-  return flow;
+/// The parameters with the days of the plant's calendar, which are those of the weather.
+TankParameters dated(TankParameters p, const Weather& weather) {
+  p.flow.plant.start.day = weather.first_day();
+  p.flow.plant.start.period = int(std::lround(weather.period_length() / seconds_a_day));
+  return p;
 }
 
 }  // namespace
@@ -53,10 +53,8 @@ FlowParameters dated(FlowParameters flow, const Weather& weather) {
 Tank::Tank(const TankParameters& p, const app::ParticipantContext& context)
     : name_(context.name),
       weather_(make_weather(p.ambient, context.case_folder)),
-      control_(make_flow_control(dated(p.flow, *weather_), make_fluid(p.fluid).specific_heat)),
-      accepted_(std::make_shared<const TankSetup>(p), *weather_),
+      accepted_(std::make_shared<const TankSetup>(dated(p, *weather_)), *weather_),
       next_(accepted_),
-      control_state_(control_->state()),
       comm_(context.comm) {
   if ((p.external_wall || p.elsewhere) && !context.coupled)
     throw Error(
@@ -64,38 +62,38 @@ Tank::Tank(const TankParameters& p, const app::ParticipantContext& context)
         "with a coupler and {}, or remove this section.",
         context.name, p.external_wall ? "external-wall" : "elsewhere", p.external_wall ? "the wall" : "them",
         p.external_wall ? "a solid_solver" : "a thermocline for each of these elements");
+  const TankSetup& setup = accepted_.setup();
+  const FlowParameters& flow = setup.parameters.flow;
+  control_ = make_flow_control(flow, setup.fluid.specific_heat);
   if (p.external_wall)
-    wall_.emplace(*p.external_wall, *accepted_.setup().rings);
+    wall_.emplace(*p.external_wall, *setup.rings);
   else if (p.elsewhere && p.elsewhere->insulation)
-    wall_.emplace(ExternalWallParameters{accepted_.setup().rings->size(), 0.01}, *accepted_.setup().rings);
-  if (parallel::comm_rank(context.comm) == 0)
+    wall_.emplace(ExternalWallParameters{setup.rings->size(), 0.01}, *setup.rings);
+  const int rank = parallel::comm_rank(context.comm);
+  if (rank == 0)
     files_ = std::make_unique<TankOutputFiles>(accepted_, context.output_folder, context.restart_time);
   if (p.insulation)
     require_sun(p.insulation->outside.solar_absorptance, *weather_,
                 fmt::format("participants.{}.insulation.solar-absorptance", context.name));
+  const auto report = [&](const char* id, const std::vector<std::string>& sentences) {
+    for (const std::string& sentence : sentences)
+      log::finding(rank, {.id = id, .sentence = fmt::format("{}: {}", name_, sentence)});
+  };
   report("weather-data", weather_->doubts());
   if (files_) {
     for (const std::string& sentence : weather_->warnings()) log::warn("{}", sentence);
     if (std::isnan(context.restart_time))
       for (const std::string& sentence : questions(p, accepted_)) log::warn("{}: {}", context.name, sentence);
   }
-  const PlantParameters plant = dated(p.flow, *weather_).plant;
-  report("calendar", Calendar(plant.calendar, plant.start).doubts());
-  if (p.report) {
-    auto books = std::make_unique<DayReport>(
-        *p.report, Plant(plant, make_fluid(p.fluid).specific_heat), *weather_,
-        files_ ? context.output_folder : std::filesystem::path(), context.restart_time);
-    const Inventory inventory = inventory_of(accepted_.setup());
-    books->take_stock(inventory);
-    if (p.report->economics)
-      report("prices", prices_for_nothing(*p.report->economics, inventory, p.pump.has_value()));
-    add_observer(std::move(books));
-  }
-}
-
-void Tank::report(const char* id, const std::vector<std::string>& sentences) const {
-  for (const std::string& sentence : sentences)
-    log::finding(parallel::comm_rank(comm_), {.id = id, .sentence = fmt::format("{}: {}", name_, sentence)});
+  report("calendar", Calendar(flow.plant.calendar, flow.plant.start).doubts());
+  if (!p.report) return;
+  const Inventory inventory = inventory_of(setup);
+  report_ = std::make_unique<DayReport>(*p.report, Plant(flow.plant, setup.fluid.specific_heat), *weather_,
+                                        files_ ? context.output_folder : std::filesystem::path(),
+                                        context.restart_time);
+  report_->take_stock(inventory);
+  if (p.report->economics)
+    report("prices", prices_for_nothing(*p.report->economics, inventory, p.pump.has_value()));
 }
 
 coupling::Interface Tank::initialise() {
@@ -109,22 +107,10 @@ coupling::Interface Tank::initialise() {
     interface.face_centres = {{0, 0, 0}};
     interface.face_areas = {{0, 0, -accepted_.bed().area()}};
   }
-  if (p.external_wall) {
-    interface.takes = {{"displacement", "m", coupling::Interface::Place::vertices}};
-    interface.gives = {{"temperature", "K", faces, 1}, {"pressure", "Pa", faces, 1}};
-  }
-  if (p.elsewhere && p.elsewhere->insulation) {
-    interface.takes.push_back({"wall-heat", "W", faces, 1});
-    interface.gives.push_back({"wall-temperature", "K", faces, 1});
-    interface.gives.push_back({"wall-diameter", "m", faces, 1});
-    interface.gives.push_back({"wall-height", "m", faces, 1});
-  }
-  if (p.elsewhere && p.elsewhere->ground) {
-    interface.takes.push_back({"bottom-heat", "W", faces, 1});
-    interface.gives.push_back({"bottom-temperature", "K", faces, 1});
-    interface.gives.push_back({"bottom-coefficient", "W/(m^2 K)", faces, 1});
-    interface.gives.push_back({"tank-diameter", "m", faces, 1});
-  }
+  if (p.external_wall) interface.takes = {{"displacement", "m", coupling::Interface::Place::vertices}};
+  if (p.elsewhere && p.elsewhere->insulation) interface.takes.push_back({"wall-heat", "W", faces, 1});
+  if (p.elsewhere && p.elsewhere->ground) interface.takes.push_back({"bottom-heat", "W", faces, 1});
+  for (const Given& one : given()) interface.gives.push_back({one.name, one.unit, faces, 1});
   return interface;
 }
 
@@ -133,29 +119,28 @@ double Tank::suggest_dt() {
   return elsewhere && elsewhere->ground ? accepted_.stable_ground() : std::numeric_limits<double>::infinity();
 }
 
-/// Values that other participants take, at the end of the step, on rank 0.
-coupling::Exchange Tank::given() const {
+std::vector<Tank::Given> Tank::given() const {
   const TankParameters& p = accepted_.setup().parameters;
-  coupling::Exchange out;
-  if (parallel::comm_rank(comm_) != 0) return out;
+  const auto everywhere = [&](double value) {
+    return std::vector<double>(wall_ ? wall_->sections() : 1, value);
+  };
+  std::vector<Given> all;
   if (p.external_wall) {
-    out["temperature"] = wall_->to_sections(next_.shell()->temperature());
-    out["pressure"] = wall_->to_sections(next_.contact()->pressure());
+    all.push_back({"temperature", "K", wall_->to_sections(next_.shell()->temperature())});
+    all.push_back({"pressure", "Pa", wall_->to_sections(next_.mechanics()->pressure())});
   }
-  if (!p.elsewhere) return out;
-  const std::size_t faces = wall_ ? wall_->sections() : 1;
-  if (p.elsewhere->insulation) {
-    out["wall-temperature"] = wall_->to_sections(next_.shell()->temperature());
+  if (p.elsewhere && p.elsewhere->insulation) {
     const Rings& rings = *next_.setup().rings;
-    out["wall-diameter"].assign(faces, p.diameter + 2 * rings.thickness.front());
-    out["wall-height"].assign(faces, rings.z.back() + rings.dz.back() / 2);
+    all.push_back({"wall-temperature", "K", wall_->to_sections(next_.shell()->temperature())});
+    all.push_back({"wall-diameter", "m", everywhere(p.diameter + 2 * rings.thickness.front())});
+    all.push_back({"wall-height", "m", everywhere(rings.z.back() + rings.dz.back() / 2)});
   }
-  if (p.elsewhere->ground) {
-    out["bottom-temperature"].assign(faces, next_.bed().bottom());
-    out["bottom-coefficient"].assign(faces, next_.plate_coefficient());
-    out["tank-diameter"].assign(faces, p.diameter);
+  if (p.elsewhere && p.elsewhere->ground) {
+    all.push_back({"bottom-temperature", "K", everywhere(next_.bed().bottom())});
+    all.push_back({"bottom-coefficient", "W/(m^2 K)", everywhere(next_.plate_coefficient())});
+    all.push_back({"tank-diameter", "m", everywhere(p.diameter)});
   }
-  return out;
+  return all;
 }
 
 /// Every rank computes the tank, so every rank needs what rank 0 got.
@@ -179,58 +164,24 @@ coupling::Exchange Tank::solve(const coupling::Exchange& in) {
       if (const auto heat = received(in, "bottom-heat"); !heat.empty())
         next_.hold_bottom(std::accumulate(heat.begin(), heat.end(), 0.0));
   }
-  control_->restore(control_state_);
-  steps_.clear();
-  next_.advance(step_.time, step_.dt, *control_, *weather_, steps_, speed_);
+  control_->memory = memory_;
+  happened_ = next_.advance(step_.time, step_.dt, *control_, *weather_);
   if (p.external_wall) {
     std::vector<double> radial;
     if (const auto u = received(in, "displacement"); !u.empty()) radial = wall_->radial(u);
     next_.update_contact(radial);
   }
-  return given();
+  coupling::Exchange out;
+  if (parallel::comm_rank(comm_) == 0)
+    for (Given& one : given()) out[one.name] = std::move(one.values);
+  return out;
 }
 
 coupling::StepReport Tank::accept_step() {
-  const Ledger &before = accepted_.ledger(), &now = next_.ledger();
-  stored_ = now.bed - before.bed;
-  side_ = now.side - before.side, roof_ = now.roof - before.roof, ground_ = now.ground - before.ground;
   std::swap(accepted_, next_);
-  control_state_ = control_->state();
-  look_at_bending();
-  for (const BedStep& s : steps_) {
-    peak_flow_ = std::max(peak_flow_, std::abs(s.flow.mass_flow));
-    peak_advance_ = std::max(peak_advance_, std::abs(s.flow.mass_flow) * s.dt);
-  }
-  report("tank-state", accepted_.take_warnings());
-  if (!observers_.empty()) {
-    accepted_.bed().filler_temperature(filler_);
-    const TankRecord r = record();
-    for (const auto& observer : observers_) observer->record(r);
-  }
+  memory_ = control_->memory;
+  if (report_) report_->record(record());
   return {.dt = step_.dt};
-}
-
-void Tank::look_at_bending() {
-  constexpr double every = 2 * 3600;  // [s]
-  const double end = step_.time + step_.dt;
-  if (!accepted_.shell() || accepted_.contact() ||
-      std::floor(end / every + 1e-9) == std::floor(step_.time / every + 1e-9))
-    return;
-  const Rings& rings = *accepted_.setup().rings;
-  const std::vector<double>& hoop = accepted_.stress().hoop;
-  const WallBending bent =
-      wall_bending(rings, *accepted_.setup().steel, hoop, accepted_.shell()->temperature());
-  bending_.rings = std::max(bending_.rings, *std::max_element(hoop.begin(), hoop.end()));
-  if (!accepted_.stress().yield.empty()) {
-    const YieldShares now = yield_shares(accepted_.stress(), bent, accepted_.setup().steel->poissons_ratio);
-    bending_.share.rings = std::max(bending_.share.rings, now.rings);
-    bending_.share.shell = std::max(bending_.share.shell, now.shell);
-  }
-  for (std::size_t i = 0; i < hoop.size(); ++i) {
-    if (bent.hoop[i] > bending_.shell) bending_.shell = bent.hoop[i], bending_.shell_z = rings.z[i];
-    if (std::abs(bent.axial[i]) > bending_.axial)
-      bending_.axial = std::abs(bent.axial[i]), bending_.axial_z = rings.z[i], bending_.axial_time = end;
-  }
 }
 
 TankRecord Tank::record() const {
@@ -238,18 +189,19 @@ TankRecord Tank::record() const {
   TankRecord r;
   r.time = step_.time + step_.dt;
   r.dt = step_.dt;
-  r.steps = steps_;
+  r.steps = happened_.bed;
   r.z = m.bed().grid().z, r.dz = m.bed().grid().dz;
   r.fluid_temperature = m.bed().fluid();
-  r.filler_temperature = filler_;
+  m.bed().filler_temperature(r.filler_temperature);
   if (m.shell()) {
     r.wall_z = m.setup().rings->z;
     r.wall_temperature = m.shell()->temperature();
-    r.hoop_stress = m.stress().hoop;
     r.equivalent_stress = m.stress().equivalent;
     r.yield_strength = m.stress().yield;
   }
-  r.stored = stored_, r.loss_side = side_, r.loss_roof = roof_, r.loss_ground = ground_;
+  const Ledger &now = m.ledger(), &before = next_.ledger();
+  r.stored = now.bed - before.bed;
+  r.losses = now.losses() - before.losses();
   const PlantParameters& plant = m.setup().parameters.flow.plant;
   r.heat_capacity = plant.hot > plant.cold
                         ? m.bed().heat_between(plant.cold, plant.hot) / (plant.hot - plant.cold)
@@ -258,25 +210,25 @@ TankRecord Tank::record() const {
 }
 
 void Tank::save(io::CheckpointWriter& file) const {
-  for (const auto& [name, values] : accepted_.state()) file.write_common(name, values);
-  file.write_common("flow-control", control_state_);
-  for (std::size_t i = 0; i < observers_.size(); ++i)
-    file.write_common("observer-" + std::to_string(i), observers_[i]->state());
   io::Archive archive(file);
-  const_cast<Tank*>(this)->visit_seen(archive);  // writing changes nothing
+  const_cast<Tank*>(this)->visit(archive);  // writing changes nothing
 }
 
-/// Saves or loads what the run has seen for its findings.
-void Tank::visit_seen(io::Archive& archive) { archive.common("seen", peak_flow_, peak_advance_, bending_); }
-
 void Tank::load(io::CheckpointReader& file) {
-  accepted_.restore([&](const std::string& name) { return file.read_common(name); });
-  control_state_ = file.read_common("flow-control");
-  control_->restore(control_state_);
-  for (std::size_t i = 0; i < observers_.size(); ++i)
-    observers_[i]->restore(file.read_common("observer-" + std::to_string(i)));
+  const std::size_t n = file.read_common("tank").size(), needed = base::to_numbers(accepted_).size();
+  if (n != needed)
+    throw Error(
+        "The checkpoint's 'tank' has {} values, this tank needs {}; run with the same elements and cells.", n,
+        needed);
   io::Archive archive(file);
-  visit_seen(archive);
+  visit(archive);
+  accepted_.resume();
+}
+
+void Tank::visit(io::Archive& archive) {
+  archive.common("tank", accepted_);
+  archive.common("flow-control", memory_);
+  if (report_) archive.common("report", *report_);
 }
 
 void Tank::write_output(double time, int) {
@@ -284,7 +236,12 @@ void Tank::write_output(double time, int) {
 }
 
 void Tank::write_monitors(double time) {
-  if (files_ && !steps_.empty()) files_->monitor(accepted_, time, steps_.back());
+  if (files_ && !happened_.bed.empty()) files_->monitor(accepted_, time, happened_.bed.back());
+}
+
+std::vector<std::string> Tank::finish() {
+  if (report_) report_->finish();
+  return {};
 }
 
 }  // namespace couplet::thermocline

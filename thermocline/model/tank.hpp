@@ -5,11 +5,9 @@
 #include <vector>
 
 #include "common/app/program.hpp"
-#include "common/coupling/error_parts.hpp"
 #include "common/coupling/participant.hpp"
 #include "thermocline/model/model.hpp"
 #include "thermocline/model/output.hpp"
-#include "thermocline/wall/mechanics.hpp"
 
 namespace couplet::io {
 class Archive;
@@ -17,16 +15,18 @@ class Archive;
 
 namespace couplet::thermocline {
 
-/// Stresses of the wall with the bending that the rings leave out, sampled every two hours.
-struct BendingSeen {
-  double rings = 0, shell = 0,
-         shell_z = 0;  ///< largest hoop stress, as rings and with bending, and where [Pa], [m]
-  double axial = 0, axial_z = 0, axial_time = 0;  ///< largest bending stress, where and when [Pa], [m], [s]
-  YieldShares share;                              ///< largest shares of the yield strength so far
-  template <class Numbers>
-  void visit(Numbers& numbers) {
-    numbers(rings, shell, shell_z, axial, axial_z, axial_time, share.rings, share.shell);
-  }
+/// Everything that diagnostics may read of a tank, as it is after the last accepted step.
+struct TankView {
+  const std::string& name;
+  const TankModel& model;
+  const TankStep& happened;  ///< in that step
+  const coupling::Step& step;
+  const Weather& weather;
+  const DayReport* report = nullptr;  ///< nullptr if the case asks for none
+
+  const TankParameters& parameters() const { return model.setup().parameters; }
+  const Fluid& fluid() const { return model.setup().fluid; }
+  double time() const { return step.time + step.dt; }
 };
 
 /// The tank as a participant: runs the elements that the YAML asks for. A tank is small, so every rank
@@ -45,48 +45,35 @@ class Tank final : public coupling::Participant {
   void load(io::CheckpointReader& file) override;
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
-  /// Judges effects of the scene by the run so far.
-  std::vector<log::Finding> effects() const;
   std::vector<std::string> finish() override;
-  /// Upwind advection spreads a front as a diffusion v dz / 2 does, implicit steps as v^2 dt / 2: over the way w by
-  /// s^2 = dz w and v dt w, which changes the profile by s^2 / 2 of its second derivative; w is what the largest flow
-  /// can have gone since time 0, at most the height. The limited scheme is taken to spread by a cell. Over the
-  /// profile's distance from its mean, sums over the height. Of a plant at least what of the storage the spreading leaves unused.
-  coupling::ErrorParts error_parts() const;
 
   const TankModel& model() const { return accepted_; }
-  const Speed& speed() const { return speed_; }
-  void add_observer(std::unique_ptr<TankObserver> observer) { observers_.push_back(std::move(observer)); }
+  /// View for diagnostics. It refers to this tank, which must outlive it.
+  TankView view() const { return {name_, accepted_, happened_, step_, *weather_, report_.get()}; }
+  /// The last accepted step, until the next solve().
+  TankRecord record() const;
 
  private:
-  TankRecord record() const;
-  /// Reports each sentence as a finding of this tank.
-  void report(const char* id, const std::vector<std::string>& sentences) const;
-  void look_at_bending();
-  void visit_seen(io::Archive& archive);
-  coupling::ErrorParts spread_profile() const;
-  double unused_by_spreading(double finer = 1) const;  // with so many times the cells
-  coupling::Exchange given() const;
+  /// A quantity that other participants take, at the end of the step.
+  struct Given {
+    const char *name, *unit;
+    std::vector<double> values;
+  };
+  std::vector<Given> given() const;
   std::vector<double> received(const coupling::Exchange& in, const char* name) const;
+  void visit(io::Archive& archive);
 
   std::string name_;
   std::unique_ptr<Weather> weather_;
   std::unique_ptr<FlowControl> control_;
-  std::vector<std::unique_ptr<TankObserver>> observers_;
-  TankModel accepted_, next_;
-  std::vector<double> control_state_;  // that of accepted_
+  TankModel accepted_, next_;  // next_: the state before the accepted step, until the next solve()
+  FlowMemory memory_;          // that of accepted_
   MPI_Comm comm_;
-  std::vector<BedStep> steps_;  // of next_
+  TankStep happened_;  // in the last solve()
   coupling::Step step_;
-  Speed speed_;
-  double peak_advance_ = 0;                 // largest |m| dt of a step of the bed in this run [kg]
-  double peak_flow_ = 0;                    // largest |m| of this run [kg/s]
-  BendingSeen bending_;                     // of this run; only where the wall is of rings
+  std::unique_ptr<DayReport> report_;
   std::unique_ptr<TankOutputFiles> files_;  // on rank 0
   std::optional<WallInterface> wall_;
-  // Last accepted step, for its record.
-  std::vector<double> filler_;
-  double stored_ = 0, side_ = 0, roof_ = 0, ground_ = 0;
 };
 
 }  // namespace couplet::thermocline

@@ -204,42 +204,16 @@ Flow Schedule::decide(double t, double t_top, double t_bottom, const Ambient&) {
   const auto [row, began, next] = place_of(t);
   Flow flow;
   flow.until = next;
-  const bool begins = began != current_;
-  if (begins) current_ = began, stopped_ = false;
+  if (began != memory.row_began) memory.row_began = began, memory.stopped = false;
   if (!row || row->mass_flow == 0) return flow;
-  const auto number = std::size_t(row - rows_.data());
-  if (begins) began_[number] = true;
   const double outlet = row->mass_flow > 0 ? t_top : t_bottom;
   if ((row->stop_above && outlet > *row->stop_above) || (row->stop_below && outlet < *row->stop_below))
-    stopped_ = true;
-  if (stopped_) return flow;
+    memory.stopped = true;
+  if (memory.stopped) return flow;
   flow.mass_flow = row->mass_flow;
   flow.inlet_temperature = row->inlet_temperature;
-  flow.mode = int(number) + 1;
-  flowed_[number] = true;
+  flow.mode = int(row - rows_.data()) + 1;
   return flow;
-}
-
-std::vector<std::string> Schedule::doubts() const {
-  std::vector<std::string> sentences;
-  const auto flows = [](const ScheduleRow& row) { return row.mass_flow != 0; };
-  const auto first = std::ranges::find_if(rows_, flows);
-  if (first != rows_.end() && !(current_ >= first->at))
-    sentences.push_back(fmt::format("no flow: the first row with a flow, flow.rows[{}], starts at {:g} s",
-                                    first - rows_.begin(), first->at));
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    if (!began_[i] || flowed_[i]) continue;
-    std::string limits;
-    if (rows_[i].stop_above) limits += fmt::format(" above {:g} degC", celsius(*rows_[i].stop_above));
-    if (rows_[i].stop_below)
-      limits +=
-          fmt::format("{} below {:g} degC", limits.empty() ? "" : " and", celsius(*rows_[i].stop_below));
-    sentences.push_back(fmt::format(
-        "flow.rows[{}] never ran: it stops{}, and the outlet (the {} of the tank) was beyond that "
-        "whenever it started",
-        i, limits, rows_[i].mass_flow > 0 ? "top" : "bottom"));
-  }
-  return sentences;
 }
 
 std::vector<ScheduleRow> read_flow_file(const std::filesystem::path& file) {
@@ -261,12 +235,13 @@ std::vector<ScheduleRow> read_flow_file(const std::filesystem::path& file) {
 
 Flow PlantControl::decide(double t, double t_top, double t_bottom, const Ambient& ambient) {
   const PlantFlows flows =
-      plant_.flows(plant_.field_heat(ambient.dni), t_top, t_bottom, mode_, plant_.load(t));
-  mode_ = flows.mode;
+      plant_.flows(plant_.field_heat(ambient.dni), t_top, t_bottom, memory.mode, plant_.load(t));
+  memory.mode = flows.mode;
   Flow flow;
-  flow.mode = static_cast<int>(mode_);
+  flow.mode = static_cast<int>(flows.mode);
   flow.mass_flow = flows.tank_flow;
-  flow.inlet_temperature = mode_ == PlantMode::charge ? plant_.parameters().hot : plant_.parameters().cold;
+  flow.inlet_temperature =
+      flows.mode == PlantMode::charge ? plant_.parameters().hot : plant_.parameters().cold;
   // At rest the bed could take long steps over sunrise.
   constexpr double longest_without_a_look = 120;  // [s]
   flow.until = std::min(t + longest_without_a_look, plant_.load_until(t));

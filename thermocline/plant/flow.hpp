@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "common/base/numbers.hpp"
 #include "common/config/section.hpp"
 #include "thermocline/plant/plant.hpp"
 #include "thermocline/weather/weather.hpp"
@@ -26,24 +25,31 @@ struct Flow {
   double until = std::numeric_limits<double>::infinity();
 };
 
-/// Decides on the flow at the start of each step of the bed. A control with a memory (charging, waiting, ...)
-/// hands it out and takes it back, so that a step of the simulation can be repeated.
+/// State of a flow control: the row of the schedule in force, or the mode of the plant.
+struct FlowMemory {
+  double row_began = -1;  ///< [s]
+  bool stopped = false;   ///< the row's flow has ended at its limit
+  PlantMode mode = PlantMode::standby;
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(row_began, stopped, mode);
+  }
+};
+
+/// Decides on the flow at the start of each step of the bed. Its memory can be set back, so that a step of the
+/// simulation can be repeated.
 class FlowControl {
  public:
   virtual ~FlowControl() = default;
   /// `t_top`, `t_bottom`: fluid temperature in the bed's top and bottom cell [K]; what flows out has it.
   virtual Flow decide(double t, double t_top, double t_bottom, const Ambient& ambient) = 0;
-  virtual std::vector<double> state() const { return {}; }
-  virtual void restore(std::span<const double>) {}
-  /// At the end of a run: why what it did may not be what was meant. Sentences.
-  virtual std::vector<std::string> doubts() const { return {}; }
+  FlowMemory memory;
 };
 
 /// One step of the bed, from t to t + dt.
 struct BedStep {
   double t = 0, dt = 0;           ///< [s]
   Flow flow;                      ///< as decided at t
-  Ambient ambient;                ///< at t
   double outlet_temperature = 0;  ///< mean of what left during the step [K]; the inlet's at rest
   double pressure_loss = 0;       ///< across the bed [Pa]; 0 where nobody asked for it
   double pump_power = 0;          ///< [W]
@@ -76,19 +82,8 @@ std::unique_ptr<FlowControl> make_flow_control(const FlowParameters& parameters,
 /// Flow by the clock. Labels: the number of the row (from 1) while it flows, 0 at rest.
 class Schedule final : public FlowControl {
  public:
-  explicit Schedule(const FlowParameters& parameters)
-      : rows_(parameters.rows),
-        repeat_(parameters.repeat),
-        began_(rows_.size(), false),
-        flowed_(rows_.size(), false) {}
+  explicit Schedule(const FlowParameters& parameters) : rows_(parameters.rows), repeat_(parameters.repeat) {}
   Flow decide(double t, double t_top, double t_bottom, const Ambient& ambient) override;
-  std::vector<double> state() const override { return {current_, double(stopped_)}; }
-  void restore(std::span<const double> state) override {
-    base::SavedNumbers saved(state, "rows of the flow");
-    current_ = saved.real(), stopped_ = saved.real() != 0;
-  }
-  /// Rows that were stopped each time before they began.
-  std::vector<std::string> doubts() const override;
 
  private:
   /// The row in force, when it began, and when the next one does.
@@ -100,9 +95,6 @@ class Schedule final : public FlowControl {
 
   std::vector<ScheduleRow> rows_;
   std::optional<ScheduleRepeat> repeat_;
-  double current_ = -1;  // when the row in force began
-  bool stopped_ = false;
-  std::vector<bool> began_, flowed_;  // each row, in this run
 };
 
 /// Rows of a schedule from a CSV (may be compressed): '#' begins a comment, the first line names the columns with their
@@ -110,20 +102,14 @@ class Schedule final : public FlowControl {
 /// "stop-below [degC]", which may be empty in a row. A row holds until the next one. Throws Error with file:line.
 std::vector<ScheduleRow> read_flow_file(const std::filesystem::path& file);
 
-/// The plant decides what is pumped through the tank. Its memory is the process that runs.
+/// The plant decides what is pumped through the tank.
 class PlantControl final : public FlowControl {
  public:
   explicit PlantControl(const Plant& plant) : plant_(plant) {}
-
   Flow decide(double t, double t_top, double t_bottom, const Ambient& ambient) override;
-  std::vector<double> state() const override { return {double(mode_)}; }
-  void restore(std::span<const double> state) override {
-    mode_ = PlantMode(base::SavedNumbers(state, "mode of the plant").count(2));
-  }
 
  private:
   Plant plant_;
-  PlantMode mode_ = PlantMode::standby;
 };
 
 }  // namespace couplet::thermocline

@@ -89,7 +89,6 @@ struct PlantFlows {
   double field_inlet = 0;  ///< T_SF^in, mixed [K]
   double block_inlet = 0;  ///< T_PB^in, mixed [K]
   double tank_flow = 0;    ///< upward: > 0 discharge, < 0 charge [kg/s]
-  bool has_excess() const { return field_heat > block_heat; }
 };
 
 /// Plant management, equations 5.1 to 5.6. The fluid's specific heat is constant, so the mixing rules 5.5

@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "common/base/error.hpp"
-#include "common/base/numbers.hpp"
 #include "thermocline/material/numerics.hpp"
 #include "thermocline/material/properties.hpp"
 
@@ -45,67 +45,47 @@ std::optional<double> thermocline_thickness(std::span<const double> z, double he
 
 void StressHistory::see(double time, std::span<const double> z, std::span<const double> equivalent,
                         std::span<const double> yield) {
-  const std::size_t n = z.size();
-  if (z_.size() != n) {
-    resize(n);
-    z_.assign(z.begin(), z.end());
+  if (rings_.size() != z.size()) {
+    rings_.assign(z.size(), {});
+    for (std::size_t i = 0; i < z.size(); ++i) rings_[i].z = z[i];
+    day_begun_ = false;
   }
-  if (!day_begun_) {
-    day_lowest_.assign(n, std::numeric_limits<double>::infinity());
-    day_highest_.assign(n, 0);
-    day_highest_at_.assign(n, time);
-    day_begun_ = true;
-  }
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    Ring& ring = rings_[i];
     const double share = equivalent[i] / yield[i];
-    day_lowest_[i] = std::min(day_lowest_[i], share);
-    if (share <= day_highest_[i]) continue;
-    day_highest_[i] = share;
-    day_highest_at_[i] = time;
+    if (!day_begun_)
+      ring.day_lowest = std::numeric_limits<double>::infinity(), ring.day_highest = 0,
+      ring.day_highest_time = time;
+    ring.day_lowest = std::min(ring.day_lowest, share);
+    if (share > ring.day_highest) ring.day_highest = share, ring.day_highest_time = time;
   }
-}
-
-void StressHistory::resize(std::size_t rings) {
-  rings_ = int(rings);
-  for (auto* values : {&z_, &day_lowest_, &day_highest_, &day_highest_at_, &sum_lowest_, &sum_highest_,
-                       &highest_, &highest_at_})
-    values->assign(rings, 0);
-  day_begun_ = false;
+  day_begun_ = true;
 }
 
 void StressHistory::end_day(bool counts) {
-  const bool begun = day_begun_;
-  day_begun_ = false;
-  if (!counts || !begun) return;
+  if (!std::exchange(day_begun_, false) || !counts) return;
   ++days_;
-  for (std::size_t i = 0; i < z_.size(); ++i) {
-    sum_lowest_[i] += day_lowest_[i];
-    sum_highest_[i] += day_highest_[i];
-    if (day_highest_[i] <= highest_[i]) continue;
-    highest_[i] = day_highest_[i];
-    highest_at_[i] = day_highest_at_[i];
+  for (Ring& ring : rings_) {
+    ring.sum_lowest += ring.day_lowest;
+    ring.sum_highest += ring.day_highest;
+    if (ring.day_highest > ring.highest)
+      ring.highest = ring.day_highest, ring.highest_time = ring.day_highest_time;
   }
 }
 
 StressHistory::Factor StressHistory::static_factor() const {
-  const auto i = std::size_t(std::max_element(highest_.begin(), highest_.end()) - highest_.begin());
-  return {1 / highest_[i], z_[i], highest_at_[i]};
+  const Ring& worst = *std::ranges::max_element(rings_, {}, &Ring::highest);
+  return {1 / worst.highest, worst.z, worst.highest_time};
 }
 
 StressHistory::Factor StressHistory::dynamic_factor() const {
   Factor least{std::numeric_limits<double>::infinity(), 0, 0};
-  for (std::size_t i = 0; i < z_.size(); ++i) {
-    const double low = sum_lowest_[i] / days_, high = sum_highest_[i] / days_;
+  for (const Ring& ring : rings_) {
+    const double low = ring.sum_lowest / days_, high = ring.sum_highest / days_;
     const double factor = (1 - low) / (high - low);
-    if (high > low && factor < least.value) least = {factor, z_[i], 0};
+    if (high > low && factor < least.value) least = {factor, ring.z, 0};
   }
   return least;
-}
-
-std::vector<double> StressHistory::mean(const std::vector<double>& sum) const {
-  std::vector<double> result = sum;
-  for (double& value : result) value /= days_;
-  return result;
 }
 
 void declare(config::Section& s, ReportParameters& p) {
@@ -223,7 +203,7 @@ void DayReport::record(const TankRecord& record) {
   }
   // The heat that the flow brought and the bed did not gain went through the walls, evenly over the step (5.25-5.27).
   day_[Sums::stored] += charged - (brought - record.stored) * charging_time / record.dt;
-  day_[Sums::losses] += record.losses();
+  day_[Sums::losses] += record.losses;
   add_thickness(record);
   if (!record.equivalent_stress.empty())
     stress_.see(record.time, record.wall_z, record.equivalent_stress, record.yield_strength);
@@ -293,19 +273,12 @@ std::vector<ReportLine> DayReport::lines() const {
   return all;
 }
 
-std::vector<double> DayReport::state() const { return numbers_of(*this); }
-
-void DayReport::restore(std::span<const double> state) {
-  // Behind the scalars and both sums: the number of rings, two more scalars and eight values per ring.
-  constexpr std::size_t fixed = 6 + 2 * Sums::n_items + 3;
-  if (state.size() >= fixed) stress_.resize((state.size() - fixed) / 8);
-  constexpr double most_days = 1e6;
-  for (std::size_t i = 0; i < 2 && i < state.size(); ++i)
-    if (!(state[i] >= 0 && state[i] <= most_days))
-      throw Error("report: the checkpoint's day counts are damaged.");
-  set_numbers(state, "report", *this);
+void DayReport::refuse_other_run_in() const {
+  constexpr int most_days = 1000000;
+  if (days_seen_ < 0 || days_seen_ > most_days)
+    throw Error("report: the checkpoint's day counts are damaged.");
   int counted = 0;
-  for (int day = 0; day < days_seen_; ++day) counted += this->counts(day);
+  for (int day = 0; day < days_seen_; ++day) counted += counts(day);
   if (counted != days_counted_)
     throw Error(
         "report.run-in: the run to be continued has completed {} days and counted {} of them; with a "

@@ -56,35 +56,19 @@ struct TankRecord {
   double dt = 0;    ///< [s]
   std::span<const BedStep> steps;
   // The bed, one value a cell.
-  std::span<const double> z, dz;               ///< centers and heights [m]
-  std::span<const double> fluid_temperature;   ///< [K]
-  std::span<const double> filler_temperature;  ///< mean of the particles [K]
+  std::span<const double> z, dz;              ///< centers and heights [m]
+  std::span<const double> fluid_temperature;  ///< [K]
+  std::vector<double> filler_temperature;     ///< mean of the particles [K]
   // The shell, one value a ring (more than cells of the bed if the wall goes on around the ullage).
   std::span<const double> wall_z;             ///< centers [m]
   std::span<const double> wall_temperature;   ///< [K]
-  std::span<const double> hoop_stress;        ///< [Pa]
   std::span<const double> equivalent_stress;  ///< von Mises [Pa]
   std::span<const double> yield_strength;     ///< at the ring's temperature [Pa]
   // Heat over the step [J].
-  double stored = 0;                                     ///< gained by fluid and filler (5.25-5.27)
-  double loss_side = 0, loss_roof = 0, loss_ground = 0;  ///< to the air, the sky and the deep soil
+  double stored = 0;  ///< gained by fluid and filler (5.25-5.27)
+  double losses = 0;  ///< to the air, the sky and the deep soil
   /// Heat that warms fluid and filler from cold to hot (Q_storable of 5.28), per kelvin [J/K].
   double heat_capacity = 0;
-  double losses() const { return loss_side + loss_roof + loss_ground; }
-};
-
-/// Whoever keeps a report. Sees accepted steps only.
-class TankObserver {
- public:
-  virtual ~TankObserver() = default;
-  virtual void record(const TankRecord& record) = 0;
-  /// At the end of the run.
-  virtual void finish() {}
-  /// After finish(): why what it wrote may not be what was meant. Sentences.
-  virtual std::vector<std::string> doubts() const { return {}; }
-  /// For checkpoints.
-  virtual std::vector<double> state() const { return {}; }
-  virtual void restore(std::span<const double>) {}
 };
 
 /// Which share of its yield strength each ring of the wall carried: daily extremes, their sums, the largest
@@ -95,40 +79,41 @@ class TankObserver {
 /// daily extremes, FoS_dynamic = (1 - s_min) / (s_max - s_min) (5.22 divided by the strength).
 class StressHistory {
  public:
-  /// `counts`: the day belongs to the results; otherwise it is looked at but not kept.
+  struct Ring {
+    double z = 0;                                   ///< center [m]
+    double day_lowest = 0, day_highest = 0;         ///< of the day so far
+    double sum_lowest = 0, sum_highest = 0;         ///< of the days that count
+    double highest = 0;                             ///< of all days that count
+    double day_highest_time = 0, highest_time = 0;  ///< [s]
+    template <class Numbers>
+    void visit(Numbers& numbers) {
+      numbers(z, day_lowest, day_highest, sum_lowest, sum_highest, highest, day_highest_time, highest_time);
+    }
+  };
   void see(double time, std::span<const double> z, std::span<const double> equivalent,
            std::span<const double> yield);
+  /// `counts`: the day belongs to the results; otherwise it is looked at but not kept.
   void end_day(bool counts);
 
   struct Factor {
     double value = 0;
-    double z = 0;     ///< centre of the ring [m]
+    double z = 0;     ///< center of the ring [m]
     double time = 0;  ///< [s]; of the static factor only
   };
-  bool empty() const { return days_ == 0 || z_.empty(); }
+  bool empty() const { return days_ == 0 || rings_.empty(); }
   Factor static_factor() const;
   Factor dynamic_factor() const;
-  std::span<const double> z() const { return z_; }
-  /// Means of the daily extremes of sigma_eq / sigma_y, ring by ring, and the largest of all.
-  std::vector<double> mean_lowest() const { return mean(sum_lowest_); }
-  std::vector<double> mean_highest() const { return mean(sum_highest_); }
-  std::span<const double> highest() const { return highest_; }
-
-  /// Starts again with so many rings.
-  void resize(std::size_t rings);
-  template <class Self, class F>
-  static void visit(Self& self, F&& f) {
-    f(self.rings_, self.days_, self.day_begun_, self.z_, self.day_lowest_, self.day_highest_,
-      self.day_highest_at_, self.sum_lowest_, self.sum_highest_, self.highest_, self.highest_at_);
+  int days() const { return days_; }  ///< that count
+  const std::vector<Ring>& rings() const { return rings_; }
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(rings_, days_, day_begun_);
   }
 
  private:
-  std::vector<double> mean(const std::vector<double>& sum) const;
-
-  std::vector<double> z_, day_lowest_, day_highest_, day_highest_at_;
-  std::vector<double> sum_lowest_, sum_highest_, highest_, highest_at_;
+  std::vector<Ring> rings_;
   bool day_begun_ = false;
-  int days_ = 0, rings_ = 0;
+  int days_ = 0;
 };
 
 /// Prices, in a currency of one's own.
@@ -224,23 +209,26 @@ struct ReportLine {
 ///  - plant.csv: a time series, one line a step of the simulation;
 ///  - profiles.csv: temperatures and stress over height, every hour of the profile day, if there is one;
 ///  - stress.csv: ring by ring, means of the daily extremes and the largest share of the yield strength.
-class DayReport final : public TankObserver {
+class DayReport final {
  public:
   /// `folder`: empty for none of the files. On restart the files go on from `restart_time`.
   DayReport(const ReportParameters& parameters, const Plant& plant, const Weather& weather,
             const std::filesystem::path& folder,
             double restart_time = std::numeric_limits<double>::quiet_NaN());
 
-  void record(const TankRecord& record) override;
-  void finish() override;
-  std::vector<std::string> doubts() const override;
-  template <class Self, class F>
-  static void visit(Self& self, F&& f) {
-    f(self.days_seen_, self.days_counted_, self.storable_, self.bed_height_, self.last_thickness_,
-      self.largest_pump_, self.day_.sum, self.results_.sum, self.stress_);
+  /// Adds an accepted step.
+  void record(const TankRecord& record);
+  /// Writes the summary at the end of the run.
+  void finish();
+  /// After finish(): why what it wrote may not be what was meant. Sentences.
+  std::vector<std::string> doubts() const;
+  /// For checkpoints. Throws Error if the run to be continued counted other days.
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(days_seen_, days_counted_, storable_, bed_height_, last_thickness_, last_time_, largest_pump_,
+            day_.sum, results_.sum, stress_);
+    if (numbers.reads()) refuse_other_run_in();
   }
-  std::vector<double> state() const override;
-  void restore(std::span<const double> state) override;
 
   /// Sets the parts of tank and plant, for their costs.
   void take_stock(const Inventory& inventory) { inventory_ = inventory; }
@@ -251,6 +239,7 @@ class DayReport final : public TankObserver {
   std::vector<ReportLine> lines() const;
 
  private:
+  void refuse_other_run_in() const;
   double add_step(const BedStep& step);
   void add_thickness(const TankRecord& record);
   void end_day(double time);

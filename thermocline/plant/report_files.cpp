@@ -17,7 +17,6 @@ namespace {
 using Sums = ReportSums;
 
 constexpr double year = 365;  // [days]
-using Sums = ReportSums;
 
 }  // namespace
 
@@ -40,7 +39,7 @@ DayReport::DayReport(const ReportParameters& parameters, const Plant& plant, con
           {"top [degC]", [](const StepRow& v) { return celsius(v.record.fluid_temperature.back()); }},
           {"bottom [degC]", [](const StepRow& v) { return celsius(v.record.fluid_temperature.front()); }},
           {"thermocline thickness [m]", [](const StepRow& v) { return v.thickness; }},
-          {"losses [W]", [](const StepRow& v) { return v.record.losses() / v.record.dt; }},
+          {"losses [W]", [](const StepRow& v) { return v.record.losses / v.record.dt; }},
           {"irradiance [W/m^2]", [](const StepRow& v) { return v.dni; }},
           {"air [degC]", [](const StepRow& v) { return celsius(v.air.temperature); }},
           {"wind [m/s]", [](const StepRow& v) { return v.air.wind; }}},
@@ -92,9 +91,9 @@ void DayReport::finish() {
   if (!stress_.empty()) {
     std::ofstream stress(base::own_file(folder_ / "stress.csv"));
     stress << "z [m],mean daily lowest share [-],mean daily highest share [-],highest share [-]\n";
-    const std::vector<double> low = stress_.mean_lowest(), high = stress_.mean_highest();
-    for (std::size_t i = 0; i < low.size(); ++i)
-      stress << fmt::format("{},{},{},{}\n", stress_.z()[i], low[i], high[i], stress_.highest()[i]);
+    for (const StressHistory::Ring& ring : stress_.rings())
+      stress << fmt::format("{},{},{},{}\n", ring.z, ring.sum_lowest / stress_.days(),
+                            ring.sum_highest / stress_.days(), ring.highest);
     stress.flush();
     if (!stress) throw Error("Cannot write {}. Is the disk full?", (folder_ / "stress.csv").string());
   }

@@ -13,28 +13,6 @@ double in_series(double film, double cell) {
   return std::isinf(film) ? cell : 1 / (1 / film + 1 / cell);
 }
 
-struct Node {
-  double store, a, b,
-      film;  // capacity over the step; half a node, half the next one, the film as resistances
-};
-
-/// A node of all rings, the nodes further in being eliminated: half a node and half the next one, or the
-/// film, in series, k k'/(a k' + b k).
-[[gnu::target_clones("avx2", "default")]] void eliminate(const Node& node, std::size_t n, const double* k,
-                                                         const double* next, const double* before,
-                                                         const double* eliminated, double* t, double* up,
-                                                         double* in) {
-  const double store = node.store, a = node.a, b = node.b, film = node.film;
-#pragma GCC ivdep
-  for (std::size_t i = 0; i < n; ++i) {
-    const double out = k[i] * next[i] / (next[i] * (a + film * k[i]) + b * k[i]);
-    const double inverse = 1 / (store + out + in[i] * (1 - eliminated[i]));
-    t[i] = (store * t[i] + in[i] * before[i]) * inverse;
-    up[i] = out * inverse;
-    in[i] = out;
-  }
-}
-
 }  // namespace
 
 Column::Column(const std::vector<ColumnLayer>& layers, double area) : area_(area) {
@@ -167,9 +145,18 @@ double Insulation::step(double dt, std::span<const double> inside, const Film& o
     double *t = temperature_.data() + j * n, *up = up_.data() + j * n;
     const double *k = k_.data() + j * n, *next = j < last ? k + n : k;
     const double *before = j > 0 ? t - n : inside.data(), *eliminated = j > 0 ? up - n : nothing_.data();
-    const Node node{capacity_[j] / dt, 1 / shape_[2 * j + 1], j < last ? 1 / shape_[2 * j + 2] : 0,
-                    j < last ? 0 : 1 / (outer_circumference_ * outside.coefficient)};
-    eliminate(node, n, k, next, before, eliminated, t, up, in);
+    // Half a node and half the next one, or the film, in series: k k'/(a k' + b k).
+    const double store = capacity_[j] / dt, a = 1 / shape_[2 * j + 1],
+                 b = j < last ? 1 / shape_[2 * j + 2] : 0,
+                 film = j < last ? 0 : 1 / (outer_circumference_ * outside.coefficient);
+#pragma GCC ivdep
+    for (std::size_t i = 0; i < n; ++i) {
+      const double out = k[i] * next[i] / (next[i] * (a + film * k[i]) + b * k[i]);
+      const double inverse = 1 / (store + out + in[i] * (1 - eliminated[i]));
+      t[i] = (store * t[i] + in[i] * before[i]) * inverse;
+      up[i] = out * inverse;
+      in[i] = out;
+    }
   }
   double lost = 0;
   double* t = temperature_.data() + last * n;
@@ -223,6 +210,17 @@ double Insulation::outer_surface(const Film& outside) const {
     height += dz_[i];
   }
   return sum / height;
+}
+
+Film side_film_on(const Insulation& blanket, const OutsideParameters& p, double diameter, double height,
+                  const Ambient& air) {
+  const Film first = side_film(p, air.temperature + 5, diameter, height, air);
+  return side_film(p, blanket.outer_surface(first), diameter, height, air);
+}
+
+Film roof_film_on(const Column& roof, const OutsideParameters& p, double diameter, const Ambient& air) {
+  const Film first = roof_film(p, air.temperature + 5, diameter, air);
+  return roof_film(p, roof.outer_surface(first), diameter, air);
 }
 
 void declare(config::Section& section, InsulationParameters& p) {

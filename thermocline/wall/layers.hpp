@@ -37,7 +37,6 @@ class Column {
 
   /// Steady profile between two surface temperatures.
   void set_steady(double inner, double outer);
-  void set_uniform(double temperature) { temperature_.assign(temperature_.size(), temperature); }
   double energy(double reference) const;  ///< [J]
   /// Conductance of the inner and the outer half cell [W/(m^2 K)].
   double inner_conductance() const;
@@ -105,5 +104,11 @@ class Insulation {
 };
 
 void declare(config::Section& section, InsulationParameters& parameters);
+
+// Films on the surfaces of these layers. A film belongs to the surface temperature; one correction is enough for so weak a
+// dependence.
+Film side_film_on(const Insulation& blanket, const OutsideParameters& p, double diameter, double height,
+                  const Ambient& air);
+Film roof_film_on(const Column& roof, const OutsideParameters& p, double diameter, const Ambient& air);
 
 }  // namespace couplet::thermocline

@@ -59,20 +59,32 @@ InnerPressure inner_pressure(const Rings& rings, const BedGrid& bed, const Fluid
   return p;
 }
 
-FillerOnWall::FillerOnWall(const Rings& rings, const Steel& steel, const Filler& filler,
-                           const InnerPressure& p, std::span<const double> grains)
+FillerMechanics::FillerMechanics(const Rings& rings, const Steel& steel, const Filler& filler,
+                                 const InnerPressure& p, std::span<const double> wall,
+                                 std::span<const double> grains, bool is_external)
     : rings_(&rings),
       steel_(&steel),
       expansion_(filler.expansion),
       active_ratio_(rankine_active(filler)),
-      grains_(grains.begin(), grains.end()) {
-  for (auto* v : {&fluid_, &active_, &passive_, &hoop_, &lateral_}) v->assign(rings.size(), 0.0);
-  strain_.assign(rings.in_bed, 0.0), slip_.assign(rings.in_bed, 0.0);
-  contact_.assign(rings.in_bed, Contact::active);
+      begun_(!is_external),
+      slip_(rings.in_bed, 0.0),
+      grains_(grains.begin(), grains.end()),
+      given_wall_(wall.begin(), wall.end()),
+      contact_(rings.in_bed, Contact::active) {
+  for (auto* v : {&fluid_, &active_, &passive_, &hoop_, &total_}) v->assign(rings.size(), 0.0);
   load(p);
+  lateral_ = active_;
+  for (int i = 0; i < rings.in_bed; ++i)
+    strain_.push_back((fluid_[i] + active_[i]) / stiffness(i, wall[i]) + steel.thermal_strain(wall[i]));
+  finish();
 }
 
-void FillerOnWall::load(const InnerPressure& p) {
+/// Pressure per strain of a ring at its temperature [Pa].
+double FillerMechanics::stiffness(int ring, double temperature) const {
+  return steel_->youngs_modulus(temperature) * 2 * rings_->thickness[ring] / rings_->diameter;
+}
+
+void FillerMechanics::load(const InnerPressure& p) {
   for (std::size_t i = 0; i < fluid_.size(); ++i) {
     fluid_[i] = p.fluid[i];
     active_[i] = active_ratio_ * p.vertical[i];
@@ -80,45 +92,38 @@ void FillerOnWall::load(const InnerPressure& p) {
   }
 }
 
-FillerMechanics::FillerMechanics(const Rings& rings, const Steel& steel, const Filler& filler,
-                                 const InnerPressure& p, std::span<const double> wall,
-                                 std::span<const double> grains)
-    : FillerOnWall(rings, steel, filler, p, grains) {
-  for (int i = 0; i < rings.size(); ++i) per_pressure_.push_back(rings.diameter / (2 * rings.thickness[i]));
-  strain_.assign(rings.in_bed, -1e3);  // far inside: the first update finds every ring active
-  update(wall, grains);
+void FillerMechanics::finish() {
+  for (int i = 0; i < rings_->size(); ++i) {
+    total_[i] = fluid_[i] + lateral_[i];
+    hoop_[i] = total_[i] * rings_->diameter / (2 * rings_->thickness[i]);
+  }
 }
 
-void FillerMechanics::update(std::span<const double> wall, std::span<const double> grains) {
+void FillerMechanics::update(std::span<const double> wall, std::span<const double> grains,
+                             std::span<const double> radial) {
+  const double radius = rings_->diameter / 2;
   for (int i = 0; i < rings_->in_bed; ++i) {
-    const double e = steel_->youngs_modulus(wall[i]), free = steel_->thermal_strain(wall[i]);
-    const double lowest = (fluid_[i] + active_[i]) * per_pressure_[i],
-                 highest = (fluid_[i] + passive_[i]) * per_pressure_[i];
+    const double per_strain = stiffness(i, wall[i]), free = steel_->thermal_strain(wall[i]);
+    const double of_wall =
+        radial.empty() ? (fluid_[i] + lateral_[i]) / per_strain + free
+                       : std::log1p(radial[i] / radius) + free - steel_->thermal_strain(given_wall_[i]);
+    if (!begun_) strain_[i] = of_wall;
     // (5.18) as D exp(alpha dT): printed as D (1 + alpha dT), which a cycle would leave smaller.
     strain_[i] += expansion_ * (grains[i] - grains_[i]);
     grains_[i] = grains[i];
-    const double held = e * (strain_[i] - free);
-    if (held <= lowest) {
-      contact_[i] = Contact::active;
-      hoop_[i] = lowest;
-      strain_[i] = lowest / e + free;  // the grains slump after the wall
-    } else if (held >= highest) {
-      contact_[i] = Contact::passive;
-      slip_[i] += (held - highest) / e;
-      hoop_[i] = highest;
-      strain_[i] = highest / e + free;  // the wall pushes them in
-    } else {
-      contact_[i] = Contact::rigid;
-      hoop_[i] = held;
-    }
-    lateral_[i] = hoop_[i] / per_pressure_[i] - fluid_[i];
+    const double wanted = lateral_[i] + per_strain * (strain_[i] - of_wall);
+    lateral_[i] = std::clamp(wanted, active_[i], passive_[i]);
+    contact_[i] = wanted <= active_[i]    ? Contact::active
+                  : wanted >= passive_[i] ? Contact::passive
+                                          : Contact::rigid;
+    // Where the bound cuts the pressure, the filler ends where the wall will be under the bound: the grains slump after
+    // it, or it pushes them in.
+    strain_[i] -= (wanted - lateral_[i]) / per_strain;
+    slip_[i] += std::max(0.0, wanted - passive_[i]) / per_strain;
   }
-  for (int i = rings_->in_bed; i < rings_->size(); ++i)
-    hoop_[i] = (fluid_[i] + active_[i]) * per_pressure_[i];
-}
-
-int FillerMechanics::ever_passive() const {
-  return int(std::count_if(slip_.begin(), slip_.end(), [](double s) { return s > 0; }));
+  given_wall_.assign(wall.begin(), wall.end());
+  begun_ = begun_ || !radial.empty();
+  finish();
 }
 
 std::vector<double> active_hoop(const Rings& rings, const Filler& filler, const InnerPressure& p) {
@@ -142,49 +147,6 @@ void wall_stress(const Rings& rings, const Steel& steel, const InnerPressure& pr
     out.equivalent[i] = std::sqrt(0.5 * ((t - z) * (t - z) + (z - r) * (z - r) + (r - t) * (r - t)));
     out.yield[i] = steel.yield_strength(temperature[i]);
   }
-}
-
-ContactMechanics::ContactMechanics(const Rings& rings, const Steel& steel, const Filler& filler,
-                                   const InnerPressure& p, std::span<const double> wall,
-                                   std::span<const double> grains)
-    : FillerOnWall(rings, steel, filler, p, grains),
-      total_(rings.size()),
-      given_wall_(wall.begin(), wall.end()) {
-  lateral_ = active_;
-  finish();
-}
-
-void ContactMechanics::finish() {
-  for (int i = 0; i < rings_->size(); ++i) {
-    total_[i] = fluid_[i] + lateral_[i];
-    hoop_[i] = total_[i] * rings_->diameter / (2 * rings_->thickness[i]);
-  }
-}
-
-void ContactMechanics::update(std::span<const double> radial, std::span<const double> wall,
-                              std::span<const double> grains) {
-  const double radius = rings_->diameter / 2;
-  for (int i = 0; i < rings_->in_bed; ++i) {
-    const double stiffness = steel_->youngs_modulus(wall[i]) * rings_->thickness[i] / radius;
-    const double free = steel_->thermal_strain(wall[i]);
-    const double strain =
-        radial.empty() ? total_[i] / stiffness + free
-                       : std::log1p(radial[i] / radius) + free - steel_->thermal_strain(given_wall_[i]);
-    if (!begun_) strain_[i] = strain;
-    strain_[i] += expansion_ * (grains[i] - grains_[i]);
-    grains_[i] = grains[i];
-    const double wanted = lateral_[i] + stiffness * (strain_[i] - strain);
-    lateral_[i] = std::clamp(wanted, active_[i], passive_[i]);
-    contact_[i] = wanted <= active_[i]    ? Contact::active
-                  : wanted >= passive_[i] ? Contact::passive
-                                          : Contact::rigid;
-    // Where the bound cuts the pressure, the filler ends where the wall will be under the bound.
-    strain_[i] -= (wanted - lateral_[i]) / stiffness;
-    slip_[i] += std::max(0.0, wanted - passive_[i]) / stiffness;
-  }
-  given_wall_.assign(wall.begin(), wall.end());
-  begun_ = begun_ || !radial.empty();
-  finish();
 }
 
 WallBending wall_bending(const Rings& rings, const Steel& steel, std::span<const double> hoop,

@@ -25,54 +25,58 @@ struct WallStress {
 
 enum class Contact { active, rigid, passive };
 
-/// Filler and wall, ring by ring: bounds of the filler's pressure, and what both models keep.
-class FillerOnWall {
+/// The filler as a rigid, perfectly plastic, cohesionless bulk against the wall (thesis figure 5.4). At each height:
+///   active   the wall has moved away and the grains have slumped after it: p_s = K_a p_v (5.17)
+///   rigid    the wall cannot shrink below the grains' diameter, which follows their own expansion (5.18)
+///   passive  the grains yield: p_s = p_v/K_a (5.19, 5.20), and their diameter follows the wall
+/// Strains are logarithms of diameters, from the initial state. With the strain e_w that the wall would have at the end
+/// of a step under the filler's pressure before it, and the stiffness of the ring, E e/R (pressure per strain),
+///   p_s := clamp(p_s + E e/R (e_s - e_w), K_a p_v, p_v/K_a)
+/// and the filler's strain e_s follows the wall outside the rigid range. A wall of rings is a membrane, e_w = (p_f +
+/// p_s)/(E e/R) + integral of alpha dT, for which this is exact. Of a wall that another program computes the strain is
+/// that of the begin of the step and the change of the integral of alpha dT in it; what bending spreads along z is
+/// corrected in the next step. The membrane is the stiffest answer a wall can give, so the iteration contracts for any
+/// shape of the load.
+class FillerMechanics {
  public:
+  /// The wall starts at these temperatures with the active load. `is_external`: another program computes it.
+  FillerMechanics(const Rings& rings, const Steel& steel, const Filler& filler, const InnerPressure& pressure,
+                  std::span<const double> wall, std::span<const double> grains, bool is_external = false);
   /// Sets another weight of fluid and grains, which holds from the next update on.
   void load(const InnerPressure& pressure);
+  /// `wall`, `grains`: temperatures at the end of the step. `radial`: the displacement of an external wall [m] at each ring
+  /// under what was given last; empty: a membrane's.
+  void update(std::span<const double> wall, std::span<const double> grains,
+              std::span<const double> radial = {});
+
   std::span<const double> hoop() const { return hoop_; }        ///< of the membrane [Pa]
   std::span<const double> lateral() const { return lateral_; }  ///< p_s [Pa]
+  std::span<const double> pressure() const { return total_; }   ///< p_f + p_s [Pa]
   const std::vector<Contact>& contact() const { return contact_; }
   /// Reduction of the filler's diameter by passive yielding so far, relative [1]; 0 where it never
   /// yielded.
   std::span<const double> slip() const { return slip_; }
 
- protected:
-  FillerOnWall(const Rings& rings, const Steel& steel, const Filler& filler, const InnerPressure& pressure,
-               std::span<const double> grains);
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(begun_);
+    visit_values(numbers, strain_, slip_, grains_, lateral_, given_wall_, contact_);
+  }
+  /// Computes the pressure and the stress that follow from the state.
+  void finish();
+
+ private:
+  double stiffness(int ring, double temperature) const;
 
   const Rings* rings_;
   const Steel* steel_;
   double expansion_, active_ratio_;
+  bool begun_;                                    // strains are the filler's own: the wall has answered once
   std::vector<double> fluid_, active_, passive_;  // p_f, K_a p_v, p_v/K_a [Pa]
   std::vector<double> strain_, slip_, grains_;    // of the filler [1], its temperature [K]
-  std::vector<double> hoop_, lateral_;
+  std::vector<double> given_wall_;                // temperatures under which the wall was last computed [K]
+  std::vector<double> hoop_, lateral_, total_;
   std::vector<Contact> contact_;
-};
-
-/// The filler as a rigid, perfectly plastic, cohesionless bulk (thesis figure 5.4). At each height:
-///   active   the wall has moved away and the grains have slumped after it: p_s = K_a p_v (5.17)
-///   rigid    the wall cannot shrink below the grains' diameter, which follows their own expansion (5.18)
-///   passive  the grains yield: p_s = p_v/K_a (5.19, 5.20), and their diameter follows the wall
-/// Strains are logarithms of diameters, from the initial state. The wall's is e = sigma/E + integral of alpha
-/// dT, so in contact sigma = E (e_filler - integral of alpha dT), held between the active and the passive
-/// value.
-class FillerMechanics : public FillerOnWall {
- public:
-  /// The wall starts at these temperatures with the active load.
-  FillerMechanics(const Rings& rings, const Steel& steel, const Filler& filler, const InnerPressure& pressure,
-                  std::span<const double> wall, std::span<const double> grains);
-
-  void update(std::span<const double> wall, std::span<const double> grains);
-  int ever_passive() const;  ///< rings that have yielded
-
-  template <class Self, class F>
-  static void visit(Self& self, F&& f) {
-    f(self.strain_, self.grains_, self.hoop_, self.lateral_, self.contact_, self.slip_);
-  }
-
- private:
-  std::vector<double> per_pressure_;  // D/(2e) [1]
 };
 
 /// Without filler mechanics the hoop stress is that of the fluid and the active load.
@@ -82,38 +86,6 @@ double rankine_active(const Filler& filler);
 /// All stresses from the hoop stress and the temperature of the rings.
 void wall_stress(const Rings& rings, const Steel& steel, const InnerPressure& pressure, double roof_pressure,
                  std::span<const double> hoop, std::span<const double> temperature, WallStress& out);
-
-/// The filler against a wall whose radius somebody else computes. Its radial strain e_w was computed at t^n
-/// under the pressure and the temperatures given then; at t^{n+1} under the same pressure it will be e_w' =
-/// e_w + change of the integral of alpha dT. The filler's pressure follows by relaxation with the stiffness
-/// of the ring, E e/R (pressure per strain):
-///   p_s := clamp(p_s + E e/R (e_s - e_w'), K_a p_v, p_v/K_a)
-/// and e_s follows the wall outside the rigid range, as in FillerMechanics. A membrane would answer exactly
-/// so; what bending spreads along z is corrected in the next step. The membrane is the stiffest answer a wall
-/// can give, so the iteration contracts for any shape of the load.
-class ContactMechanics : public FillerOnWall {
- public:
-  ContactMechanics(const Rings& rings, const Steel& steel, const Filler& filler,
-                   const InnerPressure& pressure, std::span<const double> wall,
-                   std::span<const double> grains);
-
-  /// `radial`: the wall's displacement [m] at each ring under what was given last; empty: a membrane's.
-  /// `wall`, `grains`: temperatures at the end of the step, those that are given next.
-  void update(std::span<const double> radial, std::span<const double> wall, std::span<const double> grains);
-  std::span<const double> pressure() const { return total_; }  ///< p_f + p_s [Pa]
-
-  template <class Self, class F>
-  static void visit(Self& self, F&& f) {
-    f(self.begun_, self.strain_, self.slip_, self.grains_, self.lateral_, self.given_wall_, self.contact_);
-  }
-  /// Computes the pressure and the stress that follow from the state.
-  void finish();
-
- private:
-  bool begun_ = false;  // has seen a displacement: strains are the wall's own from then on
-  std::vector<double> total_;
-  std::vector<double> given_wall_;  // temperatures under which the wall was last computed [K]
-};
 
 /// Stresses of the rings with bending: the wall as a thin axisymmetric shell [timoshenko1959, chapter
 /// 15]

@@ -8,34 +8,6 @@
 #include "common/base/error.hpp"
 
 namespace couplet::thermocline {
-namespace {
-
-struct Row {
-  const double *mass, *specific_heat, *a, *c, *temperature, *lost;
-};
-/// Storage, conduction and what is lost.
-[[gnu::target_clones("avx2", "default")]] void store(std::size_t n, double dt, const Row& in, double* b,
-                                                     double* r) {
-#pragma GCC ivdep
-  for (std::size_t i = 0; i < n; ++i) {
-    const double capacity = in.mass[i] * in.specific_heat[i] / dt;
-    b[i] = capacity - in.a[i] - in.c[i];  // of the ends: 0
-    r[i] = capacity * in.temperature[i] - in.lost[i];
-  }
-}
-
-/// The fluid beside the rings.
-[[gnu::target_clones("avx2", "default")]] void wet(std::size_t n, const double* coupling, const double* fluid,
-                                                   double* b, double* r) {
-#pragma GCC ivdep
-  for (std::size_t i = 0; i < n; ++i) {
-    b[i] += coupling[i];
-    r[i] += coupling[i] * fluid[i];
-  }
-}
-
-}  // namespace
-
 Rings::Rings(const ShellParameters& p, const BedGrid& bed, double d, double above)
     : diameter(d), in_bed(bed.size()), z(bed.z), dz(bed.dz) {
   if (above > 0) {
@@ -92,10 +64,12 @@ void Shell::step(double dt, std::span<const double> fluid, std::span<const doubl
   for (int i = 0; i < rings.in_bed; ++i) coupling_[i] = film[i] * around * rings.dz[i];
   // Twice, so that the specific heat is its mean over the step: what is stored is then exactly what came in.
   for (int pass = 0; pass < 2; ++pass) {
-    store(n, dt,
-          {mass_.data(), specific_heat_.data(), a_.data(), c_.data(), temperature_.data(), lost.data()},
-          b_.data(), r_.data());
-    wet(rings.in_bed, coupling_.data(), fluid.data(), b_.data(), r_.data());
+    for (int i = 0; i < n; ++i) {
+      const double capacity = mass_[i] * specific_heat_[i] / dt;
+      b_[i] = capacity - a_[i] - c_[i];  // of the ends: 0
+      r_[i] = capacity * temperature_[i] - lost[i];
+    }
+    for (int i = 0; i < rings.in_bed; ++i) b_[i] += coupling_[i], r_[i] += coupling_[i] * fluid[i];
     matrix_.factorise(a_.data(), b_.data(), c_.data());
     matrix_.solve(r_.data());
     double largest = 0;

@@ -28,9 +28,8 @@ double cubes(double a, double b) { return std::cbrt(a * a * a + b * b * b); }
 
 Air::Air(double t, double pressure) {
   density = pressure / (287.05 * t);
-  // Sutherland's laws of viscosity and conductivity.
-  viscosity = 1.716e-5 * std::pow(t / 273.15, 1.5) * (273.15 + 110.4) / (t + 110.4);
-  conductivity = 0.0241 * std::pow(t / 273.15, 1.5) * (273.15 + 194) / (t + 194);
+  viscosity = air_viscosity(t);
+  conductivity = air_conductivity(t);
   prandtl = viscosity * specific_heat / conductivity;
   expansion = 1 / t;
 }

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "common/config/section.hpp"
+#include "thermocline/material/properties.hpp"
 #include "thermocline/weather/weather.hpp"
 
 namespace couplet::thermocline {
@@ -80,9 +81,9 @@ class Ullage {
   void set_gas(double temperature) { gas_ = temperature, roof_ = temperature; }
   double energy(double reference) const { return capacity_ * (gas_ - reference); }  ///< [J]
   double roof_surface() const { return roof_; }
-  template <class Self, class F>
-  static void visit(Self& self, F&& f) {
-    f(self.gas_, self.roof_);
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(gas_, roof_);
   }
 
  private:

@@ -26,7 +26,7 @@ struct Audit {
     entered += heat.by_flow + heat.by_source;
     worst_step =
         std::max(worst_step, std::abs(bed.energy(low) - before - heat.by_flow - heat.by_source) / scale());
-    for (const double t : numbers_of(bed))
+    for (const double t : temperatures_of(bed))
       beyond = std::max({beyond, (low - t) / (high - low), (t - high) / (high - low)});
   }
   double drift() const { return std::abs(bed.energy(low) - start - entered) / scale(); }

@@ -9,10 +9,9 @@
 #include "coupler/parameters/schedule.hpp"
 #include "fluid_solver/diagnostics/effects.hpp"
 #include "fluid_solver/parameters/effects.hpp"
-#include "plate_modal/effect_cards.hpp"
+#include "plate_modal/model/parameters.hpp"
 #include "solid_solver/diagnostics/effects.hpp"
 #include "solid_solver/effects/effect_cards.hpp"
-#include "thermocline/judge/effects.hpp"
 
 namespace couplet::testing::cards_test {
 using namespace effects;
@@ -205,43 +204,6 @@ TEST(ComplianceWatch, knows_nothing_of_walls_at_rest_and_of_the_first_step) {
 TEST(EffectCards, coupling_cards_answer_without_participants) {
   EXPECT_NO_THROW(effects_of("coupler", coupling_effect_cards(), CouplingParameters{}));
   EXPECT_THROW(schedule_of(CouplingParameters{}), std::bad_optional_access);
-}
-
-TEST(EffectCards, tank_verdicts_turn_at_their_thresholds) {
-  thermocline::ElementParameters tank;
-  tank.type = thermocline::ElementParameters::Type::tank;
-  tank.tank.bed.shells = 1;
-  const auto sound = [&](const char* effect, const thermocline::Evidence& e) {
-    return is_sound(effect, thermocline::effect_findings(tank, e));
-  };
-  EXPECT_TRUE(sound("resolved-grains", {.largest_biot = 19.9}));
-  EXPECT_FALSE(sound("resolved-grains", {.largest_biot = 20.1}));
-  const thermocline::Evidence spread{.implicit_spread = 0.051, .implicit_step = 1};
-  EXPECT_FALSE(with_id("implicit-advection", thermocline::effect_findings(tank, spread)))
-      << "where it is off";
-  tank.tank.bed.advection = thermocline::Advection::implicit;
-  EXPECT_TRUE(sound("implicit-advection", {.implicit_spread = 0.049, .implicit_step = 1}));
-  EXPECT_FALSE(sound("implicit-advection", spread));
-  EXPECT_TRUE(
-      sound("specific-heat-of-a-gas-by-its-temperature", {.capacity_error = 0.049, .mean_capacity = 1e3}));
-  EXPECT_FALSE(
-      sound("specific-heat-of-a-gas-by-its-temperature", {.capacity_error = 0.051, .mean_capacity = 1e3}));
-  EXPECT_TRUE(sound("mixing-of-inverted-fluid", {.inversion = 9, .inverted_share = 0.049}));
-  EXPECT_FALSE(sound("mixing-of-inverted-fluid", {.inversion = 11, .inverted_share = 0.051}));
-  EXPECT_TRUE(sound("pressure-loss-of-the-bed", {.pumping_share = 0.019, .pressure_loss = 1e4}));
-  EXPECT_FALSE(sound("pressure-loss-of-the-bed", {.pumping_share = 0.021, .pressure_loss = 1e6}));
-  EXPECT_TRUE(sound("compressible-flow-of-a-gas", {.largest_mach = 0.29}));
-  EXPECT_FALSE(sound("compressible-flow-of-a-gas", {.largest_mach = 0.31}));
-  EXPECT_TRUE(sound("yielding-of-the-wall", {.share_of_yield = 0.99}));
-  EXPECT_FALSE(sound("yielding-of-the-wall", {.share_of_yield = 1.01}));
-  EXPECT_TRUE(sound("bending-of-the-wall", {.share_as_rings = 0.5, .share_with_bending = 0.599}));
-  EXPECT_FALSE(sound("bending-of-the-wall", {.share_as_rings = 0.5, .share_with_bending = 0.601}));
-  tank.tank.pump.emplace();
-  EXPECT_TRUE(sound("work-of-pump-or-fan", {.driving_power = 0.99e6, .carried_heat = 1e7}));
-  EXPECT_FALSE(sound("work-of-pump-or-fan", {.driving_power = 4e7, .carried_heat = 2.8e7}));
-  tank.tank.bed.shells = 5;
-  EXPECT_FALSE(with_id("resolved-grains",
-                       thermocline::effect_findings(tank, thermocline::Evidence{.largest_biot = 1e3})));
 }
 
 }  // namespace

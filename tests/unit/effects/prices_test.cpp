@@ -10,9 +10,9 @@
 #include "common/effects/effects.hpp"
 #include "fluid_solver/parameters/effects.hpp"
 #include "mesh_mover/parameters.hpp"
-#include "plate_modal/effect_cards.hpp"
+#include "plate_modal/model/parameters.hpp"
 #include "solid_solver/effects/effect_cards.hpp"
-#include "thermocline/judge/effect_cards.hpp"
+#include "thermocline/model/elements.hpp"
 
 namespace couplet::testing::prices_test {
 using namespace effects;

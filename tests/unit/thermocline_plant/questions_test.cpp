@@ -107,27 +107,12 @@ TEST(Questions, a_temperature_without_its_unit_is_refused) {
   EXPECT_THAT(forgotten_unit_of_bed(p), HasSubstr("is 204 K, that is -69.1 degC"));
 }
 
-TEST(Questions, capsules_that_cannot_melt_are_refused_or_said) {
+TEST(Questions, capsules_that_cannot_melt_are_refused) {
   TankParameters p = sound();
   p.bed.layers[0].melting = Melting{298, 4, 150e3};
   EXPECT_THAT(forgotten_unit_of_bed(p), HasSubstr("layers[0].melting.temperature is 298 K"));
   p.bed.layers[0].melting->temperature = kelvin(400);
   EXPECT_EQ(forgotten_unit_of_bed(p), "");
-  p.bed.advection = Advection::implicit;
-  p.ambient_given.reset(), p.flow = {};
-  const auto after = [&](double melts) {
-    p.bed.layers[0].melting->temperature = kelvin(melts);
-    const auto weather = make_weather(p.ambient, ".");
-    TankModel model(std::make_shared<const TankSetup>(p), *weather);
-    const auto control = make_flow_control(p.flow, 1500);
-    std::vector<BedStep> steps;
-    Speed speed;
-    model.advance(0, 60, *control, *weather, steps, speed);
-    return never_melted(model);
-  };
-  ASSERT_EQ(after(400).size(), 1u) << "all is at 290 degC";
-  EXPECT_THAT(after(400)[0], HasSubstr("bed.layers[0]: its capsules melt from 398.0 to 402.0 degC"));
-  EXPECT_TRUE(after(290).empty());
 }
 
 TEST(Questions, seasons_need_a_weather_with_dates) {
@@ -156,25 +141,6 @@ TEST(Questions, prices_for_what_is_not_there_are_said) {
   EXPECT_THAT(prices_for_nothing(more, {.capsules = 1}, false).at(0),
               HasSubstr("report.economics.pump is 600"));
   EXPECT_TRUE(prices_for_nothing(more, {.capsules = 1}, true).empty());
-}
-
-TEST(Questions, a_row_that_never_ran_is_said) {
-  FlowParameters flow;
-  flow.rows = {{0, -10, 600, {}, 500.}, {100, 10, 500, {}, 400.}};
-  Schedule schedule(flow);
-  schedule.decide(0, 450, 450, {});
-  schedule.decide(50, 450, 450, {});
-  schedule.decide(100, 450, 450, {});
-  flow.rows = {{0, 0, 600, {}, {}}, {3600, 10, 500, {}, {}}};
-  Schedule resting(flow);
-  resting.decide(0, 450, 450, {});
-  ASSERT_EQ(resting.doubts().size(), 1u);
-  EXPECT_THAT(resting.doubts()[0],
-              HasSubstr("no flow: the first row with a flow, flow.rows[1], starts at 3600 s"));
-  resting.decide(3600, 450, 450, {});
-  EXPECT_TRUE(resting.doubts().empty());
-  ASSERT_EQ(schedule.doubts().size(), 1u);
-  EXPECT_THAT(schedule.doubts()[0], HasSubstr("flow.rows[0] never ran: it stops below 226.85 degC"));
 }
 
 TEST(Slips, of_a_unit_are_refused_with_the_number) {

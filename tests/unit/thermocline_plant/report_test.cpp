@@ -5,6 +5,7 @@
 #include <map>
 
 #include "common/base/error.hpp"
+#include "common/base/numbers.hpp"
 #include "common/io/series.hpp"
 #include "tests/unit/thermocline_plant/support.hpp"
 #include "thermocline/plant/report.hpp"
@@ -73,7 +74,7 @@ class IdealDay {
     record.filler_temperature = temperature_;
     // The loss is a MWh an hour, out of what is in the tank.
     record.stored = (-sign * power - 1e6) * 3600;
-    record.loss_side = 1e6 * 3600;
+    record.losses = 1e6 * 3600;
     record.heat_capacity = 2000 * megawatt_hour / 100;
     // Both rings swing once a day; the lower one reaches 0.6 on ordinary days and 0.8 at 12:00 of day 3.
     const double swing = 0.5 - 0.5 * std::cos(2 * M_PI * clock / 24);
@@ -156,11 +157,11 @@ TEST(DayReport, goes_on_from_a_checkpoint_bit_for_bit) {
   {
     DayReport first = ideal.report(1);
     for (int h = 0; h < 60; ++h) ideal.hour(first, h);
-    second.restore(first.state());
+    base::from_numbers(base::to_numbers(first), second, "report");
   }
   for (int h = 0; h < 5 * 24; ++h) ideal.hour(whole, h);
   for (int h = 60; h < 5 * 24; ++h) ideal.hour(second, h);
-  EXPECT_EQ(whole.state(), second.state());
+  EXPECT_EQ(base::to_numbers(whole), base::to_numbers(second));
   const auto a = whole.lines(), b = second.lines();
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].value, b[i].value) << a[i].quantity;
@@ -262,7 +263,7 @@ TEST(DayReport, a_run_in_that_would_undo_what_was_counted_is_refused) {
   for (const double run_in : {1., 3.}) {
     DayReport other = ideal.report(run_in);
     try {
-      other.restore(first.state());
+      base::from_numbers(base::to_numbers(first), other, "report");
       ADD_FAILURE() << run_in;
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what())
@@ -273,7 +274,8 @@ TEST(DayReport, a_run_in_that_would_undo_what_was_counted_is_refused) {
   }
   DayReport early = ideal.report(2), later = ideal.report(3);
   for (int h = 0; h < 30; ++h) ideal.hour(early, h);
-  EXPECT_NO_THROW(later.restore(early.state())) << "nothing has been counted yet";
+  EXPECT_NO_THROW(base::from_numbers(base::to_numbers(early), later, "report"))
+      << "nothing has been counted yet";
   for (int h = 30; h < 5 * 24; ++h) ideal.hour(later, h);
   EXPECT_EQ(later.days_counted(), 2);
 }

@@ -26,14 +26,14 @@ inline modes::ModalModel block() {
 
 /// It, on a seat `gap` below it at the start, with a speed at the start and an acceleration of gravity.
 struct Bounce {
-  Share share;
+  Surface surface;
   Contact contact;
   Oscillators body;
   ModalState now, next;
 
   Bounce(double stiffness, double gap, double v, ContactRule rule, double gravity = 0)
-      : share(MPI_COMM_SELF, block()),
-        contact(share, parameters(stiffness, gap, rule), Vec3::UnitZ(), 0),
+      : surface(block()),
+        contact(surface, parameters(stiffness, gap, rule), Vec3::UnitZ(), 0),
         body({0}, {0}, {gravity}, {time::TimeScheme::trapezoidal}, &contact),
         now(body.start({0}, {v})),
         next(now) {}

@@ -138,7 +138,7 @@ TEST(PlateContact, a_mode_on_a_seat_at_its_rest_position_bounces_at_twice_its_fr
   p.initial_amplitudes = {0.001};
   const mesh::RawMesh raw = square(6);
   Structure plate(p, PlateContext{}, &raw);
-  const double f = plate.share().omega()[0] / (2 * std::numbers::pi), dt = 1 / f / 400;
+  const double f = plate.surface().omega()[0] / (2 * std::numbers::pi), dt = 1 / f / 400;
   std::vector<double> impacts;
   double before = 0;
   for (int i = 0; i < 4000; ++i) {
@@ -166,7 +166,7 @@ TEST(PlateContact, a_plate_with_modes_keeps_its_energy_through_an_impact_and_the
     p.initial_amplitudes = {0.003, 0.0002};
     const mesh::RawMesh raw = square(8);
     Structure plate(p, PlateContext{}, &raw);
-    const double dt = 2 * std::numbers::pi / plate.share().omega()[0] / 500;
+    const double dt = 2 * std::numbers::pi / plate.surface().omega()[0] / 500;
     double deepest = 0, worst = 0;
     for (int i = 0; i < 500; ++i) {
       plate.begin_step({i * dt, dt, coupling::Scheme::standalone, i});
@@ -190,7 +190,7 @@ TEST(PlateContact, a_run_whose_scheme_makes_more_energy_than_there_was_is_refuse
     p.initial_amplitudes = {0.003};
     const mesh::RawMesh raw = square(4);
     Structure plate(p, PlateContext{}, &raw);
-    const double dt = 2 * std::numbers::pi / plate.share().omega()[0] / 30;
+    const double dt = 2 * std::numbers::pi / plate.surface().omega()[0] / 30;
     double most = 0;
     const auto run = [&] {
       for (int i = 0; i < 20000; ++i) {
@@ -249,7 +249,7 @@ TEST(PlateContact, a_seat_that_is_never_met_is_told_with_its_distance) {
     p.initial_amplitudes = {0.003};
     const mesh::RawMesh raw = square(4);
     Structure plate(p, PlateContext{}, &raw);
-    const double dt = 2 * std::numbers::pi / plate.share().omega()[0] / 200;
+    const double dt = 2 * std::numbers::pi / plate.surface().omega()[0] / 200;
     const std::vector<std::string> said = support::observe(plate, 200, dt).sentences();
     const bool found = std::ranges::any_of(said, [](const std::string& one) {
       return one.find("the structure never touched the seat; final minimum gap 6 m") != std::string::npos;
@@ -270,11 +270,11 @@ TEST(PlateContact, a_seat_along_which_nothing_moves_is_refused) {
 TEST(PlateContact, a_seat_that_no_face_looks_at_is_an_error) {
   ContactParameters p = Bounce::parameters(1, 0, ContactRule::midpoint);
   p.direction = {1, 0, 0};
-  const Share share(MPI_COMM_SELF, block());
-  EXPECT_THROW(Contact(share, p, Vec3::UnitZ(), 1), Error);
+  const Surface surface(block());
+  EXPECT_THROW(Contact(surface, p, Vec3::UnitZ(), 1), Error);
   p.direction.clear();
   p.where.text = "x - 2";
-  EXPECT_THROW(Contact(share, p, Vec3::UnitZ(), 1), Error);
+  EXPECT_THROW(Contact(surface, p, Vec3::UnitZ(), 1), Error);
 }
 
 }  // namespace

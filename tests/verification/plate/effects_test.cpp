@@ -49,15 +49,15 @@ modes::ModalModel body() {
 
 Cost cost(bool seat, double damping, double gravity,
           time::TimeScheme scheme = time::TimeScheme::trapezoidal) {
-  const Share share(MPI_COMM_SELF, body());
+  const Surface surface(body());
   Cost result;
   const long long before_making = allocated;
   ContactParameters p;
   p.height.text = fmt::format("{}", -1);
   p.stiffness = 1e3;
   std::unique_ptr<Contact> contact;
-  if (seat) contact = std::make_unique<Contact>(share, p, Vec3::UnitZ(), 1);
-  Oscillators modes(share.omega(), std::vector<double>(10, damping), std::vector<double>(10, gravity),
+  if (seat) contact = std::make_unique<Contact>(surface, p, Vec3::UnitZ(), 1);
+  Oscillators modes(surface.omega(), std::vector<double>(10, damping), std::vector<double>(10, gravity),
                     {scheme}, contact.get());
   result.bytes_made = allocated - before_making;
   ModalState now = modes.start(std::vector<double>(10, 0.1), std::vector<double>(10, -5)), next = now;

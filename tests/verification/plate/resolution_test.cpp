@@ -193,14 +193,13 @@ std::optional<log::Finding> bounce(double steps, double weight, int n, double sp
   Bounce one(kappa, speed == 0 ? -weight / kappa : 0.7 * dt, -speed, ContactRule::conserving, -weight);
   Parameters p;
   p.modes_file = "block";
-  Built built;
-  built.model = block();
+  const Built built;
   const coupling::Step step{.dt = dt};
   const std::optional<Deflection> no_deflection;
   const std::vector<double> no_values;
   const bool acts = false;
-  const PlateView view{p,        built,   one.share, one.body,      &one.contact, nullptr, step,
-                       one.next, one.now, no_values, no_deflection, no_values,    acts};
+  const PlateView view{p,    MPI_COMM_SELF, built,   one.surface, one.body,      &one.contact, nullptr,
+                       step, one.next,      one.now, no_values,   no_deflection, no_values,    acts};
   diagnostics::Diagnostics all(0, false);
   add_diagnostics(view, all);
   for (int i = 0; i < n; ++i) {

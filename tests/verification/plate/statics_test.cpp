@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "plate_modal/model/outline.hpp"
+#include "plate_modal/model/midsurface.hpp"
 #include "plate_modal/model/skin.hpp"
 #include "plate_modal/structure.hpp"
 #include "tests/verification/plate/plates.hpp"

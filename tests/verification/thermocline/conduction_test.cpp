@@ -19,7 +19,7 @@ const Insulator soil{2050, 1840, 1.2};
 /// the far side feels nothing.
 double semi_infinite(int cells, int steps) {
   Column column({{soil, 9, cells}}, 1);
-  column.set_uniform(300);
+  column.set_steady(300, 300);
   const double time = 30 * 86400, diffusivity = 1.2 / (2050 * 1840.0);
   for (int i = 0; i < steps; ++i) column.step(time / steps, Film{given, 400}, Film{none, 0});
   double worst = 0;
@@ -45,7 +45,7 @@ TEST(Slab, cools_as_its_series) {
   // Both surfaces at 300 K from 400 K: theta = sum 4/((2n+1) pi) sin((2n+1) pi x/L) exp(-((2n+1) pi)^2 Fo).
   const double length = 0.4;
   Column column({{soil, length, 80}}, 1);
-  column.set_uniform(400);
+  column.set_steady(400, 400);
   const double diffusivity = 1.2 / (2050 * 1840.0), fourier = 0.05,
                time = fourier * length * length / diffusivity;
   for (int i = 0; i < 2000; ++i) column.step(time / 2000, Film{given, 300}, Film{given, 300});
@@ -65,7 +65,7 @@ TEST(Slab, cools_as_its_series) {
 TEST(Slab, two_layers_pass_the_heat_of_resistances_in_series) {
   const Insulator wool = mineral_wool(), constant{100, 840, 0.05};
   Column column({{constant, 0.1, 7}, {soil, 0.5, 9}}, 3);
-  column.set_uniform(300);
+  column.set_steady(300, 300);
   Column::Heat heat;
   for (int i = 0; i < 400; ++i) heat = column.step(1e6, Film{25, 500}, Film{10, 290});
   const double wanted = 3 * (500 - 290) / (1 / 25.0 + 0.1 / 0.05 + 0.5 / 1.2 + 1 / 10.0);

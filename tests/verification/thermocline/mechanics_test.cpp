@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "common/base/numbers.hpp"
 #include "thermocline/wall/mechanics.hpp"
 
 namespace couplet::thermocline::mechanics_test {
@@ -161,7 +162,7 @@ TEST(Filler, its_state_is_taken_back_bit_for_bit) {
   FillerMechanics a(rings, steel, filler, p, t, t), b = a;
   t.assign(rings.size(), 570);
   a.update(t, t);
-  set_numbers(numbers_of(a), "filler mechanics", b);
+  base::from_numbers(base::to_numbers(a), b, "filler mechanics");
   t.assign(rings.size(), 500);
   a.update(t, t), b.update(t, t);
   for (int i = 0; i < rings.size(); ++i) EXPECT_EQ(a.hoop()[i], b.hoop()[i]);

@@ -101,7 +101,8 @@ TEST(Melting, the_books_close_in_every_step) {
           const auto heat = bed.step(flow, flow < 0 ? hot : cold);
           entered += heat.by_flow;
           worst = std::max(worst, std::abs(bed.energy(cold) - before - heat.by_flow) / scale);
-          for (const double value : numbers_of(bed)) beyond = std::max({beyond, cold - value, value - hot});
+          for (const double value : temperatures_of(bed))
+            beyond = std::max({beyond, cold - value, value - hot});
         }
         filled = std::max(filled, bed.energy(cold) / scale);
       }
@@ -122,7 +123,7 @@ TEST(Melting, without_latent_heat_a_capsule_is_a_grain) {
     if (capsules) p.layers[0].melting = Melting{350, 10, 0};
     PackedBed bed(p, constant_fluid(1800, 1500, 0.5), Filler{}, 4);
     run(bed, 4000, 10, 400);
-    ends.push_back(numbers_of(bed));
+    ends.push_back(temperatures_of(bed));
   }
   for (std::size_t i = 0; i < ends[0].size(); ++i) EXPECT_NEAR(ends[0][i], ends[1][i], 1e-9);
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/base/error.hpp"
+#include "common/base/numbers.hpp"
 #include "thermocline/bed/packed_bed.hpp"
 
 namespace couplet::thermocline {
@@ -43,6 +44,13 @@ inline BedParameters plain_bed(int cells, double height, double porosity, double
   p.layers = {{height, porosity, diameter}};
   p.closures.conduction = Conduction::constant;
   return p;
+}
+
+/// Fluid and all shells.
+inline std::vector<double> temperatures_of(const PackedBed& bed) {
+  std::vector<double> all(bed.fluid().begin(), bed.fluid().end());
+  for (int j = 0; j < bed.shells(); ++j) all.insert(all.end(), bed.shell(j).begin(), bed.shell(j).end());
+  return all;
 }
 
 /// Value at a height, linear between cell centres.

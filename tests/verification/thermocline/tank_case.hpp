@@ -4,8 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "common/base/numbers.hpp"
 #include "common/config/load.hpp"
-#include "thermocline/model/tank.hpp"
+#include "thermocline/diagnostics/tank_diagnostic.hpp"
 
 namespace couplet::thermocline {
 
@@ -22,26 +23,39 @@ inline TankParameters solar_one_parameters() {
   return p;
 }
 
-/// A tank without files.
+/// A tank without files, with its diagnostics.
 struct TankRun {
   explicit TankRun(const TankParameters& p)
       : ambient(make_weather(p.ambient, ".")),
         control(make_flow_control(p.flow, make_fluid(p.fluid).specific_heat)),
-        tank(std::make_shared<const TankSetup>(p), *ambient) {}
+        tank(std::make_shared<const TankSetup>(p), *ambient) {
+    add_diagnostics({name, tank, happened, now, *ambient}, judged);
+  }
+  TankRun(const TankRun&) = delete;
   const TankModel& model() const { return tank; }
   void until(double end, double step) {
     while (time < end - 1e-6) {
-      const double dt = std::min(step, end - time);
-      steps.clear();
-      tank.advance(time, dt, *control, *ambient, steps, speed);
-      time += dt;
+      now = {time, std::min(step, end - time)};
+      happened = tank.advance(time, now.dt, *control, *ambient);
+      time += now.dt;
+      judged.accepted(time);
     }
+  }
+  /// Findings with this id so far.
+  std::vector<log::Finding> found(const std::string& id) {
+    judged.look();
+    std::vector<log::Finding> all;
+    for (const log::Finding& f : judged.findings())
+      if (f.id == id) all.push_back(f);
+    return all;
   }
   std::unique_ptr<Weather> ambient;
   std::unique_ptr<FlowControl> control;
   TankModel tank;
-  std::vector<BedStep> steps;
-  Speed speed;
+  std::string name = "tank";
+  coupling::Step now;
+  TankStep happened;
+  diagnostics::Diagnostics judged{0, true};
   double time = 0;
 };
 

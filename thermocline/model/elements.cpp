@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "thermocline/judge/elsewhere.hpp"
+#include "thermocline/model/elements.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,10 @@
 #include <numbers>
 
 #include "common/base/error.hpp"
-#include "common/base/numbers.hpp"
+#include "common/io/archive.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
-#include "thermocline/judge/files.hpp"
 #include "thermocline/model/questions.hpp"
 #include "thermocline/model/tank.hpp"
 
@@ -56,7 +55,7 @@ class GroundModel {
     i.gives = {{"bottom-heat", "W", coupling::Interface::Place::faces, 1}};
     return i;
   }
-  /// What the tank says against the geometry here: a sentence, or empty.
+  /// Contradiction between the geometry here and that of the tank, as a sentence, or empty.
   std::string contradiction(const coupling::Exchange& in) const {
     return other_length(find(in, "tank-diameter"), "diameter", p_.diameter, 1e-3, " (inside)");
   }
@@ -74,16 +73,10 @@ class GroundModel {
     taken_ += entered;
     return {{"bottom-heat", {entered / step.dt}}};
   }
-  std::vector<double> state() const {
-    std::vector<double> all{taken_, passed_, start_};
-    all.insert(all.end(), column_.temperature().begin(), column_.temperature().end());
-    return all;
-  }
-  void restore(const std::vector<double>& state) {
-    base::SavedNumbers saved(state, "temperatures of the ground");
-    taken_ = saved.real(), passed_ = saved.real(), start_ = saved.real();
-    saved.fill(column_.temperature());
-    if (saved.left() > 0) saved.damaged();
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(taken_, passed_, start_);
+    visit_values(numbers, column_.temperature());
   }
   std::string books() const { return books_of("ground", taken_, passed_, column_.energy(deep_) - start_); }
 
@@ -132,24 +125,15 @@ class BlanketModel {
     if (const auto* wall = find(in, "wall-temperature")) wall_ = *wall;
     const Ambient air = weather.at(step.time + step.dt / 2);
     const double outer = p_.diameter + 2 * p_.insulation.thickness;
-    Film film = side_film(p_.insulation.outside, air.temperature + 5, outer, p_.height, air);
-    film = side_film(p_.insulation.outside, blanket_.outer_surface(film), outer, p_.height, air);
+    const Film film = side_film_on(blanket_, p_.insulation.outside, outer, p_.height, air);
     passed_ += blanket_.step(step.dt, wall_, film, heat_);
     for (const double q : heat_) taken_ += q * step.dt;
     return {{"wall-heat", heat_}};
   }
-  std::vector<double> state() const {
-    std::vector<double> all{taken_, passed_, start_, air_};
-    all.insert(all.end(), wall_.begin(), wall_.end());
-    all.insert(all.end(), blanket_.temperature().begin(), blanket_.temperature().end());
-    return all;
-  }
-  void restore(const std::vector<double>& state) {
-    base::SavedNumbers saved(state, "temperatures of the insulation");
-    taken_ = saved.real(), passed_ = saved.real(), start_ = saved.real(), air_ = saved.real();
-    saved.fill(wall_);
-    saved.fill(blanket_.temperature());
-    if (saved.left() > 0) saved.damaged();
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(taken_, passed_, start_, air_);
+    visit_values(numbers, wall_, blanket_.temperature());
   }
   std::string books() const {
     return books_of("insulation", taken_, passed_, blanket_.energy(air_) - start_);
@@ -162,7 +146,7 @@ class BlanketModel {
   double air_ = 0, start_ = 0, taken_ = 0, passed_ = 0;  // [K], [J]
 };
 
-/// What both have in common: a state that only accepted steps change. Rank 0 has the data and computes.
+/// Common part of both: a state that only accepted steps change. Rank 0 has the data and computes.
 template <class Model>
 class ElementParticipant final : public coupling::Participant {
  public:
@@ -197,8 +181,10 @@ class ElementParticipant final : public coupling::Participant {
     std::swap(accepted_, next_);
     return {.dt = step_.dt};
   }
-  void save(io::CheckpointWriter& file) const override { file.write_common("element", accepted_.state()); }
-  void load(io::CheckpointReader& file) override { accepted_.restore(file.read_common("element")); }
+  void save(io::CheckpointWriter& file) const override {
+    file.write_common("element", base::to_numbers(accepted_));
+  }
+  void load(io::CheckpointReader& file) override { io::Archive(file).common("element", accepted_); }
   void write_output(double, int) override {}
   void write_monitors(double) override {}
   std::vector<std::string> finish() override { return {accepted_.books()}; }
@@ -211,6 +197,27 @@ class ElementParticipant final : public coupling::Participant {
   std::string name_;
 };
 
+void look_at_weather(const WeatherParameters& ambient, const std::optional<InsulationParameters>& blanket,
+                     const std::filesystem::path& folder, std::vector<app::ProblemOfKey>& all) {
+  const char* const key = ambient.kind == WeatherKind::file                                   ? "ambient.file"
+                          : ambient.kind == WeatherKind::smooth_days && !ambient.file.empty() ? "ambient.air"
+                                                                                              : "ambient";
+  std::unique_ptr<Weather> weather;
+  try {
+    weather = make_weather(ambient, folder);
+  } catch (const Error& error) {
+    all.push_back({key, error.what()});
+    return;
+  }
+  if (!blanket) return;
+  const std::string absorptance = "insulation.solar-absorptance";
+  try {
+    require_sun(blanket->outside.solar_absorptance, *weather, absorptance);
+  } catch (const Error& error) {
+    all.push_back({absorptance, std::string(error.what()).substr(absorptance.size() + 2)});
+  }
+}
+
 void declare_surroundings(config::Section& s, double& initial, WeatherParameters& ambient, const char* what) {
   s.value("initial-temperature", initial).unit("K").plausible(70, 5000).positive().required().doc(what);
   s.section(
@@ -220,12 +227,7 @@ void declare_surroundings(config::Section& s, double& initial, WeatherParameters
 }  // namespace
 
 void declare(config::Section& s, GroundElementParameters& p) {
-  s.value("diameter", p.diameter)
-      .unit("m")
-      .plausible(0.01, 300)
-      .positive()
-      .required()
-      .doc("inner diameter of the tank");
+  as_tank_length(s.value("diameter", p.diameter)).doc("inner diameter of the tank");
   s.section(
       "ground", [&p](config::Section& q) { declare(q, p.ground); }, "foundation and soil under the tank");
   declare_surroundings(s, p.initial_temperature, p.ambient,
@@ -235,13 +237,8 @@ void declare(config::Section& s, GroundElementParameters& p) {
 }
 
 void declare(config::Section& s, BlanketElementParameters& p) {
-  s.value("diameter", p.diameter)
-      .unit("m")
-      .plausible(0.01, 300)
-      .positive()
-      .required()
-      .doc("outer diameter of the wall");
-  s.value("height", p.height).unit("m").plausible(0.01, 300).positive().required().doc("height of the wall");
+  as_tank_length(s.value("diameter", p.diameter)).doc("outer diameter of the wall");
+  as_tank_length(s.value("height", p.height)).doc("height of the wall");
   s.value("sections", p.sections).range(1, 100000).doc("number of sections along the wall");
   s.section(
       "insulation", [&p](config::Section& q) { declare(q, p.insulation); }, "blanket around the wall");
@@ -259,6 +256,39 @@ void declare(config::Section& section, ElementParameters& p) {
        {"ground", Type::ground, [&p](config::Section& s) { declare(s, p.ground); }},
        {"insulation", Type::insulation, [&p](config::Section& s) { declare(s, p.blanket); }}},
       "a tank, or one element of a tank that another thermocline computes (elsewhere)");
+}
+
+TankParameters with_files(TankParameters p, const std::filesystem::path& folder) {
+  if (p.flow.type != FlowParameters::Type::schedule || p.flow.file.empty()) return p;
+  const std::filesystem::path file = folder / p.flow.file;
+  p.flow.rows = read_flow_file(file);
+  if (const std::string problem = problem_of_rows(p.flow); !problem.empty())
+    throw Error("{}: the rows: {}.", file.string(), problem);
+  if (const std::string problem = forgotten_unit_of_flow(p); !problem.empty())
+    throw Error("{}: {}: here, in the column header.", file.string(), problem);
+  return p;
+}
+
+std::vector<app::ProblemOfKey> problems_of_files(const ElementParameters& p,
+                                                 const std::filesystem::path& folder) {
+  std::vector<app::ProblemOfKey> all;
+  switch (p.type) {
+    case ElementParameters::Type::tank:
+      look_at_weather(p.tank.ambient, p.tank.insulation, folder, all);
+      try {
+        (void)with_files(p.tank, folder);
+      } catch (const Error& error) {
+        all.push_back({"flow.file", error.what()});
+      }
+      break;
+    case ElementParameters::Type::ground:
+      look_at_weather(p.ground.ambient, {}, folder, all);
+      break;
+    case ElementParameters::Type::insulation:
+      look_at_weather(p.blanket.ambient, p.blanket.insulation, folder, all);
+      break;
+  }
+  return all;
 }
 
 std::unique_ptr<coupling::Participant> make_element(const ElementParameters& p,

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <memory>
+#include <span>
+#include <vector>
 
+#include "common/app/case/check_files.hpp"
 #include "common/app/program.hpp"
 #include "common/coupling/participant.hpp"
+#include "common/effects/effects.hpp"
 #include "thermocline/model/parameters.hpp"
 
 /// Elements of a tank as participants of their own: the tank gives temperatures, they give the heat back that
@@ -37,7 +42,7 @@ struct BlanketElementParameters {
 };
 void declare(config::Section& section, BlanketElementParameters& parameters);
 
-/// What one `thermocline` computes.
+/// Element that one `thermocline` computes, with its parameters.
 struct ElementParameters {
   enum class Type { tank, ground, insulation } type = Type::tank;
   TankParameters tank;
@@ -45,6 +50,15 @@ struct ElementParameters {
   BlanketElementParameters blanket;
 };
 void declare(config::Section& section, ElementParameters& parameters);
+/// The effects that a tank can simulate, for --explain and docs/effects.md.
+std::span<const effects::EffectCard<ElementParameters>> effect_cards();
+
+/// The parameters with the rows of flow.file. Throws Error with file:line.
+TankParameters with_files(TankParameters parameters, const std::filesystem::path& case_folder);
+/// For --check: weather and rows of flows that are missing or broken, a sun that nobody can place.
+std::vector<app::ProblemOfKey> problems_of_files(const ElementParameters& parameters,
+                                                 const std::filesystem::path& case_folder);
+
 std::unique_ptr<coupling::Participant> make_element(const ElementParameters& parameters,
                                                     const app::ParticipantContext& context);
 

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "thermocline/judge/effect_cards.hpp"
-
 #include <algorithm>
 #include <array>
+
+#include "thermocline/model/elements.hpp"
 
 namespace couplet::thermocline {
 namespace {
 
 using P = ElementParameters;
+using Card = effects::EffectCard<P>;
 
-/// Of a tank only; other elements have one effect each.
+/// Reason that a tank has the effect, if it is `on`. Other elements have one effect each.
 std::string when(const P& p, bool on, const char* reason) {
   return p.type == ElementParameters::Type::tank && on ? reason : "";
 }

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "thermocline/diagnostics/tank_diagnostic.hpp"
+
+namespace couplet::thermocline {
+namespace {
+
+/// Heat that was moved and lost, the error of its balance, and the steps that it took.
+class EnergyBalance final : public TankDiagnostic {
+ public:
+  using TankDiagnostic::TankDiagnostic;
+  void conclude(diagnostics::Report& report) override {
+    const TankModel& m = view_.model;
+    const double turnover = m.ledger().turnover, of_bed = std::abs(m.bed_imbalance()),
+                 of_tank = std::abs(m.imbalance(view_.time()));
+    if (turnover <= 1e-12 * bed().heat_capacity() * seen_->hottest)
+      report.sentences.push_back(fmt::format(
+          "energy: no heat moved; energy balance error: bed {:.1e} J, tank {:.1e} J", of_bed, of_tank));
+    else
+      report.sentences.push_back(fmt::format(
+          "energy: {:.4g} MWh moved, {:.4g} MWh lost; energy balance error / heat moved: bed {:.1e}, tank "
+          "{:.1e}",
+          turnover / megawatt_hour, m.ledger().losses() / megawatt_hour, of_bed / turnover,
+          of_tank / turnover));
+    std::string steps = fmt::format("bed: {} steps of {} cells", bed().steps(), bed().grid().size());
+    if (bed().fallbacks() > 0)
+      steps += fmt::format("; {} of them {}", bed().fallbacks(),
+                           bed().melts() ? "ended before the temperatures of the melting layers converged to "
+                                           "1e-6 K"
+                                         : "were first order in time to remain bounded");
+    report.sentences.push_back(steps);
+  }
+};
+
+}  // namespace
+
+Made energy_balance(const TankView& view, const Seen& seen) {
+  return std::make_shared<EnergyBalance>(view, seen);
+}
+
+}  // namespace couplet::thermocline

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "thermocline/diagnostics/tank_diagnostic.hpp"
+
+namespace couplet::thermocline {
+namespace {
+
+/// Fluid beyond the limits of its liquid state or of its tables, and what its constant density leaves out.
+class FluidRange final : public TankDiagnostic {
+ public:
+  using TankDiagnostic::TankDiagnostic;
+  void observe(diagnostics::Report& report) override {
+    const Fluid& f = view_.fluid();
+    const double low = view_.happened.coldest, high = view_.happened.hottest;
+    if (high > f.highest)
+      tell(report, "tank-state", "hot fluid",
+           fmt::format("the {} is at {:.1f} degC, above its limit of {:.1f} degC, where it boils or "
+                       "decomposes. Lower the inlet temperature, or use another fluid.",
+                       f.name, celsius(high), celsius(f.highest)));
+    if (low < f.lowest)
+      tell(
+          report, "tank-state", "cold fluid",
+          fmt::format("the {} is at {:.1f} degC, below its limit of {:.1f} degC, where it freezes. Raise the "
+                      "inlet temperature, insulate the tank, or use another fluid.",
+                      f.name, celsius(low), celsius(f.lowest)));
+    const double slack = 0.1 * (f.known_to - f.known_from);
+    const double outside = low < f.known_from - slack ? low : high;
+    if (outside < f.known_from - slack || outside > f.known_to + slack)
+      tell(report, "tank-state", "tables of the fluid",
+           fmt::format("the {} is at {:.1f} degC; its conductivity and viscosity are given from {:.1f} to "
+                       "{:.1f} degC (fluid.temperature); the end values are used beyond.",
+                       f.name, celsius(outside), celsius(f.known_from), celsius(f.known_to)));
+  }
+  void conclude(diagnostics::Report& report) override {
+    const Fluid& f = view_.fluid();
+    const double cold = seen_->coldest, hot = seen_->hottest;
+    if (f.real && !f.real_density && hot > cold)
+      report.sentences.push_back(fmt::format(
+          "density: constant for {} at {:.1f} kg/m^3; from {:.0f} to {:.0f} degC it falls from {:.0f} to "
+          "{:.0f} (fluid.real-density)",
+          f.name, f.density, celsius(cold), celsius(hot), f.real->at(cold), f.real->at(hot)));
+  }
+};
+
+}  // namespace
+
+Made fluid_range(const TankView& view, const Seen& seen) { return std::make_shared<FluidRange>(view, seen); }
+
+}  // namespace couplet::thermocline

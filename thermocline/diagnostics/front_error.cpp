@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "thermocline/diagnostics/tank_diagnostic.hpp"
+
+namespace couplet::thermocline {
+namespace {
+
+/// How many standard deviations from the middle of a front that spread like a diffusion a `share` of its step is left
+/// beyond.
+double deviations(double share) {
+  double low = 0, high = 10;
+  for (int i = 0; i < 50; ++i) {
+    const double z = 0.5 * (low + high);
+    (0.5 * std::erfc(z / std::numbers::sqrt2) > share ? low : high) = z;
+  }
+  return low;
+}
+
+/// Error of the profile. Upwind advection spreads a front as a diffusion v dz / 2 does, implicit steps as v^2 dt / 2: over
+/// the way w by s^2 = dz w and v dt w, which changes the profile by s^2 / 2 of its second derivative; w is what the
+/// largest flow can have gone since time 0, at most the height. The limited scheme is taken to spread by a cell. Over the
+/// profile's distance from its mean, sums over the height. With a plant at least the part of the storage that the
+/// spreading leaves unused.
+class FrontError final : public TankDiagnostic {
+ public:
+  using TankDiagnostic::TankDiagnostic;
+  void conclude(diagnostics::Report& report) override {
+    report.errors = spread_profile();
+    if (const double unused = unused_by_spreading(1); unused > 0 && !(report.errors.mesh > unused)) {
+      report.errors.mesh = unused;
+      // Upwind: a front widens with the root of the cell size.
+      report.errors.mesh_order = std::log2(unused / unused_by_spreading(2));
+    }
+    report.errors.dimension = 1;
+  }
+
+ private:
+  Advection scheme() const { return view_.parameters().bed.advection; }
+  /// Share of the bed that the largest flow can have crossed.
+  double crossed() const { return std::min(1., seen_->flow * view_.time() / crossing_mass()); }
+
+  coupling::ErrorParts spread_profile() const {
+    std::vector<double> t;
+    bed().filler_temperature(t);
+    const std::size_t n = t.size();
+    if (n < 3 || !(seen_->flow > 0)) return {};
+    const double mean = std::accumulate(t.begin(), t.end(), 0.0) / double(n);
+    double bends = 0, size = 0;  // second differences, dz^2 times the second derivative
+    for (std::size_t i = 0; i < n; ++i) {
+      size += std::abs(t[i] - mean);
+      if (i > 0 && i + 1 < n) bends += std::abs(t[i - 1] - 2 * t[i] + t[i + 1]);
+    }
+    if (!(size > 1e-9 * std::abs(mean) * double(n))) return {};  // one temperature: nothing to be spread
+    const double one_cell = 0.5 * bends / size;                  // s = dz
+    const double way = double(n) * crossed();                    // in cells
+    coupling::ErrorParts parts{.mesh = scheme() == Advection::tvd ? one_cell : std::max(1., way) * one_cell};
+    if (scheme() != Advection::tvd) parts.mesh_order = 1;
+    parts.step_order = 1;
+    if (scheme() == Advection::implicit)
+      parts.step = seen_->advance / crossing_mass() * double(n) * way * one_cell;
+    return parts;
+  }
+
+  /// A plant ends a charge or a discharge when the outlet differs by the cut-off, while the front's middle is still some
+  /// deviations inside. That much of the bed stays unused at either end; gives what the scheme adds to it with `finer`
+  /// times the cells, the front being spread by film and grains anyway.
+  double unused_by_spreading(double finer) const {
+    const FlowParameters& flow = view_.parameters().flow;
+    if (flow.type != FlowParameters::Type::plant || !(seen_->flow > 0)) return 0;
+    const double n = finer * double(bed().grid().size()), way = n * crossed();
+    double variance = 1;  // in cells
+    if (scheme() != Advection::tvd)
+      variance = way * (1 + (scheme() == Advection::implicit ? seen_->advance / crossing_mass() * n : 0));
+    // A new front in each charge adds variances; tails that stay in the bed from cycle to cycle add widths. The truth of
+    // the map tank-plant and of configs/thermocline-rock-air lies between: the mean.
+    const double of_scheme = std::sqrt(variance) / n, of_grains = std::sqrt(variance_of_grains());
+    const double added = 0.5 * (of_scheme + std::hypot(of_scheme, of_grains) - of_grains);
+    return 2 * deviations(flow.plant.cut_off / (flow.plant.hot - flow.plant.cold)) * added;
+  }
+
+  /// Variance of a front that film and grains spread on its way through the bed, over the square of the height:
+  /// 2 (G c/(h a)) (1 - beta)^2 of each metre, beta the fluid's share of the heat capacity (Schumann's model at late
+  /// times).
+  double variance_of_grains() const {
+    const std::span<const double> fluid = bed().fluid();
+    const double mean = std::accumulate(fluid.begin(), fluid.end(), 0.0) / double(fluid.size());
+    const Fluid& f = view_.fluid();
+    const double flux = seen_->flow / bed().area();
+    double variance = 0;
+    for (std::size_t r = 0; r < bed().grid().runs.size(); ++r) {
+      const BedLayer& layer = bed().grid().runs[r].layer;
+      if (layer.porosity >= 1 || layer.melting) continue;
+      const Filler& filler = layer.filler ? *layer.filler : view_.model.setup().filler;
+      const double resistance =
+          1 / bed().closure(r).at(mean, MassFlux(flux)).film + layer.diameter / (10 * filler.conductivity);
+      const double solid = 1 - layer.porosity, of_grains = solid * filler.volumetric();
+      const double share = of_grains / (layer.porosity * f.volumetric() + of_grains);
+      variance += 2 * layer.height * flux * f.specific_heat * resistance * layer.diameter / (6 * solid) *
+                  share * share;
+    }
+    return variance / (bed().grid().height * bed().grid().height);
+  }
+};
+
+}  // namespace
+
+Made front_error(const TankView& view, const Seen& seen) { return std::make_shared<FrontError>(view, seen); }
+
+}  // namespace couplet::thermocline

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/io/archive.hpp"
+#include "thermocline/diagnostics/tank_diagnostic.hpp"
+
+namespace couplet::thermocline {
+
+using Make = Made(const TankView&, const Seen&);
+Make energy_balance, fluid_range, inversions, gas, grains, advection, pumping, wall_strength, wall_mechanics,
+    surroundings, unused_input, front_error;
+
+namespace {
+
+/// Keeps the extremes that the others read.
+class ExtremesOfRun final : public TankDiagnostic {
+ public:
+  using TankDiagnostic::TankDiagnostic;
+  void observe(diagnostics::Report&) override {
+    for (const BedStep& s : view_.happened.bed) {
+      seen_->flow = std::max(seen_->flow, std::abs(s.flow.mass_flow));
+      seen_->advance = std::max(seen_->advance, std::abs(s.flow.mass_flow) * s.dt);
+    }
+    seen_->coldest = std::min(seen_->coldest, view_.happened.coldest);
+    seen_->hottest = std::max(seen_->hottest, view_.happened.hottest);
+  }
+  void visit(io::Archive& archive) override { archive.common("extremes", *seen_); }
+};
+
+Made extremes(const TankView& view, const Seen& seen) { return std::make_shared<ExtremesOfRun>(view, seen); }
+
+struct TableRow {
+  const char* name;
+  Make* make;
+  bool estimates = false;  ///< an error: not where estimates are switched off
+};
+// "extremes" comes first: the others read what it keeps.
+constexpr std::array table_rows{TableRow{"extremes", extremes},
+                                TableRow{"energy-balance", energy_balance},
+                                TableRow{"fluid-range", fluid_range},
+                                TableRow{"grains", grains},
+                                TableRow{"advection", advection},
+                                TableRow{"inversions", inversions},
+                                TableRow{"pumping", pumping},
+                                TableRow{"gas", gas},
+                                TableRow{"wall-strength", wall_strength},
+                                TableRow{"wall-mechanics", wall_mechanics},
+                                TableRow{"surroundings", surroundings},
+                                TableRow{"unused-input", unused_input},
+                                TableRow{"front-error", front_error, true}};
+
+}  // namespace
+
+void add_diagnostics(const TankView& view, diagnostics::Diagnostics& all) {
+  const auto [low, high] = std::ranges::minmax(view.model.bed().fluid());
+  const auto seen = std::make_shared<Extremes>(Extremes{.coldest = low, .hottest = high});
+  for (const TableRow& row : table_rows)
+    if (!row.estimates || all.with_errors())
+      if (auto one = row.make(view, seen)) all.add(row.name, std::move(one));
+}
+
+std::pair<double, double> TankDiagnostic::range_to_come() const {
+  double cold = seen_->coldest, hot = seen_->hottest;
+  const auto see = [&](double t) { cold = std::min(cold, t), hot = std::max(hot, t); };
+  const FlowParameters& flow = view_.parameters().flow;
+  if (flow.type == FlowParameters::Type::plant) see(flow.plant.cold), see(flow.plant.hot);
+  if (flow.type == FlowParameters::Type::schedule)
+    for (const ScheduleRow& row : flow.rows)
+      if (row.mass_flow != 0) see(row.inlet_temperature);
+  return {cold, hot};
+}
+
+void TankDiagnostic::tell(diagnostics::Report& report, const diagnostics::EffectFinding& effect) {
+  if (auto finding = diagnostics::finding_of(effect)) report.findings.push_back(std::move(*finding));
+}
+
+void TankDiagnostic::tell(diagnostics::Report& report, const char* id, std::string subject,
+                          const std::string& sentence) const {
+  report.findings.push_back(
+      {.id = id, .sentence = fmt::format("{}: {}", view_.name, sentence), .subject = std::move(subject)});
+}
+
+}  // namespace couplet::thermocline

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/io/archive.hpp"
+#include "thermocline/diagnostics/tank_diagnostic.hpp"
+
+namespace couplet::thermocline {
+namespace {
+
+/// Parts of the case that had no effect: rows of the schedule that never ran, capsules that neither melted nor froze, days
+/// that the report could not use.
+class UnusedInput final : public TankDiagnostic {
+ public:
+  UnusedInput(const TankView& view, const Seen& seen)
+      : TankDiagnostic(view, seen), flowed_(view.parameters().flow.rows.size(), 0) {}
+  void observe(diagnostics::Report&) override {
+    for (const BedStep& s : view_.happened.bed) {
+      reached_ = s.t;
+      if (has_schedule() && s.flow.mode > 0) flowed_[std::size_t(s.flow.mode - 1)] = 1;
+    }
+  }
+  void conclude(diagnostics::Report& report) override {
+    if (has_schedule()) look_at_rows(report);
+    look_at_capsules(report);
+    if (!view_.report) return;
+    const std::vector<std::string> doubts = view_.report->doubts();
+    for (std::size_t i = 0; i < doubts.size(); ++i) tell(report, "day-report", std::to_string(i), doubts[i]);
+  }
+  void visit(io::Archive& archive) override { archive.common("rows", reached_, flowed_); }
+
+ private:
+  bool has_schedule() const { return view_.parameters().flow.type == FlowParameters::Type::schedule; }
+
+  void look_at_rows(diagnostics::Report& report) const {
+    const std::vector<ScheduleRow>& rows = view_.parameters().flow.rows;
+    const auto began = [&](const ScheduleRow& row) { return row.at <= reached_ + 1e-6; };
+    const auto first = std::ranges::find_if(rows, [](const ScheduleRow& r) { return r.mass_flow != 0; });
+    if (first != rows.end() && !began(*first))
+      tell(report, "flow-schedule", "first",
+           fmt::format("no flow: the first row with a flow, flow.rows[{}], starts at {:g} s",
+                       first - rows.begin(), first->at));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const ScheduleRow& row = rows[i];
+      if (row.mass_flow == 0 || !began(row) || flowed_[i] != 0) continue;
+      std::string limits;
+      if (row.stop_above) limits += fmt::format(" above {:g} degC", celsius(*row.stop_above));
+      if (row.stop_below)
+        limits += fmt::format("{} below {:g} degC", limits.empty() ? "" : " and", celsius(*row.stop_below));
+      tell(report, "flow-schedule", std::to_string(i),
+           fmt::format("flow.rows[{}] never ran: it stops{}, and the outlet (the {} of the tank) was beyond "
+                       "that whenever it started",
+                       i, limits, row.mass_flow > 0 ? "top" : "bottom"));
+    }
+  }
+
+  void look_at_capsules(diagnostics::Report& report) const {
+    const std::vector<BedLayer>& layers = view_.parameters().bed.layers;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+      if (!layers[i].melting) continue;
+      const Melting& m = *layers[i].melting;
+      const double low = m.temperature - m.width / 2, high = m.temperature + m.width / 2;
+      if (seen_->hottest <= low || seen_->coldest >= high)
+        tell(report, "never-melted", std::to_string(i),
+             fmt::format("bed.layers[{}]: its capsules melt from {:.1f} to {:.1f} degC, but the fluid stayed "
+                         "between {:.1f} and {:.1f} degC: their latent heat had no effect",
+                         i, celsius(low), celsius(high), celsius(seen_->coldest), celsius(seen_->hottest)));
+    }
+  }
+
+  double reached_ = -1;       // start of the last step of the bed [s]
+  std::vector<char> flowed_;  // rows of the schedule
+};
+
+}  // namespace
+
+Made unused_input(const TankView& view, const Seen& seen) {
+  return std::make_shared<UnusedInput>(view, seen);
+}
+
+}  // namespace couplet::thermocline

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/io/archive.hpp"
+#include "thermocline/diagnostics/tank_diagnostic.hpp"
+
+namespace couplet::thermocline {
+namespace {
+
+/// Stress of the wall against its yield strength, with the bending that the rings leave out, which is sampled every two
+/// hours; temperatures beyond the metal's.
+class WallStrength final : public TankDiagnostic {
+ public:
+  using TankDiagnostic::TankDiagnostic;
+  void observe(diagnostics::Report& report) override {
+    look_at_temperature(report);
+    constexpr double every = 2 * 3600;  // [s]
+    const bool is_due = std::floor(view_.time() / every + 1e-9) != std::floor(view_.step.time / every + 1e-9);
+    if (view_.parameters().external_wall || !is_due) return;
+    const WallStress& stress = view_.model.stress();
+    const WallBending bent = wall_bending(rings(), steel(), stress.hoop, view_.model.shell()->temperature());
+    const YieldShares now = yield_shares(stress, bent, steel().poissons_ratio);
+    share_.rings = std::max(share_.rings, now.rings);
+    share_.shell = std::max(share_.shell, now.shell);
+    for (std::size_t i = 0; i < stress.hoop.size(); ++i) {
+      as_rings_ = std::max(as_rings_, stress.hoop[i]);
+      if (bent.hoop[i] > hoop_.stress) hoop_ = {bent.hoop[i], rings().z[i], view_.time()};
+      if (const double axial = std::abs(bent.axial[i]); axial > axial_.stress)
+        axial_ = {axial, rings().z[i], view_.time()};
+    }
+  }
+  // The shares of the strength are compared, so that a wall that carries next to nothing is no reason for a word.
+  void look(diagnostics::Report& report) override {
+    const WallStress& stress = view_.model.stress();
+    double share = 0;
+    for (std::size_t i = 0; i < stress.equivalent.size(); ++i)
+      share = std::max(share, stress.equivalent[i] / stress.yield[i]);
+    tell(report,
+         {.effect = "yielding of the wall",
+          .number = share,
+          .limit = 1,
+          .what = fmt::format("max equivalent stress / yield strength of the wall = {:.2g}", share),
+          .advice = "the wall would yield: its stress and that of the grains are those of an elastic wall",
+          .share = std::max(0., share - 1)});
+    if (share_.shell > 0)
+      tell(report,
+           {.effect = "bending of the wall",
+            .number = share_.shell - share_.rings,
+            .limit = 0.1,
+            .what = fmt::format(
+                "max equivalent stress / yield strength of the wall: {:.3g} as rings, {:.3g} as a shell",
+                share_.rings, share_.shell),
+            .advice = "reduce the factors of safety accordingly, or compute the wall as a solid "
+                      "('external-wall')"});
+  }
+  void conclude(diagnostics::Report& report) override {
+    if (view_.parameters().external_wall) return;
+    // beta^4 = 3 (1 - nu^2)/(a^2 e^2): edge effects of a cylinder fade as exp(-beta z).
+    const double nu = steel().poissons_ratio, e = std::ranges::max(rings().thickness);
+    std::string line = fmt::format("bending of the wall neglected: it smooths variations within {:.2f} m",
+                                   std::sqrt(rings().diameter / 2 * e) / std::pow(3 * (1 - nu * nu), 0.25));
+    if (as_rings_ > 0)
+      line += fmt::format(
+          "; the largest hoop stress of {:.0f} MPa becomes {:.0f} at z = {:.2f} m, with a max bending "
+          "stress of {:.0f} MPa along z, at z = {:.2f} m and t = {:.6g} s (external-wall computes it)",
+          1e-6 * as_rings_, 1e-6 * hoop_.stress, hoop_.z, 1e-6 * axial_.stress, axial_.z, axial_.time);
+    report.sentences.push_back(line);
+  }
+  void visit(io::Archive& archive) override {
+    archive.common("bending", as_rings_, hoop_, axial_, share_.rings, share_.shell);
+  }
+
+ private:
+  const Rings& rings() const { return *view_.model.setup().rings; }
+  const Steel& steel() const { return *view_.model.setup().steel; }
+
+  void look_at_temperature(diagnostics::Report& report) const {
+    const std::vector<double>& wall = view_.model.shell()->temperature();
+    const auto [coldest, hottest] = std::ranges::minmax_element(wall);
+    const auto z = [&](auto ring) { return rings().z[std::size_t(ring - wall.begin())]; };
+    // A tenth of the table's width is left to the walls that cool a little below the coldest fluid.
+    const double low = steel().yield_strength.x.front(), high = steel().yield_strength.x.back();
+    const double slack = 0.1 * (high - low);
+    const auto outside = *coldest < low - slack ? coldest : hottest;
+    if (high > low && (*outside < low - slack || *outside > high + slack))
+      tell(report, "tank-state", "tables of the wall",
+           fmt::format("the wall of {} is at {:.1f} degC at z = {:.3f} m; its properties are known from "
+                       "{:.0f} to {:.0f} degC; the end values are used beyond.",
+                       steel().name, celsius(*outside), z(outside), celsius(low), celsius(high)));
+    if (*hottest > steel().highest)
+      tell(report, "tank-state", "hot wall",
+           fmt::format("the wall of {} is at {:.1f} degC at z = {:.3f} m, above its maximum service "
+                       "temperature of {:.1f} degC.",
+                       steel().name, celsius(*hottest), z(hottest), celsius(steel().highest)));
+  }
+
+  /// A largest stress [Pa], where [m] and when [s].
+  struct Peak {
+    double stress = 0, z = 0, time = 0;
+    template <class Numbers>
+    void visit(Numbers& numbers) {
+      numbers(stress, z, time);
+    }
+  };
+  double as_rings_ = 0;  // largest hoop stress without bending [Pa]
+  Peak hoop_, axial_;    // largest hoop stress with bending, and largest bending stress along z
+  YieldShares share_;    // largest shares of the yield strength
+};
+
+}  // namespace
+
+Made wall_strength(const TankView& view, const Seen& seen) {
+  return view.model.shell() ? std::make_shared<WallStrength>(view, seen) : nullptr;
+}
+
+}  // namespace couplet::thermocline
