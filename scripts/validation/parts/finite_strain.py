@@ -22,7 +22,7 @@ def last(run_folder, name="probes.csv"):
 def beam(job, across, along, law, load, length=2.0, steps=1):
     """Deflection over the length and the iterations of each load step."""
     pull = load * 15.293e6 * (0.2**4 / 12) / (0.04 * length**2) / math.sqrt(2)
-    run = job.alone("bent-beam", (
+    run = job.case("bent-beam", (
         "%smesh-parameters={n: %d, m: %d, L: %g}" % (S, across, along, length), f"{S}material.law={law}",
         f"{S}boundaries.tip.value=[{pull!r}*t, {pull!r}*t, 0]", f"{S}probes={{tip: {{point: [0, 0, {length}]}}}}",
         f"simulation.time-step={1 / steps!r}"))
@@ -49,7 +49,7 @@ def edge_stress(job, across):
     """The stress tensors [Pa] there, as two rows xx, yy, zz, xy, yz, xz."""
     pull = 5 * 15.293e6 * (0.2**4 / 12) / (0.04 * 4) / math.sqrt(2)
     probes = ", ".join("%s: {point: [%g, %g, %g], fields: [stress]}" % (name, *x) for name, x in EDGE.items())
-    run = job.alone("bent-beam", (
+    run = job.case("bent-beam", (
         "%smesh-parameters={n: %d, m: %d, L: 2}" % (S, across, 10 * across), f"{S}material.law=neo-hookean",
         f"{S}boundaries.tip.value=[{pull!r}*t, {pull!r}*t, 0]", "%sprobes={%s}" % (S, probes), "simulation.time-step=1"))
     tip = last(run.folder)
@@ -83,7 +83,7 @@ def cook_incompressible(job):
     """nu 0.4999, mu 0.4225 MPa: against the value extrapolated from 16, 32 and 64 cells per side, one load step each."""
     values, newton = [], []
     for n in (16, 32, 64):
-        run = job.alone("cook", (
+        run = job.case("cook", (
             "%smesh-parameters={n: %d, shape: 0}" % (S, n), f"{S}kinematics=finite-strain",
             f"{S}material.law=nearly-incompressible-neo-hookean", f"{S}material.youngs-modulus=1.267e6",
             f"{S}material.poissons-ratio=0.4999", "simulation.max-step-halvings=0", f"{S}boundaries.loaded.value=[0, 62.5e3*t]",
@@ -100,7 +100,7 @@ def ring(job):
     """Displacement of the inner wall against 0.5 m, the incompressible closed form."""
     errors = []
     for n in (8, 16, 32):
-        run = job.alone("rubber-ring", ("%smesh-parameters={n: %d}" % (S, n),))
+        run = job.case("rubber-ring", ("%smesh-parameters={n: %d}" % (S, n),))
         errors.append(last(run.folder)["inner wall x [m]"] / 0.5 - 1)
     orders = [math.log2(a / b) for a, b in zip(errors, errors[1:])]
     return (", ".join(f"{100 * e:+.3f} %" for e in errors) + "; orders " + ", ".join(f"{o:.2f}" for o in orders),
@@ -112,7 +112,7 @@ MAXIMUM, MINIMUM = 2.873, -3.179  # u_x(A) [m], cubic spectral elements, refined
 
 
 def column(job, across, along, shape=0, sets=()):
-    run = job.alone("bending-column",
+    run = job.case("bending-column",
                         ("%smesh-parameters={n: %d, m: %d, shape: %d}" % (S, across, along, shape), *sets))
     table = couplet.read_csv(run.folder / "solid" / "probes.csv")
     energies = couplet.read_csv(run.folder / "solid" / "energies.csv")
@@ -130,7 +130,7 @@ def swing(job, across, along, limit, shape=0, sets=()):
 def checkerboard(job, across, along, shape):
     """Root mean square of what the mean stress of an inner cell differs from the mean of its neighbours over faces, over that of the mean
     stress: 2 where the cells change sign like a board's fields, of the order of the cells' size squared where the stress is smooth."""
-    run = job.alone("bending-column", ("%smesh-parameters={n: %d, m: %d, shape: %d}" % (S, across, along, shape),))
+    run = job.case("bending-column", ("%smesh-parameters={n: %d, m: %d, shape: %d}" % (S, across, along, shape),))
     series = couplet.find_series(run.folder / "solid")
     last = len(series.times) - 1
     mean = sum(np.array(series.field(last, f"stress-{c}")) for c in ("xx", "yy", "zz")) / 3
@@ -157,7 +157,7 @@ HEXAHEDRON = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 
 
 def vibration(job, scheme, limit):
     """50 periods of 1.83 s; the largest distance of the energy from that of the first step, in parts of it."""
-    run = job.alone("bending-column", (
+    run = job.case("bending-column", (
         "%smesh-parameters={n: 2, m: 8, shape: 0}" % S, "simulation.end-time=91.5", "simulation.time-step=0.01", *scheme))
     energies = couplet.read_csv(run.folder / "solid" / "energies.csv")
     whole = [k + s for k, s in zip(energies["kinetic [J]"], energies["strain [J]"])]
@@ -219,7 +219,7 @@ def segregated(job):
         found = {}
         for name, sets in (("one", (*aitken, "simulation.time-step=1")), ("four", (*aitken, "simulation.time-step=0.25")),
                            ("newton", (f"{S}solution-method.relative-tolerance=1e-6", "simulation.time-step=1"))):
-            run = job.alone("bent-beam", (
+            run = job.case("bent-beam", (
                 "%smesh-parameters={n: %d, m: %d, L: 2}" % (S, n, 10 * n), f"{S}material.law=saint-venant-kirchhoff",
                 f"{S}boundaries.tip.value=[{pull!r}*t, {pull!r}*t, 0]", *sets))
             tip = couplet.read_csv(run.folder / "solid" / "probes.csv")

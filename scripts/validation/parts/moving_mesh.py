@@ -92,7 +92,7 @@ def in_space(job, mesh, boundaries, method, chi):
 
 def swinging(job, frame):
     motion = ['participants.fluid.motion={translation: ["-5/(2*pi)*sin(2*pi*0.2*t)", 0]}'] if frame else []
-    folder = job.alone("oscillating-cylinder", ("simulation.time-step=0.02", *motion)).folder
+    folder = job.case("oscillating-cylinder", ("simulation.time-step=0.02", *motion)).folder
     return job.beside("configs/oscillating-cylinder/morison.py"), folder / "fluid"
 
 
@@ -115,7 +115,7 @@ def both_frames(job):
 
 def pitching(job):
     """Two periods of a plate that pitches through +-60 degrees in a stream."""
-    folder = job.alone("pitching-plate").folder
+    folder = job.case("pitching-plate").folder
     rows = couplet.read_csv(folder / "fluid" / "coefficients.csv")
     t, lift = rows["time [s]"], rows["plate lift [-]"]
     done = bool(t[-1] > 16 - 1e-6 and np.isfinite(lift).all())
@@ -124,7 +124,7 @@ def pitching(job):
 
 def pinch(job, with_gap):
     more = () if with_gap else ("participants.fluid.gaps={}",)
-    folder = job.alone("closing-gap", more).folder
+    folder = job.case("closing-gap", more).folder
     return couplet.read_csv(folder / "fluid" / "balance.csv"), folder / "fluid"
 
 
@@ -146,7 +146,7 @@ def cavity_5000(job):
     ghia = {"u_min": -0.43643, "v_max": 0.43648, "v_min": -0.55408}
     found = {}
     for n in (64, 96, 128):
-        folder = job.alone("cavity", (f"participants.fluid.mesh-parameters={{n: {n}, bump: 0.1}}", "participants.fluid.viscosity=2e-4",
+        folder = job.case("cavity", (f"participants.fluid.mesh-parameters={{n: {n}, bump: 0.1}}", "participants.fluid.viscosity=2e-4",
                                                          "simulation.end-time=400", "simulation.time-step=0.1", "simulation.output.interval=400"), timeout=14400).folder
         found[n] = module.extrema(folder / "fluid")
     limit = {k: found[128][k] + (found[128][k] - found[96][k]) / ((128 / 96) ** 2 - 1) for k in ghia}

@@ -11,7 +11,7 @@ TABLE_4_1 = [30.57, 129.3, 319.7, 980.6, 1039, 1545, 2039, 2288, 2702, 3738, 382
 
 # -- modes ------------------------------------------------------------------------------------------------------------
 def reed(job):
-    out = job.alone("plate-reed").folder
+    out = job.case("plate-reed").folder
     rows = couplet.read_csv(out / "reed" / "frequencies.csv")
     error = rows["frequency [Hz]"] / np.array(TABLE_4_1) - 1
     rms, worst = np.sqrt(np.mean(error ** 2)), np.abs(error).max()

@@ -189,7 +189,7 @@ def discretisation(folder):
 
 def look(job, case, column, mesh, keys):
     """(displacement at the probe, estimate of its error)"""
-    run = job.alone(case, (f"participants.solid.mesh-parameters={{{mesh}}}", *keys))
+    run = job.case(case, (f"participants.solid.mesh-parameters={{{mesh}}}", *keys))
     with open(run.folder / "solid" / "probes.csv", encoding="utf-8") as file:
         rows = list(csv.reader(file))
     at = next(i for i, name in enumerate(rows[0]) if name.startswith(column))
@@ -199,7 +199,7 @@ def look(job, case, column, mesh, keys):
 def stress(job, case, mesh, keys, place):
     """(xx, yy, zz and sqrt 2 times xy, yz, xz [Pa]; estimated error over their norm)"""
     probe = f"participants.solid.probes.surface={{point: {list(place)}, fields: [stress]}}"
-    folder = job.alone(case, (f"participants.solid.mesh-parameters={{{mesh}}}", probe, *keys)).folder / "solid"
+    folder = job.case(case, (f"participants.solid.mesh-parameters={{{mesh}}}", probe, *keys)).folder / "solid"
     with open(folder / "probes.csv", encoding="utf-8") as file:
         rows = list(csv.reader(file))
     parts = {name[len("surface stress-"):].split()[0]: float(value) for name, value in zip(rows[0], rows[-1]) if name.startswith("surface stress-")}

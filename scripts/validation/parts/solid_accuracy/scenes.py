@@ -28,7 +28,7 @@ PERIOD, AMPLITUDE = 20.03, 0.09325  # of the continuum; of the p-FEM run in conf
 
 
 def vibration(job):
-    run = job.alone("vibrating-cantilever",
+    run = job.case("vibrating-cantilever",
                         ("participants.solid.mesh-parameters={n_length: 20, n_side: 2, shape: 1}", "simulation.end-time=60"))
     got = job.beside("configs/vibrating-cantilever/vibration.py").numbers(run.folder / "solid")
     off = got["period"] / PERIOD - 1, got["amplitude"] / AMPLITUDE - 1
@@ -38,7 +38,7 @@ def vibration(job):
 
 
 def strip(job):
-    run = job.alone("undamped-strip", ())
+    run = job.case("undamped-strip", ())
     with open(run.folder / "solid" / "energies.csv", encoding="utf-8") as file:
         rows = [[float(v) for v in row[1:3]] for row in list(csv.reader(file))[1:]]
     first, worst = sum(rows[0]), max(abs(sum(row) / sum(rows[0]) - 1) for row in rows)
@@ -52,7 +52,7 @@ LEE = 18.5
 
 def snap(job):
     """The first limit load [kN] in run.json, and what else the run has to say."""
-    run = job.alone("lees-frame")
+    run = job.case("lees-frame")
     findings = json.loads((run.folder / "solid" / "run.json").read_text())["findings"]
     found = next(f["number"] for f in findings if f["id"] == "limit-load")
     worse = [f["id"] for f in findings if f["severity"] != "note"]
@@ -73,7 +73,7 @@ def last(run, name):
 
 
 def eye_resultant(job, *sets):
-    r = last(job.alone("eye-bar", sets), "reactions.csv")
+    r = last(job.case("eye-bar", sets), "reactions.csv")
     load = math.hypot(r["load x [N]"] - PIN, r["load y [N]"] - WEIGHT, r["load z [N]"]) / PIN
     held = math.hypot(*(r[f"clamp {a} [N]"] + r[f"load {a} [N]"] for a in "xyz")) / PIN
     return f"load {load:.1e}, reaction {held:.1e}", load <= 1e-12 and held <= 1e-9
@@ -82,7 +82,7 @@ def eye_resultant(job, *sets):
 def dam(job):
     """Water against the side of an upright wall of 10 m, 3 cells of which a level of 7.3 m cuts: rho g h^2 / 2 on 1 m."""
     level, weight = 7.3, 1000 * 9.81
-    run = job.alone("slender-beam", (
+    run = job.case("slender-beam", (
         *BEAM, f"{B}tip={{type: free}}",
         "%ssides={type: free, parts: [{where: y < 1e-9, type: hydrostatic-pressure, density: 1000, gravity: [-9.81, 0, 0], level: %g}]}"
         % (B, level)))

@@ -24,7 +24,7 @@ def passive(job):
 def walls(job):
     """The first day with solid_solver's wall in the loop beside the rings': differences, and the rings' closing words."""
     def make():
-        run = job.alone("thermocline-solar-one", ["simulation.end-time=24 h"])
+        run = job.case("thermocline-solar-one", ["simulation.end-time=24 h"])
         alone, log = run.folder, run.log
         out = job.scratch / "solar-one-wall"
         case = job.root / "configs/thermocline-solar-one-wall/case.yaml"
