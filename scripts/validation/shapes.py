@@ -203,8 +203,8 @@ def extrapolated(job, case, read, runs, within, ratio=2, formal=None, which=-1, 
     for key in found[0]:
         values = [one[key] for one in found]
         first, second = values[-2] - values[-3], values[-1] - values[-2]
-        shown = formal or (min(2.0, max(1.0, math.log(first / second) / math.log(ratio))) if first * second > 0 else 1.0)
-        limit = values[-1] + second / (ratio**shown - 1)
+        shown = formal or (min(2.0, max(1.0, math.log(first / second) / math.log(number(ratio)))) if first * second > 0 else 1.0)
+        limit = values[-1] + second / (number(ratio)**shown - 1)
         off = values[which] / limit - 1
         said.append(f"{key.split(' [')[0]} {', '.join(f'{v:.6g}' for v in values)}, limit {limit:.6g} by order {shown:.1f}: {100 * off:+.2f} %")
         met = met and abs(off) <= within
