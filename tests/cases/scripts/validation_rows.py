@@ -69,7 +69,7 @@ refused("rows: {a: {wanted: x, at_most: [a, b, c, 1]}}\nsource: [common]", "unkn
 
 
 class Run:
-    """What job.alone gives: monitors of one participant that warned once."""
+    """What job.case gives: monitors of one participant that warned once."""
     folder, participant, log = pathlib.Path("/out"), "solid", "[solid] warning: coarse\n"
 
     def __init__(self, asked):
