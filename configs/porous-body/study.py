@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs of the porous body for benchmarks/porous and the validation: what one costs and gives."""
+"""Runs of the porous body for the validation: what one costs and gives."""
 import pathlib
 import sys
 
@@ -31,7 +31,7 @@ def run(job, n, ranks=1, method="newton-krylov", extra=()):
     file, tets, _ = mesh_of(job, n)
     sets = (f"participants.solid.mesh={file}", "participants.solid.solution-method={%s}" % METHODS[method],
             "participants.solid.output={stress: false}", *extra)
-    results = job.alone("porous-body", sets, ranks, timeout=7200)
+    results = job.case("porous-body", sets, ranks, timeout=7200)
     reactions, solver, report = results.table("solid", "reactions.csv"), results.table("solid", "solver.csv"), results.report("solid")
     return {"cells": tets, "force": reactions["bottom z [N]"][-1], "iterations": int(solver["iterations"][-1]),
             "inner": int(solver["inner iterations"][-1]), "seconds": report["wall"],

@@ -3,7 +3,6 @@
 import dataclasses
 import functools
 import hashlib
-import importlib.util
 import json
 import os
 import pathlib
@@ -13,7 +12,8 @@ import subprocess
 import tempfile
 from typing import Callable
 
-from couplet.runs import Case, Cost, Results, environment, launch
+from couplet.runs import Case, Cost, Results, RunFailed, environment, launch
+from couplet.study.quantities import module
 
 KEPT = "validated.json"  # in the folder of a kept run: what it was made of, and its cost
 
@@ -122,11 +122,6 @@ class Job:
             return tests, result.stdout
         return self.once(("gtest", name, filter_, count), make)
 
-    def fuzz(self, name, count, filter_="*"):
-        """{test: what a fuzz program recorded}, and whether all its tests passed."""
-        tests, _ = self.gtest(name, filter_, 3600, count)
-        return {name.split(".", 1)[1]: found for name, found in tests.items()}, all(found["passed"] for found in tests.values())
-
     def recorded(self, name, pattern, key):
         """All values of a recorded property in the tests whose name matches, and whether all those tests passed."""
         tests, _ = self.gtest(name)
@@ -148,7 +143,8 @@ class Job:
 
     # -- programs -----------------------------------------------------------------------------------------------------
     def case_run(self, case, out, overrides, ranks, timeout, flags=()):
-        """Runs a case into a folder; gives its Results with `cost` and `log`. `ranks`: by participant; `flags`: further words of all programs."""
+        """Runs a case into a folder; gives its Results with `cost` and `log`. `ranks`: by participant; `flags`: further words of all programs.
+        A failure has what was written until then as its `results`."""
         command = Case(case, self.build).command({"simulation.output.folder": str(out)}, ranks=ranks, raw=overrides, flags=flags)
         identity = self.keep and made_of(command, pathlib.Path(case).parent)
         if self.keep and not was_kept(out, identity):
@@ -158,39 +154,30 @@ class Job:
         if self.keep and was_kept(out, identity):
             results.cost = Cost(*json.loads((out / KEPT).read_text())["cost"])
         else:
-            results.cost = launch(command, out / "run.log", timeout=timeout)
+            try:
+                results.cost = launch(command, out / "run.log", timeout=timeout)
+            except RunFailed as failure:
+                failure.results = results
+                raise
             if self.keep:
                 (out / KEPT).write_text(json.dumps({"of": identity, "cost": dataclasses.astuple(results.cost)}))
         results.log = (out / "run.log").read_text(errors="replace")
         return results
 
-    def coupled_run(self, case, folder, overrides=(), ranks=(1, 1, 1, 1), timeout=3600, flags=()):
-        """Results of a coupled case in scratch/folder. Ranks: coupler, fluid, solid, mover."""
-        by_name = dict(zip(("coupler", "fluid", "solid", "mover"), ranks))
-        return self.once(("coupled", folder), lambda: self.case_run(case, self.scratch / folder, overrides, by_name, timeout, flags))
-
-    def coupled(self, *what, **more):
-        """The folder of coupled_run()."""
-        return self.coupled_run(*what, **more).folder
-
-    def alone(self, case, overrides=(), ranks=1, timeout=3600):
-        """Results of configs/<case>, a folder or a file 'folder/name' of it, and the `participant`, the only one. An override '.key' is one of the participant.
-        Runs with the same overrides are made once."""
+    def case(self, case, keys=(), ranks=(), timeout=3600, flags=()):
+        """Results of configs/<case>: a folder, a file 'folder/name' of it, or a path that ends in .yaml. `participant` is its first one; a key '.key' is one of that
+        participant. `ranks`: of coupler, fluid, solid and mover, or a number, of the only participant. Runs with the same keys are made once."""
         def make():
-            file = self.root / "configs" / (f"{case}.yaml" if "/" in case else f"{case}/case.yaml")
-            (participant,) = Case(file).participants
-            keys = [f"participants.{participant}{o}" if o.startswith(".") else o for o in overrides]
-            name = hashlib.sha256(repr((case, tuple(overrides), ranks)).encode()).hexdigest()[:12]
-            results = self.case_run(file, self.scratch / f"solve-{name}", keys, {participant: ranks}, timeout)
+            file = self.root / (case if case.endswith(".yaml") else f"configs/{case}.yaml" if "/" in case else f"configs/{case}/case.yaml")
+            participant = next(iter(Case(file).participants))
+            words = [f"participants.{participant}{k}" if k.startswith(".") else k for k in keys]
+            by_name = {participant: ranks} if isinstance(ranks, int) else dict(zip(("coupler", "fluid", "solid", "mover"), ranks))
+            name = hashlib.sha256(repr((case, tuple(keys), ranks, flags)).encode()).hexdigest()[:12]
+            results = self.case_run(file, self.scratch / f"run-{name}", words, by_name, timeout, flags)
             results.participant = participant
             return results
-        return self.once(("solve", case, tuple(overrides), ranks), make)
+        return self.once(("case", case, tuple(keys), ranks, flags), make)
 
     def beside(self, file):
         """A Python file of a case, such as configs/<case>/errors.py, as a module."""
-        def make():
-            spec = importlib.util.spec_from_file_location(pathlib.Path(file).stem, self.root / file)
-            module = importlib.util.module_from_spec(spec)
-            spec.loader.exec_module(module)
-            return module
-        return self.once(("module", str(file)), make)
+        return module(str(self.root / file))

@@ -1,79 +1,52 @@
 # SPDX-License-Identifier: Apache-2.0
 """Work, order in time, tolerances and restart of coupled runs."""
-import csv
-import json
 import math
 import re
 import sys
 
 import numpy as np
 
-import couplet
 from couplet.runs.process import RunFailed
-from validation.parts.strong_coupling import COARSE, FLAP, IQN, TUBE
 
 
 # -- damping ----------------------------------------------------------------------------------------------------------
-TUREK_HRON = "configs/turek-hron"
-MESHES = {"1:1": ("participants.solid.mesh={root}/scripts/validation/parts/plate-matched.geo", "participants.solid.mesh-parameters={n: 12}"),
-          "3:2": ("participants.solid.mesh-parameters={nx: 62, ny: 9}",)}  # 41 and 6 faces of the fluid
-END = 20  # s
+def fsi3(job, keys):
+    """Turek and Hron's case with these keys, and its amplitude in words."""
+    run = job.case("turek-hron", keys, timeout=20000)
+    found = job.beside("configs/turek-hron/summary.py").summary(run.folder)
+    return run, f"{1e3 * found['uy_mean']:.2f} +- {1e3 * found['uy_amp']:.2f} mm, {found['uy_f']:.2f} Hz"
 
 
-def run(job, mesh, *more):
-    """Summary of the last 1.2 s, work [J] of fluid and structure over the run, energies of the plate."""
-    sets = [one.replace("{root}", str(job.root)) for one in MESHES[mesh]]
-    folder = job.coupled(job.root / TUREK_HRON / "case.yaml", f"fsi3-long-{mesh.replace(':', '-')}-{len(more)}", (
-        f"simulation.end-time={END} s", "simulation.output.interval=0", "simulation.checkpoint.interval=0", "participants.solid.output.energies=true",
-        *sets, *more), timeout=20000)
-    balance = couplet.read_csv(folder / "coupler" / "balance.csv")
-    works = [float(np.sum(balance[name])) for name in balance if name.endswith("work of the step [J]")]
-    return job.beside(f"{TUREK_HRON}/summary.py").summary(folder), works, couplet.read_csv(folder / "solid" / "energies.csv")
-
-
-def text(found):
-    return f"{1e3 * found['uy_mean']:.2f} +- {1e3 * found['uy_amp']:.2f} mm, {found['uy_f']:.2f} Hz"
-
-
-def work(job, mesh):
-    found, (given, taken, *_), _ = run(job, mesh)
+def work(job, *keys):
+    """Of fluid and structure over the run [J]."""
+    run, text = fsi3(job, keys)
+    given, taken, *_ = (float(np.sum(v)) for name, v in run.table("coupler", "balance.csv").items() if name.endswith("work of the step [J]"))
     apart = abs(given + taken if given * taken < 0 else given - taken) / max(abs(given), abs(taken))
-    return f"{END} s; {text(found)}; work {given:.8g} and {taken:.8g} J: {apart:.1e} apart", apart <= 1e-10
+    return f"{text}; work {given:.8g} and {taken:.8g} J: {apart:.1e} apart", apart <= 1e-10
 
 
-def amplitude(job):
-    one, three = run(job, "1:1")[0], run(job, "3:2")[0]
-    off = three["uy_amp"] / one["uy_amp"] - 1
-    return f"{text(three)} for {text(one)}: {100 * off:+.2f} %", abs(off) <= 0.03
-
-
-def ledger(job, mesh):
+def ledger(job, *keys):
     """What the plate's own time scheme loses or makes, of what it holds at most and of what went in."""
-    energies = run(job, mesh)[2]
-    lost = np.array(energies["lost by the scheme [J]"])
-    held = np.array(energies["strain [J]"]) + np.array(energies["kinetic [J]"])
-    worst = np.abs(lost).max() / held.max()
+    energies = fsi3(job, keys)[0].table("solid", "energies.csv")
+    worst = np.abs(energies["lost by the scheme [J]"]).max() / (energies["strain [J]"] + energies["kinetic [J]"]).max()
     return f"{worst:.1e} of the most energy that it holds", worst <= 1e-3
 
 
 # -- loads ------------------------------------------------------------------------------------------------------------
 AT = 1.25  # s
-SWING = ("participants.fluid.viscosity=1 Pa s", "participants.fluid.viscous=implicit",
-         'participants.fluid.motion.translation=["-(5/(4*pi))*(1-cos(0.4*pi*t))", 0]')
+
+
+def swung(job, step, cells, end, *keys):
+    """A cylinder that moves by -(5/4 pi)(1 - cos 0.4 pi t), viscosity 1 Pa s: results, and the x force [N] of each step."""
+    run = job.case("oscillating-cylinder", (".viscosity=1 Pa s", ".viscous=implicit", '.motion.translation=["-(5/(4*pi))*(1-cos(0.4*pi*t))", 0]',
+                                            ".mesh-parameters={n: %d}" % cells, f"simulation.end-time={end}", f"simulation.time-step={step}", *keys))
+    return run, sum(values for name, values in run.table("fluid", "forces.csv").items() if name.endswith(" x [N]"))
 
 
 def force(job, step, cells):
-    """x force [N] of a cylinder that moves by -(5/4 pi)(1 - cos 0.4 pi t), viscosity 1 Pa s: given at the middle of the steps."""
-    def make():
-        run = job.alone("oscillating-cylinder",
-                            (*SWING, "participants.fluid.mesh-parameters={n: %d}" % cells, f"simulation.end-time={AT + 2 * step}", f"simulation.time-step={step}"))
-        with open(run.folder / "fluid" / "forces.csv", encoding="utf-8") as file:
-            rows = list(csv.reader(file))
-        parts = [i for i, name in enumerate(rows[0]) if name.endswith(" x [N]")]
-        found = {round(float(row[0]) / step): sum(float(row[i]) for i in parts) for row in rows[1:]}
-        n = round(AT / step)
-        return (found[n] + found[n + 1]) / 2
-    return job.once(("oscillating cylinder", step, cells), make)
+    """At 1.25 s [N]; forces are given at the middle of the steps."""
+    _, forces = swung(job, step, cells, AT + 2 * step)
+    return float(forces[-3:-1].mean())
 
 
 def in_time(job):
@@ -90,67 +63,51 @@ def beside_finer(job):
 def power(job):
     """Of the last step to 1.25 s: what the wall gives beside what the fluid gains and its viscosity takes, by forces.csv and energy.csv."""
     step = 0.01
-    run = job.alone("oscillating-cylinder", (
-        *SWING, "participants.fluid.mesh-parameters={n: 48}", f"simulation.end-time={AT}", f"simulation.time-step={step}", "participants.fluid.output.energy-budget=true"))
-    forces, energy = (couplet.read_csv(run.folder / "fluid" / name) for name in ("forces.csv", "energy.csv"))
-    force = sum(forces[name][-1] for name in forces if name.endswith(" x [N]"))
+    run, forces = swung(job, step, 48, AT, ".output.energy-budget=true")
+    energy = run.table("fluid", "energy.csv")
     moved = -(5 / (4 * math.pi)) * (math.cos(0.4 * math.pi * (AT - step)) - math.cos(0.4 * math.pi * AT))
-    given = -force * moved / step
+    given = -forces[-1] * moved / step
     taken = (energy["kinetic energy [J]"][-1] - energy["kinetic energy [J]"][-2]) / step + energy["viscous power [W]"][-2:].mean()
     return f"wall {given:.5f} W, fluid {taken:.5f} W: {100 * (taken / given - 1):+.2f} %", abs(taken / given - 1) < 1e-10
 
 
 # -- ladder -----------------------------------------------------------------------------------------------------------
 STEPS = (0.01, 0.005, 0.0025, 0.00125)  # s
-RHO, MU = (1000, 100, 10, 1), (10, 1, 0.1, 0.01)
-
-
-def changes(rho, mu, step):
-    return ("simulation.end-time=0.2", f"simulation.time-step={step}", "simulation.output.interval=0", "simulation.checkpoint.interval=0",
-            "participants.fluid.boundaries.inlet.ramp=0.4", f"participants.fluid.viscosity={mu}", f"participants.solid.material.density={rho}",
-            "coupling.convergence.max-iterations=100", *COARSE)
-
-
-def tip_and_estimate(job, rho, mu, step):
-    """At 0.2 s [m], and the run's own estimate of the step's error (a share); None where the run ended before."""
-
-    def make():
-        try:
-            folder = job.case_run(job.root / FLAP, job.scratch / f"rung-{rho}-{mu}-{step}", changes(rho, mu, step), {}, 3000).folder
-        except RunFailed:
-            return None
-        estimate = json.loads((folder / "coupler" / "run.json").read_text())["errors"]["step"]
-        return couplet.read_csv(folder / "solid" / "probes.csv")["tip x [m]"][-1], estimate
-    return job.once(("rung", rho, mu, step), make)
+COARSE = ("participants.solid.mesh-parameters={n_side: 40, n_tip: 4}", *(
+    f"participants.{name}.mesh-parameters={{n_side: 20, n_tip: 2, growth: 1.3, wall_growth: 1.3, wall_cells: 5}}" for name in ("fluid", "mover")))
 
 
 def tip(job, rho, mu, step):
-    found = tip_and_estimate(job, rho, mu, step)
-    return found and found[0]
+    """At 0.2 s [m], and the run's own estimate of the step's error (a share); None where the run ended before."""
+    try:
+        run = job.case("perpendicular-flap", (
+            "simulation.end-time=0.2", f"simulation.time-step={step}", "simulation.output.interval=0", "simulation.checkpoint.interval=0",
+            "participants.fluid.boundaries.inlet.ramp=0.4", f"participants.fluid.viscosity={mu}", f"participants.solid.material.density={rho}",
+            "coupling.convergence.max-iterations=100", *COARSE), timeout=3000)
+    except RunFailed:
+        return None, None
+    return run.probes("solid")["tip x [m]"][-1], run.report("coupler")["errors"]["step"]
 
 
 def estimates(job):
     """Of steps of 10, 5 and 2.5 ms in the rungs that end: beside the limit of the two finest, of the order that they show, 1 to 2."""
     ratios = []
-    for rho in RHO:
-        for mu in MU:
-            tips = [tip(job, rho, mu, step) for step in STEPS]
-            if None in tips:
-                continue
-            order = min(2, max(1, math.log2(abs(tips[1] - tips[2]) / abs(tips[2] - tips[3]))))
-            limit = tips[3] + (tips[3] - tips[2]) / (2**order - 1)
-            for step, value in zip(STEPS[:3], tips):
-                truth = abs(value / limit - 1)
-                if truth > 1e-4:  # what the coupling's tolerance leaves
-                    ratios.append(tip_and_estimate(job, rho, mu, step)[1] / truth)
+    for rho, mu in ((rho, mu) for rho in (1000, 100, 10, 1) for mu in (10, 1, 0.1, 0.01)):
+        found = [tip(job, rho, mu, step) for step in STEPS]
+        tips = [value for value, _ in found]
+        if None in tips:
+            continue
+        order = min(2, max(1, math.log2(abs(tips[1] - tips[2]) / abs(tips[2] - tips[3]))))
+        limit = tips[3] + (tips[3] - tips[2]) / (2**order - 1)
+        truths = [(abs(value / limit - 1), told) for value, told in found[:3]]
+        ratios += [told / truth for truth, told in truths if truth > 1e-4]  # less is what the coupling's tolerance leaves
     good = sum(1 / 3 <= r <= 3 for r in ratios)
-    ratios.sort()
     return (f"{good} of {len(ratios)}; {sum(r > 3 for r in ratios)} above three times the truth, {sum(r < 1 / 3 for r in ratios)} below a third; "
-            f"{ratios[0]:.2f} to {ratios[-1]:.1f} times it"), good >= 0.8 * len(ratios)
+            f"{min(ratios):.2f} to {max(ratios):.1f} times it"), good >= 0.8 * len(ratios)
 
 
 def rung(job, rho, mu):
-    tips = [tip(job, rho, mu, step) for step in STEPS]
+    tips = [tip(job, rho, mu, step)[0] for step in STEPS]
     text = ", ".join("ended before" if t is None else f"{t:.6f}" for t in tips)
     if None in tips:
         return f"tip {text} m", False
@@ -160,16 +117,14 @@ def rung(job, rho, mu):
 
 
 # -- tolerances -------------------------------------------------------------------------------------------------------
-PISTON = "tests/coupling/piston/case.yaml"
-DEFAULTS = ("participants.fluid.pressure-tolerance=1e-6", "coupling.convergence.relative=1e-5")
 BY_HAND = {10: 34, 91: 37, 1000: 44}  # passes of ten steps with a pressure tolerance of 1e-9
 
 
 def passes(job, density):
     """Of ten steps; None if one of them failed."""
-    out = job.scratch / f"piston-{density}"
     try:
-        log = job.case_run(job.root / PISTON, out, (*DEFAULTS, f"participants.fluid.density={density}"), {}, 120).log
+        log = job.case("tests/coupling/piston/case.yaml", ("participants.fluid.pressure-tolerance=1e-6", "coupling.convergence.relative=1e-5",
+                                                           f"participants.fluid.density={density}"), timeout=120).log
     except RunFailed:
         return None
     halvings, mean = re.search(r"(\d+) halvings.*iterations: mean ([\d.]+)", log).groups()
@@ -205,26 +160,12 @@ def equal(job, case):
 def other(job, case):
     found = re.findall(r": (\d) to (\d): apart by (\S+) .*?ranks by (\S+)", lines(job, case))
     text = ", ".join(f"{a} to {b}: {off}" for a, b, off, _ in found)
-    return f"{text} of the largest value; uninterrupted runs on other ranks: {max(float(r) for *_, r in found):.2g}", len(found) == 4 and all(float(off) <= max(TOLERANCE, float(r)) for *_, off, r in found)
+    return (f"{text} of the largest value; uninterrupted runs on other ranks: {max(float(r) for *_, r in found):.2g}",
+            len(found) == 4 and all(float(off) <= max(TOLERANCE, float(r)) for *_, off, r in found))
 
 
 # -- light ------------------------------------------------------------------------------------------------------------
-ROBIN = ("coupling.order=structure-first", "participants.fluid.boundaries.flap.impedance=structure", "participants.solid.interface={surface-density: true}")
-QUIET = ("simulation.output.interval=0", "simulation.checkpoint.interval=0")
-
-
-def passes_of_each_step(job, case, name, *sets):
-    """Of each step."""
-    run = job.coupled_run(job.root / case, name, (*QUIET, *sets))
-    return np.unique(couplet.read_csv(run.folder / "coupler" / "residuals.csv")["step"], return_counts=True)[1]
-
-
-def flap(job):
-    light = ("simulation.end-time=0.2", "participants.fluid.boundaries.inlet.ramp=0.4", "participants.solid.material.density=10", *COARSE, *IQN)
-    robin, alone = passes_of_each_step(job, FLAP, "light-robin", *light, *ROBIN), passes_of_each_step(job, FLAP, "light-alone", *light)
-    return f"{robin.mean():.2f} with Robin, {alone.mean():.2f} by IQN-ILS alone, {len(alone)} steps", bool(robin.mean() <= alone.mean())
-
-
-def tube(job, tolerance, most, *more):
-    counts = passes_of_each_step(job, TUBE, f"light-tube-{tolerance}-{len(more)}", "simulation.end-time=2 ms", f"coupling.convergence.relative={tolerance}", *IQN, *more)
-    return f"{counts.mean():.2f} on average, {counts.max()} at most, {len(counts)} steps", bool(counts.mean() <= most)
+def fewer(job, case, keys, more):
+    """Passes per step with the further keys are at most those without."""
+    alone, own = (job.case(case, (*keys, *extra)).passes().mean() for extra in ((), more))
+    return f"{own:.2f} with them, {alone:.2f} without", bool(own <= alone)

@@ -1,62 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Broken input, damaged checkpoints, the sanitizers' build, and mutants."""
+"""Broken files, the sanitizers' build, and mutants."""
 import os
 import pathlib
 import re
 import shutil
 
 
-# -- runs -------------------------------------------------------------------------------------------------------------
-PROGRAMS = ("solid_solver", "fluid_solver", "mesh_mover", "thermocline", "coupler")
-
-
-def fuzz(job, name, count):
-    """What the one test of a fuzz program recorded, and whether it passed."""
-    found, passed = job.fuzz(name, count)
-    return next(iter(found.values())), passed
-
-
-def yaml(job):
-    found = [fuzz(job, f"fuzz_yaml_{program}", 4000) for program in PROGRAMS]
-    tried = sum(int(t["tried"]) for t, _ in found)
-    return (f"{tried} tried over {len(found)} programs, {sum(int(t['refused']) for t, _ in found)} refused, "
-            f"{sum(int(t['unplaced']) for t, _ in found)} messages without a place, slowest {max(float(t['slowest']) for t, _ in found):.2f} s, "
-            f"{max(float(t['megabytes']) for t, _ in found):.0f} MB"), tried >= 20000 and all(good for _, good in found)
-
-
-def meshes(job):
-    test, good = fuzz(job, "fuzz_meshes", 10000)
-    return (f"{test['tried']} tried, {test['refused']} refused, slowest {test['slowest']} s, {test['megabytes']} MB",
-            good and int(test["tried"]) >= 10000)
-
-
-def checkpoints(job):
-    test, good = fuzz(job, "fuzz_checkpoints", 2000)
-    return (f"{test['tried']} damaged: {test['refused']} refused, {test['earlier_set']} continued from an earlier set, "
-            f"{test['unharmed']} unharmed, 0 with another result", good and int(test["tried"]) >= 2000)
+# -- files ------------------------------------------------------------------------------------------------------------
+def check_files(job, what, least):
+    """Files, or runs, of tests/cli/check_files."""
+    said = job.once("check files", lambda: job.run(["/usr/bin/python3", job.root / "tests/cli/check_files/run.py", job.build / "bin"], 600))
+    found = {kind: (int(n), int(wrong)) for n, kind, wrong in re.findall(r"(\d+) (files|runs), (\d+) judged wrongly", said.stdout)}
+    if len(found) != 2:
+        raise RuntimeError(said.stdout[-200:] + said.stderr[-200:])
+    n, wrong_ones = found[what]
+    return f"{n} {what}, {wrong_ones} judged wrongly", n >= least and wrong_ones == 0
 
 
 # -- sanitizers -------------------------------------------------------------------------------------------------------
-SANITIZER = "a build of the preset asan: build-asan, or the folder that COUPLET_ASAN_BUILD names"
-
-
-def sanitizer_folder(job):
-    return pathlib.Path(os.environ.get("COUPLET_ASAN_BUILD", job.root / "build-asan"))
-
-
 def sanitizer_build(job):
-    folder = sanitizer_folder(job)
-    if not (folder / "bin/fluid_solver").exists():
-        raise FileNotFoundError(f"there is no {SANITIZER}")
+    folder = pathlib.Path(os.environ.get("COUPLET_ASAN_BUILD", job.root / "build-asan"))
+    if not folder.exists():
+        raise FileNotFoundError("there is no build of the preset asan: build-asan, or the folder that COUPLET_ASAN_BUILD names")
     return folder
-
-
-def sanitizer_test(job, name):
-    """The words that run a test of the sanitizers' build, of which no more than that needs to be built."""
-    build = sanitizer_folder(job)
-    if not build.exists():
-        raise FileNotFoundError(f"there is no {SANITIZER}")
-    return type(job)(job.root, build, job.quick).test(name)
 
 
 def reports(folder):
@@ -101,9 +67,9 @@ def sanitized(job):
 
 def corpora(job, **counts):
     """Whole fuzzers with the sanitizers on, each at so many inputs."""
-    failed = []
+    failed, tests = [], type(job)(job.root, sanitizer_build(job), job.quick)  # of which no more than these needs to be built
     for name, count in counts.items():
-        result = watched(job, job.scratch / name, [f"COUPLET_FUZZ_COUNT={count}", *sanitizer_test(job, name)], 3 * 3600, cwd=job.scratch)
+        result = watched(job, job.scratch / name, [f"COUPLET_FUZZ_COUNT={count}", *tests.test(name)], 3 * 3600, cwd=job.scratch)
         found = reports(job.scratch / name)
         if result.returncode != 0 or found:
             failed.append(" ".join([name, *found[:1]]))
@@ -115,14 +81,10 @@ def corpora(job, **counts):
 MOST = 0.15
 
 
-def tool(job, name, *words, timeout=100000):
-    return job.run(["/usr/bin/python3", job.root / "tests/mutants" / name, job.root, *words], timeout)
-
-
 def campaign(job):
     """Continues the results in the file that COUPLET_MUTANTS names, else mutants.jsonl of the build (a whole run takes hours of one core)."""
     file = pathlib.Path(os.environ.get("COUPLET_MUTANTS", job.build / "mutants.jsonl"))
-    result = tool(job, "campaign.py", job.build, file)
+    result = job.run(["/usr/bin/python3", job.root / "tests/mutants/campaign.py", job.root, job.build, file], 100000)
     last = (result.stdout.strip() or result.stderr.strip()).splitlines()[-1]
     counts = re.search(r"(\d+) of (\d+) mutants survive", last)
     met = counts is not None and int(counts[2]) >= 200 and int(counts[1]) <= MOST * int(counts[2]) and result.returncode == 0

@@ -69,7 +69,7 @@ refused("rows: {a: {wanted: x, at_most: [a, b, c, 1]}}\nsource: [common]", "unkn
 
 
 class Run:
-    """What job.alone gives: monitors of one participant that warned once."""
+    """What job.case gives: monitors of one participant that warned once."""
     folder, participant, log = pathlib.Path("/out"), "solid", "[solid] warning: coarse\n"
 
     def __init__(self, asked):
@@ -81,7 +81,7 @@ class Run:
 
 
 asked = []
-job = types.SimpleNamespace(alone=lambda case, keys, timeout: asked.append((case, keys)) or Run(keys))
+job = types.SimpleNamespace(quick=False, case=lambda case, keys, ranks, timeout: asked.append((case, keys)) or Run(keys))
 given = {"case": "le1", "read": "probes.csv: tip y [m]", "of": "2*1", "within": 0.02}
 assert shapes.run(job, **given) == ("2.02 m (+1.00 %)", True)
 assert shapes.run(job, **{**given, "within": 0.005}) == ("2.02 m (+1.00 %)", False)
@@ -97,3 +97,35 @@ for wrong in ("__import__('os')", "x", "len([1])"):
     except ValueError:
         continue
     sys.exit(f"taken as a number: {wrong}")
+
+
+class Coupled:
+    """A run of two participants whose fluid's drag converges to 2 with the square of 1/n, in 2 and 4 passes."""
+    participant, folder, cost, log = "fluid", pathlib.Path("/nowhere"), types.SimpleNamespace(cpu=90), ""
+
+    def __init__(self, keys):
+        self.n = next((int(k.rsplit(" ", 1)[1][:-1]) for k in keys if "mesh-parameters" in k), 8)
+        self.shift = 0.01 * ("coupling.order=parallel" in keys)
+
+    def column(self, participant, file, name):
+        assert (participant, file) == ("solid", "probes.csv"), (participant, file)
+        return rows_np.array([1.0, 2 + 1 / self.n**2 + self.shift])
+
+    def passes(self):
+        return rows_np.array([2, 4])
+
+
+rows_np = shapes.np
+asked = []
+job = types.SimpleNamespace(quick=True, case=lambda case, keys, ranks, timeout: asked.append((keys, ranks)) or Coupled(keys))
+assert shapes.run(job, "c", ["solid/probes.csv: y", "passes: mean"], high=(3, 3), quick="end=1", cost=True) == ("y 2.0156; mean passes per step 3 (1.5 processor minutes)", True)
+assert asked[-1] == (("end=1",), ())
+assert shapes.run(job, "c", "solid/probes.csv: y", of=2, limits=(None, 0.005), meshes=("n: 4", "n: 16"))[1]
+assert not shapes.run(job, "c", "solid/probes.csv: y", of=2, limits=(0.005, 0.005), meshes=("n: 4", "n: 16"))[1]
+text, met = shapes.order(job, "c", "solid/probes.csv: y", ("n: 4", "n: 8", "n: 16"), 1.9, of=2, limits=(None, None, 0.01))
+assert met and text == "2.0625, 2.01562, 2.00391: order 2.00 (the last +0.195 %)", text
+assert shapes.order(job, "c", "solid/probes.csv: y", ("n: 4", "n: 8"), 1.9, of=2, errors=True)[1] and not shapes.order(job, "c", "solid/probes.csv: y", ("n: 4", "n: 8"), 2.1, of=2, errors=True)[1]
+assert shapes.extrapolated(job, "c", "solid/probes.csv: y", ("n: 4", "n: 8", "n: 16"), 0.002)[1] and not shapes.extrapolated(job, "c", "solid/probes.csv: y", ("n: 4", "n: 8", "n: 16"), 0.001)[1]
+together = {"case": "c", "read": "solid/probes.csv: all y", "runs": {"serial": None, "parallel": "coupling.order=parallel"}}
+assert shapes.apart(job, **together, within=0.01) == ("serial: runs; parallel: 5.0e-03 apart", True) and not shapes.apart(job, **together, within=0.001)[1]
+assert shapes.run(job, "c", "solid/probes.csv: y", keys=("ranks=1,2",)) == ("2.0156", None) and asked[-1] == ((), (1, 2))

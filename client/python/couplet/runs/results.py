@@ -43,6 +43,15 @@ class Results:
             raise LookupError(f"{participant}/{file} has no column '{name}'; it has: {', '.join(table)}")
         return table[name]
 
+    def last(self, participant, file):
+        """{head: last value} of a table."""
+        return {name: values[-1] for name, values in self.table(participant, file).items()}
+
+    def passes(self):
+        """Coupling iterations of each accepted step."""
+        import numpy as np
+        return np.unique(self.table("coupler", "residuals.csv")["step"], return_counts=True)[1]
+
     def fields(self, participant):
         """The field series of a participant: times, cells, fields by name as arrays."""
         from couplet.series import find_series

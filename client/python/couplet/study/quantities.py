@@ -54,6 +54,15 @@ def maxima(t, y):
     return t[i] - np.where(bend < 0, 0.5 * (t[i + 1] - t[i]) * (y[i + 1] - y[i - 1]) / np.where(bend < 0, bend, -1), 0)
 
 
+def top(t, y):
+    """(time, value) of the largest value, by the parabola through its three samples where it does not lie at an end."""
+    i = int(np.argmax(y))
+    if not 0 < i < len(y) - 1:
+        return t[i], y[i]
+    a, b, c = np.polyfit(t[i - 1:i + 2] - t[i], y[i - 1:i + 2], 2)
+    return (t[i] - b / (2 * a), c - b * b / (4 * a)) if a != 0 else (t[i], c)
+
+
 def reduced(t, y, at):
     """One number of a series."""
     if at == "last":
@@ -62,11 +71,7 @@ def reduced(t, y, at):
         return y[0]
     if at in ("maximum", "minimum"):
         sign = 1 if at == "maximum" else -1
-        i = int(np.argmax(sign * y))
-        if 0 < i < len(y) - 1:
-            a, b, c = np.polyfit(t[i - 1:i + 2] - t[i], y[i - 1:i + 2], 2)
-            return c - b * b / (4 * a) if a != 0 else c
-        return y[i]
+        return sign * top(t, sign * y)[1]
     if at == "mean":
         return np.trapezoid(y, t) / (t[-1] - t[0]) if hasattr(np, "trapezoid") else np.trapz(y, t) / (t[-1] - t[0])
     if at == "amplitude":

@@ -84,7 +84,7 @@ def flag(case, rows):
         return f"{factor * float(text):.{digits}g}" if re.fullmatch(NUMBER, text) else "-"  # a row may tell why there is none
     for who, cells, step, beginning in OURS[case]:
         mine = {q.rsplit(": ", 1)[1]: r.got for q, r in rows.items() if q.startswith(beginning) and ": " in q and r.verdict != "not measured"}
-        values = [number(mine[name].split(" for ")[0], name) if name in mine else "-" for name in shown]
+        values = [number(mine[name].split(" ")[0], name) if name in mine else "-" for name in shown]
         found.append((f"**{who}**", cells, step, *values, next((hours(text) for text in mine.values()), "-")))
     for source, (who, cells, step, cost) in PEERS.items():
         if source in theirs:

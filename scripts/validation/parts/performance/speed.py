@@ -25,7 +25,7 @@ def cavity(job):
     """The largest deviation of the three extrema by order, and the processor minutes."""
     found = {}
     for name, setting in ORDERS.items():
-        run = job.alone("cavity-3d", [setting], timeout=7200)
+        run = job.case("cavity-3d", [setting], timeout=7200)
         found[name] = job.beside("configs/cavity-3d/extrema.py").errors(run.folder / "fluid"), run.cost.cpu / 60
     return found
 
@@ -37,7 +37,7 @@ def extrema_of_cavity(job):
 
 
 def peak(job, n, name, *sets):
-    folder = job.alone("taylor-green-3d", [f"participants.fluid.mesh-parameters.n={n}", ORDERS[name], *sets], timeout=48 * 3600).folder
+    folder = job.case("taylor-green-3d", [f"participants.fluid.mesh-parameters.n={n}", ORDERS[name], *sets], timeout=48 * 3600).folder
     return job.beside("configs/taylor-green-3d/budget.py").budget(folder / "fluid")
 
 
