@@ -6,8 +6,7 @@
 #include "common/io/cut/cut_mesh.hpp"
 #include "common/linalg/petsc.hpp"
 #include "solid_solver/diagnostics/table.hpp"
-#include "solid_solver/effects/auto_effects.hpp"
-#include "solid_solver/effects/effect_cards.hpp"
+#include "solid_solver/effects.hpp"
 #include "solid_solver/solid.hpp"
 #include "solid_solver/thermal_solid.hpp"
 

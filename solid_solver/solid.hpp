@@ -9,12 +9,12 @@
 #include "common/coupling/error_parts.hpp"
 #include "common/coupling/participant.hpp"
 #include "solid_solver/body/solid_body.hpp"
-#include "solid_solver/body/solid_context.hpp"
 #include "solid_solver/body/solid_fields.hpp"
 #include "solid_solver/body/solid_interface.hpp"
 #include "solid_solver/diagnostics/error_estimate.hpp"
 #include "solid_solver/diagnostics/judge.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
+#include "solid_solver/output/files.hpp"
 #include "solid_solver/output/quantities.hpp"
 
 namespace couplet::solid {

@@ -13,7 +13,7 @@
 #include "common/io/probes/probe.hpp"
 #include "common/io/series.hpp"
 #include "common/mesh/mesh.hpp"
-#include "solid_solver/body/solid_context.hpp"
+#include "solid_solver/output/files.hpp"
 #include "solid_solver/output/quantities.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 #include "solid_solver/thermal/heat.hpp"

@@ -6,11 +6,10 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/body/small_strain.hpp"
-#include "solid_solver/boundary/mesh_checks.hpp"
-#include "solid_solver/boundary/rigid_modes.hpp"
-#include "solid_solver/large_strain/finite_strain.hpp"
-#include "solid_solver/large_strain/updated_lagrangian.hpp"
+#include "solid_solver/boundary/checks.hpp"
+#include "solid_solver/equilibrium/finite_strain.hpp"
+#include "solid_solver/equilibrium/small_strain.hpp"
+#include "solid_solver/equilibrium/updated_lagrangian.hpp"
 #include "solid_solver/method/solution_method.hpp"
 
 namespace couplet::solid {

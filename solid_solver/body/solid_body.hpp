@@ -11,8 +11,8 @@
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/boundary/boundaries.hpp"
 #include "solid_solver/boundary/rigid_patches.hpp"
-#include "solid_solver/contact/seat.hpp"
-#include "solid_solver/method/equilibrium.hpp"
+#include "solid_solver/boundary/seat.hpp"
+#include "solid_solver/equilibrium/equilibrium.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 #include "solid_solver/thermal/thermal_strain.hpp"
 

@@ -8,9 +8,9 @@
 
 #include "solid_solver/body/solid_body.hpp"
 #include "solid_solver/body/solid_state.hpp"
+#include "solid_solver/body/stress.hpp"
 #include "solid_solver/body/stress_recovery.hpp"
 #include "solid_solver/effects/evidence.hpp"
-#include "solid_solver/material/stress.hpp"
 
 namespace couplet::solid {
 

@@ -6,7 +6,7 @@
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/elasticity/symmetric/symmetric_space.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/material/stress.hpp"
+#include "solid_solver/body/stress.hpp"
 
 namespace couplet::solid {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "common/csv/csv_reader.hpp"
 #include "common/diagnostics/effect_rows.hpp"
-#include "solid_solver/effects/effect_cards.hpp"
+#include "solid_solver/effects.hpp"
 #include "solid_solver/method/solution_method.hpp"
 
 namespace couplet::solid {

@@ -7,8 +7,8 @@
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/mesh/topology.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/body/cell_moment.hpp"
-#include "solid_solver/material/stress.hpp"
+#include "solid_solver/body/quadratic_fit.hpp"
+#include "solid_solver/body/stress.hpp"
 
 namespace couplet::solid {
 namespace {

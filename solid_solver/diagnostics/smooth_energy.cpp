@@ -9,7 +9,7 @@
 #include "common/elasticity/vector_at.hpp"
 #include "common/mesh/topology.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/body/cell_moment.hpp"
+#include "solid_solver/body/quadratic_fit.hpp"
 
 namespace couplet::solid {
 namespace {

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "solid_solver/body/solid_body.hpp"
-#include "solid_solver/method/equilibrium.hpp"
+#include "solid_solver/equilibrium/equilibrium.hpp"
 
 namespace couplet::solid {
 

@@ -10,8 +10,8 @@
 #include "common/base/error.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/body/stress.hpp"
 #include "solid_solver/diagnostics/inner_variation.hpp"
-#include "solid_solver/material/stress.hpp"
 #include "solid_solver/method/solution_method.hpp"
 
 namespace couplet::solid {

@@ -6,9 +6,8 @@
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/log/log.hpp"
 #include "common/log/progress.hpp"
-#include "solid_solver/large_strain/load_path.hpp"
+#include "solid_solver/equilibrium/load_path.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
-#include "solid_solver/motion/history.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
 #include "solid_solver/motion/stage_contact.hpp"
 

@@ -8,7 +8,6 @@
 #include "common/base/text.hpp"
 #include "common/io/probes/probe.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/thermal/heat_answer.hpp"
 #include "solid_solver/thermal/heat_defects.hpp"
 
 namespace couplet::solid {

@@ -11,9 +11,9 @@
 #include "common/modes/modes_file.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/diagnostics/weighted_estimate.hpp"
+#include "solid_solver/output/buckling.hpp"
 #include "solid_solver/output/modal_analysis.hpp"
 #include "solid_solver/output/output.hpp"
-#include "solid_solver/stability/buckling.hpp"
 #include "solid_solver/stability/buckling_estimate.hpp"
 
 namespace couplet::solid {

@@ -7,16 +7,35 @@
 #include <vector>
 
 #include "common/io/fields/field_writer.hpp"
+#include "common/io/fields/surface_series.hpp"
 #include "common/io/series.hpp"
 #include "common/modes/pencil.hpp"
-#include "solid_solver/body/solid_context.hpp"
+#include "solid_solver/body/solid_body.hpp"
 #include "solid_solver/body/solid_fields.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
+#include "solid_solver/output/files.hpp"
 #include "solid_solver/output/probes.hpp"
 #include "solid_solver/output/stress_report.hpp"
-#include "solid_solver/output/surfaces.hpp"
 
 namespace couplet::solid {
+
+/// surface-<patch>.h5 of the patches in `output.surfaces`: displacement and stress at the points, traction of the faces, and
+/// what effects know there (temperature, heat flux).
+class SolidSurfaces {
+ public:
+  /// All by reference. Throws Error for a name that is no patch. Collective.
+  SolidSurfaces(const SolidFields& derived, const SolidBody& body, const SolidContext& context);
+  /// `points`: displacement of all local points; `places`: where they are. Collective.
+  void write(double time, std::span<const double> points, std::span<const Vec3> places);
+
+ private:
+  const SolidFields& derived_;
+  const SolidBody& body_;
+  const SolidContext& context_;
+  io::SurfaceSeries series_;
+  std::vector<std::uint8_t> wanted_;  // points with stress
+  bool is_open_ = false;
+};
 
 /// The files of a solid: fields, surfaces, probes.csv, reactions.csv, solver.csv. They are opened when first written
 /// to.

@@ -7,7 +7,7 @@
 #include "common/base/error.hpp"
 #include "common/io/probes/mesh_scale.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/material/stress.hpp"
+#include "solid_solver/body/stress.hpp"
 
 namespace couplet::solid {
 namespace {

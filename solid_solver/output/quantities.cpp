@@ -10,9 +10,9 @@
 #include "common/base/error.hpp"
 #include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/body/stress.hpp"
 #include "solid_solver/diagnostics/dual_problem.hpp"
 #include "solid_solver/diagnostics/local_quadratic.hpp"
-#include "solid_solver/material/stress.hpp"
 #include "solid_solver/output/stress_report.hpp"
 
 namespace couplet::solid {

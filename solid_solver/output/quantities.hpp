@@ -6,9 +6,9 @@
 
 #include "common/io/probes/probe.hpp"
 #include "solid_solver/body/solid_body.hpp"
-#include "solid_solver/body/solid_context.hpp"
 #include "solid_solver/body/solid_fields.hpp"
 #include "solid_solver/method/solution_method.hpp"
+#include "solid_solver/output/files.hpp"
 
 namespace couplet::solid {
 

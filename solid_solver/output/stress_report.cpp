@@ -8,7 +8,7 @@
 
 #include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/material/stress.hpp"
+#include "solid_solver/body/stress.hpp"
 
 namespace couplet::solid {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "solid_solver/body/solid_state.hpp"
 #include "solid_solver/method/solution_method.hpp"
-#include "solid_solver/stability/prestress.hpp"
+#include "solid_solver/output/buckling.hpp"
 
 namespace couplet::solid {
 

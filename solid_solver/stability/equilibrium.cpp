@@ -5,8 +5,8 @@
 
 #include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/large_strain/load_path.hpp"
-#include "solid_solver/stability/prestress.hpp"
+#include "solid_solver/equilibrium/load_path.hpp"
+#include "solid_solver/output/buckling.hpp"
 
 namespace couplet::solid {
 

@@ -11,7 +11,7 @@
 #include "fluid_solver/parameters/effect_cards.hpp"
 #include "plate_modal/effect_cards.hpp"
 #include "solid_solver/diagnostics/effects.hpp"
-#include "solid_solver/effects/effect_cards.hpp"
+#include "solid_solver/effects.hpp"
 #include "thermocline/judge/effects.hpp"
 
 namespace couplet::testing::cards_test {

@@ -11,7 +11,7 @@
 #include "common/base/error.hpp"
 #include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/large_strain/load_path.hpp"
+#include "solid_solver/equilibrium/load_path.hpp"
 #include "tests/support/saved_state.hpp"
 #include "tests/verification/solid/support.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/log/finding.hpp"
-#include "solid_solver/stability/buckling.hpp"
+#include "solid_solver/output/buckling.hpp"
 #include "solid_solver/stability/buckling_estimate.hpp"
 #include "tests/verification/solid/support.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "common/elasticity/finite/finite_kernel.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/large_strain/finite_strain.hpp"
+#include "solid_solver/equilibrium/finite_strain.hpp"
 #include "solid_solver/laws/laws.hpp"
 #include "tests/verification/solid/support.hpp"
 

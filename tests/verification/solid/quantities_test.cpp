@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/parallel/collective.hpp"
-#include "solid_solver/material/stress.hpp"
+#include "solid_solver/body/stress.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::quantities_test {
