@@ -57,12 +57,13 @@ void LoadPath::propose(double factor, std::vector<double> change, int iterations
   trial_ = {factor, 1, iterations, std::move(change)};
 }
 
-void LoadPath::accept(double time) {
+void LoadPath::accept(double time, double stiffness) {
   const double length = std::sqrt(product(trial_.change, trial_.change));
   see_limit(length, time);
   factor_before_ = now_.factor;
   length_before_ = length;
   now_ = trial_;
+  now_.stiffness = stiffness;
   travelled_ += length;
   largest_ = std::max(largest_, std::abs(now_.factor));
   const double wanted = std::sqrt(double(chosen_.iterations) / std::max(1, now_.iterations));

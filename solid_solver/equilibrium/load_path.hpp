@@ -33,9 +33,8 @@ class LoadPath {
   double length() const { return travelled_; }
   /// The largest load factor so far, by size.
   double largest_factor() const { return largest_; }
-  /// Lowest stiffness of the accepted equilibrium's tangent over that of the undeformed body; given between solve and acceptance.
+  /// Lowest stiffness of the accepted equilibrium's tangent over that of the undeformed body.
   double stiffness() const { return now_.stiffness; }
-  void set_stiffness(double lowest) { trial_.stiffness = lowest; }
   const std::vector<LimitPoint>& limits() const { return limits_; }
 
   double product(std::span<const double> a, std::span<const double> b) const;
@@ -44,8 +43,8 @@ class LoadPath {
   /// Length of the step that was predicted.
   double step_length() const { return step_; }
   void propose(double factor, std::vector<double> change, int iterations);
-  /// What was proposed is the state now, at `time`.
-  void accept(double time);
+  /// What was proposed is the state now, at `time`, with this lowest stiffness.
+  void accept(double time, double stiffness);
 
   /// `rows`: whose unknowns the changes are of.
   void save(io::CheckpointWriter& file, const elastic::ElasticOperator& rows) const;

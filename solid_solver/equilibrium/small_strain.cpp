@@ -202,14 +202,14 @@ void SmallStrain::to_strain(std::span<Tensor3> gradients) const {
 std::vector<Tensor3> SmallStrain::face_stress(const Displaced& state, Index first, Index count) {
   std::vector<Tensor3> stress = state.face_gradients(first, count);
   for (Index i = 0; i < count; ++i) stress[i] = rows_.stress(mesh_.owner[first + i], stress[i]);
-  for (const auto& effect : effects_) effect->add_face_stress(first, stress);
+  if (thermal_) thermal_->add_face_stress(first, stress);
   return stress;
 }
 
 std::vector<Tensor3> SmallStrain::cell_stress(const Displaced& state) {
   std::vector<Tensor3> stress = state.cell_gradients();
   for (std::size_t c = 0; c < stress.size(); ++c) stress[c] = rows_.stress(Index(c), stress[c]);
-  for (const auto& effect : effects_) effect->add_cell_stress(stress);
+  if (thermal_) thermal_->add_cell_stress(stress);
   // Across a 2-D scene: lambda tr(epsilon) in plane strain (it stands there already), nothing in plane
   // stress.
   if (mesh_.dim == 2 && parameters_.plane == SolidParameters::Plane::stress)

@@ -35,11 +35,11 @@ linalg::SolveStatistics solve_with_contact(const ContactProblem& problem, std::s
 /// A(u) = K u in the reference configuration, with the face gradient that was chosen.
 class SmallStrain final : public Equilibrium {
  public:
-  using Effects = std::vector<std::unique_ptr<ThermalStrain>>;
   /// All by reference.
   SmallStrain(const mesh::Mesh& mesh, const elastic::ElasticKernel& kernel,
-              const elastic::ElasticOperator& rows, const Effects& effects, const SolidParameters& parameters)
-      : mesh_(mesh), kernel_(kernel), rows_(rows), effects_(effects), parameters_(parameters) {}
+              const elastic::ElasticOperator& rows, const std::unique_ptr<ThermalStrain>& thermal,
+              const SolidParameters& parameters)
+      : mesh_(mesh), kernel_(kernel), rows_(rows), thermal_(thermal), parameters_(parameters) {}
 
   EquilibriumMeans means() const override {
     return {
@@ -65,7 +65,7 @@ class SmallStrain final : public Equilibrium {
   const mesh::Mesh& mesh_;
   const elastic::ElasticKernel& kernel_;
   const elastic::ElasticOperator& rows_;
-  const Effects& effects_;
+  const std::unique_ptr<ThermalStrain>& thermal_;  // made after it; nullptr: no temperature
   const SolidParameters& parameters_;
 };
 

@@ -209,7 +209,7 @@ std::vector<double> SolidLedger::mean_of_ends(const StageWork& work,
     std::vector<double> at_time(elastic_.n_unknowns(), 0);
     const std::vector<double> body = body_.body_forces(t);
     if (!body.empty()) kernel_.add_cell_forces(body, at_time);
-    for (const auto& effect : body_.effects()) effect->add_loads(t, kernel_, at_time);
+    if (body_.thermal()) body_.thermal()->add_loads(t, kernel_, at_time);
     std::vector<double> faces(std::size_t(mesh_.boundary.n_owned()) * mesh_.dim, 0);
     body_.boundaries().add_forces(t, faces);
     kernel_.add_face_forces(faces, at_time);

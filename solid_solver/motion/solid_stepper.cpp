@@ -97,7 +97,7 @@ void SolidStepper::start_from_rest() {
 void SolidStepper::apply_stiffness() {
   if (!body_.apply_stiffness()) return;
   systems_.clear();
-  for (const auto& effect : body_.effects()) effect->stiffness_changed();
+  body_.thermal()->stiffness_changed();
 }
 
 void SolidStepper::begin_step(const coupling::Step& step, bool has_loads) {
@@ -120,7 +120,7 @@ void SolidStepper::prepare_loads() {
   const std::vector<time::Stage> stages = stages_of(step_.dt);
   stages_.resize(stages.size());
   if (body_.equilibrium().load_path()) body_.set_load_factor(1);
-  for (const auto& effect : body_.effects()) effect->begin_step(step_);
+  if (body_.thermal()) body_.thermal()->begin_step(step_);
   apply_stiffness();
   for (std::size_t i = 0; i < stages.size(); ++i) {
     stages_[i].stage = stages[i];
@@ -164,18 +164,19 @@ void SolidStepper::update_trial_ghosts() {
 }
 
 void SolidStepper::accept_step() {
-  for (const auto& effect : body_.effects()) effect->accept_step();
+  if (body_.thermal()) body_.thermal()->accept_step();
   for (const StageWork& work : stages_)
     if (linalg::ResidualProjection* projection = work.system->projection()) projection->accept();
   body_.equilibrium().accept();
-  if (LoadPath* path = body_.equilibrium().load_path()) path->accept(trial_.time);
+  if (LoadPath* path = body_.equilibrium().load_path())
+    path->accept(trial_.time, body_.softest_motion(last_.unknowns, trial_.known).stiffness);
   std::swap(state_, trial_);
   body_.place_expansion(state_.time);
 }
 
 void SolidStepper::release_solver() {
-  // What is written next needs room; a dynamic run may be continued from it, with the same first guesses.
-  if (step_.is_last && !body_.is_dynamic()) {
+  // A dynamic run may be continued, with the same first guesses.
+  if (step_.is_last && !body_.is_dynamic() && !systems_.empty()) {
     systems_.clear();
     malloc_trim(0);  // a third of all that plate B of 294 912 cells held: in holes otherwise
   }

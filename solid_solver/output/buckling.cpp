@@ -33,26 +33,6 @@ double compression(const mesh::Mesh& mesh, const elastic::Prestress& prestress) 
   return -parallel::min(mesh.comm, least);
 }
 
-std::vector<double> any_start(const SolidBody& body) {
-  const mesh::Geometry& geometry = body.geometry();
-  const mesh::Mesh& mesh = body.mesh();
-  const mesh::Extent box = mesh::extent_of(mesh, geometry);
-  const double size = box.diagonal();
-  std::vector<double> start;
-  const auto add = [&](const Vec3& x) {
-    const Vec3 s = (x - box.lower) / size;
-    for (int a = 0; a < mesh.dim; ++a) {
-      double value = 0;
-      for (int k = 1; k <= 4; ++k)
-        value += std::sin(k * (2.1 * s[0] + 2.7 * s[1] + 3.3 * s[2]) + 0.7 + 1.9 * a + 0.37 * k) / (k * k);
-      start.push_back(value);
-    }
-  };
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) add(geometry.cell_centre[c]);
-  for (const Index f : body.elastic().unknown_faces()) add(geometry.face_centre[f]);
-  return start;
-}
-
 namespace {
 
 // Ratios sought beyond those wanted, for a gap in which the pivots are counted.

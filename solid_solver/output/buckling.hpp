@@ -16,10 +16,6 @@ elastic::Prestress prestress_of(const SolidBody& body, const SolidFields& fields
 /// The largest compression in it [Pa], at least 0. Collective.
 double compression(const mesh::Mesh& mesh, const elastic::Prestress& prestress);
 
-/// Forces on the rows of ElasticOperator without symmetry, smooth and the same on any number of ranks: where a search for a soft motion
-/// starts.
-std::vector<double> any_start(const SolidBody& body);
-
 /// (K + lambda K_sigma) x = 0: the given loads times lambda make the equilibrium of the linear theory neutral.
 struct Buckling {
   std::vector<double> factor;              ///< lambda above 0, ascending; empty: these loads buckle nothing

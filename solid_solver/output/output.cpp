@@ -45,7 +45,7 @@ void SolidSurfaces::write(double time, std::span<const double> points, std::span
   fields.add("traction", "Pa", Place::cells, dim, derived_.traction(places, stress));
   fields.add_tensor("stress", "Pa", Place::points, dim, stress);
   fields.add("equivalent-stress", "Pa", Place::points, 1, std::move(equivalent));
-  for (const auto& effect : body_.effects()) effect->add_surface_fields(fields.list);
+  if (ThermalStrain* thermal = body_.thermal()) thermal->add_surface_fields(fields.list);
   for (std::size_t i = 0; i < series_.patches().size(); ++i) series_.write(i, time, places, fields.list);
 }
 
@@ -121,7 +121,7 @@ void SolidOutput::write_volume(double time, std::span<const double> points, std:
     fields.add_tensor("strain", "-", Place::cells, dim, packed_cells(mesh, derived_.cell_strain(points)));
   if (chosen.point_stress)
     fields.add_tensor("point-stress", "Pa", Place::points, dim, derived_.point_stress(points));
-  for (const auto& effect : body_.effects()) effect->add_fields(fields.list);
+  if (ThermalStrain* thermal = body_.thermal()) thermal->add_fields(fields.list);
   fields_->write(time, places, fields.list);
 }
 

@@ -15,7 +15,6 @@
 #include "solid_solver/motion/solid_stepper.hpp"
 #include "solid_solver/output/files.hpp"
 #include "solid_solver/output/probes.hpp"
-#include "solid_solver/output/stress_report.hpp"
 
 namespace couplet::solid {
 
@@ -50,16 +49,15 @@ class SolidOutput {
   void write_series(double time, std::span<const double> points);
   /// spectrum.csv and a sentence in the log, for steps of dt. Collective.
   void write_spectrum(double dt);
-  /// modes.csv and, of a body in space, modes.h5; `estimates`: what the mesh leaves in the frequencies is told. Collective.
-  void write_modes(bool estimates);
-  /// Largest stress and those at probes with their errors, as findings; `mesh`: what the mesh leaves in the displacement. Collective.
-  void tell_stresses(double mesh) const {
-    solid::tell_stresses(body_.mesh().comm, reported_stresses(body_, derived_, probes_, mesh));
-  }
+  /// modes.csv and, of a body in space, modes.h5; in the log also what the mesh leaves in the frequencies. Collective.
+  void write_modes();
   /// modes.csv and modes.h5 of the accepted state of a linear static run. Collective.
   void write_preloaded_modes();
   /// buckling.csv, buckling.xdmf and a sentence in the log of its loads. Collective.
   void write_buckling();
+  /// The lowest load factor that write_buckling() found; none: not looked for, or the loads buckle nothing.
+  std::optional<double> buckling_factor() const { return buckling_factor_; }
+  const SolidProbes& probes() const { return probes_; }
 
  private:
   void write_volume(double time, std::span<const double> points, std::span<const Vec3> places);
@@ -78,6 +76,7 @@ class SolidOutput {
   const SolidContext& context_;
   SolidProbes probes_;
   bool spectrum_written_ = false, modes_written_ = false;
+  std::optional<double> buckling_factor_;
   std::optional<io::FieldWriter> fields_;
   std::optional<SolidSurfaces> surfaces_;
   // On rank 0.

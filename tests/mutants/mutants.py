@@ -49,7 +49,7 @@ MUTANTS = [
            "if (size == entry->size && digest_of_file(file) == entry->digest)", "if (size == entry->size)", "unit_app"),
     Mutant("a filler that never yields passively", "thermocline/wall/mechanics.cpp", "} else if (held >= highest) {",
            "} else if (held >= 1e9 * highest) {", "stability_thermocline"),
-    Mutant("a trapezoidal thermal shock that swings", "solid_solver/thermal/heat_swing.cpp", "if (turns_ < patience) return;",
+    Mutant("a trapezoidal thermal shock that swings", "solid_solver/diagnostics/heat.cpp", "if (turns_ < patience) return;",
            "if (turns_ < 1000 * patience) return;", "stability_solid_hard_cases", "ThermalShock.*"),
     # Physics that no test held.
     Mutant("quasi-Newton gives up a step's pairs too early", "coupler/acceleration/quasi_newton.cpp",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/diagnostics/dual_problem.hpp"
+#include "solid_solver/output/dual_problem.hpp"
 
 #include <algorithm>
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <mpi.h>
+#include <optional>
 
+#include "common/log/finding.hpp"
 #include "solid_solver/body/solid_state.hpp"
 #include "solid_solver/method/solution_method.hpp"
 #include "solid_solver/output/buckling.hpp"
@@ -23,10 +24,10 @@ struct BucklingEstimate {
   bool matters() const { return factor > 0 && (factor < imperfect || growth > most_growth); }
 };
 
-/// A finding, where `found` matters; `how` goes before its factor. Collective.
-void tell_buckling(MPI_Comm comm, const BucklingEstimate& found, const char* how);
-/// Of a body in motion, whose inertia may outlast a short load: never `wrong`. Collective.
-void tell_dynamic_buckling(MPI_Comm comm, const BucklingEstimate& found);
+/// The finding on it, where it matters; `how` goes before its factor.
+std::optional<log::Finding> buckling_finding(const BucklingEstimate& found, const char* how);
+/// The same of a body in motion, whose inertia may outlast a short load: never `wrong`.
+std::optional<log::Finding> dynamic_buckling_finding(const BucklingEstimate& found);
 
 /// Conjugate gradients on K + low K_sigma with the preconditioner of `method` meet a negative curvature where the factor is below
 /// `low`: one loose solution more. Nothing is done where the compression is far

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/stability/buckling_estimate.hpp"
+#include "solid_solver/diagnostics/buckling_estimate.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,6 @@
 #include <string>
 #include <utility>
 
-#include "common/log/finding.hpp"
 #include "common/modes/pencil.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
@@ -61,37 +60,36 @@ double growth_of(const SolidBody& body, const std::vector<double>& u, const std:
 
 }  // namespace
 
-void tell_dynamic_buckling(MPI_Comm comm, const BucklingEstimate& found) {
-  if (!found.matters()) return;
-  log::finding(parallel::comm_rank(comm),
-               {.id = "buckling",
-                .number = found.factor,
-                .limit = limit_of(found),
-                .sentence = fmt::format(
-                    "buckling: load factor at most {:.3g} (limit {:g}) of the last state: {}", found.factor,
-                    limit_of(found),
-                    found.factor < 1 ? "if these loads last, the body buckles; linear theory does not show it"
-                                     : neglected(found)),
-                .advice = "use 'kinematics: finite-strain'"});
+std::optional<log::Finding> dynamic_buckling_finding(const BucklingEstimate& found) {
+  if (!found.matters()) return {};
+  return log::Finding{
+      .id = "buckling",
+      .number = found.factor,
+      .limit = limit_of(found),
+      .sentence = fmt::format("buckling: load factor at most {:.3g} (limit {:g}) of the last state: {}",
+                              found.factor, limit_of(found),
+                              found.factor < 1
+                                  ? "if these loads last, the body buckles; linear theory does not show it"
+                                  : neglected(found)),
+      .advice = "use 'kinematics: finite-strain'"};
 }
 
-void tell_buckling(MPI_Comm comm, const BucklingEstimate& found, const char* how) {
-  if (!found.matters()) return;
+std::optional<log::Finding> buckling_finding(const BucklingEstimate& found, const char* how) {
+  if (!found.matters()) return {};
   const bool holds = found.factor >= 1;
   const double limit = holds ? limit_of(found) : 1;
-  log::finding(
-      parallel::comm_rank(comm),
-      {.id = "buckling",
-       .severity = holds ? base::Severity::warning : base::Severity::wrong,
-       .number = found.factor,
-       .limit = limit,
-       .sentence = fmt::format("buckling: load factor {}{:.3g} (limit {:g}): {}", how, found.factor, limit,
-                               holds ? neglected(found) : "the computed equilibrium is unstable"),
-       .advice =
-           holds
-               ? "use 'kinematics: finite-strain'; 'analysis: buckling' gives factors and shapes"
-               : "reduce the loads, stiffen the body or add supports; 'analysis: buckling' gives factors "
-                 "and shapes, 'kinematics: finite-strain' with a small lateral load the post-buckling state"});
+  return log::Finding{
+      .id = "buckling",
+      .severity = holds ? base::Severity::warning : base::Severity::wrong,
+      .number = found.factor,
+      .limit = limit,
+      .sentence = fmt::format("buckling: load factor {}{:.3g} (limit {:g}): {}", how, found.factor, limit,
+                              holds ? neglected(found) : "the computed equilibrium is unstable"),
+      .advice =
+          holds ? "use 'kinematics: finite-strain'; 'analysis: buckling' gives factors and shapes"
+                : "reduce the loads, stiffen the body or add supports; 'analysis: buckling' gives factors "
+                  "and shapes, 'kinematics: finite-strain' with a small lateral load the post-buckling "
+                  "state"};
 }
 
 BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fields, const SolidState& state,
@@ -108,7 +106,7 @@ BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fie
   if (!(here > more_compression * compression_seen)) return {};
   if (!(here / parallel::min(mesh.comm, softest) * ratio * ratio >= least_strain)) return {};
   // As forces, which soft motions answer to: what stiff ones leave would end the iteration before.
-  const std::vector<double> force = any_start(body);
+  const std::vector<double> force = body.any_start();
   std::vector<double> of_stress(force.size());
   if (!method.approximate_inverse(force, of_stress)) return {};
   compression_seen = here;

@@ -10,7 +10,15 @@
 #include "common/time/step_errors.hpp"
 #include "solid_solver/thermal/heat.hpp"
 
+namespace couplet::io {
+class Archive;
+}
+
 namespace couplet::solid {
+
+/// Root mean square over the volume of `width` values per owned cell. Collective.
+double root_mean_square(const mesh::Mesh& mesh, const mesh::Geometry& geometry, int width,
+                        std::span<const double> cells);
 
 /// What a run of heat conduction leaves in its temperature, over the size of the temperature's variation: its distance from
 /// the mean temperature before the first step, or of a steady field from its own mean.
@@ -21,16 +29,14 @@ class HeatErrors {
  public:
   /// `mesh` by reference.
   HeatErrors(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const HeatParameters& parameters);
-  /// Between solve and acceptance of a transient.
+  /// After a step of a transient.
   void see_step(const HeatState& before, const HeatState& now);
-  /// Of what was accepted; with `reference` [K] over the distance from that.
+  /// Error of the accepted temperature; with `reference` [K] over the distance from that.
   coupling::ErrorParts parts(const Heat& heat, std::optional<double> reference = {}) const;
-  /// For checkpoints, on the solid's mesh. Collective.
-  void save(io::CheckpointWriter& file) const;
-  void load(io::CheckpointReader& file);
+  /// On the solid's mesh. Collective.
+  void visit(io::Archive& archive);
 
  private:
-  double root_mean_square(std::span<const double> cells) const;
   double mean(std::span<const double> cells) const;
   double size(std::span<const double> temperature, double level) const;
   std::vector<double> gaps(const Heat& heat) const;
@@ -38,7 +44,7 @@ class HeatErrors {
   const mesh::Mesh& mesh_;
   const mesh::Geometry& geometry_;
   bool steady_;
-  double volume_ = 0, level_ = 0;  // of the body [m^3], before the first step [K]
+  double level_ = 0;  // before the first step [K]
   bool begun_ = false;
   std::vector<double> rate_;  // of the step before [K/s]; empty: not yet
   double dt_ = 0;             // of the step before; 0: not yet

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/diagnostics/inner_variation.hpp"
+#include "solid_solver/body/inner_variation.hpp"
 
 #include <algorithm>
 

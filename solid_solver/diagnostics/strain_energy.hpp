@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/base/severity.hpp"
+#include "solid_solver/diagnostics/view.hpp"
 
 namespace couplet::solid {
 
@@ -26,7 +27,6 @@ struct StrainAudit {
   double smooth_difference = 0;
   /// RecoveredStrain::missed() of the symmetric gradient.
   std::optional<double> recovered_difference;
-
   /// Share of the stiffness, and so of the displacement, that the mesh errs by: the most of these; in space the square of the
   /// difference of the gradients where that is less, and with the other gradients that alone.
   double missed_by_mesh(int dim) const;
@@ -49,32 +49,30 @@ struct StrainAudit {
   }
 };
 
-/// Energy that a dynamic run has found beside what it was given [J]; over all ranks.
-struct EnergyAudit {
-  double held = 0;        ///< kinetic and strain energy
-  double given = 0;       ///< initial energy and work of the loads
-  double scale = 0;       ///< most that was given so far
-  bool is_driven = true;  ///< loads did work: the balance holds as well as their work is known
-  double created() const { return scale > 0 ? (held - given) / scale : 0; }
-  /// Above these, motion grows out of nothing; an undriven body has nothing that could be in error but the motion.
-  static constexpr double most_created = 0.2, most_created_undriven = 0.1;
-  /// Above this, nothing of the answer is left: the run ends.
-  static constexpr double hopeless = 10;
-  // Not a number is more than all of them.
-  double limit() const { return is_driven ? most_created : most_created_undriven; }
-  bool is_doubtful() const { return !(created() <= limit()); }
-  /// More energy out of nothing than was brought in.
-  static constexpr double useless = 1;
-  base::Severity severity() const {
-    return created() < useless ? base::Severity::warning : base::Severity::wrong;
-  }
-  bool is_hopeless() const { return !(created() <= hopeless); }
-  /// What is held and what was given, with the growth in per cent.
-  std::string text() const;
-  template <class Numbers>
-  void visit(Numbers& numbers) {
-    numbers(held, given, scale, is_driven);
-  }
+/// Work against strain energy of the accepted state and, if asked for, one face gradient against another. Collective.
+StrainAudit audit_strain(const SolidView& view, bool compare_gradients);
+
+/// Tells a small strain whose stresses do another work than its strain energy says: after each step of a static run, in
+/// motion now and then.
+class StrainEnergy final : public diagnostics::Diagnostic {
+ public:
+  explicit StrainEnergy(const SolidView& view) : view_(view) {}
+  void observe(diagnostics::Report& report) override;
+  void look(diagnostics::Report& report) override;
+  void conclude(diagnostics::Report& report) override;
+  void visit(io::Archive& archive) override;
+  /// Audit of the accepted state, which is made once per step. Collective.
+  const StrainAudit& now(bool compare_gradients);
+
+ private:
+  SolidView view_;
+  std::optional<StrainAudit> latest_;
+  int steps_of_latest_ = -1;
+  std::optional<StrainAudit> worst_;  // the last doubtful one; the last one if none was doubtful
 };
+
+/// In motion the energies are looked at so often between outputs, too: growth out of nothing may come, or come and go,
+/// between two of them. A look costs less than a step.
+bool is_time_to_look(const SolidView& view);
 
 }  // namespace couplet::solid

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A solution judged by its own energy: work against strain energy, and one face gradient against another.
-#include "solid_solver/diagnostics/strain_audit.hpp"
+#include "solid_solver/diagnostics/strain_energy.hpp"
 
 #include <fmt/format.h>
 
@@ -8,13 +8,11 @@
 #include <array>
 #include <cmath>
 
-#include "common/base/error.hpp"
 #include "common/elasticity/vector_at.hpp"
+#include "common/io/archive.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/diagnostics/inner_variation.hpp"
-#include "solid_solver/diagnostics/judge.hpp"
+#include "solid_solver/body/inner_variation.hpp"
 #include "solid_solver/diagnostics/recovered_strain.hpp"
-#include "solid_solver/diagnostics/smooth_energy.hpp"
 
 namespace couplet::solid {
 namespace {
@@ -45,9 +43,7 @@ double work_on(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, con
 
 /// Thermal strain would count as a variation; a temperature that neither strains nor softens the body changes nothing.
 bool is_strained(const SolidBody& body) {
-  return std::ranges::any_of(body.effects(), [&](const auto& effect) {
-    return body.parameters().expansion.has_value() || !effect->stiffness().empty();
-  });
+  return body.thermal() && (body.parameters().expansion.has_value() || !body.thermal()->stiffness().empty());
 }
 
 /// What varies within the cells, where that can be told.
@@ -86,6 +82,18 @@ WithinCells within_cells(const mesh::Mesh& mesh, const SolidBody& body) {
   return within;
 }
 
+/// What equilibrium misses, times the displacement: where nothing is missing, a symmetric operator's strain
+/// energy is half of the loads' work. Static solves; this rank's part.
+double residual_work(const SolidView& view, std::span<const double> unknowns) {
+  const std::vector<double>& rhs = view.stepper.last_solve().rhs;
+  if (view.body.is_dynamic() || !view.stepper.last_solve().is_known(view.comm())) return 0;
+  std::vector<double> force(unknowns.size());
+  view.body.kernel().apply(unknowns, {}, force);
+  double work = 0;
+  for (std::size_t i = 0; i < force.size(); ++i) work += unknowns[i] * (rhs[i] - force[i]);
+  return work;
+}
+
 }  // namespace
 
 double StrainAudit::missed_by_mesh(int dim) const {
@@ -120,40 +128,35 @@ std::string StrainAudit::text() const {
   return text;
 }
 
-std::string EnergyAudit::text() const {
-  return fmt::format(
-      "the solid has {:.6g} J of kinetic and strain energy; loads and initial motion supplied {:.6g} J "
-      "({:+.2g} %)",
-      held, given, 100 * created());
-}
-
-/// Of a displacement in all local cells, boundary faces and points. Collective.
-StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compare) const {
-  const SolidState& state = stepper_.state();
-  const int dim = mesh_.dim;
+StrainAudit audit_strain(const SolidView& view, bool compare) {
+  const SolidBody& body = view.body;
+  const mesh::Mesh& mesh = body.mesh();
+  const mesh::Geometry& geometry = body.geometry();
+  const SolidState& state = view.now();
+  const std::vector<double> points = view.fields.point_displacement();
   StrainAudit audit;
   audit.compares_gradients = compare;
-  const Index n_faces = mesh_.n_flux_faces(), half = n_faces / 2;
+  const Index n_faces = mesh.n_flux_faces(), half = n_faces / 2;
   Index first = 0;  // face of the first of the strains below
   std::vector<std::array<float, 6>> strains(compare ? std::size_t(n_faces - half) : 0);
-  const std::vector<double> unknowns = body_.unknowns_of(state.cell_u, state.face_u);
-  const std::vector<double> known = body_.known_of({state.cell_u, state.face_u, points});
-  const elastic::ElasticOperator& rows = body_.elastic();
-  WithinCells within = compare ? within_cells(mesh_, body_) : WithinCells{};
-  const auto is_mine = [&](Index f) { return mesh_.owner[f] < mesh_.cells.n_owned(); };
+  const std::vector<double> unknowns = body.unknowns_of(state.cell_u, state.face_u);
+  const std::vector<double> known = body.known_of({state.cell_u, state.face_u, points});
+  const elastic::ElasticOperator& rows = body.elastic();
+  WithinCells within = compare ? within_cells(mesh, body) : WithinCells{};
+  const auto is_mine = [&](Index f) { return mesh.owner[f] < mesh.cells.n_owned(); };
   const auto volume = [&](Index f) {
-    return std::abs(geometry_.face_area[f].dot(line_of(mesh_, geometry_, f))) / dim;
+    return std::abs(geometry.face_area[f].dot(line_of(mesh, geometry, f))) / mesh.dim;
   };
   double energy = 0, work = 0, difference = 0, size = 0;
   const auto own = [&](Index f, const Tensor3& gradient) {
     within.add(f, gradient);
     if (!is_mine(f)) return;  // another rank's
-    const Tensor3 stress = rows.stress(mesh_.owner[f], gradient);
+    const Tensor3 stress = rows.stress(mesh.owner[f], gradient);
     energy += 0.5 * volume(f) * contraction(stress, gradient);
-    work += work_on(mesh_, rows, state, f, stress * geometry_.face_area[f]);
+    work += work_on(mesh, rows, state, f, stress * geometry.face_area[f]);
     if (!compare) return;
     const Tensor3 symmetric = 0.5 * (gradient + gradient.transpose());
-    size += volume(f) * rows.lame(mesh_.owner[f]).mu * symmetric.squaredNorm();
+    size += volume(f) * rows.lame(mesh.owner[f]).mu * symmetric.squaredNorm();
     std::ranges::copy(pack(symmetric), strains[f - first].begin());
   };
   const auto other = [&](Index f, const Tensor3& gradient) {
@@ -161,43 +164,74 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
     PackedTensor gap = pack(0.5 * (gradient + gradient.transpose()));
     if (is_axisymmetric(rows)) gap[2] = strains[f - first][2];  // it knows no hoop strain
     for (std::size_t i = 0; i < gap.size(); ++i) gap[i] -= strains[f - first][i];
-    difference += volume(f) * rows.lame(mesh_.owner[f]).mu * unpack(gap).squaredNorm();
+    difference += volume(f) * rows.lame(mesh.owner[f]).mu * unpack(gap).squaredNorm();
   };
   if (!compare) {
-    body_.kernel().face_gradients(unknowns, known, own, 0, n_faces);
+    body.kernel().face_gradients(unknowns, known, own, 0, n_faces);
   } else {
     // Half of the faces after the other: the run needs most memory here, and half of the strains is a fiftieth of it.
-    const elastic::ElasticKernel beside(mesh_, rows, other_scheme(body_.kernel().scheme()));
+    const elastic::ElasticKernel beside(mesh, rows, other_scheme(body.kernel().scheme()));
     for (const Index end : {half, n_faces}) {
-      body_.kernel().face_gradients(unknowns, known, own, first, end);
+      body.kernel().face_gradients(unknowns, known, own, first, end);
       beside.face_gradients(unknowns, known, other, first, end);
       first = end;
     }
-    difference = parallel::sum(mesh_.comm, difference);
-    size = parallel::sum(mesh_.comm, size);
+    difference = parallel::sum(mesh.comm, difference);
+    size = parallel::sum(mesh.comm, size);
   }
-  if (body_.kernel().is_symmetric()) {
+  if (body.kernel().is_symmetric()) {
     const elastic::ElasticField u{unknowns, known};
-    energy = 0.5 * body_.kernel().product(elastic::ElasticPart::stiffness, u, u);
-    work = energy + 0.5 * residual_work(unknowns);
+    energy = 0.5 * body.kernel().product(elastic::ElasticPart::stiffness, u, u);
+    work = energy + 0.5 * residual_work(view, unknowns);
   }
-  audit.strain_energy = parallel::sum(mesh_.comm, energy);
-  audit.stress_work = parallel::sum(mesh_.comm, work);
-  within.finish(body_.kernel(), {unknowns, known}, points, audit);
+  audit.strain_energy = parallel::sum(mesh.comm, energy);
+  audit.stress_work = parallel::sum(mesh.comm, work);
+  within.finish(body.kernel(), {unknowns, known}, points, audit);
   if (size > 0) audit.gradient_difference = std::sqrt(difference / size);
   return audit;
 }
 
-/// What equilibrium misses, times the displacement: where nothing is missing, a symmetric operator's strain
-/// energy is half of the loads' work. Static solves; this rank's part.
-double SolidJudge::residual_work(std::span<const double> unknowns) const {
-  const std::vector<double>& rhs = stepper_.last_solve().rhs;
-  if (body_.is_dynamic() || !stepper_.last_solve().is_known(mesh_.comm)) return 0;
-  std::vector<double> force(unknowns.size());
-  body_.kernel().apply(unknowns, {}, force);
-  double work = 0;
-  for (std::size_t i = 0; i < force.size(); ++i) work += unknowns[i] * (rhs[i] - force[i]);
-  return work;
+bool is_time_to_look(const SolidView& view) {
+  constexpr int steps_between = 50;
+  return view.body.is_dynamic() &&
+         (view.body.parameters().output.energies || view.now().steps % steps_between == 0);
+}
+
+const StrainAudit& StrainEnergy::now(bool compare_gradients) {
+  const bool holds =
+      latest_ && steps_of_latest_ == view_.now().steps && (latest_->compares_gradients || !compare_gradients);
+  if (!holds) latest_ = audit_strain(view_, compare_gradients);
+  steps_of_latest_ = view_.now().steps;
+  return *latest_;
+}
+
+void StrainEnergy::observe(diagnostics::Report& report) {
+  if (!view_.body.is_dynamic() || is_time_to_look(view_)) look(report);
+}
+
+void StrainEnergy::look(diagnostics::Report& report) {
+  const StrainAudit& audit = now(!view_.body.is_dynamic());
+  if (!worst_ || audit.is_doubtful() || !worst_->is_doubtful()) worst_ = audit;
+  if (!audit.is_doubtful()) return;
+  report.findings.push_back(
+      {.id = "strain-energy",
+       .severity = audit.severity(),
+       .number = audit.mismatch(),
+       .limit = StrainAudit::most_mismatch,
+       .sentence = fmt::format("error indicator: {}: displacement not reliable", audit.text()),
+       .advice = "refine the mesh, above all across the bending direction; typical causes: cells elongated "
+                 "along it, few tetrahedra or prisms across, nu near 0.5"});
+}
+
+void StrainEnergy::conclude(diagnostics::Report& report) {
+  if (worst_)
+    report.sentences.push_back(
+        fmt::format("error indicator: {}{}.", worst_->text(), worst_->is_doubtful() ? "; NOT reliable" : ""));
+}
+
+void StrainEnergy::visit(io::Archive& archive) {
+  archive.common("audit", worst_);
+  if (archive.reads()) latest_.reset();
 }
 
 }  // namespace couplet::solid

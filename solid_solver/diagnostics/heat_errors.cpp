@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/thermal/heat_errors.hpp"
+#include "solid_solver/diagnostics/heat_errors.hpp"
 
 #include <Eigen/Dense>
-#include <array>
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "common/io/checkpoint.hpp"
+#include "common/io/archive.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::solid {
@@ -41,27 +40,34 @@ HeatErrors::HeatErrors(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
     : mesh_(mesh),
       geometry_(geometry),
       steady_(parameters.analysis == HeatParameters::Analysis::steady),
-      steps_(scheme_of(parameters.scheme)) {
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume_ += geometry.volume[c];
-  volume_ = parallel::sum(mesh.comm, volume_);
-}
+      steps_(scheme_of(parameters.scheme)) {}
 
-double HeatErrors::root_mean_square(std::span<const double> cells) const {
-  double squares = 0;
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) squares += geometry_.volume[c] * cells[c] * cells[c];
-  return std::sqrt(parallel::sum(mesh_.comm, squares) / volume_);
+double root_mean_square(const mesh::Mesh& mesh, const mesh::Geometry& geometry, int width,
+                        std::span<const double> cells) {
+  double squares = 0, volume = 0;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+    volume += geometry.volume[c];
+    for (int a = 0; a < width; ++a) {
+      const double value = cells[std::size_t(c) * width + a];
+      squares += geometry.volume[c] * value * value;
+    }
+  }
+  return std::sqrt(parallel::sum(mesh.comm, squares) / parallel::sum(mesh.comm, volume));
 }
 
 double HeatErrors::mean(std::span<const double> cells) const {
-  double whole = 0;
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) whole += geometry_.volume[c] * cells[c];
-  return parallel::sum(mesh_.comm, whole) / volume_;
+  double whole = 0, volume = 0;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    whole += geometry_.volume[c] * cells[c];
+    volume += geometry_.volume[c];
+  }
+  return parallel::sum(mesh_.comm, whole) / parallel::sum(mesh_.comm, volume);
 }
 
 double HeatErrors::size(std::span<const double> temperature, double level) const {
   std::vector<double> above(temperature.begin(), temperature.begin() + mesh_.cells.n_owned());
   for (double& t : above) t -= level;
-  return root_mean_square(above);
+  return root_mean_square(mesh_, geometry_, 1, above);
 }
 
 void HeatErrors::see_step(const HeatState& before, const HeatState& now) {
@@ -74,8 +80,9 @@ void HeatErrors::see_step(const HeatState& before, const HeatState& now) {
   if (dt_ > 0 && rate_.size() != n)
     throw Error("The checkpoint's step errors are from another mesh. Use an earlier checkpoint.");
   if (dt_ > 0)  // the same on all ranks, also on one without cells
-    steps_.add(rate_, rate, 0.5 * (now.dt + dt_), dt_, size(now.cells, level_),
-               [this](std::span<const double> cells) { return root_mean_square(cells); });
+    steps_.add(
+        rate_, rate, 0.5 * (now.dt + dt_), dt_, size(now.cells, level_),
+        [this](std::span<const double> cells) { return root_mean_square(mesh_, geometry_, 1, cells); });
   rate_ = std::move(rate);
   dt_ = now.dt;
 }
@@ -111,25 +118,17 @@ coupling::ErrorParts HeatErrors::parts(const Heat& heat, std::optional<double> r
   const double size = reference ? this->size(now.cells, *reference) : varies;
   if (!(varies > 1e-12 * std::abs(level)) || !(size > 1e-12 * std::abs(level)))
     return parts;  // one temperature: nothing errs
-  parts.mesh = root_mean_square(gaps(heat)) / size;
+  parts.mesh = root_mean_square(mesh_, geometry_, 1, gaps(heat)) / size;
   if (!steady_) parts.step = steps_.over_size() * varies / size;
   return parts;
 }
 
-void HeatErrors::save(io::CheckpointWriter& file) const {
-  file.write_common("heat-errors", std::array{begun_ ? 1. : 0., level_, dt_});
-  file.write_common("heat-error-steps", steps_.numbers());
-  file.write(mesh::Entries::owned_cells, "heat-error-rate-before", steps_.before());
-  file.write(mesh::Entries::owned_cells, "heat-error-rate", rate_);
-}
-
-void HeatErrors::load(io::CheckpointReader& file) {
-  std::array<double, 3> numbers{};
-  file.read_common("heat-errors", numbers);
-  begun_ = numbers[0] != 0, level_ = numbers[1], dt_ = numbers[2];
-  const std::vector<double> steps = file.read_common("heat-error-steps");
-  steps_.restore(steps, file.read_or_none(mesh::Entries::owned_cells, "heat-error-rate-before", 1));
-  rate_ = file.read_or_none(mesh::Entries::owned_cells, "heat-error-rate", 1);
+void HeatErrors::visit(io::Archive& archive) {
+  std::vector<double> numbers = steps_.numbers(), before(steps_.before().begin(), steps_.before().end());
+  archive.common("heat", begun_, level_, dt_, numbers);
+  archive.field(mesh::Entries::owned_cells, "heat-rate-before", before, 1);
+  archive.field(mesh::Entries::owned_cells, "heat-rate", rate_, 1);
+  if (archive.reads()) steps_.restore(numbers, before);
 }
 
 }  // namespace couplet::solid
