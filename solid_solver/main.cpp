@@ -5,9 +5,7 @@
 #include "common/app/program.hpp"
 #include "common/io/cut/cut_mesh.hpp"
 #include "common/linalg/petsc.hpp"
-#include "solid_solver/diagnostics/table.hpp"
-#include "solid_solver/effects/auto_effects.hpp"
-#include "solid_solver/effects/effect_cards.hpp"
+#include "solid_solver/effects.hpp"
 #include "solid_solver/solid.hpp"
 #include "solid_solver/thermal_solid.hpp"
 
@@ -44,7 +42,13 @@ int main(int argc, char** argv) {
           return std::make_unique<couplet::solid::ThermalSolid>(std::move(body), parameters, where);
         return std::make_unique<couplet::solid::Solid>(std::move(body), parameters, where);
       },
-      .diagnose = couplet::solid::add_diagnostics,
+      .diagnose =
+          [&](couplet::coupling::Participant& participant, couplet::diagnostics::Diagnostics& all) {
+            if (parameters.analysis == couplet::solid::SolidParameters::Analysis::thermal)
+              add_diagnostics(static_cast<couplet::solid::ThermalSolid&>(participant).view(), all);
+            else
+              add_diagnostics(static_cast<couplet::solid::Solid&>(participant).view(), all);
+          },
       .environment = couplet::linalg::petsc_environment,
       .effects =
           [&](const couplet::effects::EffectScene&) {

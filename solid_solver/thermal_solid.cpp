@@ -3,7 +3,6 @@
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
-#include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/output/heat_quantities.hpp"
 #include "solid_solver/thermal/thermal_strain.hpp"
@@ -42,14 +41,11 @@ coupling::Exchange ThermalSolid::solve(const coupling::Exchange&) {
 void ThermalSolid::save(io::CheckpointWriter& file) const {
   file.on(mesh_);
   heat_->save(file);
-  file.write_scalar("has-errors", errors_ ? 1 : 0);
-  if (errors_) errors_->save(file);
 }
 
 void ThermalSolid::load(io::CheckpointReader& file) {
   file.on(mesh_);
   heat_->load(file);
-  if (file.read_scalar("has-errors") != 0 && errors_) errors_->load(file);
 }
 
 void ThermalSolid::write_output(double time, int number) {
@@ -110,19 +106,6 @@ void ThermalSolid::write_heat(double time) {
     heat_series_.emplace(context_.output_folder / "heat.csv", columns, context_.restart_time);
   }
   heat_series_->row(row);
-}
-
-std::vector<std::string> ThermalSolid::finish() {
-  std::vector<std::string> sentences;
-  heat_->judge(sentences);
-  if (parameters_.quantities.empty() || heat_->accepted().steps == 0) return sentences;
-  try {
-    quantities_ = estimate_heat_quantities(*heat_, parameters_.quantities);
-  } catch (const SolveFailure& failure) {
-    log::warn("quantities: the estimate failed: {}", failure.what());
-  }
-  tell_quantities(mesh_.comm, context_, quantities_);
-  return sentences;
 }
 
 }  // namespace couplet::solid

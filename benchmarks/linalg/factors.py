@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Factors beside multigrid for a body in motion: processor seconds of set-up and of a step, and after how many steps the factors
-are the cheaper ones; solid_solver/method/factor_cost.cpp estimates the same from the mesh. --write: factors.csv."""
+are the cheaper ones; solid_solver/method/solution_method.cpp estimates the same from the mesh. --write: factors.csv."""
 import argparse
 import pathlib
 import resource

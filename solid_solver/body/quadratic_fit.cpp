@@ -3,7 +3,15 @@
 
 #include <Eigen/Cholesky>
 
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "common/mesh/topology.hpp"
+#include "common/parallel/collective.hpp"
+
 namespace couplet::solid {
+
 namespace {
 
 // Over the sum of the weights; in units of the scale a well-placed sample adds some 0.1 to each.
@@ -71,6 +79,66 @@ void QuadraticFit::solve() {
     right_of_rows_.segment(k * n, n) += right_.col(k);
   }
   coefficients_ = of_rows_.llt().solve(right_of_rows_).reshaped(n, right_.cols());
+}
+
+namespace {
+
+/// Of the mean over the vertices, in that over the volume: exact for simplices and boxes.
+double share_of_vertices(mesh::CellType type) {
+  switch (type) {
+    case mesh::CellType::triangle:
+      return 1. / 4;
+    case mesh::CellType::tetrahedron:
+      return 1. / 5;
+    case mesh::CellType::prism:
+    case mesh::CellType::pyramid:
+      return 7. / 24;
+    default:
+      return 1. / 3;
+  }
+}
+
+}  // namespace
+
+Tensor3 cell_moment(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index cell) {
+  Tensor3 moment = Tensor3::Zero();
+  for (const Index v : mesh.cell_points[cell]) {
+    const Vec3 arm = geometry.points[v] - geometry.cell_centre[cell];
+    moment += arm * arm.transpose();
+  }
+  return moment * (share_of_vertices(mesh.cell_type[cell]) / double(mesh.cell_points[cell].size()));
+}
+
+void gather_cells(const mesh::Mesh& mesh, const mesh::Csr& cells_of_point, Index cell,
+                  std::vector<Index>& mark, std::vector<Index>& cells) {
+  for (const Index v : mesh.cell_points[cell])
+    for (const Index c : cells_of_point[v]) {
+      if (mark[std::size_t(c)] == cell || mesh.material_of(c) != mesh.material_of(cell)) continue;
+      mark[std::size_t(c)] = cell;
+      cells.push_back(c);
+    }
+}
+
+mesh::Csr boundary_faces_of_cells(const mesh::Mesh& mesh) {
+  mesh::Csr owners;
+  for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f) owners.push_row({&mesh.owner[f], 1});
+  mesh::Csr faces = mesh::transpose(owners, 0, mesh.cells.n_local());
+  for (Index& f : faces.index) f += mesh.n_interior;
+  return faces;
+}
+
+std::vector<double> medians(const mesh::Mesh& mesh, const std::vector<PointShare>& shares,
+                            std::span<const std::uint8_t> wanted) {
+  std::vector<PointShare> all = parallel::all_gather(mesh.comm, shares);
+  std::ranges::sort(all, {}, [](const PointShare& s) { return std::pair(s.point, s.share); });
+  std::vector<double> result(wanted.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t v = 0; v < wanted.size(); ++v) {
+    if (!wanted[v]) continue;
+    const auto own = std::ranges::equal_range(all, mesh.point_id[v], {}, &PointShare::point);
+    if (const std::size_t n = own.size(); n > 0)
+      result[v] = 0.5 * (own[(n - 1) / 2].share + own[n / 2].share);
+  }
+  return result;
 }
 
 }  // namespace couplet::solid

@@ -2,9 +2,13 @@
 #pragma once
 
 #include <Eigen/Core>
+
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "common/base/types.hpp"
+#include "common/mesh/mesh.hpp"
 
 namespace couplet::solid {
 
@@ -44,5 +48,25 @@ class QuadraticFit {
   Eigen::MatrixXd of_rows_, coefficients_;  // (components terms)^2
   Eigen::VectorXd right_of_rows_;
 };
+
+/// Mean of (x - x_c) (x - x_c)^T over a local cell [m^2], from its vertices: exact for simplices and boxes.
+Tensor3 cell_moment(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index cell);
+/// Appends the local cells that share a vertex with `cell` and have its material, itself among them. `mark`: per local cell for which
+/// cell it was last gathered, at first -1.
+void gather_cells(const mesh::Mesh& mesh, const mesh::Csr& cells_of_point, Index cell,
+                  std::vector<Index>& mark, std::vector<Index>& cells);
+/// Boundary faces of each local cell, counted among all faces.
+mesh::Csr boundary_faces_of_cells(const mesh::Mesh& mesh);
+
+/// One of several numbers that belong to a point.
+struct PointShare {
+  GlobalIndex point;  ///< Mesh::point_id
+  double share;
+};
+
+/// Of each `wanted` local point the median of the shares that all ranks found for it; NaN of other points and where there are none.
+/// Few points. Collective.
+std::vector<double> medians(const mesh::Mesh& mesh, const std::vector<PointShare>& shares,
+                            std::span<const std::uint8_t> wanted);
 
 }  // namespace couplet::solid

@@ -2,15 +2,15 @@
 #include "solid_solver/body/solid_body.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/body/small_strain.hpp"
-#include "solid_solver/boundary/mesh_checks.hpp"
-#include "solid_solver/boundary/rigid_modes.hpp"
-#include "solid_solver/large_strain/finite_strain.hpp"
-#include "solid_solver/large_strain/updated_lagrangian.hpp"
+#include "solid_solver/boundary/checks.hpp"
+#include "solid_solver/equilibrium/finite_strain.hpp"
+#include "solid_solver/equilibrium/small_strain.hpp"
+#include "solid_solver/equilibrium/updated_lagrangian.hpp"
 #include "solid_solver/method/solution_method.hpp"
 
 namespace couplet::solid {
@@ -45,10 +45,10 @@ elastic::FaceGradientScheme scheme_for(const mesh::Mesh& mesh, const SolidParame
 
 std::unique_ptr<Equilibrium> make_equilibrium(const mesh::Mesh& mesh, const elastic::ElasticKernel& kernel,
                                               const elastic::ElasticOperator& rows,
-                                              const SmallStrain::Effects& effects,
+                                              const std::unique_ptr<ThermalStrain>& thermal,
                                               const SolidParameters& parameters) {
   if (!has_finite_strain(parameters))
-    return std::make_unique<SmallStrain>(mesh, kernel, rows, effects, parameters);
+    return std::make_unique<SmallStrain>(mesh, kernel, rows, thermal, parameters);
   if (parameters.method.type == MethodParameters::Type::segregated)
     return std::make_unique<UpdatedLagrangian>(mesh, rows, parameters);
   return std::make_unique<FiniteStrain>(mesh, rows, parameters);
@@ -85,14 +85,14 @@ SolidBody::SolidBody(mesh::LoadedMesh body, SolidParameters parameters)
       prescribed_(mesh_, boundaries_, elastic_),
       rigid_(mesh_, elastic_, boundaries_.rigid_faces()) {
   check_supports();
-  equilibrium_ = make_equilibrium(mesh_, kernel_, elastic_, effects_, parameters_);
+  equilibrium_ = make_equilibrium(mesh_, kernel_, elastic_, thermal_, parameters_);
   find_mass();
   if (parameters_.contact) make_seat();
   if (!parameters_.body_force.empty())
     body_force_ = fv::make_expressions(parameters_.body_force, mesh_.dim, "body-force");
   if (parameters_.heat || parameters_.temperature ||
       (parameters_.interface_data && parameters_.interface_data->temperature))
-    effects_.push_back(std::make_unique<ThermalStrain>(mesh_, elastic_, parameters_));
+    thermal_ = std::make_unique<ThermalStrain>(mesh_, elastic_, parameters_);
 }
 
 void SolidBody::check_supports() const {
@@ -142,20 +142,16 @@ void SolidBody::find_mass() {
 }
 
 bool SolidBody::apply_stiffness() {
-  bool changed = false;
-  for (const auto& effect : effects_) {
-    const auto lame = effect->stiffness();
-    if (lame.empty()) continue;
-    changed = true;
-    elastic_.set_lame({lame.begin(), lame.end()});
-    kernel_ = elastic::ElasticKernel(mesh_, elastic_, kernel_.scheme());
-    find_mass();
-  }
-  return changed;
+  const auto lame = thermal_ ? thermal_->stiffness() : std::span<const elastic::LameConstants>{};
+  if (lame.empty()) return false;
+  elastic_.set_lame({lame.begin(), lame.end()});
+  kernel_ = elastic::ElasticKernel(mesh_, elastic_, kernel_.scheme());
+  find_mass();
+  return true;
 }
 
 void SolidBody::place_expansion(double t) const {
-  for (const auto& effect : effects_) equilibrium_->set_expansion([&] { return effect->expansion(t); });
+  if (thermal_) equilibrium_->set_expansion([&] { return thermal_->expansion(t); });
 }
 
 std::vector<double> SolidBody::scaled(std::vector<double> values) const {
@@ -201,6 +197,30 @@ std::vector<double> SolidBody::known_velocity(double start, double dt) const {
   prescribed_.evaluate(start + dt, after);
   for (std::size_t i = 0; i < after.size(); ++i) after[i] = (after[i] - before[i]) / dt;
   return after;
+}
+
+SoftMotion SolidBody::softest_motion(std::span<const double> unknowns, std::span<const double> known) const {
+  return equilibrium_->lowest_stiffness(
+      unknowns, known, [this](std::span<const double> x, std::span<double> y) { kernel_.apply(x, {}, y); },
+      any_start());
+}
+
+std::vector<double> SolidBody::any_start() const {
+  const mesh::Extent box = mesh::extent_of(mesh_, geometry_);
+  const double size = box.diagonal();
+  std::vector<double> start;
+  const auto add = [&](const Vec3& x) {
+    const Vec3 s = (x - box.lower) / size;
+    for (int a = 0; a < mesh_.dim; ++a) {
+      double value = 0;
+      for (int k = 1; k <= 4; ++k)
+        value += std::sin(k * (2.1 * s[0] + 2.7 * s[1] + 3.3 * s[2]) + 0.7 + 1.9 * a + 0.37 * k) / (k * k);
+      start.push_back(value);
+    }
+  };
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) add(geometry_.cell_centre[c]);
+  for (const Index f : elastic_.unknown_faces()) add(geometry_.face_centre[f]);
+  return start;
 }
 
 bool SolidBody::wants_acceleration() const {

@@ -11,8 +11,8 @@
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/boundary/boundaries.hpp"
 #include "solid_solver/boundary/rigid_patches.hpp"
-#include "solid_solver/contact/seat.hpp"
-#include "solid_solver/method/equilibrium.hpp"
+#include "solid_solver/boundary/seat.hpp"
+#include "solid_solver/equilibrium/equilibrium.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 #include "solid_solver/thermal/thermal_strain.hpp"
 
@@ -48,9 +48,8 @@ class SolidBody final {
   /// What its faces may meet; null: nothing.
   const Seat* seat() const { return seat_.get(); }
   const PrescribedDisplacement& prescribed() const { return prescribed_; }
-  /// Those that the scene has.
-  /// Thermal strain, if the scene has temperatures.
-  const std::vector<std::unique_ptr<ThermalStrain>>& effects() const { return effects_; }
+  /// Temperature and the load it makes; nullptr if the scene has no temperature.
+  ThermalStrain* thermal() const { return thermal_.get(); }
   /// The kernel has its own mass, and all its nodes inertia.
   bool has_mass() const { return has_mass_; }
   bool is_dynamic() const { return parameters_.analysis == SolidParameters::Analysis::dynamic; }
@@ -60,11 +59,16 @@ class SolidBody final {
   /// [kg/m^3]
   double density(Index cell) const { return materials_[mesh_.material_of(cell)].density; }
 
-  /// Takes the elastic constants that an effect has changed; true: all that was made for the old ones is of no
-  /// use any more. Collective.
+  /// Takes the elastic constants that the temperature has changed; true if all that was made for the old ones is
+  /// of no use any more. Collective.
   bool apply_stiffness();
   /// Adds the loads of the boundaries at time t that the equilibrium does not take as pressures, as SolidBoundaries does.
   void add_dead_loads(double t, std::span<double> forces) const { add_scaled_loads(t, forces); }
+  /// See Equilibrium::lowest_stiffness(). Collective.
+  SoftMotion softest_motion(std::span<const double> unknowns, std::span<const double> known) const;
+  /// Forces on the rows of elastic() without symmetry, smooth and the same on any number of ranks: the start of a search
+  /// for a soft motion. Collective.
+  std::vector<double> any_start() const;
   /// By which all loads but prescribed displacements are multiplied from here on.
   void set_load_factor(double factor) { load_factor_ = factor; }
   /// It knows the pressures at time t that follow the surface. Collective.
@@ -118,7 +122,7 @@ class SolidBody final {
   PrescribedDisplacement prescribed_;
   RigidPatches rigid_;
   std::vector<fv::Expression> body_force_;
-  std::vector<std::unique_ptr<ThermalStrain>> effects_;
+  std::unique_ptr<ThermalStrain> thermal_;  // nullptr: no temperature
 };
 
 }  // namespace couplet::solid

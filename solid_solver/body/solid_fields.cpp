@@ -156,13 +156,12 @@ DiscreteStress SolidFields::discrete_stress(std::span<const double> points) cons
                        state_.cell_u,
                        state_.face_u,
                        known_tractions()};
-  if (body_.effects().empty()) return found;
+  const ThermalStrain* thermal = body_.thermal();
+  if (!thermal) return found;
   found.other_in_cells.assign(found.cells.size(), Tensor3::Zero());
   found.other_on_faces.assign(found.faces.size(), Tensor3::Zero());
-  for (const auto& effect : body_.effects()) {
-    effect->add_cell_stress(found.other_in_cells);
-    effect->add_face_stress(mesh_.n_interior, found.other_on_faces);
-  }
+  thermal->add_cell_stress(found.other_in_cells);
+  thermal->add_face_stress(mesh_.n_interior, found.other_on_faces);
   return found;
 }
 

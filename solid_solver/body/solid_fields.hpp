@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -8,9 +9,8 @@
 
 #include "solid_solver/body/solid_body.hpp"
 #include "solid_solver/body/solid_state.hpp"
+#include "solid_solver/body/stress.hpp"
 #include "solid_solver/body/stress_recovery.hpp"
-#include "solid_solver/effects/evidence.hpp"
-#include "solid_solver/material/stress.hpp"
 
 namespace couplet::solid {
 
@@ -18,6 +18,14 @@ namespace couplet::solid {
 /// the deformed ones.
 struct PatchForce : elastic::Wrench {
   std::string patch;
+};
+
+/// The largest at any face of what a displacement does; NaN: not known.
+struct Deformation {
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  double gradient = unknown;  ///< Frobenius norm
+  double strain = unknown;    ///< likewise
+  double rotation = unknown;  ///< angle [rad]
 };
 
 /// What follows from the accepted state. `points`: as point_displacement() gives them. All is collective.
@@ -52,10 +60,7 @@ class SolidFields final {
   std::vector<PatchForce> reactions(std::span<const double> points) const;
   /// All loads of the last solve: tractions, pressures, interface, body forces.
   Vec3 total_load() const;
-  /// Largest displacement gradient, strain and rotation at any face.
-  SolidEvidence deformation(std::span<const double> points) const;
-  /// Largest equivalent stress (von Mises) over the yield strength, where that is known; else NaN.
-  double share_of_yield(std::span<const double> points) const;
+  Deformation deformation(std::span<const double> points) const;
 
  private:
   BodyField displacement(std::span<const double> points) const {

@@ -67,11 +67,7 @@ elastic::ElasticLoads SolidFields::loads_now() const {
   for (std::size_t i = 0; i < last_.interface.size(); ++i) loads.faces[i] += last_.interface[i];
   if (body_.seat() && !last_.contact.empty()) body_.seat()->add_to_faces(last_.contact, loads.faces);
   loads.cells = body_.body_forces(state_.time);
-  for (const auto& effect : body_.effects()) {
-    const std::vector<double> pressure = effect->pressure(state_.time);
-    if (loads.pressure.empty()) loads.pressure.resize(pressure.size(), 0);
-    for (std::size_t i = 0; i < pressure.size(); ++i) loads.pressure[i] += pressure[i];
-  }
+  if (ThermalStrain* thermal = body_.thermal()) loads.pressure = thermal->pressure(state_.time);
   return loads;
 }
 
@@ -81,7 +77,7 @@ Vec3 SolidFields::total_load() const {
   return load;
 }
 
-SolidEvidence SolidFields::deformation(std::span<const double> points) const {
+Deformation SolidFields::deformation(std::span<const double> points) const {
   double gradient = 0, strain = 0, rotation = 0;
   body_.visit_gradients(displacement(points), [&](Index, const Tensor3& g) {
     gradient = std::max(gradient, g.squaredNorm());
@@ -89,24 +85,9 @@ SolidEvidence SolidFields::deformation(std::span<const double> points) const {
     rotation = std::max(rotation, (0.5 * (g - g.transpose())).squaredNorm());
   });
   // The skew part of a rotation by a small angle phi holds phi twice.
-  return {.largest_gradient = parallel::max(mesh_.comm, std::sqrt(gradient)),
-          .largest_strain = parallel::max(mesh_.comm, std::sqrt(strain)),
-          .largest_rotation = parallel::max(mesh_.comm, std::sqrt(rotation / 2))};
-}
-
-double SolidFields::share_of_yield(std::span<const double> points) const {
-  if (std::ranges::none_of(body_.materials(),
-                           [](const SolidMaterial& m) { return m.yield_strength.has_value(); }))
-    return SolidEvidence::unknown;
-  const std::vector<Tensor3> stress = face_stress(0, mesh_.n_flux_faces(), points);
-  double share = 0;
-  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    const auto& yield = body_.materials()[mesh_.material_of(mesh_.owner[f])].yield_strength;
-    if (!yield) continue;
-    const Tensor3 deviator = stress[f] - stress[f].trace() / 3 * Tensor3::Identity();
-    share = std::max(share, std::sqrt(1.5) * deviator.norm() / *yield);
-  }
-  return parallel::max(mesh_.comm, share);
+  return {.gradient = parallel::max(mesh_.comm, std::sqrt(gradient)),
+          .strain = parallel::max(mesh_.comm, std::sqrt(strain)),
+          .rotation = parallel::max(mesh_.comm, std::sqrt(rotation / 2))};
 }
 
 }  // namespace couplet::solid

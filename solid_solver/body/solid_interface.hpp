@@ -22,7 +22,7 @@ class SolidInterface final {
   const coupling::Interface& description() const { return description_; }
   /// A temperature comes with the load, so that the loads it makes cannot be prepared before.
   bool takes_temperature() const { return takes_temperature_; }
-  /// Hands the temperature that was given to the effects. Collective.
+  /// Hands on the temperature that was given. Collective.
   void take_temperature(const coupling::Exchange& in) const;
   /// Sum of the given forces, `dim` values a boundary face of owned cells; empty without interface.
   std::vector<double> load(const coupling::Exchange& in) const;

@@ -8,8 +8,7 @@
 
 #include "common/elasticity/vector_at.hpp"
 #include "common/mesh/topology.hpp"
-#include "solid_solver/body/cell_moment.hpp"
-#include "solid_solver/body/point_medians.hpp"
+#include "solid_solver/body/quadratic_fit.hpp"
 
 namespace couplet::solid {
 namespace {

@@ -8,7 +8,7 @@
 #include "common/elasticity/elasticity.hpp"
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/body/quadratic_fit.hpp"
-#include "solid_solver/material/stress.hpp"
+#include "solid_solver/body/stress.hpp"
 
 namespace couplet::solid {
 

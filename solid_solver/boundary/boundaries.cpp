@@ -7,7 +7,7 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/boundary/point_loads.hpp"
+#include "solid_solver/boundary/loads.hpp"
 
 namespace couplet::solid {
 namespace {

@@ -9,9 +9,7 @@
 #include "common/elasticity/elasticity.hpp"
 #include "common/fv/expression.hpp"
 #include "common/mesh/mesh.hpp"
-#include "solid_solver/boundary/bearing_load.hpp"
-#include "solid_solver/boundary/distributed_force.hpp"
-#include "solid_solver/boundary/hydrostatic_pressure.hpp"
+#include "solid_solver/boundary/loads.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
 namespace couplet::solid {

@@ -7,7 +7,7 @@
 
 #include "common/elasticity/vector_at.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/boundary/distributed_force.hpp"
+#include "solid_solver/boundary/loads.hpp"
 
 namespace couplet::solid {
 namespace {

@@ -1,101 +1,145 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/diagnostics/error_estimate.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <optional>
 
 #include "common/base/error.hpp"
-#include "common/base/numbers.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
-#include "common/io/checkpoint.hpp"
+#include "common/io/archive.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/diagnostics/inner_variation.hpp"
-#include "solid_solver/diagnostics/soft_motion.hpp"
+#include "common/time/step_errors.hpp"
+#include "solid_solver/body/inner_variation.hpp"
+#include "solid_solver/diagnostics/heat_errors.hpp"
+#include "solid_solver/diagnostics/stability.hpp"
+#include "solid_solver/diagnostics/strain_energy.hpp"
 #include "solid_solver/diagnostics/weighted_estimate.hpp"
 
 namespace couplet::solid {
+namespace {
 
-SolidErrorEstimate::SolidErrorEstimate(const SolidBody& body, const SolidStepper& stepper,
-                                       const SolidFields& fields, const SolidJudge& judge)
-    : body_(body), stepper_(stepper), fields_(fields), judge_(judge), steps_(scheme_of(body.parameters())) {
-  const mesh::Geometry& geometry = body.geometry();
-  const mesh::Mesh& mesh = body.mesh();
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume_ += geometry.volume[c];
-  volume_ = parallel::sum(mesh.comm, volume_);
+double product(MPI_Comm comm, std::span<const double> a, std::span<const double> b) {
+  return parallel::sum(comm, std::inner_product(a.begin(), a.end(), b.begin(), 0.0));
 }
 
-/// Over the volume; `dim` values a cell.
-double SolidErrorEstimate::mean_square(std::span<const double> cells) const {
-  const mesh::Mesh& mesh = body_.mesh();
-  const mesh::Geometry& geometry = body_.geometry();
-  double squares = 0;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-    for (int a = 0; a < mesh.dim; ++a) {
-      const double value = cells[std::size_t(c) * mesh.dim + a];
-      squares += geometry.volume[c] * value * value;
-    }
-  return parallel::sum(mesh.comm, squares) / volume_;
-}
+/// How far a motion has swung, and with it what a wrong stiffness makes of it. A mesh that is stiffer by a part e swings faster
+/// by e/2, so that after an angle w t the displacement is e w t / 2 of its amplitude off, twice the amplitude at most. Loads that
+/// a body follows without inertia have no such drift: kinetic over strain energy, means over the run, is 1 of free
+/// vibrations and 0 of those.
+struct PhaseDrift {
+  double way = 0, size = 0;        // integral of |v|, largest |u| [m]
+  double kinetic = 0, strain = 0;  // integrals of the energies of the whole body [J s]
+  /// Error of the displacement over its size, with a relative error `stiffness` of the strain energy.
+  double over_size(double stiffness) const {
+    if (!(size > 0) || !(strain > 0)) return 0;
+    // |v| of a swing is 2/pi of its amplitude w A in the mean.
+    const double angle = 0.5 * std::numbers::pi * way / size;
+    return std::min(2.0, 0.5 * stiffness * angle * std::min(1.0, kinetic / strain));
+  }
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(way, size, kinetic, strain);
+  }
+};
 
-/// Over the size of the solution.
-double SolidErrorEstimate::left_by_solver() const {
-  const LastSolve& last = stepper_.last_solve();
-  return body_.equilibrium().share_left(stepper_.effort().residual, norm(body_.mesh().comm, last.rhs));
+/// Estimates the error of the displacement:
+///   mesh    by how much the work of the stresses misses the strain energy, which equilibrium would make equal, or,
+///           if more, what recovered strains differ from those of the faces (symmetric gradient: its work misses nothing
+///           by itself), or the square of the relative difference of two face gradients' strains: an energy errs by the
+///           square of what the strains err; see StrainAudit::missed_by_mesh().
+///           In motion what that makes of the phase comes beside it, see PhaseDrift. A body at rest tells nothing.
+///   step    sum of the local errors, see VelocityErrors; static: none
+///   linear  static: the work of what equilibrium misses over that of the loads, which is the error of the compliance;
+///           dynamic: the relative residuals of all steps, see StepErrors
+/// Thermal strain: see weighted_mesh_error; in motion it makes the mesh's part unknown.
+/// Temperatures that are solved for add what they err by, over their distance from the reference, times the share of the
+/// strain energy that their strain makes. At finite strain the mesh's part is half the square of the difference of two
+/// gradients' Green strains, times how softly the deformed body follows a change of its stiffness (a static run: one linear
+/// solve with the tangent), or, if more, what its softest motion makes of it, see soft_mesh_error().
+class ErrorEstimate final : public diagnostics::Diagnostic {
+ public:
+  ErrorEstimate(const SolidView& view, std::shared_ptr<StrainEnergy> strain,
+                std::shared_ptr<Stability> stability)
+      : view_(view),
+        body_(view.body),
+        strain_(std::move(strain)),
+        stability_(std::move(stability)),
+        steps_(scheme_of(body_.parameters())) {
+    if (heat() && body_.parameters().expansion)
+      heat_.emplace(body_.mesh(), body_.geometry(), *body_.parameters().heat);
+  }
+  void observe(diagnostics::Report& report) override;
+  void conclude(diagnostics::Report& report) override;
+  void visit(io::Archive& archive) override;
+
+ private:
+  const Heat* heat() const { return body_.thermal() ? body_.thermal()->heat() : nullptr; }
+  void see_swing(const time::StepErrors::Seen& step);
+  double left_by_solver() const;
+  double missed_work() const;
+  void add_heat(coupling::ErrorParts& parts) const;
+  double missed_of_large_strain() const;
+  double finite_mesh_error() const;
+  double thermal_mesh_error(double known) const;
+  double linear_mesh_error() const;
+
+  SolidView view_;
+  const SolidBody& body_;
+  std::shared_ptr<StrainEnergy> strain_;  // nullptr at large strain
+  std::shared_ptr<Stability> stability_;  // nullptr but in a static run at large strain
+  time::VelocityErrors steps_;
+  time::StepErrors linear_;
+  PhaseDrift drift_;
+  std::optional<HeatErrors> heat_;  // of temperatures that are solved for and strain the body
+};
+
+/// Residual of the last solve over the size of its rows.
+double ErrorEstimate::left_by_solver() const {
+  const LastSolve& last = view_.stepper.last_solve();
+  return body_.equilibrium().share_left(view_.stepper.effort().residual, norm(view_.comm(), last.rhs));
 }
 
 /// |u . (b - A u)| / |u . b| of the last static solve, linear: u . b grows by as much as A u misses of b.
-double SolidErrorEstimate::missed_work() const {
-  const LastSolve& last = stepper_.last_solve();
-  if (!last.is_known(body_.mesh().comm)) return 0;
-  std::vector<double> force(last.unknowns.size());
-  body_.kernel().apply(last.unknowns, {}, force);
-  double missed = 0, work = 0;
-  for (std::size_t i = 0; i < force.size(); ++i) {
-    missed += last.unknowns[i] * (last.rhs[i] - force[i]);
-    work += last.unknowns[i] * last.rhs[i];
-  }
-  const MPI_Comm comm = body_.mesh().comm;
-  missed = parallel::sum(comm, missed), work = parallel::sum(comm, work);
-  return work != 0 ? std::abs(missed / work) : 0;
+double ErrorEstimate::missed_work() const {
+  const LastSolve& last = view_.stepper.last_solve();
+  if (!last.is_known(view_.comm())) return 0;
+  std::vector<double> missed(last.unknowns.size());
+  body_.kernel().apply(last.unknowns, {}, missed);
+  for (std::size_t i = 0; i < missed.size(); ++i) missed[i] = last.rhs[i] - missed[i];
+  const double work = product(view_.comm(), last.unknowns, last.rhs);
+  return work != 0 ? std::abs(product(view_.comm(), last.unknowns, missed) / work) : 0;
 }
 
-/// What effects load the solid with errs, too: the displacement that follows from it by as much, |u . b_effect| / u . K u of the whole.
-void SolidErrorEstimate::add_loads(coupling::ErrorParts& parts) const {
-  const MPI_Comm comm = body_.mesh().comm;
-  const SolidState& state = stepper_.state();
-  const std::vector<double> u = body_.unknowns_of(state.cell_u, state.face_u);
-  std::vector<double> force(u.size());
+/// A temperature that errs strains the body wrongly: the displacement that follows from it by as much, |u . b_T| / u . K u
+/// of the whole.
+void ErrorEstimate::add_heat(coupling::ErrorParts& parts) const {
+  if (!heat_) return;
+  const coupling::ErrorParts load =
+      heat_->parts(*heat(), body_.parameters().expansion->reference_temperature);
+  if (!load.known()) return;
+  const std::vector<double> u = view_.unknowns();
+  std::vector<double> force(u.size()), forces(u.size(), 0.0);
   body_.kernel().apply(u, {}, force);
-  const double energy = parallel::sum(comm, std::inner_product(u.begin(), u.end(), force.begin(), 0.0));
-  for (const auto& effect : body_.effects()) {
-    const coupling::ErrorParts load = effect->error_parts();
-    if (!load.known()) continue;
-    std::vector<double> forces(u.size(), 0.0);
-    effect->add_loads(state.time, body_.kernel(), forces);
-    const double work = parallel::sum(comm, std::inner_product(u.begin(), u.end(), forces.begin(), 0.0));
-    const double share = energy > 0 ? std::min(1.0, std::abs(work) / energy) : 1;
-    for (const auto part : {&coupling::ErrorParts::mesh, &coupling::ErrorParts::step})
-      parts.*part = std::fmax(parts.*part, share * load.*part);  // fmax: a number beats NaN
-  }
+  body_.thermal()->add_loads(view_.now().time, body_.kernel(), forces);
+  const double energy = product(view_.comm(), u, force), work = product(view_.comm(), u, forces);
+  const double share = energy > 0 ? std::min(1.0, std::abs(work) / energy) : 1;
+  for (const auto part : {&coupling::ErrorParts::mesh, &coupling::ErrorParts::step})
+    parts.*part = std::fmax(parts.*part, share * load.*part);  // fmax: a number beats NaN
 }
 
 /// Share of the strain energy that the mesh misses: half of sum V mu |E1 - E2|^2 / sum V mu |E1|^2 of the Green strains
 /// E = (H + H^T + H^T H) / 2 of the gradient in use and the corrected one, which turning the body leaves as they are, half
 /// since each gradient errs; or, if more, what quadrilaterals miss, by the law's moduli at rest.
-double SolidErrorEstimate::missed_of_large_strain(const SolidState& state,
-                                                  std::span<const double> unknowns) const {
+double ErrorEstimate::missed_of_large_strain() const {
   const mesh::Mesh& mesh = body_.mesh();
-  const mesh::Geometry& geometry = body_.geometry();
   const elastic::ElasticOperator& rows = body_.elastic();
-  const std::vector<double> known =
-      body_.known_of({state.cell_u, state.face_u, fields_.point_displacement()});
+  const std::vector<double> unknowns = view_.unknowns(), known = view_.known();
   const auto strain = [](const Tensor3& h) { return Tensor3(0.5 * (h + h.transpose() + h.transpose() * h)); };
   const auto weight = [&](Index f) {
     if (mesh.owner[f] >= mesh.cells.n_owned()) return 0.0;
-    const auto [here, there] = elastic::pyramids(mesh, geometry, f);
+    const auto [here, there] = elastic::pyramids(mesh, body_.geometry(), f);
     return (here + there) * rows.lame(mesh.owner[f]).mu;
   };
   std::optional<InnerVariation> inner;
@@ -122,98 +166,96 @@ double SolidErrorEstimate::missed_of_large_strain(const SolidState& state,
 }
 
 /// The displacement follows as softly as the deformed body does. NaN: its tangent has no solution.
-double SolidErrorEstimate::finite_mesh_error() const {
-  const SolidState& state = stepper_.state();
-  const std::vector<double> unknowns = body_.unknowns_of(state.cell_u, state.face_u);
-  const double energy = missed_of_large_strain(state, unknowns);
-  if (body_.is_dynamic()) return energy;
+double ErrorEstimate::finite_mesh_error() const {
+  const double energy = missed_of_large_strain();
+  if (!stability_) return energy;
   try {
-    const std::vector<double> known =
-        body_.known_of({state.cell_u, state.face_u, fields_.point_displacement()});
-    return std::max(energy * body_.equilibrium().softness(unknowns, state.known),
-                    soft_mesh_error(body_, unknowns, known, judge_.softest()));
+    const std::vector<double> unknowns = view_.unknowns();
+    return std::max(energy * body_.equilibrium().softness(unknowns, view_.now().known),
+                    soft_mesh_error(body_, unknowns, view_.known(), stability_->softest()));
   } catch (const SolveFailure&) {
     return coupling::ErrorParts::unknown;
   }
 }
 
-/// At least `known`. Energies are no measure of it where heat strains the body; one in motion need not be held, so that nothing is known.
-double SolidErrorEstimate::thermal_mesh_error(double known) const {
+/// At least `known`. Energies are no measure of it where heat strains the body; one in motion need not be held, so that
+/// nothing is known.
+double ErrorEstimate::thermal_mesh_error(double known) const {
   if (body_.is_dynamic() || is_axisymmetric(body_.elastic())) return coupling::ErrorParts::unknown;
-  const SolidState& state = stepper_.state();
-  std::vector<double> pressure(std::size_t(body_.mesh().n_faces()), 0);
-  for (const auto& effect : body_.effects()) {
-    const std::vector<double> one = effect->pressure(state.time);
-    for (std::size_t f = 0; f < one.size(); ++f) pressure[f] += one[f];
-  }
-  const double weighted = weighted_mesh_error(
-      body_, body_.unknowns_of(state.cell_u, state.face_u),
-      body_.known_of({state.cell_u, state.face_u, fields_.point_displacement()}), pressure);
+  std::vector<double> pressure = body_.thermal()->pressure(view_.now().time);
+  pressure.resize(std::size_t(body_.mesh().n_faces()), 0);
+  const double weighted = weighted_mesh_error(body_, view_.unknowns(), view_.known(), pressure);
   return std::isnan(weighted) ? weighted : std::max(known, weighted);
 }
 
-void SolidErrorEstimate::see_step() {
+double ErrorEstimate::linear_mesh_error() const {
+  const StrainAudit& audit = strain_->now(true);
+  if (!(audit.strain_energy > 0)) return coupling::ErrorParts::unknown;
+  const double missed = std::max(audit.mismatch(), audit.missed_by_mesh(body_.mesh().dim));
+  return body_.is_dynamic() ? missed + drift_.over_size(missed) : missed;
+}
+
+void ErrorEstimate::observe(diagnostics::Report&) {
+  if (heat_) heat_->see_step(heat()->trial(), heat()->accepted());
   if (!body_.is_dynamic()) return;
-  const SolidState &now = stepper_.trial(), &before = stepper_.state();
-  const std::size_t n = std::size_t(body_.mesh().cells.n_owned()) * body_.mesh().dim;
-  const auto norm = [this](std::span<const double> cells) { return std::sqrt(mean_square(cells)); };
+  const mesh::Mesh& mesh = body_.mesh();
+  const std::size_t n = std::size_t(mesh.cells.n_owned()) * mesh.dim;
+  const auto norm = [&](std::span<const double> cells) {
+    return root_mean_square(mesh, body_.geometry(), mesh.dim, cells);
+  };
+  const SolidState &now = view_.now(), &before = view_.before();
   const time::StepErrors::Seen step =
       steps_.add(std::span(before.cell_v).first(n), std::span(now.cell_v).first(n), now.dt, before.dt,
                  norm(now.cell_u), norm);
   linear_.add({.error = left_by_solver() * step.size, .rate = step.rate, .size = step.size, .dt = step.dt});
-  if (body_.equilibrium().means().compares_gradients) see_swing(now, step);
+  if (strain_) see_swing(step);
 }
 
 /// Half of u . K u is the strain energy, of the gradients without an energy nearly so.
-void SolidErrorEstimate::see_swing(const SolidState& now, const time::StepErrors::Seen& step) {
-  const MPI_Comm comm = body_.mesh().comm;
-  const std::vector<double> u = body_.unknowns_of(now.cell_u, now.face_u);
+void ErrorEstimate::see_swing(const time::StepErrors::Seen& step) {
+  const SolidState& now = view_.now();
+  const std::vector<double> u = view_.unknowns();
   std::vector<double> force(u.size());
   body_.kernel().apply(u, now.known, force);
-  const double strain =
-      0.5 * std::abs(parallel::sum(comm, std::inner_product(u.begin(), u.end(), force.begin(), 0.0)));
-  drift_.add(now.dt, step.rate, step.size, parallel::sum(comm, stepper_.ledger().kinetic(now)), strain);
+  const double strain = 0.5 * std::abs(product(view_.comm(), u, force)),
+               kinetic = parallel::sum(view_.comm(), view_.stepper.ledger().kinetic(now));
+  if (!std::isfinite(step.rate + step.size + kinetic + strain)) return;
+  drift_.way += now.dt * step.rate;
+  drift_.size = std::max(drift_.size, step.size);
+  drift_.kinetic += now.dt * kinetic;
+  drift_.strain += now.dt * strain;
 }
 
-coupling::ErrorParts SolidErrorEstimate::parts() const {
-  coupling::ErrorParts parts;
+void ErrorEstimate::conclude(diagnostics::Report& report) {
+  coupling::ErrorParts& parts = report.errors;
   parts.dimension = body_.mesh().dim;
-  if (stepper_.state().steps == 0) return parts;
-  const bool compares = body_.equilibrium().means().compares_gradients;
+  if (view_.now().steps == 0) return;
   if (body_.is_dynamic()) {
     parts.step = steps_.over_size();
     parts.linear = linear_.over_size();
   } else {
-    parts.linear = compares ? missed_work() : left_by_solver();
+    parts.linear = strain_ ? missed_work() : left_by_solver();
   }
-  if (!compares) {
-    parts.mesh = finite_mesh_error();
-    return parts;
-  }
-  const StrainAudit audit = judge_.compared();
-  parts.mesh = std::max(audit.mismatch(), audit.missed_by_mesh(body_.mesh().dim));
-  if (!(audit.strain_energy > 0)) parts.mesh = coupling::ErrorParts::unknown;
-  if (body_.is_dynamic()) parts.mesh += drift_.over_size(parts.mesh);
-  add_loads(parts);
+  parts.mesh = strain_ ? linear_mesh_error() : finite_mesh_error();
+  if (!strain_) return;
+  add_heat(parts);
   if (body_.parameters().expansion) parts.mesh = thermal_mesh_error(parts.mesh);
-  return parts;
 }
 
-void SolidErrorEstimate::save(io::CheckpointWriter& file) const {
-  file.write_common("error-of-solver", linear_.state());
-  file.write_common("error-drift", drift_.state());
-  file.write_common("error-steps", steps_.numbers());
-  file.write(mesh::Entries::owned_cells, "error-velocity-before", steps_.before());
+void ErrorEstimate::visit(io::Archive& archive) {
+  std::vector<double> numbers = steps_.numbers(), before(steps_.before().begin(), steps_.before().end());
+  archive.common("error", linear_, drift_, numbers);
+  archive.field(mesh::Entries::owned_cells, "velocity-before", before, std::size_t(body_.mesh().dim));
+  if (archive.reads()) steps_.restore(numbers, before);
+  if (heat_) heat_->visit(archive);
 }
 
-void SolidErrorEstimate::load(io::CheckpointReader& file) {
-  linear_.restore(file.read_common("error-of-solver"));
-  std::array<double, PhaseDrift::n_values> drift{};
-  file.read_common("error-drift", drift);
-  drift_.restore(drift);
-  const std::vector<double> steps = file.read_common("error-steps");
-  steps_.restore(steps, file.read_or_none(mesh::Entries::owned_cells, "error-velocity-before",
-                                          std::size_t(body_.mesh().dim)));
+}  // namespace
+
+std::shared_ptr<diagnostics::Diagnostic> solid_error(const SolidView& view,
+                                                     std::shared_ptr<StrainEnergy> strain,
+                                                     std::shared_ptr<Stability> stability) {
+  return std::make_shared<ErrorEstimate>(view, std::move(strain), std::move(stability));
 }
 
 }  // namespace couplet::solid

@@ -1,54 +1,60 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/diagnostics/table.hpp"
-
-#include "solid_solver/diagnostics/effects.hpp"
-#include "solid_solver/solid.hpp"
-#include "solid_solver/thermal_solid.hpp"
+#include "solid_solver/diagnostics/energy_balance.hpp"
+#include "solid_solver/diagnostics/stability.hpp"
+#include "solid_solver/diagnostics/strain_energy.hpp"
 
 namespace couplet::solid {
+
+using Made = std::shared_ptr<diagnostics::Diagnostic>;
+
+// Each in the file of its subject; nullptr where it does not apply.
+Made linear_theory(const SolidView& view);
+Made neglected_inertia(const SolidView& view);
+Made limits_of_material(const SolidView& view);
+Made effects_of_heat(const SolidView& view);
+Made solid_error(const SolidView& view, std::shared_ptr<StrainEnergy> strain,
+                 std::shared_ptr<Stability> stability);
+Made quantities(const SolidView& view);
+Made quantities(const HeatView& view);
+Made stress_error(const SolidView& view);
+Made heat_swing(const Heat& heat);
+Made heat_storage(const Heat& heat);
+Made heat_error(const Heat& heat);
+
 namespace {
 
-/// Effects that the scene leaves out, by what the run has seen of them.
-class Effects final : public diagnostics::Diagnostic {
- public:
-  explicit Effects(const Solid& solid) : solid_(solid) {}
-  void look(diagnostics::Report& report) override {
-    for (log::Finding& f : effect_findings(solid_.body().parameters(), solid_.judge().evidence())) {
-      if (f.id == "near-incompressibility")
-        report.position.push_back({"Poisson's ratio", f.number, f.limit, "solid-nu"});
-      report.findings.push_back(std::move(f));
-    }
-  }
-
- private:
-  const Solid& solid_;
-};
-
-/// Error of the displacement, or of the temperature of a body that only conducts heat.
-template <class Participant>
-class Error final : public diagnostics::Diagnostic {
- public:
-  explicit Error(Participant& solid) : solid_(solid) { solid.collect_errors(); }
-  void conclude(diagnostics::Report& report) override { report.errors = solid_.error_parts(); }
-
- private:
-  const Participant& solid_;
-};
-
-template <class Participant>
-void add_error(Participant& solid, diagnostics::Diagnostics& all) {
-  if (all.with_errors()) all.add("error", std::make_shared<Error<Participant>>(solid));
+void add(diagnostics::Diagnostics& all, const char* name, Made diagnostic) {
+  if (diagnostic) all.add(name, std::move(diagnostic));
 }
 
 }  // namespace
 
-void add_diagnostics(coupling::Participant& participant, diagnostics::Diagnostics& all) {
-  if (auto* solid = dynamic_cast<Solid*>(&participant)) {
-    all.add("effects", std::make_shared<Effects>(*solid));
-    add_error(*solid, all);
-  } else {
-    add_error(dynamic_cast<ThermalSolid&>(participant), all);
+// Of two the later one reads the earlier: the energies the strains, stresses and quantities the error of the displacement.
+void add_diagnostics(const SolidView& view, diagnostics::Diagnostics& all) {
+  const bool is_dynamic = view.body.is_dynamic(), is_small = view.compares_gradients();
+  const auto strain = is_small ? std::make_shared<StrainEnergy>(view) : nullptr;
+  const auto stability = !is_small && !is_dynamic ? std::make_shared<Stability>(view) : nullptr;
+  add(all, "strain-energy", strain);
+  add(all, "linear-theory", linear_theory(view));
+  add(all, "energy-balance", is_dynamic ? std::make_shared<EnergyBalance>(view, strain) : nullptr);
+  add(all, "stability", stability);
+  add(all, "inertia", neglected_inertia(view));
+  add(all, "limits-of-material", limits_of_material(view));
+  add(all, "effects-of-heat", effects_of_heat(view));
+  if (const Heat* heat = view.body.thermal() ? view.body.thermal()->heat() : nullptr) {
+    add(all, "heat-swing", heat_swing(*heat));
+    add(all, "heat-storage", heat_storage(*heat));
   }
+  if (all.with_errors()) add(all, "error", solid_error(view, strain, stability));
+  add(all, "quantities", quantities(view));
+  if (all.with_errors()) add(all, "stress-error", stress_error(view));
+}
+
+void add_diagnostics(const HeatView& view, diagnostics::Diagnostics& all) {
+  add(all, "heat-swing", heat_swing(view.heat));
+  add(all, "heat-storage", heat_storage(view.heat));
+  if (all.with_errors()) add(all, "error", heat_error(view.heat));
+  add(all, "quantities", quantities(view));
 }
 
 }  // namespace couplet::solid

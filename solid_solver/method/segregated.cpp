@@ -1,12 +1,131 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/method/segregated.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "common/base/error.hpp"
 
 namespace couplet::solid {
+
+namespace {
+
+// Of the residual of a component in one outer iteration, as in the thesis.
+constexpr double inner_tolerance = 1e-2;
+
+double stiffness(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, Index f) {
+  const mesh::Geometry& geometry = rows.geometry();
+  const elastic::LameConstants lame = rows.lame(mesh.owner[f]);
+  const fv::FaceLine line = fv::face_line(mesh, geometry, f);
+  return (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn;
+}
+
+/// What a boundary face adds on the diagonal of its cell.
+double boundary_diagonal(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, Index f,
+                         int component) {
+  const mesh::Geometry& geometry = rows.geometry();
+  const double k = stiffness(mesh, rows, f);
+  const elastic::BoundaryRow& row = rows.at(f);
+  if (row.shared) {
+    const double other = stiffness(mesh, rows, mesh.n_interior + mesh.twin[f - mesh.n_interior]);
+    return k * other / (k + other);
+  }
+  const double known = row.known(component, component);
+  const double spring = geometry.face_area[f].norm() * row.spring(component, component);
+  return k * (known + (1 - known) * spring / (k + spring));
+}
+
+}  // namespace
+
+linalg::Acceleration acceleration_of(const MethodParameters& parameters) {
+  using Choice = MethodParameters::Acceleration;
+  const Choice choice = parameters.acceleration;
+  return {choice == Choice::none     ? linalg::Acceleration::Type::none
+          : choice == Choice::aitken ? linalg::Acceleration::Type::aitken
+                                     : linalg::Acceleration::Type::anderson,
+          parameters.aitken_interval, parameters.anderson_history};
+}
+
+std::string segregated_name(const MethodParameters& parameters) {
+  switch (parameters.acceleration) {
+    case MethodParameters::Acceleration::aitken:
+      return fmt::format("segregated (Aitken every {} iterations)", parameters.aitken_interval);
+    case MethodParameters::Acceleration::anderson:
+      return fmt::format("segregated (Anderson over {} iterations)", parameters.anderson_history);
+    default:
+      return "segregated";
+  }
+}
+
+ScalarSystems::ScalarSystems(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
+                             std::span<const double> inertia)
+    : mesh_(mesh), rows_(rows), b_(mesh.cells.n_owned()), u_(mesh.cells.n_owned()) {
+  const mesh::Geometry& geometry = rows.geometry();
+  for (int c = 0; c < mesh.dim; ++c) assemble(c, inertia);
+  for (const Index f : rows.unknown_faces()) {
+    double own = stiffness(mesh, rows, f);
+    if (rows.at(f).shared) own += stiffness(mesh, rows, mesh.n_interior + mesh.twin[f - mesh.n_interior]);
+    own += geometry.face_area[f].norm() * rows.at(f).spring.trace();
+    own_.push_back(own);
+  }
+}
+
+void ScalarSystems::assemble(int component, std::span<const double> inertia) {
+  const Index n = mesh_.cells.n_owned();
+  std::vector<GlobalIndex> row, column;
+  std::vector<double> value, diagonal(n, 0);
+  const auto couple = [&](Index a, Index b, double k) {
+    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)}) {
+      if (from >= n) continue;
+      row.push_back(mesh_.cells.global(from));
+      column.push_back(mesh_.cells.global(to));
+      value.push_back(-k);
+      diagonal[from] += k;
+    }
+  };
+  for (Index f = 0; f < mesh_.n_interior; ++f)
+    couple(mesh_.owner[f], mesh_.neighbour[f], stiffness(mesh_, rows_, f));
+  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
+    diagonal[mesh_.owner[f]] += boundary_diagonal(mesh_, rows_, f, component);
+  for (Index c = 0; c < n; ++c) {
+    if (!inertia.empty()) diagonal[c] += inertia[c];
+    row.push_back(mesh_.cells.global(c));
+    column.push_back(mesh_.cells.global(c));
+    value.push_back(diagonal[c]);
+  }
+  Component here;
+  here.matrix = std::make_unique<linalg::SparseMatrix>(mesh_.comm, n, std::move(row), std::move(column));
+  here.matrix->fill(value);
+  linalg::LinearOptions options;
+  options.method = linalg::LinearMethod::cg_icc;
+  options.relative_tolerance = inner_tolerance;
+  here.solver = std::make_unique<linalg::LinearSolver>("a displacement component", *here.matrix, options);
+  components_.push_back(std::move(here));
+}
+
+int ScalarSystems::find_step(std::span<const double> residual, std::span<double> step) {
+  int inner = 0;
+  const std::size_t n = mesh_.cells.n_owned(), dim = mesh_.dim;
+  for (std::size_t a = 0; a < dim; ++a) {
+    for (std::size_t c = 0; c < n; ++c) b_[c] = residual[c * dim + a];
+    std::fill(u_.begin(), u_.end(), 0.0);
+    inner += components_[a].solver->solve(b_, u_).iterations;
+    for (std::size_t c = 0; c < n; ++c) step[c * dim + a] = u_[c];
+  }
+  const auto& faces = rows_.unknown_faces();
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const elastic::BoundaryRow& row = rows_.at(faces[i]);
+    for (std::size_t a = 0; a < dim; ++a) {
+      const double cell = step[std::size_t(mesh_.owner[faces[i]]) * dim + a];
+      const double follows = 1 - row.known(Index(a), Index(a));
+      step[(n + i) * dim + a] = follows * cell + residual[(n + i) * dim + a] / own_[i];
+    }
+  }
+  return inner;
+}
 
 Segregated::Segregated(const SolidProblem& problem, const MethodParameters& parameters)
     : problem_(problem),

@@ -1,13 +1,51 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
+#include <span>
+#include <string>
 #include <vector>
 
+#include "common/elasticity/elasticity.hpp"
 #include "common/linalg/acceleration.hpp"
-#include "solid_solver/method/scalar_systems.hpp"
+#include "common/linalg/linear_solver.hpp"
+#include "common/linalg/matrix.hpp"
 #include "solid_solver/method/solution_method.hpp"
+#include "solid_solver/parameters/method_parameters.hpp"
 
 namespace couplet::solid {
+
+/// The implicit part of the segregated method, thesis (2.66)-(2.69): one scalar system a displacement component, face
+/// coefficient (2 mu + lambda) |S| / (d . n), solved by CG with incomplete Cholesky factors to a hundredth of its
+/// residual. Boundary unknowns follow from their own rows.
+class ScalarSystems {
+ public:
+  /// `inertia` per owned cell [N/m], empty: static. Mesh (whose reference geometry counts) and rows by reference.
+  /// Collective.
+  ScalarSystems(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
+                std::span<const double> inertia);
+  /// The correction `step` that the systems make of a residual, both packed as the rows; gives their iterations.
+  /// Collective.
+  int find_step(std::span<const double> residual, std::span<double> step);
+
+ private:
+  struct Component {
+    std::unique_ptr<linalg::SparseMatrix> matrix;
+    std::unique_ptr<linalg::LinearSolver> solver;
+  };
+  void assemble(int component, std::span<const double> inertia);
+
+  const mesh::Mesh& mesh_;
+  const elastic::ElasticOperator& rows_;
+  std::vector<Component> components_;
+  std::vector<double> own_;  // coefficient of each unknown of a face in its row
+  std::vector<double> b_, u_;
+};
+
+/// "segregated (Aitken every 5 iterations)"
+std::string segregated_name(const MethodParameters& parameters);
+/// What helps the outer iterations on.
+linalg::Acceleration acceleration_of(const MethodParameters& parameters);
 
 /// The thesis's segregated method: outer iterations that each solve one scalar system a displacement component
 /// (ScalarSystems); what these leave out follows from the last iterate. The outer iteration is plain, or

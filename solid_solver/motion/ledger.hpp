@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "solid_solver/body/energies.hpp"
 #include "solid_solver/body/solid_body.hpp"
 #include "solid_solver/body/solid_state.hpp"
 

@@ -9,7 +9,7 @@
 #include "common/elasticity/node_fields.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/large_strain/load_path.hpp"
+#include "solid_solver/equilibrium/load_path.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
 

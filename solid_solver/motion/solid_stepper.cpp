@@ -4,11 +4,14 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
-#include "solid_solver/large_strain/load_path.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/equilibrium/load_path.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
 
 namespace couplet::solid {
@@ -94,7 +97,7 @@ void SolidStepper::start_from_rest() {
 void SolidStepper::apply_stiffness() {
   if (!body_.apply_stiffness()) return;
   systems_.clear();
-  for (const auto& effect : body_.effects()) effect->stiffness_changed();
+  body_.thermal()->stiffness_changed();
 }
 
 void SolidStepper::begin_step(const coupling::Step& step, bool has_loads) {
@@ -117,7 +120,7 @@ void SolidStepper::prepare_loads() {
   const std::vector<time::Stage> stages = stages_of(step_.dt);
   stages_.resize(stages.size());
   if (body_.equilibrium().load_path()) body_.set_load_factor(1);
-  for (const auto& effect : body_.effects()) effect->begin_step(step_);
+  if (body_.thermal()) body_.thermal()->begin_step(step_);
   apply_stiffness();
   for (std::size_t i = 0; i < stages.size(); ++i) {
     stages_[i].stage = stages[i];
@@ -161,21 +164,68 @@ void SolidStepper::update_trial_ghosts() {
 }
 
 void SolidStepper::accept_step() {
-  for (const auto& effect : body_.effects()) effect->accept_step();
+  if (body_.thermal()) body_.thermal()->accept_step();
   for (const StageWork& work : stages_)
     if (linalg::ResidualProjection* projection = work.system->projection()) projection->accept();
   body_.equilibrium().accept();
-  if (LoadPath* path = body_.equilibrium().load_path()) path->accept(trial_.time);
+  if (LoadPath* path = body_.equilibrium().load_path())
+    path->accept(trial_.time, body_.softest_motion(last_.unknowns, trial_.known).stiffness);
   std::swap(state_, trial_);
   body_.place_expansion(state_.time);
 }
 
 void SolidStepper::release_solver() {
-  // What is written next needs room; a dynamic run may be continued from it, with the same first guesses.
-  if (step_.is_last && !body_.is_dynamic()) {
+  // A dynamic run may be continued, with the same first guesses.
+  if (step_.is_last && !body_.is_dynamic() && !systems_.empty()) {
     systems_.clear();
     malloc_trim(0);  // a third of all that plate B of 294 912 cells held: in holes otherwise
   }
+}
+
+// The local error of a step, and the step size that follows from it.
+
+namespace {
+
+// The next step aims below the tolerance by this factor, so that few steps are refused.
+constexpr double safety = 0.85;
+
+// The errors of several steps add up before damping and dissipation forget them.
+constexpr double share_of_a_step = 0.1;
+
+}  // namespace
+
+// Error of a step: constant dt^3 d3u/dt3 (Euler: constant dt^2 d2u/dt2), with d3u/dt3 from the mean
+// accelerations of this step and the last one. A coupled step is not refused here: its iterates come before
+// the load has settled.
+void SolidStepper::judge_step() {
+  const time::LocalError local = time::local_error(scheme_of(parameters_));
+  const double dt = step_.dt, apart = 0.5 * (dt + state_.dt);
+  double error = 0, volume = 0;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    const double v = geometry_.volume[c];
+    for (int a = 0; a < mesh_.dim; ++a) {
+      const std::size_t i = std::size_t(c) * mesh_.dim + a;
+      const double derivative = local.order == 1
+                                    ? trial_.mean_acceleration[i]
+                                    : (trial_.mean_acceleration[i] - state_.mean_acceleration[i]) / apart;
+      error += v * derivative * derivative;
+    }
+    volume += v;
+  }
+  volume = parallel::sum(mesh_.comm, volume);
+  trial_.error =
+      local.constant * std::pow(dt, local.order + 1) * std::sqrt(parallel::sum(mesh_.comm, error) / volume);
+  if (step_.scheme != coupling::Scheme::standalone) return;
+  const double tolerance = share_of_a_step * parameters_.step_control->tolerance;
+  if (trial_.error > tolerance)
+    throw SolveFailure("The estimated step error, {:.2g} m, exceeds a tenth of the tolerance, {:g} m.",
+                       trial_.error, tolerance);
+}
+
+double SolidStepper::suggest_dt() const {
+  if (!(state_.error > 0)) return std::numeric_limits<double>::infinity();
+  const double room = share_of_a_step * parameters_.step_control->tolerance / state_.error;
+  return safety * state_.dt * std::pow(room, 1. / (time::local_error(scheme_of(parameters_)).order + 1));
 }
 
 }  // namespace couplet::solid

@@ -29,9 +29,12 @@ class SolidStepper final {
   /// At rest, or with the initial velocity. The body by reference. Collective.
   explicit SolidStepper(SolidBody& body);
 
-  /// The accepted state, that at the end of the last solve(), and the body's energies.
+  /// The accepted state.
   const SolidState& state() const { return state_; }
+  /// State at the end of the last solve(); after accept_step() the state before the accepted one.
   const SolidState& trial() const { return trial_; }
+  /// The step under way, or the last one.
+  const coupling::Step& step() const { return step_; }
   const SolidLedger& ledger() const { return ledger_; }
   const LastSolve& last_solve() const { return last_; }
   const SolverEffort& effort() const { return effort_; }
@@ -48,7 +51,7 @@ class SolidStepper final {
   void solve(std::vector<double> interface_load);
   /// What was tried is the state now. Cannot fail.
   void accept_step();
-  /// After it: at the end of a static run nothing is solved any more.
+  /// Frees what solves if nothing is solved any more: at the end of a static run, before its files, which need room.
   void release_solver();
 
   void save_state(io::CheckpointWriter& file) const;

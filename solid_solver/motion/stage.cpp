@@ -6,9 +6,8 @@
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/log/log.hpp"
 #include "common/log/progress.hpp"
-#include "solid_solver/large_strain/load_path.hpp"
+#include "solid_solver/equilibrium/load_path.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
-#include "solid_solver/motion/history.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
 #include "solid_solver/motion/stage_contact.hpp"
 
@@ -76,13 +75,13 @@ void SolidStepper::prepare_stage(StageWork& work) {
   work.end_time = work.start_time + stage.dt;
   work.damping_scale = 1 + damping.stiffness * stage.rate.x;
   work.system = &system_for((stage.acceleration.x + damping.mass * stage.rate.x) / work.damping_scale);
-  const bool is_loaded = body_.has_body_forces() || !body_.effects().empty() ||
-                         !body_.prescribed().is_zero() || parameters_.output.energies;
+  const bool is_loaded = body_.has_body_forces() || body_.thermal() || !body_.prescribed().is_zero() ||
+                         parameters_.output.energies;
   work.known_force.clear();
   work.rhs.assign(is_loaded ? elastic_.n_unknowns() : 0, 0);
   work.face_force.assign(std::size_t(mesh_.boundary.n_owned()) * mesh_.dim, 0);
   add_body_forces(work.place_time, work.rhs);
-  for (const auto& effect : body_.effects()) effect->add_loads(work.place_time, kernel_, work.rhs);
+  if (body_.thermal()) body_.thermal()->add_loads(work.place_time, kernel_, work.rhs);
   body_.add_dead_loads(work.place_time, work.face_force);
   if (parameters_.output.energies) {
     work.loads = work.rhs;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/motion/stage_contact.hpp"
 
-#include "solid_solver/motion/history.hpp"
-
 namespace couplet::solid {
+
 namespace {
 
 /// The part of a displacement shown that does not depend on w: of levels `shown` of x = (w - beta v_h) / s.

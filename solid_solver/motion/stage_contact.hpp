@@ -2,12 +2,37 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
+#include "common/time/time_scheme.hpp"
 #include "solid_solver/body/solid_body.hpp"
 #include "solid_solver/body/solid_state.hpp"
-#include "solid_solver/contact/pressing.hpp"
+#include "solid_solver/boundary/seat.hpp"
 
 namespace couplet::solid {
+
+/// Combinations of levels for one component after another, of cells or of faces. `start`: the state at the start of
+/// the step, which is the old level of a second stage.
+class History {
+ public:
+  History(const SolidState& now, const SolidState& start, bool of_faces)
+      : u_(of_faces ? now.face_u : now.cell_u),
+        v_(of_faces ? now.face_v : now.cell_v),
+        a_(of_faces ? now.face_a : now.cell_a),
+        u_old_(&now == &start ? (of_faces ? now.face_u_old : now.cell_u_old)
+                              : (of_faces ? start.face_u : start.cell_u)),
+        v_old_(&now == &start ? (of_faces ? now.face_v_old : now.cell_v_old)
+                              : (of_faces ? start.face_v : start.cell_v)) {}
+  double operator()(const time::Levels& l, std::size_t i, double x = 0) const {
+    double value = l.x * x + l.u * u_[i] + l.v * v_[i];
+    if (!a_.empty()) value += l.a * a_[i];
+    if (!u_old_.empty()) value += l.u_old * u_old_[i] + l.v_old * v_old_[i];
+    return value;
+  }
+
+ private:
+  std::span<const double> u_, v_, a_, u_old_, v_old_;
+};
 
 /// The answer of the seat to what a stage solves for, w = x + beta v: with the conserving rule by the penetration at the end of the
 /// step, else where the stage has its equilibrium. `now`: where the stage starts, `start`: where its step does. None: there is no

@@ -3,16 +3,214 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/fv/gradients.hpp"
 #include "common/io/probes/probe.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/thermal/heat_answer.hpp"
-#include "solid_solver/thermal/heat_defects.hpp"
+#include "solid_solver/body/stress.hpp"
 
 namespace couplet::solid {
+
 namespace {
+
+using Conduction = fv::ConductionOperator;
+
+constexpr double not_skew = 1e-12;  // of the skewness squared
+
+/// A quadratic around a cell, fitted to the cells that share a vertex with it, of its zone, and to their boundary faces:
+/// T(x) = value + slope . (x - x_P) + (x - x_P) . second . (x - x_P) / 2
+struct LocalHeat {
+  double value = 0;
+  Vec3 slope = Vec3::Zero();
+  Tensor3 second = Tensor3::Zero();
+  double at(const Vec3& from_centre) const {
+    return value + slope.dot(from_centre) + 0.5 * from_centre.dot(second * from_centre);
+  }
+};
+
+/// Cells around each local point; of each local cell its boundary faces that have a value, and those that mirror.
+struct CellsAround {
+  std::vector<std::vector<Index>> cells, faces, mirrors;
+  explicit CellsAround(const Conduction& conduction) {
+    const mesh::Mesh& mesh = conduction.mesh();
+    cells.resize(std::size_t(mesh.points.n_local()));
+    faces.resize(std::size_t(mesh.cells.n_local())), mirrors.resize(faces.size());
+    for (Index c = 0; c < mesh.cells.n_local(); ++c)
+      for (const Index v : mesh.cell_points[c]) cells[std::size_t(v)].push_back(c);
+    for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f)
+      (conduction.condition(f) == fv::HeatCondition::symmetry ? mirrors : faces)[std::size_t(mesh.owner[f])]
+          .push_back(f);
+  }
+  /// Its own and those beside it, of its zone.
+  std::vector<Index> of(const mesh::Mesh& mesh, Index cell) const {
+    std::vector<Index> found;
+    for (const Index v : mesh.cell_points[cell])
+      for (const Index c : cells[std::size_t(v)])
+        if (mesh.cell_zone[c] == mesh.cell_zone[cell]) found.push_back(c);
+    // By numbers of the mesh file, so that sums are the same on any ranks.
+    std::ranges::sort(found, {}, [&](Index c) { return mesh.cell_id[c]; });
+    found.erase(std::ranges::unique(found).begin(), found.end());
+    return found;
+  }
+};
+
+/// Of its terms x_a x_b of places over the reach.
+LocalHeat local_of(const Eigen::VectorXd& c, int dim, double reach) {
+  LocalHeat result;
+  Eigen::Index i = 0;
+  result.value = c[i++];
+  for (int a = 0; a < dim; ++a) result.slope[a] = c[i++] / reach;
+  for (int a = 0; a < dim; ++a)
+    for (int b = a; b < dim; ++b, ++i)
+      result.second(a, b) = result.second(b, a) = (a == b ? 2 : 1) * c[i] / (reach * reach);
+  return result;
+}
+
+/// Faces of planes of symmetry beside these cells, one for each plane.
+std::vector<Index> planes_beside(const mesh::Geometry& g, const CellsAround& around,
+                                 std::span<const Index> cells) {
+  std::vector<Index> planes;
+  for (const Index c : cells)
+    for (const Index f : around.mirrors[std::size_t(c)])
+      if (std::ranges::none_of(planes, [&](Index p) {
+            return g.face_area[p].normalized().dot(g.face_area[f].normalized()) > 0.999;
+          }))
+        planes.push_back(f);
+  return planes;
+}
+
+LocalHeat fitted_heat(const Conduction& conduction, const CellsAround& around, Index cell,
+                      const HeatState& field) {
+  const mesh::Mesh& mesh = conduction.mesh();
+  const mesh::Geometry& g = conduction.geometry();
+  const std::vector<Index> cells = around.of(mesh, cell), planes = planes_beside(g, around, cells);
+  const Vec3 centre = g.cell_centre[cell];
+  double reach = std::pow(g.volume[cell], 1. / mesh.dim);
+  for (const Index c : cells) reach = std::max(reach, (g.cell_centre[c] - centre).norm());
+  fv::NearQuadratic fit(mesh.dim, centre, reach, 1);
+  const double own = field.cells[std::size_t(cell)];  // differences keep the digits
+  const auto sample = [&](const Vec3& x, double value) {
+    const double above = value - own;
+    fit.add(x, {&above, 1});
+    for (const Index p : planes) {
+      const Vec3 normal = g.face_area[p].normalized();
+      fit.add(x - 2 * normal.dot(x - g.face_centre[p]) * normal, {&above, 1});
+    }
+  };
+  for (const Index c : cells) {
+    sample(g.cell_centre[c], field.cells[std::size_t(c)]);
+    for (const Index f : around.faces[std::size_t(c)])
+      sample(g.face_centre[f], field.boundary[std::size_t(f - mesh.n_interior)]);
+  }
+  LocalHeat result = local_of(fit.solve(), mesh.dim, reach);
+  result.value += own;
+  return result;
+}
+
+/// n . gradient that the scheme has of (x - x_f) . second . (x - x_f) / 2, whose own is zero.
+double defect_of_gradient(const Conduction& conduction, Index f, const Tensor3& second) {
+  const mesh::Mesh& mesh = conduction.mesh();
+  const mesh::Geometry& g = conduction.geometry();
+  const Vec3 centre = g.face_centre[f];
+  const auto at = [&](const Vec3& x) { return 0.5 * (x - centre).dot(second * (x - centre)); };
+  const auto at_point = [&](Index v) {
+    const fv::VertexInterpolation& vertices = conduction.vertices();
+    if (vertices.is_fixed(v) || vertices.on_symmetry(v) || vertices.nodes(v).empty()) return at(g.points[v]);
+    double value = 0;
+    for (std::size_t i = 0; i < vertices.nodes(v).size(); ++i) {
+      const Index node = vertices.nodes(v)[i], b = node - mesh.cells.n_local();
+      value += vertices.weights(v)[i] * at(b < 0 ? g.cell_centre[node] : g.face_centre[mesh.n_interior + b]);
+    }
+    return value;
+  };
+  const fv::FaceGradient& faces = conduction.faces();
+  const double there = f < mesh.n_interior ? at(g.cell_centre[mesh.neighbour[f]] + mesh.shift(f)) : 0;
+  double gradient = (there - at(g.cell_centre[mesh.owner[f]])) * faces.inverse_dn[f];
+  if (faces.skew[f].squaredNorm() < not_skew) return gradient;
+  for (Index e = mesh.face_points.offset[f]; e < mesh.face_points.offset[f + 1]; ++e)
+    gradient += faces.skew[f].dot(faces.tangential[e]) * at_point(mesh.face_points.index[e]);
+  return gradient;
+}
+
+/// Of third derivatives, on one side of a face, by parts.
+double varied_flux(const mesh::Mesh& mesh, const mesh::Geometry& g, Index f, const Vec3& arm,
+                   const Tensor3& t, const Tensor3& z) {
+  const Vec3 normal = g.face_area[f].normalized(), of_t = t * arm, of_z = z * arm;
+  const double across = of_t.dot(normal) * of_z.dot(normal);
+  const double pyramid = std::abs(g.face_area[f].dot(arm)) / mesh.dim;
+  return mesh.dim / 6. * pyramid * (2 * across - of_t.dot(of_z));
+}
+
+/// Quadratics around all local cells. Collective.
+std::vector<LocalHeat> local_heat(const Heat& heat, const HeatState& field) {
+  const mesh::Mesh& mesh = heat.conduction().mesh();
+  const CellsAround around(heat.conduction());
+  constexpr std::size_t size = 10;
+  std::vector<double> numbers(std::size_t(mesh.cells.n_local()) * size, 0);
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+    const LocalHeat fit = fitted_heat(heat.conduction(), around, c, field);
+    double* to = numbers.data() + std::size_t(c) * size;
+    *to++ = fit.value;
+    to = std::copy_n(fit.slope.data(), 3, to);
+    std::ranges::copy(pack(fit.second), to);
+  }
+  mesh.cells.update_ghosts(numbers, int(size));
+  std::vector<LocalHeat> all(std::size_t(mesh.cells.n_local()));
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    const double* from = numbers.data() + c * size;
+    all[c].value = *from++;
+    for (int a = 0; a < 3; ++a) all[c].slope[a] = *from++;
+    PackedTensor second;
+    std::copy_n(from, second.size(), second.begin());
+    all[c].second = unpack(second);
+  }
+  return all;
+}
+
+/// The fluxes of the scheme have a defect tau_f = exact - scheme's on the exact field. A number that answers to a source by z ([becker2001];
+/// for finite volumes: Venditti and Darmofal, J. Comput. Phys. 164 (2000) 204) errs by -S + sum_P z_P s_P with s the defect of the source,
+///   S = sum_f tau_f (z_N - z_P)
+/// Of a quadratic with the second derivatives H of T around the face tau_f is what its gradient (2.53)-(2.58) is wrong by. It is
+/// 0 between regular cells; there the third derivatives count, which summed by parts are
+///   dim/6 sum_P sum_f V_fP k (d_n d'_n - d_t . d'_t) - sum_b k |S| d_b^2 / 6 H_nn dz/dn,   d = H (x_f - x_P), d' that of z
+/// with n and t across and along the face, d_b the distance of the cell from a boundary face: exact for regular cells.
+/// Values prescribed at boundaries count as exact between face centres. Collective.
+double weighted_defect(const Heat& heat, std::span<const LocalHeat> of_t, const HeatState& z) {
+  const Conduction& conduction = heat.conduction();
+  const mesh::Mesh& mesh = conduction.mesh();
+  const mesh::Geometry& g = conduction.geometry();
+  const std::vector<LocalHeat> of_z = local_heat(heat, z);
+  const std::span<const double> k = heat.conductivity();
+  double sum = 0;
+  const auto vary = [&](Index c, Index f, const Vec3& shift) {
+    if (c < mesh.cells.n_owned())
+      sum += k[f] * varied_flux(mesh, g, f, g.face_centre[f] - shift - g.cell_centre[c], of_t[c].second,
+                                of_z[c].second);
+  };
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    const Index owner = mesh.owner[f];
+    vary(owner, f, Vec3::Zero());
+    const double area = g.face_area[f].norm();
+    if (f < mesh.n_interior) {
+      const Index neighbour = mesh.neighbour[f];
+      vary(neighbour, f, mesh.shift(f));
+      if (owner >= mesh.cells.n_owned() || mesh.cell_zone[owner] != mesh.cell_zone[neighbour]) continue;
+      const Tensor3 second = 0.5 * (of_t[owner].second + of_t[neighbour].second);
+      sum -= k[f] * area * defect_of_gradient(conduction, f, second) * (z.cells[neighbour] - z.cells[owner]);
+    } else if (conduction.condition(f) != fv::HeatCondition::symmetry) {
+      const Tensor3& second = of_t[owner].second;
+      const double across = z.boundary[f - mesh.n_interior] - z.cells[owner];
+      const Vec3& normal = conduction.faces().normal[f];
+      const double distance = 1 / conduction.faces().inverse_dn[f];
+      sum -= k[f] * area * across *
+             (defect_of_gradient(conduction, f, second) + distance / 6 * normal.dot(second * normal));
+    }
+  }
+  return parallel::sum(mesh.comm, sum);
+}
 
 class HeatEstimates {
  public:
@@ -22,9 +220,9 @@ class HeatEstimates {
         mesh_(conduction_.mesh()),
         points_(heat.point_temperature(heat.accepted())),
         fits_(local_heat(heat, heat.accepted())),
-        source_missed_(HeatAnswer(heat).source_missed()),
+        source_missed_(heat.source_missed()),
         flux_missed_(conduction_.flux_faces().size()) {
-    HeatAnswer(heat).boundaries().fluxes_missed(conduction_, heat.accepted().time, flux_missed_);
+    heat.boundaries().fluxes_missed(conduction_, heat.accepted().time, flux_missed_);
   }
 
   QuantityEstimate of(const std::string& name, const SolidQuantity& quantity) const {
@@ -102,8 +300,8 @@ class HeatEstimates {
     std::vector<double> known(conduction_.n_known(), 0), faces(std::size_t(mesh_.boundary.n_local()), 0);
     const mesh::Patch& here = *mesh_.find_patch(patch);
     const auto is_here = [&](Index f) { return f >= here.first && f < here.first + here.count; };
-    HeatAnswer(heat_).boundaries().mark_known(conduction_, patch, known);
-    const std::vector<double> transfer = HeatAnswer(heat_).transfer();
+    heat_.boundaries().mark_known(conduction_, patch, known);
+    const std::vector<double> transfer = heat_.transfer();
     const auto& flux = conduction_.flux_faces();
     for (std::size_t i = 0; i < transfer.size(); ++i)
       if (is_here(flux[i])) faces[std::size_t(flux[i] - mesh_.n_interior)] = transfer[i];
@@ -116,7 +314,7 @@ class HeatEstimates {
   }
 
   double missed(std::vector<double> rows, std::vector<double> known) const {
-    const HeatState z = HeatAnswer(heat_).field(std::move(rows), std::move(known));
+    const HeatState z = heat_.answer(std::move(rows), std::move(known));
     double source = 0;
     for (std::size_t c = 0; c < source_missed_.size(); ++c) source += z.cells[c] * source_missed_[c];
     for (std::size_t i = 0; i < flux_missed_.size(); ++i)
@@ -138,7 +336,7 @@ class HeatEstimates {
 void check_heat_quantities(const Heat& heat, const std::map<std::string, SolidQuantity>& quantities) {
   if (quantities.empty()) return;
   const mesh::Mesh& mesh = heat.conduction().mesh();
-  if (HeatAnswer(heat).properties_vary())
+  if (heat.properties_vary())
     throw Error(
         "quantities: the conductivity varies with the temperature; their errors are estimated where it is constant. 'couplet study "
         "--quantities' estimates them by differences of coarser runs.");

@@ -2,22 +2,66 @@
 // Free vibrations and buckling of SolidOutput.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "common/base/error.hpp"
-#include "common/log/finding.hpp"
+#include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/log/log.hpp"
 #include "common/modes/modes_file.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/diagnostics/weighted_estimate.hpp"
+#include "solid_solver/body/inner_variation.hpp"
+#include "solid_solver/output/buckling.hpp"
 #include "solid_solver/output/modal_analysis.hpp"
 #include "solid_solver/output/output.hpp"
-#include "solid_solver/stability/buckling.hpp"
-#include "solid_solver/stability/buckling_estimate.hpp"
 
 namespace couplet::solid {
 namespace {
+
+/// Relative error of the strain energies of these shapes where what is held rests, the largest: twice that of their
+/// frequencies. The square of the difference of two gradients' strains, or what InnerVariation takes if that is more.
+/// Collective.
+double energy_error(const SolidBody& body, const modes::EigenModes& modes) {
+  const mesh::Mesh& mesh = body.mesh();
+  const elastic::ElasticOperator& rows = body.elastic();
+  const elastic::ElasticKernel other(
+      mesh, rows,
+      body.is_corrected() ? elastic::FaceGradientScheme::thesis : elastic::FaceGradientScheme::corrected);
+  const Index n = mesh.n_flux_faces(), n_owned = mesh.cells.n_owned();
+  const auto strain = [](const Tensor3& h) { return Tensor3(0.5 * (h + h.transpose())); };
+  const auto weight = [&](Index f) {
+    const auto [here, there] = elastic::pyramids(mesh, body.geometry(), f);
+    double sum = mesh.owner[f] < n_owned ? here * rows.lame(mesh.owner[f]).mu : 0;
+    if (f < mesh.n_interior && mesh.neighbour[f] < n_owned) sum += there * rows.lame(mesh.neighbour[f]).mu;
+    return sum;
+  };
+  double most = 0;
+  for (std::size_t m = 0; m < modes.shape.size(); ++m) {
+    if (!(modes.eigenvalue[m] > 0)) continue;  // a rigid motion
+    InnerVariation variation(mesh, rows);
+    std::vector<Tensor3> used(static_cast<std::size_t>(n));
+    double gap = 0, size = 0;
+    body.kernel().face_gradients(
+        modes.shape[m], {},
+        [&](Index f, const Tensor3& h) {
+          used[std::size_t(f)] = strain(h);
+          variation.add(f, used[std::size_t(f)]);
+          size += weight(f) * used[std::size_t(f)].squaredNorm();
+        },
+        0, n);
+    other.face_gradients(
+        modes.shape[m], {},
+        [&](Index f, const Tensor3& h) {
+          gap += weight(f) * (strain(h) - used[std::size_t(f)]).squaredNorm();
+        },
+        0, n);
+    gap = parallel::sum(mesh.comm, gap), size = parallel::sum(mesh.comm, size);
+    most = std::max(
+        {most, size > 0 ? gap / size : 0, InnerVariation::is_needed(mesh, rows) ? variation.missed() : 0});
+  }
+  return most;
+}
 
 /// [kg]
 std::vector<double> cell_masses(const SolidBody& body) {
@@ -29,7 +73,7 @@ std::vector<double> cell_masses(const SolidBody& body) {
 
 }  // namespace
 
-void SolidOutput::write_modes(bool estimates) {
+void SolidOutput::write_modes() {
   if (context_.output_folder.empty() || modes_written_) return;
   modes_written_ = true;
   const std::optional<SolidProblem> problem = vibration(body_);
@@ -45,16 +89,10 @@ void SolidOutput::write_modes(bool estimates) {
   } catch (const SolveFailure& e) {
     throw Error("output.modes: {}", e.what());  // no shorter step would help
   }
-  std::string errs;
-  if (estimates) {
-    std::vector<std::span<const double>> swinging;
-    for (std::size_t m = 0; m < found.shape.size(); ++m)
-      if (found.eigenvalue[m] > 0) swinging.push_back(found.shape[m]);
-    if (!swinging.empty())
-      errs = fmt::format("; estimated error due to the mesh up to {:.2g} %",
-                         100 * 0.5 * energy_mesh_error(body_, swinging));
-  }
-  write_vibrations(*problem, found, "", errs);
+  const double error = 0.5 * energy_error(body_, found);
+  write_vibrations(
+      *problem, found, "",
+      error > 0 ? fmt::format("; estimated error due to the mesh up to {:.2g} %", 100 * error) : "");
 }
 
 /// `of`: of what, for the log; `errs`: what the mesh leaves.
@@ -132,7 +170,7 @@ void SolidOutput::write_buckling() {
           "shapes in buckling.xdmf",
           found.factor.front(), found.factor.size());
   }
-  if (!found.factor.empty()) tell_buckling(mesh.comm, {.factor = found.factor.front()}, "");
+  if (!found.factor.empty()) buckling_factor_ = found.factor.front();
 }
 
 }  // namespace couplet::solid

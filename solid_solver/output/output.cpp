@@ -14,12 +14,41 @@
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/time/time_scheme.hpp"
-#include "solid_solver/large_strain/load_path.hpp"
-#include "solid_solver/material/stress.hpp"
-#include "solid_solver/output/field_list.hpp"
+#include "solid_solver/body/stress.hpp"
+#include "solid_solver/equilibrium/load_path.hpp"
+#include "solid_solver/output/files.hpp"
 #include "solid_solver/output/spectrum.hpp"
 
 namespace couplet::solid {
+
+using Place = io::OutputField::Place;
+
+SolidSurfaces::SolidSurfaces(const SolidFields& derived, const SolidBody& body, const SolidContext& context)
+    : derived_(derived),
+      body_(body),
+      context_(context),
+      series_(body.mesh(), body.geometry().points, body.parameters().output.surfaces, "output.surfaces"),
+      wanted_(series_.points()) {}
+
+void SolidSurfaces::write(double time, std::span<const double> points, std::span<const Vec3> places) {
+  if (!is_open_)
+    series_.open(context_.output_folder, body_.parameters().output.deformed, context_.restart_time);
+  is_open_ = true;
+  const int dim = body_.mesh().dim;
+  const std::vector<double> stress = derived_.point_stress(points, wanted_);
+  std::vector<double> equivalent(wanted_.size(), 0);
+  for (std::size_t v = 0; v < wanted_.size(); ++v)
+    if (wanted_[v])
+      equivalent[v] = equivalent_stress(unpack(std::span(stress).subspan(v * tensor_size, tensor_size)));
+  FieldList fields;
+  fields.list.push_back({"displacement", "m", Place::points, dim, points});
+  fields.add("traction", "Pa", Place::cells, dim, derived_.traction(places, stress));
+  fields.add_tensor("stress", "Pa", Place::points, dim, stress);
+  fields.add("equivalent-stress", "Pa", Place::points, 1, std::move(equivalent));
+  if (ThermalStrain* thermal = body_.thermal()) thermal->add_surface_fields(fields.list);
+  for (std::size_t i = 0; i < series_.patches().size(); ++i) series_.write(i, time, places, fields.list);
+}
+
 namespace {
 
 using Place = io::OutputField::Place;
@@ -92,7 +121,7 @@ void SolidOutput::write_volume(double time, std::span<const double> points, std:
     fields.add_tensor("strain", "-", Place::cells, dim, packed_cells(mesh, derived_.cell_strain(points)));
   if (chosen.point_stress)
     fields.add_tensor("point-stress", "Pa", Place::points, dim, derived_.point_stress(points));
-  for (const auto& effect : body_.effects()) effect->add_fields(fields.list);
+  if (ThermalStrain* thermal = body_.thermal()) thermal->add_fields(fields.list);
   fields_->write(time, places, fields.list);
 }
 

@@ -7,16 +7,34 @@
 #include <vector>
 
 #include "common/io/fields/field_writer.hpp"
+#include "common/io/fields/surface_series.hpp"
 #include "common/io/series.hpp"
 #include "common/modes/pencil.hpp"
-#include "solid_solver/body/solid_context.hpp"
+#include "solid_solver/body/solid_body.hpp"
 #include "solid_solver/body/solid_fields.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
+#include "solid_solver/output/files.hpp"
 #include "solid_solver/output/probes.hpp"
-#include "solid_solver/output/stress_report.hpp"
-#include "solid_solver/output/surfaces.hpp"
 
 namespace couplet::solid {
+
+/// surface-<patch>.h5 of the patches in `output.surfaces`: displacement and stress at the points, traction of the faces, and
+/// what effects know there (temperature, heat flux).
+class SolidSurfaces {
+ public:
+  /// All by reference. Throws Error for a name that is no patch. Collective.
+  SolidSurfaces(const SolidFields& derived, const SolidBody& body, const SolidContext& context);
+  /// `points`: displacement of all local points; `places`: where they are. Collective.
+  void write(double time, std::span<const double> points, std::span<const Vec3> places);
+
+ private:
+  const SolidFields& derived_;
+  const SolidBody& body_;
+  const SolidContext& context_;
+  io::SurfaceSeries series_;
+  std::vector<std::uint8_t> wanted_;  // points with stress
+  bool is_open_ = false;
+};
 
 /// The files of a solid: fields, surfaces, probes.csv, reactions.csv, solver.csv. They are opened when first written
 /// to.
@@ -31,16 +49,15 @@ class SolidOutput {
   void write_series(double time, std::span<const double> points);
   /// spectrum.csv and a sentence in the log, for steps of dt. Collective.
   void write_spectrum(double dt);
-  /// modes.csv and, of a body in space, modes.h5; `estimates`: what the mesh leaves in the frequencies is told. Collective.
-  void write_modes(bool estimates);
-  /// Largest stress and those at probes with their errors, as findings; `mesh`: what the mesh leaves in the displacement. Collective.
-  void tell_stresses(double mesh) const {
-    solid::tell_stresses(body_.mesh().comm, reported_stresses(body_, derived_, probes_, mesh));
-  }
+  /// modes.csv and, of a body in space, modes.h5; in the log also what the mesh leaves in the frequencies. Collective.
+  void write_modes();
   /// modes.csv and modes.h5 of the accepted state of a linear static run. Collective.
   void write_preloaded_modes();
   /// buckling.csv, buckling.xdmf and a sentence in the log of its loads. Collective.
   void write_buckling();
+  /// The lowest load factor that write_buckling() found; none: not looked for, or the loads buckle nothing.
+  std::optional<double> buckling_factor() const { return buckling_factor_; }
+  const SolidProbes& probes() const { return probes_; }
 
  private:
   void write_volume(double time, std::span<const double> points, std::span<const Vec3> places);
@@ -59,6 +76,7 @@ class SolidOutput {
   const SolidContext& context_;
   SolidProbes probes_;
   bool spectrum_written_ = false, modes_written_ = false;
+  std::optional<double> buckling_factor_;
   std::optional<io::FieldWriter> fields_;
   std::optional<SolidSurfaces> surfaces_;
   // On rank 0.

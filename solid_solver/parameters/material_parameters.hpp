@@ -7,10 +7,41 @@
 #include <vector>
 
 #include "common/config/section.hpp"
-#include "solid_solver/material/orthotropic.hpp"
+#include "common/elasticity/anisotropic.hpp"
+#include "common/fv/expression.hpp"
 #include "solid_solver/parameters/heat_parameters.hpp"
 
 namespace couplet::solid {
+
+/// A material with three planes of symmetry, and where its axes lie.
+struct Orthotropic {
+  std::vector<double> youngs_moduli, poissons_ratios, shear_moduli;  // 1 2 3; 12 23 13; 12 23 13 [Pa]
+  /// Of x, y, z, any length; empty: x and y. In the plane the first alone; the third is z there. Of the second counts
+  /// what lies across the first.
+  std::vector<config::ExpressionText> first_axis, second_axis;
+};
+
+/// The keys of `material.orthotropic`.
+void declare(config::Section& section, Orthotropic& material);
+
+/// In the axes of the material.
+elastic::ElasticMatrix matrix_of(const Orthotropic& material);
+
+/// Axes of a material at places.
+class MaterialAxes {
+ public:
+  /// `dimension` 2 or 3.
+  MaterialAxes(const Orthotropic& material, int dimension);
+  /// They are the same everywhere.
+  bool is_constant() const { return is_constant_; }
+  /// Columns 1, 2, 3, orthonormal. Throws Error where they are no axes.
+  Tensor3 at(const Vec3& place) const;
+
+ private:
+  std::vector<fv::Expression> first_, second_;
+  int dimension_;
+  bool is_constant_ = true;
+};
 
 struct SolidMaterial {
   double density = 0;         // [kg/m^3]

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/config/section.hpp"
+#include "common/time/time_scheme.hpp"
 
 namespace couplet::solid {
 
@@ -30,5 +31,34 @@ struct MethodParameters {
 };
 
 void declare(config::Section& section, MethodParameters& method);
+
+/// Rayleigh damping C = mass M + stiffness K, thesis (2.79).
+struct SolidDamping {
+  double mass = 0;       // [1/s]
+  double stiffness = 0;  // [s]
+};
+
+/// Step sizes that follow the local error.
+struct TimeStepControl {
+  double tolerance = 0;  // wanted accuracy of the displacement, rms over the volume [m]
+};
+
+void declare(config::Section& section, SolidDamping& damping);
+void declare(config::Section& section, TimeStepControl& control);
+
+struct SolidParameters;
+
+/// How a static run at large strain goes from one equilibrium to the next.
+struct LoadStepping {
+  enum class Type { load, arc_length };
+  Type type = Type::load;
+  double first_load_factor = 0.05;  // of the first step
+  int iterations = 5;               // that a step should take
+  double longest = 10;              // step over the first one
+};
+
+void declare(config::Section& section, LoadStepping& stepping);
+/// What the arc length cannot have, each told at the key to change.
+void check_load_stepping(config::Section& section, SolidParameters& parameters);
 
 }  // namespace couplet::solid

@@ -6,19 +6,52 @@
 #include <string>
 #include <vector>
 
+#include "common/base/types.hpp"
 #include "common/config/section.hpp"
 #include "common/contact/contact.hpp"
 #include "common/elasticity/elasticity.hpp"
 #include "solid_solver/parameters/boundary_parameters.hpp"
 #include "solid_solver/parameters/heat_parameters.hpp"
 #include "solid_solver/parameters/interface_data.hpp"
-#include "solid_solver/parameters/load_stepping.hpp"
 #include "solid_solver/parameters/material_parameters.hpp"
 #include "solid_solver/parameters/method_parameters.hpp"
-#include "solid_solver/parameters/output_parameters.hpp"
-#include "solid_solver/parameters/time_parameters.hpp"
 
 namespace couplet::solid {
+
+struct SolidProbe {
+  Vec3 point = Vec3::Zero();
+  std::vector<std::string> fields{"displacement"};
+};
+
+/// A number that the run is made for, and whose error it estimates at its end.
+struct SolidQuantity {
+  std::vector<double> point;  // [m]; empty: where the equivalent stress is largest
+  std::string field = "displacement";
+  std::string patch{};    // of a heat flow
+  std::string component;  // "x" of a displacement, "xx" of a stress; of an equivalent stress none
+};
+
+/// Fields written at the output interval, and the energies.
+struct SolidOutputParameters {
+  bool deformed = true;
+  bool stress = true;
+  bool strain = false;
+  bool principal_stress = false;
+  bool point_stress = false;
+  bool acceleration = false;
+  bool energies = false;
+  bool large_strain_estimate = false;
+  bool spectrum = false;
+  bool moments = false;
+  Vec3 moment_centre = Vec3::Zero();  // [m]
+  std::vector<std::string> surfaces;  // patches, or "all"
+  int modes = 0;                      // frequencies and shapes that are asked for
+  int buckling = 0;                   // load factors and shapes
+};
+
+void declare(config::Section& section, SolidProbe& probe);
+void declare(config::Section& section, SolidQuantity& quantity, int dimension);
+void declare(config::Section& section, SolidOutputParameters& output);
 
 struct SolidParameters {
   enum class Analysis { static_, dynamic, thermal, buckling };  // buckling: static_ once it is read

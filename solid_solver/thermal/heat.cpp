@@ -53,7 +53,6 @@ Heat::Heat(const mesh::Mesh& mesh, const mesh::Geometry& geometry, std::vector<H
   solver_ = std::make_unique<linalg::LinearSolver>(
       "temperature", matrix_,
       options_of(parameters_, parallel::sum(mesh.comm, static_cast<GlobalIndex>(conduction_.n_unknowns()))));
-  if (!is_steady() && parameters_.scheme == HeatParameters::Scheme::trapezoidal) swing_.emplace();
   start();
 }
 
@@ -256,9 +255,6 @@ void Heat::set_inflow(std::span<const double> source) {
   }
 }
 
-void Heat::accept_step() {
-  if (swing_) swing_->accepted(*mesh_, *geometry_, state_.cells, trial_.cells, trial_.time);
-  std::swap(state_, trial_);
-}
+void Heat::accept_step() { std::swap(state_, trial_); }
 
 }  // namespace couplet::solid

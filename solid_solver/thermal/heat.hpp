@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,7 +12,6 @@
 #include "common/linalg/linear_solver.hpp"
 #include "solid_solver/parameters/heat_parameters.hpp"
 #include "solid_solver/thermal/heat_boundaries.hpp"
-#include "solid_solver/thermal/heat_swing.hpp"
 
 namespace couplet::solid {
 
@@ -63,7 +61,13 @@ class Heat final {
 
   const fv::ConductionOperator& conduction() const { return conduction_; }
   const HeatState& accepted() const { return state_; }
+  /// State at the end of the last solve(); after accept_step() the state before the accepted one.
   const HeatState& trial() const { return trial_; }
+  const HeatParameters& parameters() const { return parameters_; }
+  const std::vector<HeatProperties>& materials() const { return materials_; }
+  const HeatBoundaries& boundaries() const { return boundaries_; }
+  bool is_steady() const { return parameters_.analysis == HeatParameters::Analysis::steady; }
+  bool properties_vary() const { return properties_vary_; }
   /// Of all local points. Collective.
   std::vector<double> point_temperature(const HeatState& state) const;
   /// Of the flux faces of the mesh. Collective.
@@ -74,13 +78,20 @@ class Heat final {
   std::vector<double> boundary_inflow() const;
   /// Heat stored in the whole solid, from an arbitrary level on [J]. Collective.
   double stored_heat() const;
-  /// What was left out, for Participant::finish(). Collective.
-  void judge(std::vector<std::string>& sentences) const;
+
+  // The matrix of a steady field with constant conductivities and other data: what the dual problem needs.
+
+  /// Conductivity in the last step, per local face [W/(m K)].
+  std::span<const double> conductivity() const { return conductivity_; }
+  /// h |S| of the flux faces [W/K], entry by entry of conduction().flux_faces(); empty: no convection.
+  std::vector<double> transfer() const;
+  /// What the value at a cell's center leaves out of the source in the cell [W], accepted time; empty: no source.
+  std::vector<double> source_missed() const;
+  /// The field of other `sources` [W], one a row, and known values. Throws SolveFailure. Collective.
+  HeatState answer(std::vector<double> sources, std::vector<double> known) const;
 
  private:
-  friend class HeatAnswer;  // other data for the same matrix
   struct Coefficients;
-  bool is_steady() const { return parameters_.analysis == HeatParameters::Analysis::steady; }
   void start();
   std::pair<std::vector<double>, std::vector<double>> known_fields() const;
   Coefficients coefficients(double dt) const;
@@ -104,8 +115,7 @@ class Heat final {
   std::vector<double> conductivity_, face_heat_, transfer_, capacity_, rhs_, unknowns_;
   linalg::SparseMatrix matrix_;
   std::unique_ptr<linalg::LinearSolver> solver_;
-  double filled_for_ = -1;          // a_0 / dt of the matrix now there; -1: none
-  std::optional<HeatSwing> swing_;  // of the one scheme that does not damp
+  double filled_for_ = -1;  // a_0 / dt of the matrix now there; -1: none
 };
 
 }  // namespace couplet::solid

@@ -1,13 +1,60 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is made of the temperature: values at points and faces, heat through patches, what was neglected.
-#include <fmt/format.h>
 
+// Heat on file, at points and faces, through patches, and the answers of its matrix to other data.
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
+#include "common/base/error.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/thermal/heat.hpp"
 
 namespace couplet::solid {
+
+/// The known values as fields, zeros elsewhere: per local point, per boundary face of owned cells.
+std::pair<std::vector<double>, std::vector<double>> Heat::known_fields() const {
+  std::pair<std::vector<double>, std::vector<double>> fields;
+  fields.first.assign(mesh_->points.n_local(), 0.);
+  fields.second.assign(mesh_->boundary.n_owned(), 0.);
+  std::size_t i = 0;
+  for (const Index v : conduction_.known_points()) fields.first[v] = state_.known[i++];
+  for (const Index f : conduction_.known_faces()) fields.second[f - mesh_->n_interior] = state_.known[i++];
+  return fields;
+}
+
+void Heat::save(io::CheckpointWriter& file) const {
+  file.write(mesh::Entries::cells, "cell-temperature", state_.cells);
+  file.write(mesh::Entries::boundary, "face-temperature", state_.boundary);
+  const auto [points, faces] = known_fields();
+  file.write(mesh::Entries::points, "known-temperature", points);
+  file.write(mesh::Entries::owned_boundary, "known-face-temperature", faces);
+  file.write(mesh::Entries::owned_cells, "enthalpy", state_.enthalpy);
+  file.write(mesh::Entries::owned_cells, "enthalpy-before", state_.enthalpy_before);
+  file.write(mesh::Entries::owned_cells, "heat-inflow", state_.inflow);
+  file.write_scalar("heat-time", state_.time);
+  file.write_scalar("heat-dt", state_.dt);
+  file.write_scalar("heat-steps", state_.steps);
+}
+
+void Heat::load(io::CheckpointReader& file) {
+  file.read(mesh::Entries::cells, "cell-temperature", state_.cells);
+  file.read(mesh::Entries::boundary, "face-temperature", state_.boundary);
+  auto [points, faces] = known_fields();
+  file.read(mesh::Entries::points, "known-temperature", points);
+  file.read(mesh::Entries::owned_boundary, "known-face-temperature", faces);
+  std::size_t i = 0;
+  for (const Index v : conduction_.known_points()) state_.known[i++] = points[v];
+  for (const Index f : conduction_.known_faces()) state_.known[i++] = faces[f - mesh_->n_interior];
+  file.read(mesh::Entries::owned_cells, "enthalpy", state_.enthalpy);
+  file.read(mesh::Entries::owned_cells, "enthalpy-before", state_.enthalpy_before);
+  file.read(mesh::Entries::owned_cells, "heat-inflow", state_.inflow);
+  state_.time = file.read_scalar("heat-time");
+  state_.dt = file.read_scalar("heat-dt");
+  state_.steps = static_cast<int>(file.read_scalar("heat-steps"));
+}
+
+// What is made of the temperature: values at points and faces, heat through patches, what was neglected.
 
 std::vector<double> Heat::point_temperature(const HeatState& state) const {
   std::vector<double> points(mesh_->points.n_local());
@@ -61,36 +108,57 @@ double Heat::stored_heat() const {
   return parallel::sum(mesh_->comm, heat);
 }
 
-// Heat needs L^2 / a to get through a solid of half thickness L = volume / surface, a = k / (rho c).
-void Heat::judge(std::vector<std::string>& sentences) const {
-  if (!is_steady() || state_.steps < 2) return;
-  const HeatProperties& m = materials_.front();
-  double volume = 0, surface = 0, level = 0;
-  for (Index c = 0; c < mesh_->cells.n_owned(); ++c) {
-    volume += geometry_->volume[c];
-    level += geometry_->volume[c] * state_.cells[c];
+HeatState Heat::answer(std::vector<double> sources, std::vector<double> known) const {
+  if (!is_steady() || properties_vary_ || state_.steps == 0)
+    throw Error("Only a steady temperature that was solved for, with constant conductivity, has a dual.");
+  HeatState answer;
+  answer.known = std::move(known);
+  conduction_.subtract_known({conductivity_, transfer_, capacity_, 1}, answer.known, sources);
+  std::vector<double> unknowns(sources.size(), 0);
+  solver_->solve(sources, unknowns);
+  const auto n_owned = std::size_t(mesh_->cells.n_owned());
+  answer.cells.assign(std::size_t(mesh_->cells.n_local()), 0);
+  answer.boundary.assign(std::size_t(mesh_->boundary.n_local()), 0);
+  std::copy_n(unknowns.begin(), n_owned, answer.cells.begin());
+  const auto& faces = conduction_.flux_faces();
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    answer.boundary[std::size_t(faces[i] - mesh_->n_interior)] = unknowns[n_owned + i];
+  const auto& fixed = conduction_.known_faces();
+  for (std::size_t i = 0; i < fixed.size(); ++i)
+    answer.boundary[std::size_t(fixed[i] - mesh_->n_interior)] =
+        answer.known[conduction_.known_points().size() + i];
+  mesh_->cells.update_ghosts(answer.cells);
+  mesh_->boundary.update_ghosts(answer.boundary);
+  conduction_.join_twins(answer.boundary);
+  return answer;
+}
+
+std::vector<double> Heat::transfer() const {
+  std::vector<double> all = transfer_;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[i] *= geometry_->face_area[conduction_.flux_faces()[i]].norm();
+  return all;
+}
+
+// The mean of the values at the faces, by the volumes of their pyramids, is 3 / dim times as far from the centre's value as that of a
+// source of second order in a regular cell.
+std::vector<double> Heat::source_missed() const {
+  std::vector<double> missed;
+  if (source_.is_zero()) return missed;
+  missed.assign(std::size_t(mesh_->cells.n_owned()), 0);
+  const mesh::Geometry& g = *geometry_;
+  const auto add = [&](Index c, Index f, const Vec3& shift) {
+    if (c >= mesh_->cells.n_owned()) return;
+    const Vec3 at = g.face_centre[f] - shift;
+    const double pyramid = std::abs(g.face_area[f].dot(at - g.cell_centre[c])) / mesh_->dim;
+    missed[std::size_t(c)] +=
+        mesh_->dim / 3. * pyramid * (source_(at, state_.time) - source_(g.cell_centre[c], state_.time));
+  };
+  for (Index f = 0; f < mesh_->n_flux_faces(); ++f) {
+    add(mesh_->owner[f], f, Vec3::Zero());
+    if (f < mesh_->n_interior) add(mesh_->neighbour[f], f, mesh_->shift(f));
   }
-  for (Index f = mesh_->n_interior; f < mesh_->n_flux_faces(); ++f)
-    if (conduction_.condition(f) != fv::HeatCondition::symmetry &&
-        conduction_.condition(f) != fv::HeatCondition::bonded)
-      surface += geometry_->face_area[f].norm();
-  volume = parallel::sum(mesh_->comm, volume);
-  level = parallel::sum(mesh_->comm, level) / volume;
-  const double size = volume / parallel::sum(mesh_->comm, surface);
-  const double stored = m.density * m.specific_heat(level);
-  if (!(stored > 0)) {
-    sentences.push_back(
-        "heat storage neglected (steady): give 'specific-heat' to compare its time scale with the step.");
-    return;
-  }
-  const double time = size * size * stored / m.conductivity(level);
-  sentences.push_back(
-      fmt::format("heat storage neglected (steady): heat needs about {:.2g} s to spread through the solid, "
-                  "a step takes {:.2g} s (Fourier number {:.2g}): {}.",
-                  time, state_.dt, state_.dt / time,
-                  state_.dt > 3 * time ? "justified"
-                                       : "not justified if the loads change that fast; use 'analysis: "
-                                         "transient'"));
+  return missed;
 }
 
 }  // namespace couplet::solid

@@ -209,7 +209,6 @@ std::vector<double> ThermalStrain::pressure(double t) {
 }
 
 void ThermalStrain::accept_step() {
-  if (errors_) errors_->see_step(heat_->accepted(), heat_->trial());
   if (heat_) heat_->accept_step();
   given_accepted_ = given_trial_;
   time_ = step_.time + step_.dt;
@@ -223,11 +222,7 @@ void ThermalStrain::accept_step() {
 }
 
 void ThermalStrain::save(io::CheckpointWriter& file) const {
-  if (heat_) {
-    heat_->save(file);
-    file.write_scalar("has-temperature-errors", errors_ ? 1 : 0);
-    if (errors_) errors_->save(file);
-  }
+  if (heat_) heat_->save(file);
   if (given_) {
     const bool is_given = parallel::any(mesh_->comm, !given_accepted_.empty());
     std::vector<double> faces(is_given ? std::size_t(mesh_->boundary.n_owned()) : 0);
@@ -248,10 +243,7 @@ void ThermalStrain::save(io::CheckpointWriter& file) const {
 }
 
 void ThermalStrain::load(io::CheckpointReader& file) {
-  if (heat_) {
-    heat_->load(file);
-    if (file.read_scalar("has-temperature-errors") != 0 && errors_) errors_->load(file);
-  }
+  if (heat_) heat_->load(file);
   if (given_) {
     const std::vector<double> saved =
         file.read_or_none(mesh::Entries::owned_boundary, "interface-temperature", 1);
@@ -277,24 +269,8 @@ void ThermalStrain::load(io::CheckpointReader& file) {
   set_accepted();
 }
 
-void ThermalStrain::collect_errors() {
-  if (heat_ && !expansion_.empty()) errors_.emplace(*mesh_, *geometry_, parameters_.heat.value());
-}
-
-coupling::ErrorParts ThermalStrain::error_parts() const {
-  return errors_ ? errors_->parts(*heat_, reference_) : coupling::ErrorParts{};
-}
-
-void ThermalStrain::judge(std::vector<std::string>& sentences) const {
-  if (heat_) heat_->judge(sentences);
-}
-
-void ThermalStrain::add_evidence(SolidEvidence& evidence) const {
-  if (const double number = coupling_number(); number > 0) evidence.coupling_number = number;
-  const double high = parallel::max(mesh_->comm, highest_), low = parallel::min(mesh_->comm, lowest_),
-               reference = parameters_.expansion.value_or(ThermalExpansion{}).reference_temperature;
-  evidence.temperature_range = high - low;
-  evidence.temperature_change = std::max(std::abs(high - reference), std::abs(low - reference));
+std::pair<double, double> ThermalStrain::temperatures_seen() const {
+  return {parallel::min(mesh_->comm, lowest_), parallel::max(mesh_->comm, highest_)};
 }
 
 }  // namespace couplet::solid

@@ -5,9 +5,9 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "common/coupling/error_parts.hpp"
 #include "common/coupling/participant.hpp"
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/elasticity/elasticity.hpp"
@@ -15,10 +15,8 @@
 #include "common/fv/table.hpp"
 #include "common/io/fields/field_writer.hpp"
 #include "common/mesh/mesh.hpp"
-#include "solid_solver/effects/evidence.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 #include "solid_solver/thermal/heat.hpp"
-#include "solid_solver/thermal/heat_errors.hpp"
 
 namespace couplet::solid {
 
@@ -59,9 +57,8 @@ class ThermalStrain {
   /// add_loads() and the stresses have nothing of it then. Empty: none.
   std::vector<double> expansion(double t);
   void accept_step();
-  /// If it wants_temperature(), it gets the centres of this rank's faces of the interface once, and what was given at
-  /// these at the start of each solve (empty: nothing yet); begin_step() follows. Collective.
-  bool wants_temperature() const { return given_; }
+  /// Where the temperature is given at the interface: the centers of this rank's faces there, once, and what is given at
+  /// them at the start of each solve (empty: nothing yet), before begin_step(). Collective.
   void set_interface(const std::vector<Vec3>& face_centres, const std::vector<Index>& faces);
   void take_temperature(const std::vector<double>& faces);
   /// If it wants_stress(), it gets that of the owned cells after each accepted step [Pa].
@@ -77,14 +74,10 @@ class ThermalStrain {
   void add_fields(std::vector<io::OutputField>& fields);
   /// The same of the boundary: of all local points, or (place "cells") of the boundary faces of owned cells. Collective.
   void add_surface_fields(std::vector<io::OutputField>& fields);
-  /// Adds what it has seen, for the verdicts on what was left out. Collective.
-  void add_evidence(SolidEvidence& evidence) const;
-  /// For Participant::finish(), beside the verdicts of the cards.
-  void judge(std::vector<std::string>& sentences) const;
-  /// Before the first step, if the run is to end with an estimate of its error; else nothing is collected.
-  void collect_errors();
-  /// Error of the temperature that is solved for, over its distance from the reference: the strain errs by as much. Collective.
-  coupling::ErrorParts error_parts() const;
+  /// Lowest and highest temperature so far [K]. Collective.
+  std::pair<double, double> temperatures_seen() const;
+  /// What thermoelastic coupling adds to the stiffness, relatively; 0: not known. Collective.
+  double coupling_number() const;
 
   /// None: the temperature is prescribed.
   const Heat* heat() const { return heat_.get(); }
@@ -109,7 +102,6 @@ class ThermalStrain {
   /// Means over the faces by the pyramids on them, as the displacement gradient of a cell is; owned cells.
   std::vector<double> pyramid_means(const std::vector<double>& of_faces) const;
   std::vector<double> cell_strain() const;  // thermal, of owned cells at the accepted time
-  double coupling_number() const;
   void set_accepted();
   std::vector<double> cell_temperature(double t, bool trial) const;  // of all local cells
   std::vector<elastic::LameConstants> lame_at(std::span<const double> temperature) const;
@@ -118,8 +110,7 @@ class ThermalStrain {
   const mesh::Mesh* mesh_;
   const mesh::Geometry* geometry_;
   const elastic::ElasticOperator* elastic_;
-  std::unique_ptr<Heat> heat_;        // none: prescribed
-  std::optional<HeatErrors> errors_;  // none: not wanted
+  std::unique_ptr<Heat> heat_;  // none: prescribed
   std::optional<fv::Expression> prescribed_;
   bool given_ = false;                                // at the interface
   std::vector<Index> interface_faces_;                // as entries of the boundary

@@ -33,10 +33,12 @@ struct Swing {
   std::string cause;
 };
 
-/// `steps`: one after the other, again and again; the program looks at its energy every 20 of them.
+/// `steps`: one after the other, again and again; the balance of energies is looked at every 20 of them.
 inline Swing swing(const mesh::RawMesh& raw, const SolidParameters& p, const std::vector<double>& steps,
                    int count) {
   const auto solid = make_solid(raw, p);
+  EnergyBalance balance(solid->view(), std::make_shared<StrainEnergy>(solid->view()));
+  diagnostics::Report report;
   Swing result;
   double largest = 0, first = 1;
   try {
@@ -46,7 +48,7 @@ inline Swing swing(const mesh::RawMesh& raw, const SolidParameters& p, const std
           solid->stepper().ledger().total(solid->stepper().state(), solid->fields().point_displacement());
       first = e.initial_kinetic;
       largest = std::max(largest, e.kinetic + std::max(0.0, std::min(e.strain, e.internal_work)));
-      if (i % 20 == 19) solid->write_output(solid->stepper().state().time, 0);
+      if (i % 20 == 19) balance.look(report);
     }
   } catch (const Error& error) {
     result.ended = true;

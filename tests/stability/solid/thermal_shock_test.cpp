@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "common/log/finding.hpp"
 #include "tests/verification/heat/support.hpp"
 
 namespace couplet::testing::thermal_shock_test {
@@ -26,18 +25,15 @@ Shock shock(HeatScheme scheme, double fourier) {
       mesh::make_box(mesh::BoxCells::quadrilaterals, {int(n), 1, 1}, Vec3::Zero(), Vec3(1, 0.1, 0)),
       {{1, 1.0, 1.0}}, p);
   Shock result;
-  const int before_it = log::doubts();
-  for (int i = 0; i < 60; ++i) {
-    std::vector<double> before;
-    for (Index c = 0; c < n; ++c) before.push_back(scene.temperature(c));
-    scene.step(fourier / (n * n));
+  std::vector<double> before(n, 0);
+  result.told = scene.doubts(60, fourier / (n * n), [&] {
     for (Index c = 0; c < n; ++c) {
       const double t = scene.temperature(c);
       result.beyond = std::max({result.beyond, -t, t - 1});
       result.back = std::max(result.back, before[std::size_t(c)] - t);
+      before[std::size_t(c)] = t;
     }
-  }
-  result.told = log::doubts() - before_it;
+  });
   return result;
 }
 

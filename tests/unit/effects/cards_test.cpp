@@ -10,8 +10,9 @@
 #include "fluid_solver/diagnostics/effects.hpp"
 #include "fluid_solver/parameters/effects.hpp"
 #include "plate_modal/model/parameters.hpp"
-#include "solid_solver/diagnostics/effects.hpp"
-#include "solid_solver/effects/effect_cards.hpp"
+#include "solid_solver/diagnostics/neglected.hpp"
+#include "solid_solver/effects.hpp"
+#include "thermocline/diagnostics/tank_diagnostic.hpp"
 
 namespace couplet::testing::cards_test {
 using namespace effects;
@@ -63,33 +64,42 @@ TEST(EffectCards, a_scene_has_the_effects_that_it_asks_for_and_no_others) {
               HasSubstr("inertia (analysis: dynamic)"));
 }
 
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Opinion on small strain by the largest gradient and the buckling factor.
+Opinion on_geometry(double gradient, double buckling_factor = unknown) {
+  return neglected_geometry(static_solid(), {.gradient = gradient}, {}, buckling_factor);
+}
+
 TEST(EffectCards, without_evidence_there_is_no_verdict) {
-  SolidParameters p = static_solid();
-  for (const log::Finding& f : effect_findings(p, SolidEvidence{})) EXPECT_EQ(f.id, "near-incompressibility");
+  const SolidParameters p = static_solid();
+  EXPECT_FALSE(neglected_inertia(p, unknown));
+  EXPECT_FALSE(on_geometry(unknown));
+  EXPECT_FALSE(neglected_yielding(unknown));
+  EXPECT_FALSE(neglected_thermal_strain(p, unknown, unknown, unknown));
+  EXPECT_FALSE(thermoelastic_coupling(p, unknown));
 }
 
 // Each share is what a closed form says of the answer.
 TEST(EffectCards, neglected_effects_say_what_share_of_the_answer_they_change) {
   const SolidParameters p = static_solid();
-  const auto model = [&](const SolidEvidence& e) { return model_of(effect_findings(p, e)); };
-  EXPECT_DOUBLE_EQ(model({.inertia_over_load = 0.04}).model, 0.04);
-  EXPECT_DOUBLE_EQ(model({.inertia_over_load = 430}).model, 1);
-  const coupling::ErrorParts hot = model({.largest_gradient = 1e-6, .temperature_range = 75});
+  const auto model = [&](const Opinion& opinion) { return model_of({opinion.value()}); };
+  EXPECT_DOUBLE_EQ(model(neglected_inertia(p, 0.04)).model, 0.04);
+  EXPECT_DOUBLE_EQ(model(neglected_inertia(p, 430)).model, 1);
+  const coupling::ErrorParts hot = model(neglected_thermal_strain(p, 1e-6, 75, unknown));
   EXPECT_NEAR(hot.model, 750, 1e-9);
   EXPECT_EQ(hot.model_by, "thermal strain neglected: use 'thermal-expansion'");
   // The elastica: a cantilever with P L^2 / (E I) = 1 has a slope of 0.46 at its tip, which moves 9.5 % less than the linear one.
-  EXPECT_NEAR(model({.largest_gradient = 0.46 * std::sqrt(2.)}).model, 0.095, 0.02);
-  EXPECT_DOUBLE_EQ(model({.largest_gradient = 1e-4, .buckling_factor = 1.5}).model, 2);
-  EXPECT_DOUBLE_EQ(model({.largest_gradient = 1e-4, .buckling_factor = 0}).model, 10);
-  EXPECT_TRUE(std::isnan(model_of(effect_findings(p, SolidEvidence{})).model));
+  EXPECT_NEAR(model(on_geometry(0.46 * std::sqrt(2.))).model, 0.095, 0.02);
+  EXPECT_DOUBLE_EQ(model(on_geometry(1e-4, 1.5)).model, 2);
+  EXPECT_DOUBLE_EQ(model(on_geometry(1e-4, 0)).model, 10);
+  EXPECT_TRUE(std::isnan(model_of({}).model));
 }
 
 TEST(EffectCards, what_does_next_to_nothing_could_be_omitted) {
-  SolidParameters p = static_solid();
-  p.analysis = SolidParameters::Analysis::dynamic;
-  const auto idle = [&](double energies) {
-    return model_of(effect_findings(p, SolidEvidence{.kinetic_over_strain = energies, .dynamic_steps = 100}))
-        .omittable;
+  const auto idle = [](double energies) {
+    const Opinion opinion = spare_inertia(energies, 100);
+    return opinion ? model_of({*opinion}).omittable : "";
   };
   EXPECT_THAT(idle(5e-4), HasSubstr("inertia (max kinetic / largest strain energy = 0.0005"));
   EXPECT_THAT(idle(5e-4), HasSubstr("saves about 99 % of the time"));
@@ -99,46 +109,40 @@ TEST(EffectCards, what_does_next_to_nothing_could_be_omitted) {
 // Each pair lies just inside and just outside of validity.
 TEST(EffectCards, solid_verdicts_turn_at_their_thresholds) {
   const SolidParameters p = static_solid();
-  const auto sound = [&](const char* effect, const SolidEvidence& e, const SolidParameters& scene) {
-    return is_sound(effect, effect_findings(scene, e));
-  };
-  EXPECT_TRUE(sound("inertia", {.inertia_over_load = 0.0099}, p));
-  EXPECT_FALSE(sound("inertia", {.inertia_over_load = 0.0101}, p));
-  EXPECT_TRUE(sound("geometric-non-linearity", {.largest_gradient = 0.0199}, p));
-  EXPECT_FALSE(sound("geometric-non-linearity", {.largest_gradient = 0.0201}, p));
-  EXPECT_TRUE(sound("thermal-strain", {.largest_gradient = 0.01, .temperature_range = 19}, p));
-  EXPECT_FALSE(sound("thermal-strain", {.largest_gradient = 0.01, .temperature_range = 21}, p));
+  const auto sound = [](const Opinion& opinion) { return opinion.value().severity == base::Severity::note; };
+  EXPECT_TRUE(sound(neglected_inertia(p, 0.0099)));
+  EXPECT_FALSE(sound(neglected_inertia(p, 0.0101)));
+  EXPECT_TRUE(sound(on_geometry(0.0199)));
+  EXPECT_FALSE(sound(on_geometry(0.0201)));
+  EXPECT_TRUE(sound(neglected_thermal_strain(p, 0.01, 19, unknown)));
+  EXPECT_FALSE(sound(neglected_thermal_strain(p, 0.01, 21, unknown)));
   // With a coefficient of its own, from the reference temperature on; without one a uniform temperature may be that of no stress.
   SolidParameters warm = p;
   warm.material.heat.expansion = config::ExpressionText{"2e-5"};
-  EXPECT_TRUE(sound("thermal-strain",
-                    {.largest_gradient = 0.01, .temperature_range = 0, .temperature_change = 9}, warm));
-  EXPECT_FALSE(sound("thermal-strain",
-                     {.largest_gradient = 0.01, .temperature_range = 0, .temperature_change = 11}, warm));
-  EXPECT_TRUE(sound("thermal-strain",
-                    {.largest_gradient = 0.01, .temperature_range = 0, .temperature_change = 400}, p));
+  EXPECT_TRUE(sound(neglected_thermal_strain(warm, 0.01, 0, 9)));
+  EXPECT_FALSE(sound(neglected_thermal_strain(warm, 0.01, 0, 11)));
+  EXPECT_TRUE(sound(neglected_thermal_strain(p, 0.01, 0, 400)));
   warm.material.heat.expansion = config::ExpressionText{"1e-7"};
-  EXPECT_TRUE(sound("thermal-strain",
-                    {.largest_gradient = 0.01, .temperature_range = 400, .temperature_change = 400}, warm));
-  EXPECT_TRUE(sound("thermoelastic-coupling", {.coupling_number = 0.049}, p));
-  EXPECT_FALSE(sound("thermoelastic-coupling", {.coupling_number = 0.051}, p));
-  EXPECT_TRUE(sound("yielding", {.share_of_yield = 0.99}, p));
-  EXPECT_FALSE(sound("yielding", {.share_of_yield = 1.01}, p));
+  EXPECT_TRUE(sound(neglected_thermal_strain(warm, 0.01, 400, 400)));
+  EXPECT_TRUE(sound(thermoelastic_coupling(p, 0.049)));
+  EXPECT_FALSE(sound(thermoelastic_coupling(p, 0.051)));
+  EXPECT_TRUE(sound(neglected_yielding(0.99)));
+  EXPECT_FALSE(sound(neglected_yielding(1.01)));
   SolidParameters rubber = p;
   rubber.method.face_gradient = MethodParameters::FaceGradient::corrected;
   rubber.material.poissons_ratio = 0.451;
-  EXPECT_FALSE(sound("near-incompressibility", {}, rubber));
+  EXPECT_FALSE(sound(near_incompressibility(rubber)));
   rubber.material.poissons_ratio = 0.449;
-  EXPECT_TRUE(sound("near-incompressibility", {}, rubber));
+  EXPECT_TRUE(sound(near_incompressibility(rubber)));
   rubber.method.face_gradient = MethodParameters::FaceGradient::automatic;  // takes one volume strain a cell
   rubber.material.poissons_ratio = 0.451;
-  EXPECT_FALSE(with_id("near-incompressibility", effect_findings(rubber, SolidEvidence{})));
+  EXPECT_FALSE(near_incompressibility(rubber));
 }
 
 TEST(EffectCards, an_effect_that_is_on_is_not_judged_as_left_out) {
   SolidParameters p = static_solid();
   p.analysis = SolidParameters::Analysis::dynamic;
-  EXPECT_FALSE(with_id("inertia", effect_findings(p, SolidEvidence{.inertia_over_load = 1})));
+  EXPECT_FALSE(neglected_inertia(p, 1));
 }
 
 TEST(Sound, is_that_of_a_key_a_pressure_a_substance_or_none) {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "fluid_solver/parameters/effects.hpp"
-#include "solid_solver/effects/auto_effects.hpp"
+#include "solid_solver/effects.hpp"
 
 namespace couplet::testing::choices_test {
 using namespace mesh;

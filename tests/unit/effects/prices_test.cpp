@@ -11,7 +11,7 @@
 #include "fluid_solver/parameters/effects.hpp"
 #include "mesh_mover/parameters.hpp"
 #include "plate_modal/model/parameters.hpp"
-#include "solid_solver/effects/effect_cards.hpp"
+#include "solid_solver/effects.hpp"
 #include "thermocline/model/elements.hpp"
 
 namespace couplet::testing::prices_test {

@@ -85,8 +85,7 @@ TEST(SteadyHeat, tells_the_time_that_it_neglects_by_the_mean_temperature) {
   HeatCase scene(make_box(BoxCells::quadrilaterals, {8, 2, 1}, Vec3::Zero(), Vec3(1, 0.1, 0)),
                  {{3, 1.0, fv::Property({"table(T, 300, 500, 800, 1500)"}, "c")}}, p);
   std::vector<std::string> said;
-  for (int i = 0; i < 2; ++i) scene.step(1);
-  scene.heat->judge(said);
+  scene.doubts(2, 1, {}, &said);
   ASSERT_EQ(said.size(), 1U);
   EXPECT_NE(said[0].find("heat needs about 4.3 s to spread through the solid, a step takes 1 s"),
             std::string::npos)

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/parallel/collective.hpp"
-#include "tests/support/saved_state.hpp"
+#include "tests/support/observed_run.hpp"
 #include "tests/verification/heat/thermoelastic.hpp"
 
 namespace couplet::testing::stress_test {
@@ -36,17 +36,18 @@ Shrunk shrunk(int cells, int steps, const char* pull, bool again = false) {
   const LoadedMesh body = distribute(
       MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {cells, 2, 1}, Vec3::Zero(), Vec3(1, 0.5, 0)));
   auto solid = std::make_unique<Solid>(body, p, SolidContext{});
-  solid->collect_errors();
+  auto run = std::make_unique<support::ObservedRun<Solid>>(*solid);
   for (int i = 0; i < steps; ++i) {
-    step(*solid, 0.5 / steps);
-    if (!again) continue;
+    run->advance(1, 0.5 / steps, i + 1 == steps);
+    if (!again || i + 1 == steps) continue;
     auto next = std::make_unique<Solid>(body, p, SolidContext{});
-    next->collect_errors();
-    support::SavedState(*solid).load_into(*next);
+    auto rest = std::make_unique<support::ObservedRun<Solid>>(*next);
+    rest->resume(*run);
+    run = std::move(rest);
     solid = std::move(next);
   }
   const std::vector<double> u = solid->fields().point_displacement();
-  Shrunk found{0, solid->error_parts()};
+  Shrunk found{0, run->diagnostics().errors()};
   for (std::size_t i = 0; i < u.size(); i += 2)
     if (std::abs(body.geometry.points[i / 2].x() - 1) < 1e-9) found.end = u[i];
   return found;

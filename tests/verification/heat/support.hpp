@@ -10,7 +10,7 @@
 
 #include "common/mesh/load.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/thermal/heat.hpp"
+#include "solid_solver/diagnostics/view.hpp"
 #include "tests/support/box.hpp"
 
 namespace couplet::testing {
@@ -50,6 +50,24 @@ struct HeatCase {
   void step(double dt) {
     heat->solve({heat->accepted().time, dt, coupling::Scheme::standalone, heat->accepted().steps});
     heat->accept_step();
+  }
+  /// Number of doubts that the program has in `steps` steps of length dt; `after` is called after each. `sentences`: what it
+  /// says at the end.
+  int doubts(int steps, double dt, const std::function<void()>& after = {},
+             std::vector<std::string>* sentences = nullptr) {
+    SolidParameters p;
+    p.heat = heat->parameters();
+    const SolidContext context;
+    diagnostics::Diagnostics all(0, true);
+    add_diagnostics(HeatView{*heat, p, context}, all);
+    const int before = log::doubts();
+    for (int i = 0; i < steps; ++i) {
+      step(dt);
+      all.accepted(heat->accepted().time);
+      if (after) after();
+    }
+    if (sentences) *sentences = all.conclude(false);
+    return log::doubts() - before;
   }
   double temperature(Index cell) const { return heat->accepted().cells[cell]; }
   const Vec3& place(Index cell) const { return geometry().cell_centre[cell]; }

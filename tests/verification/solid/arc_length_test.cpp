@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -11,7 +12,8 @@
 #include "common/base/error.hpp"
 #include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/large_strain/load_path.hpp"
+#include "solid_solver/diagnostics/stability.hpp"
+#include "solid_solver/equilibrium/load_path.hpp"
 #include "tests/support/saved_state.hpp"
 #include "tests/verification/solid/support.hpp"
 
@@ -75,8 +77,12 @@ const LoadPath& path_of(const Solid& solid) { return *solid.body().equilibrium()
 /// The largest distance of an equilibrium from the closed form, over the limit load; until the path is stable again.
 double follow(Solid& solid, bool knows_stability) {
   double gap = 0;
+  Stability stability(solid.view());
   for (int i = 0; i < 60 && height(solid) > -3.5; ++i) {
     step(solid, 1);
+    diagnostics::Report report;
+    stability.observe(report);
+    EXPECT_TRUE(report.findings.empty());
     const double b = height(solid), factor = path_of(solid).factor();
     gap = std::max(gap, std::abs(factor - load_at(b) / limit));
     if (knows_stability && std::abs(std::abs(b) - 2) > 0.2) {
@@ -114,13 +120,11 @@ TEST(ArcLength, follows_a_shallow_arch_through_both_limit_loads_of_the_closed_fo
 TEST(ArcLength, warns_of_a_last_equilibrium_that_is_unstable_and_only_then) {
   const auto solid = make_solid(arch(30), hinged());
   const auto warnings = [&] {
-    const std::size_t before = log::findings().size();
-    solid->finish();
-    int n = 0;
-    for (std::size_t i = before; i < log::findings().size(); ++i)
-      n += log::findings()[i].id == "unstable-equilibrium" &&
-           log::findings()[i].severity == base::Severity::warning;
-    return n;
+    diagnostics::Report report;
+    Stability(solid->view()).conclude(report);
+    return std::ranges::count_if(report.findings, [](const log::Finding& f) {
+      return f.id == "unstable-equilibrium" && f.severity == base::Severity::warning;
+    });
   };
   step(*solid, 1);
   EXPECT_EQ(warnings(), 0);

@@ -2,10 +2,11 @@
 // A run judges its own answer: the guards fire where it is nonsense and are silent where it is sound.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "common/log/finding.hpp"
+#include "tests/support/observed_run.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::audit_test {
@@ -21,9 +22,13 @@ std::unique_ptr<Solid> cook(int n, double nu, FaceGradient gradient) {
   p.method.face_gradient = gradient;
   p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
   p.boundaries["xmax"] = boundary(Type::traction, {"0", "6.25e6"});
-  auto solid = make_solid(raw, p);
-  step(*solid, 1);
-  return solid;
+  return make_solid(raw, p);
+}
+
+/// Doubts in the strain energy that a run of one step tells.
+std::ptrdiff_t doubts_in(Solid& solid) {
+  const std::vector<std::string> doubts = support::observe(solid, 1, 1).doubts();
+  return std::ranges::count(doubts, "strain-energy");
 }
 
 std::unique_ptr<Solid> beam(BoxCells cells, const std::array<int, 3>& n, double length,
@@ -41,44 +46,41 @@ std::unique_ptr<Solid> beam(BoxCells cells, const std::array<int, 3>& n, double 
 void report(const char* what, const StrainAudit& audit) { fmt::print("{}: {}\n", what, audit.text()); }
 
 TEST(Audit, fires_on_cook_at_nu_0_49_with_the_corrected_gradient) {
-  const int before = log::doubts();
   const auto wrong = cook(16, 0.49, FaceGradient::corrected);
-  report("Cook, nu 0.49, corrected", *wrong->judge().last_audit());
-  EXPECT_TRUE(wrong->judge().last_audit()->is_doubtful());
-  EXPECT_EQ(log::doubts(), before + 1);
+  EXPECT_EQ(doubts_in(*wrong), 1);
+  report("Cook, nu 0.49, corrected", audit_of(*wrong));
+  EXPECT_TRUE(audit_of(*wrong).is_doubtful());
 }
 
 TEST(Audit, is_silent_on_cook_with_the_symmetric_gradient_and_at_nu_one_third) {
-  const int before = log::doubts();
   for (const double nu : {1. / 3, 0.49, 0.4999}) {
     const auto sound = cook(16, nu, FaceGradient::symmetric);
-    report("Cook, symmetric", *sound->judge().last_audit());
-    EXPECT_LT(sound->judge().last_audit()->mismatch(), 1e-6)
-        << nu;  // a symmetric operator is never convicted by it
+    EXPECT_EQ(doubts_in(*sound), 0) << nu;
+    report("Cook, symmetric", audit_of(*sound));
+    EXPECT_LT(audit_of(*sound).mismatch(), 1e-6) << nu;  // a symmetric operator is never convicted by it
   }
   const auto sound = cook(16, 1. / 3, FaceGradient::corrected);
-  report("Cook, nu 1/3, corrected", *sound->judge().last_audit());
-  EXPECT_FALSE(sound->judge().last_audit()->is_doubtful());
-  EXPECT_EQ(log::doubts(), before);
+  EXPECT_EQ(doubts_in(*sound), 0);
+  report("Cook, nu 1/3, corrected", audit_of(*sound));
+  EXPECT_FALSE(audit_of(*sound).is_doubtful());
 }
 
 TEST(Audit, fires_on_two_long_tetrahedra_across_a_slender_beam) {
   const auto wrong = beam(BoxCells::tetrahedra, {16, 2, 2}, 40, FaceGradient::corrected);
-  report("tetrahedra two across 40:1, corrected", *wrong->judge().last_audit());
-  EXPECT_TRUE(wrong->judge().last_audit()->is_doubtful());
+  report("tetrahedra two across 40:1, corrected", audit_of(*wrong));
+  EXPECT_TRUE(audit_of(*wrong).is_doubtful());
   const auto sound = beam(BoxCells::hexahedra, {40, 4, 4}, 10, FaceGradient::corrected);
-  report("hexahedra four across 10:1, corrected", *sound->judge().last_audit());
-  EXPECT_FALSE(sound->judge().last_audit()->is_doubtful());
+  report("hexahedra four across 10:1, corrected", audit_of(*sound));
+  EXPECT_FALSE(audit_of(*sound).is_doubtful());
 }
 
 // Stretched cells: stiff, and said by the difference of the gradients.
 TEST(Audit, says_that_stretched_tetrahedra_are_stiff) {
   const auto stiff = beam(BoxCells::tetrahedra, {4, 4, 4}, 10, FaceGradient::symmetric);
   const auto sound = beam(BoxCells::tetrahedra, {40, 4, 4}, 10, FaceGradient::symmetric);
-  report("tetrahedra 10:1 cells, symmetric", *stiff->judge().last_audit());
-  report("tetrahedra 1:1 cells, symmetric", *sound->judge().last_audit());
-  EXPECT_GT(stiff->judge().last_audit()->gradient_difference,
-            2 * sound->judge().last_audit()->gradient_difference);
+  report("tetrahedra 10:1 cells, symmetric", audit_of(*stiff));
+  report("tetrahedra 1:1 cells, symmetric", audit_of(*sound));
+  EXPECT_GT(audit_of(*stiff).gradient_difference, 2 * audit_of(*sound).gradient_difference);
 }
 
 /// Tip deflection of a bar 20:1 of square quadrilaterals, n across, and the estimate of the mesh.
@@ -91,11 +93,10 @@ std::pair<double, double> plane_bar(int n, bool finite, const char* load) {
   p.boundaries["xmax"] = boundary(Type::traction, {"0", load});
   const auto solid =
       make_solid(make_box(BoxCells::quadrilaterals, {20 * n, n, 1}, Vec3::Zero(), Vec3(20, 1, 0)), p);
-  solid->collect_errors();
-  step(*solid, 1);
+  const double told = support::observe(*solid, 1, 1).diagnostics().errors().mesh;
   double tip = 0;
   for (const double u : solid->fields().point_displacement()) tip = std::max(tip, u);
-  return {tip, solid->error_parts().mesh};
+  return {tip, told};
 }
 
 // Quadrilaterals are 1/(2 n^2) too stiff in bending, of which the difference of two gradients knows nothing.
@@ -120,7 +121,7 @@ std::pair<double, StrainAudit> bent_bar(BoxCells cells, const std::array<int, 3>
   const auto solid = beam(cells, n, length, FaceGradient::symmetric);
   double tip = 0;
   for (const double u : solid->fields().point_displacement()) tip = std::max(tip, u);
-  return {tip, *solid->judge().last_audit()};
+  return {tip, audit_of(*solid)};
 }
 
 // Hexahedra across a slender bar bend well, however the other gradient differs; recovered strains know it.
@@ -157,21 +158,21 @@ Swing swing(FaceGradient gradient, double until, bool outputs = true) {
   RawMesh raw = make_box(BoxCells::triangles, {20, 4, 1}, Vec3::Zero(), Vec3(10, 1, 0));
   perturb_interior(raw, 0.3, 3);
   auto solid = make_solid(raw, p);
+  EnergyBalance balance(solid->view(), std::make_shared<StrainEnergy>(solid->view()));
   Swing result;
-  const int before = log::doubts();
   try {
     for (int i = 1; solid->stepper().state().time < until; ++i) {
       step(*solid, 0.01);
-      solid->write_monitors(solid->stepper().state().time);
-      if (outputs && i % 20 == 0) solid->write_output(solid->stepper().state().time, 0);
-      if (log::doubts() > before && result.first_told == 0)
-        result.first_told = solid->judge().energy_audit().created();
+      diagnostics::Report report;
+      balance.observe(report);
+      if (outputs && i % 20 == 0) balance.look(report);
+      if (!report.findings.empty() && result.first_told == 0) result.first_told = balance.audit().created();
     }
   } catch (const Error& error) {
     result.cause = error.what();
     result.ended = solid->stepper().state().time;
   }
-  result.created = solid->judge().energy_audit().created();
+  result.created = balance.audit().created();
   return result;
 }
 

@@ -119,7 +119,7 @@ Answer bent(const Beam& beam) {
     moved += s * solid->stepper().state().face_u[std::size_t(f - mesh.n_interior) * 3 + std::size_t(down)];
     area += s;
   }
-  return {parallel::sum(mesh.comm, moved) / parallel::sum(mesh.comm, area), *solid->judge().last_audit()};
+  return {parallel::sum(mesh.comm, moved) / parallel::sum(mesh.comm, area), audit_of(*solid)};
 }
 
 /// Cubes two and four across (near incompressibility four and eight), extrapolated.

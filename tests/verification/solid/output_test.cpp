@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "common/parallel/collective.hpp"
-#include "solid_solver/diagnostics/effects.hpp"
+#include "tests/support/observed_run.hpp"
 #include "tests/support/shared_folder.hpp"
 #include "tests/verification/solid/support.hpp"
 
@@ -183,23 +183,19 @@ TEST(SolidOutput, left_out_effects_are_judged_by_numbers) {
   p.boundaries["xmax"] = boundary(Type::traction, {"1e8*t^2", "0"});
   const RawMesh raw = make_box(BoxCells::quadrilaterals, {6, 4, 1}, Vec3::Zero(), Vec3(2, 1, 0));
   const auto slow = make_solid(raw, p), fast = make_solid(raw, p);
-  for (int i = 0; i < 3; ++i) {
-    step(*slow, 1);
-    step(*fast, 1e-4);
-  }
-  const auto lines = [](const Solid& solid) {
+  const auto lines = [](Solid& solid, double dt) {
     std::vector<std::string> texts;
-    for (const log::Finding& f : effect_findings(solid.body().parameters(), solid.judge().evidence()))
-      texts.push_back(f.sentence + "; " + f.advice);
+    const auto run = support::observe(solid, 3, dt);
+    for (const log::Finding& f : run.diagnostics().findings()) texts.push_back(f.sentence + "; " + f.advice);
     return texts;
   };
   EXPECT_THAT(
-      lines(*slow),
+      lines(*slow, 1),
       ::testing::AllOf(::testing::Contains(::testing::AllOf(::testing::HasSubstr("geometric non-linearity"),
                                                             ::testing::HasSubstr("justified"))),
                        ::testing::Contains(::testing::AllOf(::testing::HasSubstr("inertia neglected"),
                                                             ::testing::HasSubstr("justified")))));
-  EXPECT_THAT(lines(*fast), ::testing::Contains(::testing::HasSubstr("use 'analysis: dynamic'")));
+  EXPECT_THAT(lines(*fast, 1e-4), ::testing::Contains(::testing::HasSubstr("use 'analysis: dynamic'")));
 }
 
 }  // namespace

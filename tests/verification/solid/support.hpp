@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "common/mesh/load.hpp"
+#include "solid_solver/diagnostics/energy_balance.hpp"
+#include "solid_solver/diagnostics/strain_energy.hpp"
 #include "solid_solver/solid.hpp"
 #include "tests/support/box.hpp"
 
@@ -51,6 +53,18 @@ inline void step(Solid& solid, double dt) {
       {solid.stepper().state().time, dt, coupling::Scheme::standalone, solid.stepper().state().steps});
   solid.solve({});
   solid.accept_step();
+}
+
+/// Work against strain energy of the accepted state, with two gradients.
+inline StrainAudit audit_of(const Solid& solid) { return audit_strain(solid.view(), true); }
+
+/// Energy that the accepted state of a motion holds beyond what it was given, over the latter.
+inline double created_energy(const Solid& solid) {
+  const SolidView view = solid.view();
+  EnergyBalance balance(view, view.compares_gradients() ? std::make_shared<StrainEnergy>(view) : nullptr);
+  diagnostics::Report report;
+  balance.look(report);
+  return balance.audit().created();
 }
 
 inline constexpr std::array all_cells{mesh::BoxCells::quadrilaterals, mesh::BoxCells::triangles,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "common/elasticity/finite/stress_stiffness.hpp"
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
 #include "common/elasticity/symmetric/tied_matrix.hpp"
 #include "common/parallel/collective.hpp"

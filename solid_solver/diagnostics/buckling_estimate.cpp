@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/diagnostics/buckling_estimate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "common/modes/pencil.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/method/newton_krylov.hpp"
+
+namespace couplet::solid {
+namespace {
+
+// Compressive strain times (L/t)^2: a clamped column buckles at 0.2 (thickness by slenderness(): of a
+// square column half its own, hence a fourth, and a little less), a plate or an arch far above.
+constexpr double least_strain = 0.9 * 0.2 / 4 / BucklingEstimate::low;
+// Of the solution in which a negative curvature of K + low K_sigma would show.
+constexpr double shown_at = 1e-3;
+constexpr int most_searches = 2000, most_refinements = 40, settled = 6;
+// More compression than at the last look that makes another one worth while.
+constexpr double more_compression = 1.1;
+// A factor that has changed by less than this part over the last refinements is told.
+constexpr double settled_part = 0.01;
+
+double limit_of(const BucklingEstimate& found) {
+  return found.factor < BucklingEstimate::imperfect ? BucklingEstimate::imperfect : BucklingEstimate::low;
+}
+
+std::string neglected(const BucklingEstimate& found) {
+  return "linear theory neglects the softening by these loads" +
+         (found.growth > BucklingEstimate::most_growth
+              ? fmt::format(", which adds {:.2g} of the displacement", found.growth)
+              : std::string());
+}
+
+/// |a x| / |u| / (factor - 1), root mean squares over the cells: modes are orthogonal by K, by which a is the part of u along x.
+double growth_of(const SolidBody& body, const std::vector<double>& u, const std::vector<double>& x,
+                 double factor) {
+  const mesh::Mesh& mesh = body.mesh();
+  if (!(factor > 1)) return std::numeric_limits<double>::infinity();
+  std::vector<double> force(x.size());
+  body.kernel().apply(x, {}, force);
+  std::array<double, 4> sums{};  // u.Kx, x.Kx, |u|^2, |x|^2
+  for (std::size_t i = 0; i < x.size(); ++i) sums[0] += u[i] * force[i], sums[1] += x[i] * force[i];
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    for (std::size_t i = std::size_t(c) * mesh.dim; i < std::size_t(c + 1) * mesh.dim; ++i) {
+      sums[2] += body.geometry().volume[c] * u[i] * u[i];
+      sums[3] += body.geometry().volume[c] * x[i] * x[i];
+    }
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), int(sums.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
+  if (!(sums[1] > 0) || !(sums[2] > 0)) return 0;
+  return std::abs(sums[0] / sums[1]) * std::sqrt(sums[3] / sums[2]) / (factor - 1);
+}
+
+}  // namespace
+
+std::optional<log::Finding> dynamic_buckling_finding(const BucklingEstimate& found) {
+  if (!found.matters()) return {};
+  return log::Finding{
+      .id = "buckling",
+      .number = found.factor,
+      .limit = limit_of(found),
+      .sentence = fmt::format("buckling: load factor at most {:.3g} (limit {:g}) of the last state: {}",
+                              found.factor, limit_of(found),
+                              found.factor < 1
+                                  ? "if these loads last, the body buckles; linear theory does not show it"
+                                  : neglected(found)),
+      .advice = "use 'kinematics: finite-strain'"};
+}
+
+std::optional<log::Finding> buckling_finding(const BucklingEstimate& found, const char* how) {
+  if (!found.matters()) return {};
+  const bool holds = found.factor >= 1;
+  const double limit = holds ? limit_of(found) : 1;
+  return log::Finding{
+      .id = "buckling",
+      .severity = holds ? base::Severity::warning : base::Severity::wrong,
+      .number = found.factor,
+      .limit = limit,
+      .sentence = fmt::format("buckling: load factor {}{:.3g} (limit {:g}): {}", how, found.factor, limit,
+                              holds ? neglected(found) : "the computed equilibrium is unstable"),
+      .advice =
+          holds ? "use 'kinematics: finite-strain'; 'analysis: buckling' gives factors and shapes"
+                : "reduce the loads, stiffen the body or add supports; 'analysis: buckling' gives factors "
+                  "and shapes, 'kinematics: finite-strain' with a small lateral load the post-buckling "
+                  "state"};
+}
+
+BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fields, const SolidState& state,
+                                   SolutionMethod& method, double& compression_seen) {
+  const mesh::Geometry& geometry = body.geometry();
+  const mesh::Mesh& mesh = body.mesh();
+  elastic::Prestress prestress = prestress_of(body, fields, state.time);
+  double softest = 1e300;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+    const elastic::LameConstants lame = body.elastic().lame(c);
+    softest = std::min(softest, lame.mu * (3 * lame.lambda + 2 * lame.mu) / (lame.lambda + lame.mu));
+  }
+  const double here = compression(mesh, prestress), ratio = slenderness(mesh, geometry);
+  if (!(here > more_compression * compression_seen)) return {};
+  if (!(here / parallel::min(mesh.comm, softest) * ratio * ratio >= least_strain)) return {};
+  // As forces, which soft motions answer to: what stiff ones leave would end the iteration before.
+  const std::vector<double> force = body.any_start();
+  std::vector<double> of_stress(force.size());
+  if (!method.approximate_inverse(force, of_stress)) return {};
+  compression_seen = here;
+  const auto stress = elastic::make_stress_stiffness(mesh, body.elastic(), std::move(prestress));
+  const modes::Pencil of{
+      .comm = mesh.comm,
+      .n = force.size(),
+      .k = [&](std::span<const double> x, std::span<double> y) { stress->apply(x, y); },
+      .m = [&](std::span<const double> x, std::span<double> y) { body.kernel().apply(x, {}, y); },
+      .solve = [&](std::span<const double> r, std::span<double> z) { method.approximate_inverse(r, z); }};
+  const auto look = [&](double load) {
+    const linalg::LinearMap loaded = [&, load](std::span<const double> x, std::span<double> y) {
+      of.m(x, y);
+      of.k(x, of_stress);
+      for (std::size_t i = 0; i < y.size(); ++i) y[i] += load * of_stress[i];
+    };
+    return modes::look_for_negative_curvature(mesh.comm, loaded, of.solve, force, shown_at, most_searches);
+  };
+  modes::Curvature found = look(BucklingEstimate::low);
+  if (!found.is_negative) return {.factor = 0, .iterations = found.iterations};
+  // Under less load fewer motions are soft: one of them is nearer to the softest.
+  if (modes::Curvature closer = look(BucklingEstimate::imperfect); closer.is_negative) {
+    closer.iterations += found.iterations;
+    found = std::move(closer);
+  }
+  const auto enough = [](const std::vector<double>& rho) {
+    return rho.size() > settled && rho[rho.size() - 1 - settled] - rho.back() < settled_part * -rho.back();
+  };
+  const modes::LowestQuotient least =
+      modes::lowest_quotient(of, found.x, most_refinements, enough);  // -1 / lambda
+  const double factor = -1 / least.value;
+  return {.factor = factor,
+          .growth = growth_of(body, body.unknowns_of(state.cell_u, state.face_u), least.x, factor),
+          .iterations = found.iterations + least.iterations};
+}
+
+}  // namespace couplet::solid

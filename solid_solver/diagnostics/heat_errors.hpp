@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/coupling/error_parts.hpp"
+#include "common/mesh/mesh.hpp"
+#include "common/time/step_errors.hpp"
+#include "solid_solver/thermal/heat.hpp"
+
+namespace couplet::io {
+class Archive;
+}
+
+namespace couplet::solid {
+
+/// Root mean square over the volume of `width` values per owned cell. Collective.
+double root_mean_square(const mesh::Mesh& mesh, const mesh::Geometry& geometry, int width,
+                        std::span<const double> cells);
+
+/// What a run of heat conduction leaves in its temperature, over the size of the temperature's variation: its distance from
+/// the mean temperature before the first step, or of a steady field from its own mean.
+///   mesh    the temperature against that of a linear fit through each cell's neighbours
+///   step    sum of the local errors by the rates of the last three steps, see VelocityErrors; steady: none
+/// Collective.
+class HeatErrors {
+ public:
+  /// `mesh` by reference.
+  HeatErrors(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const HeatParameters& parameters);
+  /// After a step of a transient.
+  void see_step(const HeatState& before, const HeatState& now);
+  /// Error of the accepted temperature; with `reference` [K] over the distance from that.
+  coupling::ErrorParts parts(const Heat& heat, std::optional<double> reference = {}) const;
+  /// On the solid's mesh. Collective.
+  void visit(io::Archive& archive);
+
+ private:
+  double mean(std::span<const double> cells) const;
+  double size(std::span<const double> temperature, double level) const;
+  std::vector<double> gaps(const Heat& heat) const;
+
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
+  bool steady_;
+  double level_ = 0;  // before the first step [K]
+  bool begun_ = false;
+  std::vector<double> rate_;  // of the step before [K/s]; empty: not yet
+  double dt_ = 0;             // of the step before; 0: not yet
+  time::VelocityErrors steps_;
+};
+
+}  // namespace couplet::solid

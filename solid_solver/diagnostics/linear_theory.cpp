@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include "common/base/error.hpp"
+#include "common/io/archive.hpp"
+#include "common/log/log.hpp"
+#include "solid_solver/diagnostics/buckling_estimate.hpp"
+#include "solid_solver/diagnostics/neglected.hpp"
+#include "solid_solver/diagnostics/view.hpp"
+
+namespace couplet::solid {
+namespace {
+
+/// Says what small strain neglects: by the largest gradient, by how near the loads are to those that buckle the body, and,
+/// where it is asked for, by an expansion beyond the linear solution.
+class LinearTheory final : public diagnostics::Diagnostic {
+ public:
+  explicit LinearTheory(const SolidView& view) : view_(view) {}
+
+  void observe(diagnostics::Report& report) override {
+    if (view_.body.parameters().output.large_strain_estimate) expand();
+    if (!view_.body.is_dynamic()) see_buckling(report);
+  }
+
+  void look(diagnostics::Report& report) override {
+    Deformation now = view_.fields.deformation(view_.fields.point_displacement());
+    largest_gradient_ = now.gradient = std::max(largest_gradient_, now.gradient);
+    const bool is_low = buckling_factor_ < BucklingEstimate::low;
+    add(report, neglected_geometry(view_.body.parameters(), now, large_strain_,
+                                   is_low ? buckling_factor_ : std::numeric_limits<double>::quiet_NaN()));
+  }
+
+  void conclude(diagnostics::Report& report) override {
+    if (view_.body.is_dynamic()) see_buckling(report);
+    if (const auto factor = view_.output.buckling_factor())
+      add(report, buckling_finding({.factor = *factor}, ""));
+    if (large_strain_) report.sentences.push_back(large_strain_->text() + ".");
+  }
+
+  void visit(io::Archive& archive) override {
+    archive.common("linear", largest_gradient_, large_strain_, buckling_factor_, compression_seen_);
+  }
+
+ private:
+  void expand() {
+    large_strain_.reset();
+    try {
+      large_strain_ =
+          estimate_large_strain(view_.body, view_.stepper.last_solve().unknowns, view_.now().known);
+    } catch (const SolveFailure& failure) {
+      log::warn("output.large-strain-estimate: the estimate failed: {}", failure.what());
+    }
+  }
+
+  void see_buckling(diagnostics::Report& report) {
+    const SolidBody& body = view_.body;
+    SolutionMethod* method = view_.stepper.method();
+    if (!method || !body.kernel().is_symmetric() || is_axisymmetric(body.elastic()) ||
+        body.parameters().output.buckling > 0)
+      return;
+    const BucklingEstimate found =
+        estimate_buckling(body, view_.fields, view_.now(), *method, compression_seen_);
+    if (!found.matters()) return;
+    buckling_factor_ = std::min(buckling_factor_, found.factor);
+    add(report, body.is_dynamic() ? dynamic_buckling_finding(found) : buckling_finding(found, "at most "));
+  }
+
+  SolidView view_;
+  double largest_gradient_ = 0;
+  std::optional<LargeStrainEstimate> large_strain_;  // of the last step
+  double buckling_factor_ = BucklingEstimate::low;   // lowest of the run
+  double compression_seen_ = 0;                      // at the last look at buckling [Pa]
+};
+
+}  // namespace
+
+std::shared_ptr<diagnostics::Diagnostic> linear_theory(const SolidView& view) {
+  if (has_finite_strain(view.body.parameters())) return nullptr;
+  return std::make_shared<LinearTheory>(view);
+}
+
+}  // namespace couplet::solid

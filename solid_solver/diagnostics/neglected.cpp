@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/diagnostics/neglected.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/csv/csv_reader.hpp"
+#include "solid_solver/effects.hpp"
+
+namespace couplet::solid {
+namespace {
+
+using P = SolidParameters;
+
+bool deforms(const P& p) { return p.analysis != P::Analysis::thermal; }
+
+/// The largest coefficient that the case gives as a number [1/K].
+std::optional<double> largest_expansion(const P& p) {
+  std::optional<double> largest;
+  for (const SolidMaterial& m : materials_of(p))
+    if (m.heat.expansion)
+      if (const auto given = csv::number_of(m.heat.expansion->text))
+        largest = std::max(largest.value_or(0), std::abs(*given));
+  return largest;
+}
+
+/// Its share of a displacement: 0.4 of the square of the rotation at the tip of a cantilever (elastica; the norm of the
+/// gradient is sqrt(2) times the rotation), about the strain of a bar, and 1/(f - 1) where a load of 1/f of the buckling
+/// load makes lateral motion grow.
+double share_of_geometry(const Deformation& d, const std::optional<LargeStrainEstimate>& large_strain,
+                         double buckling_factor) {
+  constexpr double all = 10;  // of a load beyond the buckling load nothing is left
+  if (large_strain) return large_strain->is_known() ? large_strain->change : all;
+  const double strain = std::isnan(d.strain) ? 0 : d.strain;
+  const double share = std::min(1., 0.2 * d.gradient * d.gradient + 0.8 * strain);
+  if (std::isnan(buckling_factor)) return share;
+  return std::max(share, buckling_factor > 1 + 1 / all ? 1 / (buckling_factor - 1) : all);
+}
+
+}  // namespace
+
+// A static answer to a load of circular frequency w is too large by r = inertia / load = (w / w_1)^2 of itself where that is
+// small, and all of it is wrong where it is not: a load that comes at once moves a body twice as far.
+Opinion neglected_inertia(const P& p, double inertia_over_load) {
+  if (p.analysis != P::Analysis::static_ || has_finite_strain(p))
+    return {};  // static steps at large strain are load steps: t is no time
+  return diagnostics::finding_of({.effect = "inertia",
+                                  .number = inertia_over_load,
+                                  .limit = 0.01,
+                                  .what = fmt::format("inertia / load = {:.2g}", inertia_over_load),
+                                  .advice = "use 'analysis: dynamic'",
+                                  .share = std::min(inertia_over_load, 1.)});
+}
+
+// A body that moves slowly enough holds next to no kinetic energy beside its strain energy, (w / w_1)^2 of it.
+Opinion spare_inertia(double kinetic_over_strain, double steps) {
+  if (!(steps > 1)) return {};
+  return diagnostics::finding_of(
+      {.effect = "inertia",
+       .number = kinetic_over_strain,
+       .limit = 1e-3,
+       .what =
+           fmt::format("max kinetic / largest strain energy = {:.2g}; 'analysis: static' takes one step for "
+                       "the final state",
+                       kinetic_over_strain),
+       .left_out = false,
+       .saves = 1 - 1 / steps});
+}
+
+// The stretch along a fibre that turns by an angle phi without straining is off by phi^2/2 in the linear
+// theory; a gradient of 0.02 is a fiftieth of that in the strain itself.
+Opinion neglected_geometry(const P& p, const Deformation& d,
+                           const std::optional<LargeStrainEstimate>& large_strain, double buckling_factor) {
+  if (!deforms(p) || has_finite_strain(p)) return {};
+  const std::string parts =
+      std::isnan(d.strain)
+          ? ""
+          : fmt::format(" (last: strain {:.2g}, rotation {:.2g} degrees)", d.strain, 57.29578 * d.rotation);
+  return diagnostics::finding_of(
+      {.effect = "geometric non-linearity",
+       .number = d.gradient,
+       .limit = 0.02,
+       .what = fmt::format("max |grad u| = {:.2g}{}{}", d.gradient, parts,
+                           large_strain ? "; " + large_strain->text() : ""),
+       .advice = !std::isnan(buckling_factor)
+                     ? "lateral motion grows as the load nears the buckling load: use "
+                       "'kinematics: finite-strain'"
+                 : d.gradient < 0.1 ? "expect errors of a few per cent"
+                                    : "the result holds for linear theory, not for the body: use "
+                                      "'kinematics: finite-strain'",
+       .share = share_of_geometry(d, large_strain, buckling_factor)});
+}
+
+Opinion neglected_yielding(double share_of_yield) {
+  return diagnostics::finding_of(
+      {.effect = "yielding",
+       .number = share_of_yield,
+       .limit = 1,
+       .what = fmt::format("max equivalent stress / yield strength = {:.2g}", share_of_yield),
+       .advice = "the body would yield: the result is that of an elastic body; use a program with plasticity",
+       .share = std::max(0., share_of_yield - 1)});
+}
+
+Opinion near_incompressibility(const P& p) {
+  if (!deforms(p) || has_volume_strain_of_cells(p)) return {};
+  if (p.dimension == 2 && p.plane == P::Plane::stress) return {};  // its thickness is free: no locking
+  const double nu = std::max(0.0, largest_poissons_ratio(p));
+  return diagnostics::finding_of(
+      {.effect = "near incompressibility",
+       .number = nu,
+       .limit = 0.45,
+       .what = fmt::format("max Poisson's ratio = {:g}", nu),
+       .advice = has_orthotropic(p)
+                     ? "coarse meshes may be too stiff there, and an orthotropic material has no "
+                       "volume strain per cell: compare two meshes"
+                     : "coarse meshes are too stiff or worse there: use 'solution-method: "
+                       "{face-gradient: symmetric}' with one volume strain per cell"});
+}
+
+// The strain of a free body beside the largest gradient of the displacement: with the material's own coefficient from the
+// reference temperature that `thermal-expansion` would have by default, else with 1e-5 1/K over the range of temperatures,
+// since nobody says then at which one the body is free of stress.
+Opinion neglected_thermal_strain(const P& p, double gradient, double range, double change) {
+  if (!deforms(p) || p.expansion) return {};
+  const auto own = largest_expansion(p);
+  const double coefficient = own.value_or(1e-5), kelvins = own ? std::fmax(range, change) : range,
+               strain = coefficient * kelvins, share = strain / std::max(gradient, 1e-300);
+  return diagnostics::finding_of(
+      {.effect = "thermal strain",
+       .number = share,
+       .limit = 0.02,
+       .what = fmt::format(
+           "a temperature {} of {:.3g} K would strain a free body with {:.3g} 1/K by {:.2g}; max |grad u| = {:.2g}",
+           own ? "change" : "range", kelvins, coefficient, strain, gradient),
+       .advice = "use 'thermal-expansion'",
+       .share = share});
+}
+
+Opinion thermoelastic_coupling(const P& p, double coupling_number) {
+  diagnostics::EffectFinding found{
+      .effect = "thermoelastic coupling",
+      .number = coupling_number,
+      .limit = 0.05,
+      .what = fmt::format("heat of deformation / stiffness = {:.1e}", coupling_number),
+      .advice = "use 'thermoelastic-coupling: true'",
+      .share = coupling_number};
+  if (p.thermoelastic_coupling)
+    found = {.effect = found.effect,
+             .number = coupling_number,
+             .limit = 0.005,
+             .what = found.what,
+             .left_out = false,
+             .saves = effects::saved_share("solid_solver", "thermoelastic coupling")};
+  return diagnostics::finding_of(found);
+}
+
+}  // namespace couplet::solid

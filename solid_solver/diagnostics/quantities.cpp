@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/output/quantities.hpp"
+
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/log/log.hpp"
+#include "solid_solver/diagnostics/view.hpp"
+#include "solid_solver/output/heat_quantities.hpp"
+
+namespace couplet::solid {
+namespace {
+
+template <class Estimate>
+std::vector<QuantityEstimate> estimates_of(const Estimate& estimate) {
+  try {
+    return estimate();
+  } catch (const SolveFailure& failure) {
+    log::warn("quantities: the estimate failed: {}", failure.what());
+    return {};
+  }
+}
+
+/// Numbers that the run is made for, with what its mesh leaves in them.
+class Quantities final : public diagnostics::Diagnostic {
+ public:
+  explicit Quantities(const SolidView& view) : view_(view) {}
+  /// While there is what the state was solved with.
+  void observe(diagnostics::Report&) override {
+    if (view_.stepper.step().is_last) estimate();
+  }
+  void conclude(diagnostics::Report& report) override {
+    if (!view_.stepper.step().is_last) estimate();  // a partner's load may be the last
+    const double mesh = report.errors.mesh;
+    for (QuantityEstimate& q : found_) q.body = mesh > 0 ? mesh * std::abs(q.value) : 0;
+    tell_quantities(view_.comm(), view_.context, found_);
+  }
+
+ private:
+  void estimate() {
+    SolutionMethod* method = view_.stepper.method();
+    if (method && !view_.body.parameters().quantities.empty())
+      found_ =
+          estimates_of([&] { return estimate_quantities(view_.body, view_.fields, view_.now(), *method); });
+  }
+
+  SolidView view_;
+  std::vector<QuantityEstimate> found_;
+};
+
+/// The same of a steady temperature.
+class QuantitiesOfHeat final : public diagnostics::Diagnostic {
+ public:
+  explicit QuantitiesOfHeat(const HeatView& view) : view_(view) {}
+  void conclude(diagnostics::Report&) override {
+    if (view_.heat.accepted().steps == 0) return;
+    const auto estimate = [&] { return estimate_heat_quantities(view_.heat, view_.parameters.quantities); };
+    tell_quantities(view_.heat.conduction().mesh().comm, view_.context, estimates_of(estimate));
+  }
+
+ private:
+  HeatView view_;
+};
+
+}  // namespace
+
+std::shared_ptr<diagnostics::Diagnostic> quantities(const SolidView& view) {
+  return std::make_shared<Quantities>(view);
+}
+
+std::shared_ptr<diagnostics::Diagnostic> quantities(const HeatView& view) {
+  if (view.parameters.quantities.empty()) return nullptr;
+  return std::make_shared<QuantitiesOfHeat>(view);
+}
+
+}  // namespace couplet::solid

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/diagnostics/stability.hpp"
+
+#include <fmt/format.h>
+
+#include "common/io/archive.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/equilibrium/load_path.hpp"
+
+namespace couplet::solid {
+
+void Stability::observe(diagnostics::Report& report) {
+  const SolidBody& body = view_.body;
+  if (const LoadPath* path = body.equilibrium().load_path()) return see_limits(*path);
+  if (!body.equilibrium().means().has_tangent || !body.rigid().empty() || is_lost_) return;
+  const SolidState& now = view_.now();
+  softest_ = body.softest_motion(view_.stepper.last_solve().unknowns, now.known);
+  const double stiffness = softest_.stiffness;
+  const Vec3 load = view_.fields.total_load();
+  if (stiffness >= 0) {
+    time_ = now.time, stiffness_ = stiffness, load_ = load;
+    return;
+  }
+  is_lost_ = true;
+  const double part = stiffness_ / (stiffness_ - stiffness);
+  const double lost = time_ + part * (now.time - time_);
+  const Vec3 then = load_ + part * (load - load_);
+  std::string where =
+      fmt::format("it was lost near t = {:.4g} s, between {:g} and {:g} s", lost, time_, now.time);
+  if (load.norm() > 0)
+    where += fmt::format(", at a total load of about {:.4g} N, {:.3g} of that of this step", then.norm(),
+                         then.norm() / load.norm());
+  report.findings.push_back(
+      {.id = "unstable-equilibrium",
+       .severity = base::Severity::wrong,
+       .number = stiffness,
+       .limit = 0,
+       .sentence = fmt::format(
+           "stability of the equilibrium: min stiffness loaded / unloaded = {:.2g} (limit 0): unstable; {}",
+           stiffness, where),
+       .advice =
+           "a small lateral load or imperfection leads to the stable equilibrium; 'analysis: buckling' of "
+           "the linear body gives load factors and shapes"});
+}
+
+void Stability::see_limits(const LoadPath& path) {
+  if (path.limits().size() <= limits_told_) return;
+  limits_told_ = path.limits().size();
+  const LimitPoint& limit = path.limits().back();
+  const double load = view_.fields.total_load().norm();
+  std::string force;
+  if (load > 0 && path.factor() != 0)
+    force = fmt::format(", a total load of about {:.4g} N", load * std::abs(limit.factor / path.factor()));
+  // A note, which diagnostics keep to themselves: it is news of the run.
+  log::finding(
+      parallel::comm_rank(view_.comm()),
+      {.id = "limit-load",
+       .severity = base::Severity::note,
+       .number = limit.factor,
+       .sentence = fmt::format("t = {:g} s: load path: {} of the load factor = {:.5g}{}: limit point passed",
+                               limit.time, limit.is_maximum ? "maximum" : "minimum", limit.factor, force)});
+}
+
+void Stability::conclude(diagnostics::Report& report) {
+  const LoadPath* path = view_.body.equilibrium().load_path();
+  if (!path) return;
+  std::string found;
+  for (const LimitPoint& l : path->limits())
+    found += fmt::format("{}{:.5g} ({})", found.empty() ? "" : ", ", l.factor,
+                         l.is_maximum ? "maximum" : "minimum");
+  report.sentences.push_back(fmt::format("load path: load factor {:.5g} at the end; limit points: {}.",
+                                         path->factor(), found.empty() ? "none" : found));
+  if (path->stiffness() > 0) return;  // 0: not surely negative of a slender body
+  report.findings.push_back(
+      {.id = "unstable-equilibrium",
+       .severity = base::Severity::warning,
+       .number = path->stiffness(),
+       .limit = 0,
+       .sentence = fmt::format("stability of the last equilibrium: min stiffness loaded / unloaded = {:.2g} "
+                               "(limit 0): unstable, on the load path between limit points",
+                               path->stiffness()),
+       .advice = "a later 'end-time' follows the path to a stable one"});
+}
+
+void Stability::visit(io::Archive& archive) {
+  archive.common("held", time_, stiffness_, load_, is_lost_, limits_told_);
+  if (archive.reads()) softest_ = {};
+}
+
+}  // namespace couplet::solid

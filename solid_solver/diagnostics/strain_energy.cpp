@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+// A solution judged by its own energy: work against strain energy, and one face gradient against another.
+#include "solid_solver/diagnostics/strain_energy.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/elasticity/vector_at.hpp"
+#include "common/io/archive.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/body/inner_variation.hpp"
+#include "solid_solver/diagnostics/recovered_strain.hpp"
+
+namespace couplet::solid {
+namespace {
+
+/// From the owner to the node across.
+Vec3 line_of(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f) {
+  const mesh::Geometry& g = geometry;
+  const Vec3 across =
+      f < mesh.n_interior ? Vec3(g.cell_centre[mesh.neighbour[f]] + mesh.shift(f)) : g.face_centre[f];
+  return across - g.cell_centre[mesh.owner[f]];
+}
+
+elastic::FaceGradientScheme other_scheme(elastic::FaceGradientScheme scheme) {
+  return scheme == elastic::FaceGradientScheme::corrected ? elastic::FaceGradientScheme::thesis
+                                                          : elastic::FaceGradientScheme::corrected;
+}
+
+/// Half of what the force on a face does on the way between the displacements on both sides of it.
+double work_on(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, const SolidState& state, Index f,
+               const Vec3& force) {
+  const Vec3& area = rows.geometry().face_area[f];
+  const Vec3 here = elastic::vector_at(state.cell_u, mesh.owner[f], mesh.dim);
+  if (f < mesh.n_interior)
+    return 0.5 * force.dot(elastic::vector_at(state.cell_u, mesh.neighbour[f], mesh.dim) - here);
+  if (rows.mirrored(f)) return -(0.5 * area.dot(force) * area.dot(here) / area.squaredNorm());
+  return 0.5 * force.dot(elastic::vector_at(state.face_u, f - mesh.n_interior, mesh.dim) - here);
+}
+
+/// Thermal strain would count as a variation; a temperature that neither strains nor softens the body changes nothing.
+bool is_strained(const SolidBody& body) {
+  return body.thermal() && (body.parameters().expansion.has_value() || !body.thermal()->stiffness().empty());
+}
+
+/// What varies within the cells, where that can be told.
+struct WithinCells {
+  std::optional<InnerVariation> variation;
+  std::optional<SmoothEnergy> smooth;
+  std::optional<RecoveredStrain> recovered;
+  void add(Index f, const Tensor3& gradient) {
+    const Tensor3 strain = 0.5 * (gradient + gradient.transpose());
+    if (variation) variation->add(f, strain);
+    if (smooth) smooth->add(f, gradient);
+    if (recovered) recovered->add(f, strain);
+  }
+  /// After all faces. Collective.
+  void finish(const elastic::ElasticKernel& kernel, const elastic::ElasticField& u,
+              std::span<const double> points, StrainAudit& audit) {
+    if (variation) audit.inner_variation = variation->missed();
+    if (smooth) audit.smooth_difference = smooth->missed(points);
+    if (!recovered) return;
+    recovered->recover();
+    const auto compare = [&](Index f, const Tensor3& g) { recovered->compare(f, 0.5 * (g + g.transpose())); };
+    kernel.face_gradients(u.unknowns, u.known, compare, 0, recovered->n_faces());
+    audit.recovered_difference = recovered->missed();
+  }
+};
+
+WithinCells within_cells(const mesh::Mesh& mesh, const SolidBody& body) {
+  WithinCells within;
+  if (!body.kernel().is_symmetric()) return within;
+  const elastic::ElasticOperator& rows = body.elastic();
+  within.recovered.emplace(mesh, rows);
+  if (is_strained(body)) return within;
+  if (InnerVariation::is_needed(mesh, rows)) within.variation.emplace(mesh, rows);
+  // Of a motion, high modes would decide.
+  if (!body.is_dynamic() && SmoothEnergy::is_of_use(mesh)) within.smooth.emplace(mesh, rows);
+  return within;
+}
+
+/// What equilibrium misses, times the displacement: where nothing is missing, a symmetric operator's strain
+/// energy is half of the loads' work. Static solves; this rank's part.
+double residual_work(const SolidView& view, std::span<const double> unknowns) {
+  const std::vector<double>& rhs = view.stepper.last_solve().rhs;
+  if (view.body.is_dynamic() || !view.stepper.last_solve().is_known(view.comm())) return 0;
+  std::vector<double> force(unknowns.size());
+  view.body.kernel().apply(unknowns, {}, force);
+  double work = 0;
+  for (std::size_t i = 0; i < force.size(); ++i) work += unknowns[i] * (rhs[i] - force[i]);
+  return work;
+}
+
+}  // namespace
+
+double StrainAudit::missed_by_mesh(int dim) const {
+  const double of_gradients = gradient_difference * gradient_difference;
+  if (!recovered_difference) return of_gradients;
+  // A single cell across shows no slope to its neighbours: all of its bending would be missed.
+  const double missed = dim == 3 ? std::min(*recovered_difference, of_gradients) : *recovered_difference;
+  return std::max({missed, smooth_difference, inner_variation});
+}
+
+double StrainAudit::mismatch() const {
+  return strain_energy > 0 ? std::abs(stress_work - strain_energy) / strain_energy : 0;
+}
+
+bool StrainAudit::is_doubtful() const {
+  return mismatch() > most_mismatch || (compares_gradients && gradient_difference > most_difference) ||
+         inner_variation > most_variation;
+}
+
+std::string StrainAudit::text() const {
+  std::string text =
+      fmt::format("half the work of the loads is {:.6g} J, the strain energy {:.6g} J ({:.2g} % apart)",
+                  stress_work, strain_energy, 100 * mismatch());
+  if (compares_gradients)
+    text +=
+        fmt::format("; the strains of the two face gradients differ by {:.2g} %", 100 * gradient_difference);
+  if (inner_variation > most_variation)
+    text += fmt::format(
+        "; the strains vary so much within its quadrilaterals that they are {:.2g} % too stiff (use more "
+        "cells across, or 'volume-strain: shared')",
+        100 * inner_variation);
+  return text;
+}
+
+StrainAudit audit_strain(const SolidView& view, bool compare) {
+  const SolidBody& body = view.body;
+  const mesh::Mesh& mesh = body.mesh();
+  const mesh::Geometry& geometry = body.geometry();
+  const SolidState& state = view.now();
+  const std::vector<double> points = view.fields.point_displacement();
+  StrainAudit audit;
+  audit.compares_gradients = compare;
+  const Index n_faces = mesh.n_flux_faces(), half = n_faces / 2;
+  Index first = 0;  // face of the first of the strains below
+  std::vector<std::array<float, 6>> strains(compare ? std::size_t(n_faces - half) : 0);
+  const std::vector<double> unknowns = body.unknowns_of(state.cell_u, state.face_u);
+  const std::vector<double> known = body.known_of({state.cell_u, state.face_u, points});
+  const elastic::ElasticOperator& rows = body.elastic();
+  WithinCells within = compare ? within_cells(mesh, body) : WithinCells{};
+  const auto is_mine = [&](Index f) { return mesh.owner[f] < mesh.cells.n_owned(); };
+  const auto volume = [&](Index f) {
+    return std::abs(geometry.face_area[f].dot(line_of(mesh, geometry, f))) / mesh.dim;
+  };
+  double energy = 0, work = 0, difference = 0, size = 0;
+  const auto own = [&](Index f, const Tensor3& gradient) {
+    within.add(f, gradient);
+    if (!is_mine(f)) return;  // another rank's
+    const Tensor3 stress = rows.stress(mesh.owner[f], gradient);
+    energy += 0.5 * volume(f) * contraction(stress, gradient);
+    work += work_on(mesh, rows, state, f, stress * geometry.face_area[f]);
+    if (!compare) return;
+    const Tensor3 symmetric = 0.5 * (gradient + gradient.transpose());
+    size += volume(f) * rows.lame(mesh.owner[f]).mu * symmetric.squaredNorm();
+    std::ranges::copy(pack(symmetric), strains[f - first].begin());
+  };
+  const auto other = [&](Index f, const Tensor3& gradient) {
+    if (!is_mine(f)) return;
+    PackedTensor gap = pack(0.5 * (gradient + gradient.transpose()));
+    if (is_axisymmetric(rows)) gap[2] = strains[f - first][2];  // it knows no hoop strain
+    for (std::size_t i = 0; i < gap.size(); ++i) gap[i] -= strains[f - first][i];
+    difference += volume(f) * rows.lame(mesh.owner[f]).mu * unpack(gap).squaredNorm();
+  };
+  if (!compare) {
+    body.kernel().face_gradients(unknowns, known, own, 0, n_faces);
+  } else {
+    // Half of the faces after the other: the run needs most memory here, and half of the strains is a fiftieth of it.
+    const elastic::ElasticKernel beside(mesh, rows, other_scheme(body.kernel().scheme()));
+    for (const Index end : {half, n_faces}) {
+      body.kernel().face_gradients(unknowns, known, own, first, end);
+      beside.face_gradients(unknowns, known, other, first, end);
+      first = end;
+    }
+    difference = parallel::sum(mesh.comm, difference);
+    size = parallel::sum(mesh.comm, size);
+  }
+  if (body.kernel().is_symmetric()) {
+    const elastic::ElasticField u{unknowns, known};
+    energy = 0.5 * body.kernel().product(elastic::ElasticPart::stiffness, u, u);
+    work = energy + 0.5 * residual_work(view, unknowns);
+  }
+  audit.strain_energy = parallel::sum(mesh.comm, energy);
+  audit.stress_work = parallel::sum(mesh.comm, work);
+  within.finish(body.kernel(), {unknowns, known}, points, audit);
+  if (size > 0) audit.gradient_difference = std::sqrt(difference / size);
+  return audit;
+}
+
+bool is_time_to_look(const SolidView& view) {
+  constexpr int steps_between = 50;
+  return view.body.is_dynamic() &&
+         (view.body.parameters().output.energies || view.now().steps % steps_between == 0);
+}
+
+const StrainAudit& StrainEnergy::now(bool compare_gradients) {
+  const bool holds =
+      latest_ && steps_of_latest_ == view_.now().steps && (latest_->compares_gradients || !compare_gradients);
+  if (!holds) latest_ = audit_strain(view_, compare_gradients);
+  steps_of_latest_ = view_.now().steps;
+  return *latest_;
+}
+
+void StrainEnergy::observe(diagnostics::Report& report) {
+  if (!view_.body.is_dynamic() || is_time_to_look(view_)) look(report);
+}
+
+void StrainEnergy::look(diagnostics::Report& report) {
+  const StrainAudit& audit = now(!view_.body.is_dynamic());
+  if (!worst_ || audit.is_doubtful() || !worst_->is_doubtful()) worst_ = audit;
+  if (!audit.is_doubtful()) return;
+  report.findings.push_back(
+      {.id = "strain-energy",
+       .severity = audit.severity(),
+       .number = audit.mismatch(),
+       .limit = StrainAudit::most_mismatch,
+       .sentence = fmt::format("error indicator: {}: displacement not reliable", audit.text()),
+       .advice = "refine the mesh, above all across the bending direction; typical causes: cells elongated "
+                 "along it, few tetrahedra or prisms across, nu near 0.5"});
+}
+
+void StrainEnergy::conclude(diagnostics::Report& report) {
+  if (worst_)
+    report.sentences.push_back(
+        fmt::format("error indicator: {}{}.", worst_->text(), worst_->is_doubtful() ? "; NOT reliable" : ""));
+}
+
+void StrainEnergy::visit(io::Archive& archive) {
+  archive.common("audit", worst_);
+  if (archive.reads()) latest_.reset();
+}
+
+}  // namespace couplet::solid

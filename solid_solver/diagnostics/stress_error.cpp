@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "common/parallel/collective.hpp"
+#include "solid_solver/diagnostics/view.hpp"
+
+namespace couplet::solid {
+namespace {
+
+// From here on a stress at a probe is told as doubtful.
+constexpr double doubtful = 0.3;
+
+/// Stresses at probes and, of static runs, the largest, with their errors.
+class StressError final : public diagnostics::Diagnostic {
+ public:
+  explicit StressError(const SolidView& view) : view_(view) {}
+  /// After the error of the displacement, which strains and stresses follow.
+  void conclude(diagnostics::Report& report) override {
+    if (view_.now().steps == 0) return;
+    for (const ReportedStress& s :
+         reported_stresses(view_.body, view_.fields, view_.output.probes(), report.errors.mesh))
+      tell(s);
+  }
+
+ private:
+  /// Most are notes, which diagnostics keep to themselves.
+  void tell(const ReportedStress& s) const {
+    const bool is_doubtful = s.where != "largest" && s.error > doubtful;
+    const std::string error = std::isnan(s.error) ? "unknown"
+                              : s.error < 0.995   ? fmt::format("{:.2g} %", 100 * s.error)
+                                                  : fmt::format("{:.0f} %", 100 * s.error);
+    log::finding(parallel::comm_rank(view_.comm()),
+                 {.id = "stress-error",
+                  .severity = is_doubtful ? base::Severity::warning : base::Severity::note,
+                  .number = s.error,
+                  .limit = doubtful,
+                  .sentence = fmt::format(
+                      "equivalent stress, {}: {:.4g} Pa at ({:g}, {:g}, {:g}) m, estimated error {}{}",
+                      s.where, s.value, s.place[0], s.place[1], s.place[2], error,
+                      is_doubtful ? fmt::format(" (limit {:.2g} %): not reliable", 100 * doubtful) : ""),
+                  .advice = is_doubtful ? "refine the mesh there" : ""});
+  }
+
+  SolidView view_;
+};
+
+}  // namespace
+
+std::shared_ptr<diagnostics::Diagnostic> stress_error(const SolidView& view) {
+  return std::make_shared<StressError>(view);
+}
+
+}  // namespace couplet::solid

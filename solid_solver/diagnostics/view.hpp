@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/diagnostics/diagnostics.hpp"
+#include "solid_solver/body/solid_fields.hpp"
+#include "solid_solver/motion/solid_stepper.hpp"
+#include "solid_solver/output/output.hpp"
+#include "solid_solver/thermal/heat.hpp"
+
+namespace couplet::solid {
+
+/// Everything that diagnostics may read of a solid, as it is after the last accepted step.
+struct SolidView {
+  const SolidBody& body;
+  const SolidStepper& stepper;
+  const SolidFields& fields;
+  const SolidOutput& output;
+  const SolidContext& context;
+
+  const SolidState& now() const { return stepper.state(); }
+  const SolidState& before() const { return stepper.trial(); }  ///< at the start of the accepted step
+  MPI_Comm comm() const { return body.mesh().comm; }
+  std::vector<double> unknowns() const { return body.unknowns_of(now().cell_u, now().face_u); }
+  /// The known columns of the kernel in the accepted displacement.
+  std::vector<double> known() const {
+    return body.known_of({now().cell_u, now().face_u, fields.point_displacement()});
+  }
+  /// Two gradients of the displacement can be compared; else the strain energy is that of a law.
+  bool compares_gradients() const { return body.equilibrium().means().compares_gradients; }
+};
+
+/// The same of a solid that only conducts heat.
+struct HeatView {
+  const Heat& heat;
+  const SolidParameters& parameters;
+  const SolidContext& context;
+};
+
+/// Adds all diagnostics of a solid.
+void add_diagnostics(const SolidView& view, diagnostics::Diagnostics& all);
+void add_diagnostics(const HeatView& view, diagnostics::Diagnostics& all);
+
+}  // namespace couplet::solid

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/elasticity/finite/finite_kernel.hpp"
+#include "common/linalg/matrix.hpp"
+#include "solid_solver/equilibrium/large_strain.hpp"
+#include "solid_solver/equilibrium/load_path.hpp"
+#include "solid_solver/equilibrium/tangent_solver.hpp"
+#include "solid_solver/parameters/parameters.hpp"
+
+namespace couplet::solid {
+
+/// One iterate of Newton's method.
+struct NewtonIterate {
+  double residual = 0;  ///< norm over that of the load
+  double length = 1;    ///< of the step that led here
+  double ratio = 1;     ///< smallest det F of any face
+  int linear = 0;       ///< iterations of the linear solver
+};
+
+/// The equilibrium of a body at large strain, inertia included: M m u + dE/du(u) = b. Newton's method with the
+/// consistent tangent, solved as exactly as the last step deserves [eisenstat1996] (formula 2.6: eta =
+/// 0.9 (r / r_before)^2, between 1e-4 and 0.05), and a line search that keeps det F positive. The residual may
+/// grow on the way: a beam that is bent passes states whose membrane forces are far larger than those at either
+/// end.
+class FiniteStrain final : public LargeStrain {
+ public:
+  /// Throws Error for what finite strain cannot have. Mesh and rows by reference. Collective.
+  FiniteStrain(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
+               const SolidParameters& parameters);
+
+  EquilibriumMeans means() const override { return {.has_tangent = !meets_seat_}; }  // nothing but its own
+  std::string name(const SolidSystem& system) const override;
+  void prepare(const SolidProblem& problem, SolidSystem& system) const override;
+  /// Of the local cells; dynamic analyses.
+  void set_density(std::span<const double> of_cells) override { kernel_->set_density(of_cells); }
+  using Load = EquilibriumLoad;
+  linalg::SolveStatistics find(const Load& load, SolidSystem& system, std::span<double> u) override;
+  void set_pressure(std::vector<double> of_faces) override;
+  void set_expansion(const std::function<std::vector<double>()>& of_faces) override;
+  std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;
+  double energy(std::span<const double> unknowns, std::span<const double> known) override;
+  void visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) override;
+  double softness(std::span<const double> unknowns, std::span<const double> known) override;
+  SoftMotion lowest_stiffness(std::span<const double> unknowns, std::span<const double> known,
+                              const linalg::LinearMap& elastic, std::vector<double> start) override;
+  Vec3 pressure_force() override { return kernel_->pressure_force(); }
+  std::vector<elastic::Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
+                                              const elastic::ElasticLoads& loads) override {
+    return kernel_->holding_forces(unknowns, known, loads);
+  }
+  LoadPath* load_path() override { return path_ ? &*path_ : nullptr; }
+  void save(io::CheckpointWriter& file) const override;
+  void load(io::CheckpointReader& file, std::span<const double>, std::span<const double>) override;
+  /// Of the last solve.
+  const std::vector<NewtonIterate>& iterates() const { return iterates_; }
+  /// "3 iterations of Newton's method, ...", of the last solve.
+  std::string text() const;
+
+ private:
+  double residual(const Load& load, std::span<const double> u, double& ratio);
+  linalg::SolveStatistics press(const Load& load, std::span<double> u);
+  void start_pressures(const Load& load, std::span<const double> u);
+  void predict_pressures(std::span<const double> change, std::span<const double> known_change);
+  bool search(const Load& load, std::span<double> u, NewtonIterate& now, double most);
+  void follow_known(const Load& load, TangentSolver& solver, std::span<double> u);
+  double scale_of(const Load& load, std::span<const double> u, double residual);
+  linalg::SolveStatistics iterate(const Load& load, std::span<double> u);
+  std::vector<double> backward_motion(const Load& load, std::span<const double> before,
+                                      std::span<const double> u);
+  struct PathSearch;
+  linalg::SolveStatistics follow_path(const Load& load, std::span<double> u);
+  void scale_loads(PathSearch& path, double factor);
+  void find_push(PathSearch& path, std::span<const double> u);
+  void search_path(PathSearch& path, std::span<double> u, double change, double most);
+  void leave(PathSearch& path, TangentSolver& solver, std::span<double> u);
+  void correct(PathSearch& path, TangentSolver& solver, std::span<double> u);
+  /// Over the load what rounding ended the iteration with; much of it is said once, nothing is left of no load. Collective.
+  double judge_rounding(const Load& load, double scale, double left);
+  TangentSolver& solver_for(double mass_factor, std::span<const double> node_inertia,
+                            const Pressing* pressing = nullptr);
+  std::string where_worst() const;
+  bool is_symmetric(std::span<const double> x, std::span<const double> y);
+  double stiffest_over(std::span<const double> x, const linalg::LinearMap& elastic) const;
+
+  TangentSolver::By by_ = TangentSolver::By::frames;
+  bool mixed_ = false;       // pressures of their own on the way to equilibrium
+  bool is_carried_ = false;  // in the solve under way
+  bool presses_ = false, is_drowned_told_ = false;
+  bool meets_seat_;
+  double tolerance_, noise_, noise_of_motion_;
+  double whole_ = 0;  // norm of the last residual with U'(J) in place of those pressures
+  int most_linear_;
+  std::vector<std::unique_ptr<elastic::FiniteLaw>> laws_;
+  std::unique_ptr<elastic::FiniteKernel> kernel_;
+  std::vector<std::unique_ptr<TangentSolver>> solvers_;  // by size of the inertia, latest first
+  std::vector<double> r_, trial_, du_;
+  StepJump jump_;
+  bool is_restored_ = false;            // the expansion that comes next is that of the equilibrium on file
+  std::optional<LoadPath> path_;        // none: the loads follow the time
+  std::vector<double> whole_pressure_;  // at load factor 1
+  std::vector<NewtonIterate> iterates_;
+};
+
+}  // namespace couplet::solid

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/equilibrium/load_path.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/elasticity/node_fields.hpp"
+#include "common/io/checkpoint.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet::solid {
+
+namespace {
+
+// A step's length over that of the last one.
+constexpr double shortest_ratio = 0.5, longest_ratio = 1.5;
+
+}  // namespace
+
+LoadPath::LoadPath(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const LoadStepping& chosen)
+    : mesh_(mesh), geometry_(geometry), chosen_(chosen) {
+  double volume = 0;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += geometry.volume[c];
+  volume_ = parallel::sum(mesh.comm, volume);
+}
+
+double LoadPath::product(std::span<const double> a, std::span<const double> b) const {
+  double sum = 0;
+  const std::size_t dim = std::size_t(mesh_.dim);
+  for (std::size_t c = 0; c < std::size_t(mesh_.cells.n_owned()); ++c) {
+    double here = 0;
+    for (std::size_t i = c * dim; i < (c + 1) * dim; ++i) here += a[i] * b[i];
+    sum += geometry_.volume[c] * here;
+  }
+  return parallel::sum(mesh_.comm, sum) / volume_;
+}
+
+double LoadPath::predict(std::span<const double> tangent, double dt) {
+  const double size = std::sqrt(product(tangent, tangent));
+  if (!(size > 0) || !std::isfinite(size))
+    throw Error(
+        "load-stepping: arc-length: the loads do not move the body, so there is no load path; give loads or prescribed "
+        "displacements (those of load factor 1).");
+  if (nominal_ == 0) {
+    dt_ = dt;
+    first_ = nominal_ = chosen_.first_load_factor * size;
+  }
+  step_ = nominal_ * dt / dt_;
+  // The path goes on as it came, through limit points of load and displacement alike.
+  const bool is_back = !now_.change.empty() && product(now_.change, tangent) < 0;
+  return (is_back ? -1 : 1) * step_ / size;
+}
+
+void LoadPath::propose(double factor, std::vector<double> change, int iterations) {
+  trial_ = {factor, 1, iterations, std::move(change)};
+}
+
+void LoadPath::accept(double time, double stiffness) {
+  const double length = std::sqrt(product(trial_.change, trial_.change));
+  see_limit(length, time);
+  factor_before_ = now_.factor;
+  length_before_ = length;
+  now_ = trial_;
+  now_.stiffness = stiffness;
+  travelled_ += length;
+  largest_ = std::max(largest_, std::abs(now_.factor));
+  const double wanted = std::sqrt(double(chosen_.iterations) / std::max(1, now_.iterations));
+  nominal_ = std::min(nominal_ * std::clamp(wanted, shortest_ratio, longest_ratio), chosen_.longest * first_);
+}
+
+/// By the parabola through the last three equilibria.
+void LoadPath::see_limit(double length, double time) {
+  if (length_before_ == 0 || length == 0) return;
+  const double before = (now_.factor - factor_before_) / length_before_,
+               after = (trial_.factor - now_.factor) / length;
+  if (before * after >= 0) return;
+  const double bend = 2 * (after - before) / (length + length_before_),
+               slope = before + bend * length_before_ / 2;
+  limits_.push_back({now_.factor - slope * slope / (2 * bend), time, before > 0});
+}
+
+void LoadPath::save(io::CheckpointWriter& file, const elastic::ElasticOperator& rows) const {
+  file.write_scalar("path-has-change", now_.change.empty() ? 0 : 1);
+  if (!now_.change.empty()) {
+    const elastic::NodeFields change = elastic::fields_of_unknowns(mesh_, rows, now_.change);
+    file.write(mesh::Entries::owned_cells, "path-change", change.inner);
+    file.write(mesh::Entries::owned_boundary, "path-change-faces", change.faces);
+  }
+  file.write_common("path", std::array{now_.factor, now_.stiffness, factor_before_, length_before_, dt_,
+                                       first_, nominal_, travelled_, largest_});
+  std::vector<double> limits;
+  for (const LimitPoint& l : limits_) limits.insert(limits.end(), {l.factor, l.time, double(l.is_maximum)});
+  file.write_common("path-limits", limits);
+}
+
+void LoadPath::load(io::CheckpointReader& file, const elastic::ElasticOperator& rows) {
+  now_.change.clear();
+  if (file.read_scalar("path-has-change") != 0) {
+    elastic::NodeFields change =
+        elastic::fields_of_unknowns(mesh_, rows, std::vector<double>(rows.n_unknowns()));
+    file.read(mesh::Entries::owned_cells, "path-change", change.inner);
+    file.read(mesh::Entries::owned_boundary, "path-change-faces", change.faces);
+    now_.change = elastic::unknowns_of_fields(mesh_, rows, change);
+  }
+  std::array<double, 9> v{};
+  file.read_common("path", v);
+  now_.factor = v[0], now_.stiffness = v[1], factor_before_ = v[2], length_before_ = v[3], dt_ = v[4],
+  first_ = v[5];
+  nominal_ = v[6], travelled_ = v[7], largest_ = v[8];
+  const std::vector<double> limits = file.read_common("path-limits");
+  limits_.clear();
+  for (std::size_t i = 0; i + 2 < limits.size(); i += 3)
+    limits_.push_back({limits[i], limits[i + 1], limits[i + 2] > 0});
+}
+
+}  // namespace couplet::solid

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/linalg/matrix.hpp"
+#include "solid_solver/boundary/seat.hpp"
+#include "solid_solver/equilibrium/equilibrium.hpp"
+#include "solid_solver/method/solution_method.hpp"
+#include "solid_solver/parameters/parameters.hpp"
+#include "solid_solver/thermal/thermal_strain.hpp"
+
+namespace couplet::solid {
+
+/// What is solved: K u = b + C^T f(C u), f the forces of the seat.
+struct ContactProblem {
+  MPI_Comm comm;
+  const linalg::LinearMap& stiffness;  ///< K, inertia included
+  SolutionMethod& method;              ///< for K alone
+  Pressing& pressing;
+  std::span<const double> known;  ///< columns, whose part of b stands there
+  double tolerance;               ///< of the residual over the rows
+  int most_iterations;            ///< of the linear solver
+};
+
+/// Semi-smooth Newton's method [hueber2005]: the forces are the slope of a convex energy, so that with the exact length of each
+/// correction it ends at any stiffness. The tangent K + C^T k C is solved by conjugate gradients with the preconditioner of K. A body
+/// that is clear of the seat is solved for by the method of K, and looked at once. `u`: the first guess on entry. Throws SolveFailure.
+/// Collective.
+linalg::SolveStatistics solve_with_contact(const ContactProblem& problem, std::span<const double> b,
+                                           std::span<double> u);
+
+/// A(u) = K u in the reference configuration, with the face gradient that was chosen.
+class SmallStrain final : public Equilibrium {
+ public:
+  /// All by reference.
+  SmallStrain(const mesh::Mesh& mesh, const elastic::ElasticKernel& kernel,
+              const elastic::ElasticOperator& rows, const std::unique_ptr<ThermalStrain>& thermal,
+              const SolidParameters& parameters)
+      : mesh_(mesh), kernel_(kernel), rows_(rows), thermal_(thermal), parameters_(parameters) {}
+
+  EquilibriumMeans means() const override {
+    return {
+        .recovers_stress = true, .has_products = true, .compares_gradients = true, .takes_pressure = false};
+  }
+  std::string name(const SolidSystem& system) const override { return system.method->name(); }
+  void prepare(const SolidProblem& problem, SolidSystem& system) const override;
+  void set_pressure(std::vector<double>) override {}
+  std::vector<double> force_of_known(std::span<const double> known) const override;
+  linalg::SolveStatistics find(const EquilibriumLoad& load, SolidSystem& system,
+                               std::span<double> u) override;
+  void explain_failure(const SolveFailure& failure) const override;
+  std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;
+  double energy(std::span<const double> unknowns, std::span<const double> known) override;
+  std::vector<elastic::Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
+                                              const elastic::ElasticLoads& loads) override;
+  double share_left(double residual, double rows) const override { return rows > 0 ? residual / rows : 0; }
+  void to_strain(std::span<Tensor3> gradients) const override;
+  std::vector<Tensor3> face_stress(const Displaced& state, Index first, Index count) override;
+  std::vector<Tensor3> cell_stress(const Displaced& state) override;
+
+ private:
+  const mesh::Mesh& mesh_;
+  const elastic::ElasticKernel& kernel_;
+  const elastic::ElasticOperator& rows_;
+  const std::unique_ptr<ThermalStrain>& thermal_;  // made after it; nullptr: no temperature
+  const SolidParameters& parameters_;
+};
+
+}  // namespace couplet::solid

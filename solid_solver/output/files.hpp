@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <limits>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/io/fields/field_writer.hpp"
+#include "common/io/fields/mesh_part.hpp"
+#include "solid_solver/body/stress.hpp"
+
+namespace couplet::solid {
+
+/// Where a solid stands among the other programs.
+struct SolidContext {
+  std::string name = "solid";
+  std::filesystem::path output_folder;  ///< empty: nothing is written
+  double restart_time = std::numeric_limits<double>::quiet_NaN();
+  io::FieldChoice fields{};
+};
+
+/// Fields together with the values that were made for them.
+class FieldList {
+ public:
+  void add(std::string name, const char* unit, io::OutputField::Place place, int components,
+           std::vector<double> values) {
+    values_.push_back(std::move(values));
+    list.push_back({std::move(name), unit, place, components, values_.back()});
+  }
+  /// One field a component; a 2-D scene has no shear across it. `packed`: tensor after tensor.
+  void add_tensor(const std::string& name, const char* unit, io::OutputField::Place place, int dim,
+                  std::span<const double> packed) {
+    for (std::size_t i = 0; i < (dim == 2 ? 4 : tensor_size); ++i) {
+      std::vector<double> values(packed.size() / tensor_size);
+      for (std::size_t e = 0; e < values.size(); ++e) values[e] = packed[e * tensor_size + i];
+      add(name + "-" + tensor_component[i], unit, place, 1, std::move(values));
+    }
+  }
+  std::vector<io::OutputField> list;
+
+ private:
+  std::deque<std::vector<double>> values_;
+};
+
+}  // namespace couplet::solid
