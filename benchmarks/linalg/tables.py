@@ -18,8 +18,7 @@ HAND_WRITTEN = {
     "component_multigrid": ("our krylov CG, component_multigrid", lambda name: "component_multigrid" not in name, ("plate B", "tetrahedra", "slender")),
 }
 # What else lies in that folder: PETSc's and MUMPS's own behind one call, LAPACK, what is no linear solver.
-NOT_SOLVERS = ("acceleration", "cell_solver", "dense_eigenvalues", "dot", "krylov", "linear_map", "linear_solver", "matrix", "petsc_check", "petsc_environment", "petsc_shell",
-               "residual_projection", "symmetric_factors")
+NOT_SOLVERS = ("acceleration", "cell_solver", "dense_eigenvalues", "krylov", "linear_solver", "matrix", "petsc", "residual_projection", "symmetric_factors")
 BEGIN, END = "<!-- tables -->", "<!-- end of tables -->"
 
 

@@ -15,13 +15,13 @@ def _of(folder, names):
 FILES = {
     "face loops": [
         *_of("fluid_solver", "rates face_flux predictor projection pressure boundary turbulence viscous_solver placement immersed "
-                             "yielding_walls absorbing compression upstream_volume"),
+                             "yielding_walls absorbing compression"),
         *_of("solid_solver", "heat heat_boundaries solid_fields stress finite_strain updated_lagrangian orthotropic mixed_form"),
         *_of("common/elasticity", "face_terms symmetric_faces symmetric_kernel symmetric_space elasticity least_squares_kernel "
                                   "shared_edges finite_edges finite_kernel anisotropic joined_vertices "
                                   "elastic_corrections vertex_constraints"),
         *_of("common/fv", "conduction gradients vertex_interpolation prescribed_motion"),
-        *_of("mesh_mover", "laplacian pseudo_solid rotations moving_patches curved_slide mover"),
+        *_of("mesh_mover", "laplacian pseudo_solid rotations patches mover"),
         *_of("thermocline", "bed_step packed_bed numerics grains layers shell surroundings"),
     ],
     "maps": [
@@ -35,7 +35,7 @@ FILES = {
         *_of("plate_modal/diagnostics", "load mesh truncation"), *_of("thermocline", "tank report front_error"),
     ],
     "loads": [
-        *_of("fluid_solver", "loads turning_walls cavity rotating_frame"),
+        *_of("fluid_solver", "fractional_step rotation fluid"),
         *_of("common/elasticity", "space_kernel follower_pressure"),
         *_of("plate_modal", "pressure_load contact"),
         *_of("solid_solver", "thermal_strain solid_forces boundaries solid_body interface_data solid_interface"),

@@ -210,7 +210,7 @@ def comparison(job):
     there = [n for n in tables.HAND_WRITTEN if any((job.root / "common/linalg").rglob(f"{n}.hpp"))]
     gains = {n: tables.best(rows, n) for n in there}
     lacking = tables.problems(rows, job.root / "common/linalg")
-    text = ", ".join(f"{n} {min(g[:2]):.2f} of PETSc's best ({g[2]['system']})" + "".join(f", {ratio:.2f} of a whole job of {row['cells']} cells" for ratio, row in sorted(tables.whole_jobs(n), key=lambda w: w[0])[:1]) for n, g in gains.items() if g)
+    text = ", ".join(f"{n} {min(g[:2]):.2f} of PETSc's best ({g[2]['system']})" for n, g in gains.items() if g)
     return f"{len({r['system'] for r in rows})} systems, {len(rows)} rows; {text}{'; ' + '; '.join(lacking) if lacking else ''}", not lacking
 
 
