@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "common/base/error.hpp"
-#include "common/io/archive.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/probes/probe.hpp"
 #include "common/log/log.hpp"

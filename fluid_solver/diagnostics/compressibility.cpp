@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/diagnostics/compliance.hpp"
 #include "fluid_solver/diagnostics/effects.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/coupling/error_parts.hpp"
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/time/step_errors.hpp"
 #include "fluid_solver/diagnostics/driving.hpp"
 #include "fluid_solver/diagnostics/phase_drift.hpp"

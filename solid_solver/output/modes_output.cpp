@@ -8,7 +8,7 @@
 #include "common/base/error.hpp"
 #include "common/log/finding.hpp"
 #include "common/log/log.hpp"
-#include "common/modes/modes_file.hpp"
+#include "common/modes/modal_model.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/diagnostics/weighted_estimate.hpp"
 #include "solid_solver/output/modal_analysis.hpp"

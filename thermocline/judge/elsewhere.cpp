@@ -80,10 +80,10 @@ class GroundModel {
     return all;
   }
   void restore(const std::vector<double>& state) {
-    base::SavedNumbers saved(state, "temperatures of the ground");
-    taken_ = saved.real(), passed_ = saved.real(), start_ = saved.real();
+    base::Numbers saved(state, "temperatures of the ground");
+    saved(taken_, passed_, start_);
     saved.fill(column_.temperature());
-    if (saved.left() > 0) saved.damaged();
+    saved.finish();
   }
   std::string books() const { return books_of("ground", taken_, passed_, column_.energy(deep_) - start_); }
 
@@ -145,11 +145,11 @@ class BlanketModel {
     return all;
   }
   void restore(const std::vector<double>& state) {
-    base::SavedNumbers saved(state, "temperatures of the insulation");
-    taken_ = saved.real(), passed_ = saved.real(), start_ = saved.real(), air_ = saved.real();
+    base::Numbers saved(state, "temperatures of the insulation");
+    saved(taken_, passed_, start_, air_);
     saved.fill(wall_);
     saved.fill(blanket_.temperature());
-    if (saved.left() > 0) saved.damaged();
+    saved.finish();
   }
   std::string books() const {
     return books_of("insulation", taken_, passed_, blanket_.energy(air_) - start_);

@@ -128,13 +128,13 @@ void append_numbers(std::vector<double>& to, const Part& part) {
     to.push_back(double(part));
 }
 template <class Part>
-void take_numbers(base::SavedNumbers& from, Part& part) {
+void take_numbers(base::Numbers& from, Part& part) {
   if constexpr (requires { Part::visit(part, [](auto&...) {}); })
     Part::visit(part, [&](auto&... parts) { (take_numbers(from, parts), ...); });
   else if constexpr (requires { part.begin(); })
     for (auto& value : part) take_numbers(from, value);
   else
-    part = std::is_floating_point_v<Part> ? Part(from.real()) : Part(int(from.count(1e9)));
+    from(part);
 }
 template <class... Parts>
 std::vector<double> numbers_of(const Parts&... parts) {
@@ -150,7 +150,7 @@ void set_numbers(std::span<const double> values, const std::string& name, Parts&
     throw Error(
         "The checkpoint's '{}' has {} values, this tank needs {}; run with the same elements and cells.",
         name, values.size(), needed);
-  base::SavedNumbers from(values, name.c_str());
+  base::Numbers from(values, name.c_str());
   (take_numbers(from, parts), ...);
 }
 

@@ -84,8 +84,8 @@ class Schedule final : public FlowControl {
   Flow decide(double t, double t_top, double t_bottom, const Ambient& ambient) override;
   std::vector<double> state() const override { return {current_, double(stopped_)}; }
   void restore(std::span<const double> state) override {
-    base::SavedNumbers saved(state, "rows of the flow");
-    current_ = saved.real(), stopped_ = saved.real() != 0;
+    base::Numbers saved(state, "rows of the flow");
+    saved(current_, stopped_);
   }
   /// Rows that were stopped each time before they began.
   std::vector<std::string> doubts() const override;
@@ -118,7 +118,11 @@ class PlantControl final : public FlowControl {
   Flow decide(double t, double t_top, double t_bottom, const Ambient& ambient) override;
   std::vector<double> state() const override { return {double(mode_)}; }
   void restore(std::span<const double> state) override {
-    mode_ = PlantMode(base::SavedNumbers(state, "mode of the plant").count(2));
+    base::Numbers saved(state, "mode of the plant");
+    unsigned mode = 0;
+    saved(mode);
+    if (mode > 2) saved.damaged();
+    mode_ = PlantMode(mode);
   }
 
  private:
