@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "common/base/error.hpp"
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "coupler/exchange/start_checks.hpp"

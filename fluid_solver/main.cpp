@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
-#include "common/io/cut/cut_mesh.hpp"
+#include "common/io/cut_mesh.hpp"
 #include "common/linalg/petsc.hpp"
 #include "fluid_solver/boundary/boundary.hpp"
 #include "fluid_solver/parameters/effects.hpp"

@@ -8,7 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
-#include "common/io/cut/cut_mesh.hpp"
+#include "common/io/cut_mesh.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/quality.hpp"
 #include "common/parallel/collective.hpp"

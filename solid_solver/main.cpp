@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "common/app/program.hpp"
-#include "common/io/cut/cut_mesh.hpp"
+#include "common/io/cut_mesh.hpp"
 #include "common/linalg/petsc.hpp"
 #include "solid_solver/effects.hpp"
 #include "solid_solver/solid.hpp"

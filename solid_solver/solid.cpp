@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/probes/probe.hpp"
 #include "solid_solver/output/quantities.hpp"

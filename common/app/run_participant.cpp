@@ -13,7 +13,7 @@
 #include "common/coupling/error_parts.hpp"
 #include "common/coupling/serve.hpp"
 #include "common/diagnostics/diagnostics.hpp"
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/log/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/log/progress.hpp"

@@ -6,10 +6,7 @@
 #include <concepts>
 #include <cstddef>
 #include <limits>
-#include <optional>
 #include <span>
-#include <string>
-#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -17,14 +14,6 @@
 #include "common/base/error.hpp"
 
 namespace couplet::base {
-
-/// The unit of a key that takes a difference of temperatures: a dimension apart from temperatures above absolute zero.
-inline constexpr std::string_view kelvin_difference = "K difference";
-
-/// Whether a number of this unit must not stand bare: two units in common use give it two plausible meanings. So it is
-/// for temperatures (20 K or 20 degC), angles and speeds of rotation (0.5 rad or 0.5 deg); differences of temperatures
-/// are the same in K and degC, everything else is in SI.
-constexpr bool needs_unit(std::string_view unit) { return unit == "K" || unit == "rad" || unit == "rad/s"; }
 
 /// A list of values as plain numbers, for checkpoints. The same list of calls writes them and reads them back:
 ///
@@ -45,6 +34,10 @@ class Numbers final {
   template <class... T>
   void operator()(T&... values) {
     (one(values), ...);
+  }
+  /// As many values as there is room for.
+  void fill(std::span<double> values) {
+    for (double& value : values) real(value);
   }
   const std::vector<double>& values() const { return written_; }
   /// Throws Error unless all that was saved has been read.
@@ -67,7 +60,8 @@ class Numbers final {
     } else if constexpr (std::integral<T>) {
       auto number = static_cast<double>(value);
       real(number);
-      if (reads() && (number != std::floor(number) || !(std::abs(number) <= largest<T>()))) damaged();
+      if (reads() && (number != std::floor(number) || !(number >= least<T>() && number <= largest<T>())))
+        damaged();
       value = static_cast<T>(number);
     } else if constexpr (requires { value.has_value(); }) {
       bool is_there = value.has_value();
@@ -92,6 +86,11 @@ class Numbers final {
   template <class T>
   static double largest() {
     return std::min(9e15, static_cast<double>(std::numeric_limits<T>::max()));
+  }
+
+  template <class T>
+  static double least() {
+    return std::is_signed_v<T> ? -largest<T>() : 0;
   }
 
   template <class T>
@@ -157,42 +156,5 @@ void from_numbers(std::span<const double> saved, T& value, const char* what) {
   numbers(value);
   numbers.finish();
 }
-
-/// Numbers out of a checkpoint that say themselves how many follow: taken one after the other, and none that is not there.
-/// Throws Error.
-class SavedNumbers final {
- public:
-  /// `what` completes "The checkpoint's ... are damaged".
-  SavedNumbers(std::span<const double> values, const char* what) : left_(values), what_(what) {}
-  std::span<const double> next(std::size_t n) {
-    if (n > left_.size()) damaged();
-    const std::span<const double> taken = left_.first(n);
-    left_ = left_.subspan(n);
-    return taken;
-  }
-  std::size_t left() const { return left_.size(); }
-  double real() { return next(1)[0]; }
-  /// A whole number from 0 to `most`.
-  std::size_t count(double most) {
-    const double value = real();
-    if (!(value >= 0 && value <= most) || value != std::floor(value)) damaged();
-    return static_cast<std::size_t>(value);
-  }
-  /// Of entries that take `size` numbers each, all of which must follow.
-  std::size_t count_of(std::size_t size) {
-    const std::size_t n = count(double(left_.size()));
-    if (n > left_.size() / size) damaged();
-    return n;
-  }
-  void fill(std::span<double> to) { std::ranges::copy(next(to.size()), to.begin()); }
-  std::span<const double> rest() { return next(left_.size()); }
-  [[noreturn]] void damaged() const {
-    throw Error("The checkpoint's {} are damaged. Use an earlier one.", what_);
-  }
-
- private:
-  std::span<const double> left_;
-  const char* what_;
-};
 
 }  // namespace couplet::base

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "common/base/error.hpp"
-#include "common/base/numbers.hpp"
 #include "common/base/text.hpp"
 
 namespace couplet::base {

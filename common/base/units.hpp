@@ -8,6 +8,14 @@
 
 namespace couplet::base {
 
+/// The unit of a key that takes a difference of temperatures: a dimension apart from temperatures above absolute zero.
+inline constexpr std::string_view kelvin_difference = "K difference";
+
+/// Whether a number of this unit must not stand bare: two units in common use give it two plausible meanings. So it is
+/// for temperatures (20 K or 20 degC), angles and speeds of rotation (0.5 rad or 0.5 deg); differences of temperatures
+/// are the same in K and degC, everything else is in SI.
+constexpr bool needs_unit(std::string_view unit) { return unit == "K" || unit == "rad" || unit == "rad/s"; }
+
 /// value in SI = factor * number + offset. Exponents of kg, m, s, K; angles are plain numbers (rad = 1).
 struct Unit {
   double factor = 1;
@@ -28,7 +36,7 @@ struct Quantity {
 /// Empty unless the text starts with a finite number.
 std::optional<Quantity> split_quantity(std::string_view text);
 
-/// "5.6 MPa" in "Pa" is 5.6e6; a bare number is taken to be in `unit` already, where it may be (bare_numbers.hpp). An
+/// "5.6 MPa" in "Pa" is 5.6e6; a bare number is taken to be in `unit` already, where it may be (needs_unit()). An
 /// empty `unit` means a plain number (only % is taken then). Throws Error saying what was expected.
 double parse_quantity(std::string_view text, std::string_view unit);
 

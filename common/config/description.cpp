@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <yaml-cpp/yaml.h>
+
 #include "common/base/text.hpp"
 #include "common/config/document.hpp"
 #include "common/config/load.hpp"
@@ -11,89 +13,39 @@
 
 namespace couplet::config {
 
-namespace {
-
-class Describer final : public Visitor {
- public:
-  explicit Describer(Describe extent) : extent_(extent) {}
-  std::vector<Item> items;
-
-  void key(const Facts& facts, const Slot& slot) override {
-    Item item;
-    item.facts = facts;
-    item.type = describe_type(slot);
-    item.value = format_value(slot, facts.unit);
-    item.slot = slot;
-    if (const Word* word = std::get_if<Word>(&slot)) item.words = word->words;
-    items.push_back(std::move(item));
-  }
-  void section(std::string_view name, std::string_view doc, const Declare& declare) override {
-    Item item = make(Item::Kind::section, name, doc);
-    item.items = below(declare);
-    items.push_back(std::move(item));
-  }
-  void optional(std::string_view name, bool present, std::string_view doc, const Declare& declare) override {
-    Item item = make(Item::Kind::optional, name, doc);
-    item.is_present = present;
-    if (present || extent_ == Describe::everything) item.items = below(declare);
-    items.push_back(std::move(item));
-  }
-  void map(std::string_view name, const std::vector<std::string>& present, std::string_view what,
-           std::string_view doc, const std::function<void(const std::string&, Section&)>& declare) override {
-    Item item = make(Item::Kind::map, name, doc);
-    item.what = what;
-    if (extent_ == Describe::everything)
-      item.items = below([&](Section& s) { declare(fmt::format("<{}>", what), s); });
-    else
-      for (const std::string& entry : present)
-        item.present.emplace_back(entry, below([&](Section& s) { declare(entry, s); }));
-    items.push_back(std::move(item));
-  }
-  void list(std::string_view name, std::size_t present, std::string_view doc,
-            const std::function<void(std::size_t, Section&)>& declare) override {
-    Item item = make(Item::Kind::list, name, doc);
-    if (extent_ == Describe::everything)
-      item.items = below([&](Section& s) { declare(0, s); });
-    else
-      for (std::size_t i = 0; i < present; ++i)
-        item.present.emplace_back("", below([&](Section& s) { declare(i, s); }));
-    items.push_back(std::move(item));
-  }
-  void variant(const Facts& facts, const Cases& cases, const std::string& current,
-               const std::function<void(const std::string&)>&) override {
-    Item item;
-    item.kind = Item::Kind::variant;
-    item.facts = facts;
-    item.type = "word";
-    item.value = current;
-    for (const auto& [word, declare] : cases) {
-      item.words.push_back(word);
-      if (word == current || extent_ == Describe::everything) item.cases.emplace_back(word, below(declare));
-    }
-    items.push_back(std::move(item));
-  }
-  void check(const std::function<std::string()>&, std::string_view) override {}
-
- private:
-  static Item make(Item::Kind kind, std::string_view name, std::string_view doc) {
-    Item item;
-    item.kind = kind;
-    item.facts.name = name;
-    item.facts.doc = doc;
-    return item;
-  }
-  std::vector<Item> below(const Declare& declare) const { return describe(declare, extent_); }
-
-  Describe extent_;
-};
-
-}  // namespace
-
 std::vector<Item> describe(const Section::Declare& declare, Describe extent) {
-  Describer describer(extent);
+  using Kind = Declaration::Kind;
+  std::vector<Item> items;
+  const bool all = extent == Describe::everything;
+  const Visitor describer = [&](const Declaration& d) {
+    if (d.kind == Kind::check || d.kind == Kind::doubt) return;
+    Item item;
+    item.kind = d.kind;
+    item.facts = d.facts;
+    item.slot = d.slot;
+    item.what = d.what;
+    item.is_present = !d.present.empty();
+    const auto below = [&](const std::string& name, std::size_t i) {
+      return describe([&](Section& s) { d.declare(s, name, i); }, extent);
+    };
+    const Word* word = std::get_if<Word>(&d.slot);
+    if (word) item.words = word->words;
+    if (d.kind == Kind::key || d.kind == Kind::variant) {
+      item.type = describe_type(d.slot);
+      item.value = format_value(d.slot, d.facts.unit);
+    } else if (all || d.kind == Kind::section || (d.kind == Kind::optional && item.is_present)) {
+      item.items = below(fmt::format("<{}>", d.what), 0);
+    } else if (d.kind != Kind::optional) {
+      for (std::size_t i = 0; i < d.present.size(); ++i)
+        item.present.emplace_back(d.present[i], below(d.present[i], i));
+    }
+    for (const auto& [name, keys] : d.cases)
+      if (all || name == word->current) item.cases.emplace_back(name, describe(keys, extent));
+    items.push_back(std::move(item));
+  };
   Section section(describer);
   declare(section);
-  return std::move(describer.items);
+  return items;
 }
 
 namespace {
@@ -114,8 +66,8 @@ std::string row(const Item& item) {
   std::string type = item.type, fallback, unit = code(facts.unit), range = describe_range(facts),
               doc = facts.doc;
   switch (item.kind) {
-    case Item::Kind::key:
-    case Item::Kind::variant:
+    case Declaration::Kind::key:
+    case Declaration::Kind::variant:
       if (!item.words.empty()) range = fmt::format("`{}`", base::join(item.words, "`, `"));
       if (const std::string usual = usual_text(facts); !usual.empty())
         range += (range.empty() ? "" : "; ") + usual;
@@ -123,17 +75,19 @@ std::string row(const Item& item) {
         type += fmt::format(" ({})", *facts.size);
       fallback = facts.required ? "**required**" : item.value.empty() ? "not set" : code(item.value);
       break;
-    case Item::Kind::section:
+    case Declaration::Kind::section:
       type = "mapping";
       break;
-    case Item::Kind::optional:
+    case Declaration::Kind::optional:
       type = "mapping", fallback = "absent: not used";
       break;
-    case Item::Kind::map:
+    case Declaration::Kind::map:
       type = fmt::format("mapping by {}", item.what);
       break;
-    case Item::Kind::list:
+    case Declaration::Kind::list:
       type = "list of mappings";
+      break;
+    default:
       break;
   }
   return fmt::format("| {} | {} | {} | {} | {} | {} |\n", code(facts.name), type, unit, cell(fallback),
@@ -145,12 +99,13 @@ void write_section(std::string& out, const std::string& path, const std::vector<
 void write_below(std::string& out, const std::string& path, const std::vector<Item>& items, int level) {
   for (const Item& item : items) {
     const std::string here = join_path(path, item.facts.name);
-    if (item.kind == Item::Kind::section || item.kind == Item::Kind::optional)
+    if (item.kind == Declaration::Kind::section || item.kind == Declaration::Kind::optional)
       write_section(out, here, item.items, level);
-    if (item.kind == Item::Kind::map)
+    if (item.kind == Declaration::Kind::map)
       write_section(out, fmt::format("{}.<{}>", here, item.what), item.items, level);
-    if (item.kind == Item::Kind::list) write_section(out, fmt::format("{}[]", here), item.items, level);
-    if (item.kind == Item::Kind::variant)
+    if (item.kind == Declaration::Kind::list)
+      write_section(out, fmt::format("{}[]", here), item.items, level);
+    if (item.kind == Declaration::Kind::variant)
       for (const auto& [word, keys] : item.cases)
         if (!keys.empty())
           write_section(out,
@@ -173,6 +128,69 @@ void write_section(std::string& out, const std::string& path, const std::vector<
 std::string markdown(const std::string& title, const Section::Declare& declare) {
   std::string out = fmt::format("# {}\n", title);
   write_section(out, "", describe(declare, Describe::everything), 2);
+  return out;
+}
+
+namespace {
+
+std::string key_text(const std::string& name) {
+  YAML::Emitter emitter;
+  emitter << name;
+  return emitter.c_str();
+}
+
+/// First line of a list entry starts with "- ", everything else is indented.
+void write(std::string& out, const std::vector<Item>& items, std::size_t indent) {
+  const std::string blanks(indent, ' ');
+  for (const Item& item : items) {
+    const std::string name = key_text(item.facts.name);
+    switch (item.kind) {
+      case Declaration::Kind::key:
+      case Declaration::Kind::variant:
+        if (item.value.empty())
+          out += fmt::format("{}# {}: not set\n", blanks, name);
+        else
+          out += fmt::format("{}{}: {}{}\n", blanks, name, item.value,
+                             item.facts.unit.empty() ? "" : "  # " + item.facts.unit);
+        for (const auto& [word, keys] : item.cases) write(out, keys, indent);
+        break;
+      case Declaration::Kind::section:
+        out += fmt::format("{}{}:\n", blanks, name);
+        write(out, item.items, indent + 2);
+        break;
+      case Declaration::Kind::optional:
+        if (item.is_present) {
+          out += fmt::format("{}{}:\n", blanks, name);
+          write(out, item.items, indent + 2);
+        } else {
+          out += fmt::format("{}# {}: not there\n", blanks, name);
+        }
+        break;
+      case Declaration::Kind::map:
+        out += fmt::format("{}{}:{}\n", blanks, name, item.present.empty() ? " {}" : "");
+        for (const auto& [entry, keys] : item.present) {
+          out += fmt::format("{}  {}:\n", blanks, key_text(entry));
+          write(out, keys, indent + 4);
+        }
+        break;
+      case Declaration::Kind::list:
+        out += fmt::format("{}{}:{}\n", blanks, name, item.present.empty() ? " []" : "");
+        for (const auto& [entry, keys] : item.present) {
+          out += fmt::format("{}  -\n", blanks);
+          write(out, keys, indent + 4);
+        }
+        break;
+      default:
+        break;
+    }
+  }
+}
+
+}  // namespace
+
+std::string effective(const Section::Declare& declare) {
+  std::string out;
+  write(out, describe(declare, Describe::present), 0);
   return out;
 }
 

@@ -5,14 +5,14 @@
 #include <utility>
 #include <vector>
 
-#include "common/config/visitor.hpp"
+#include "common/config/section.hpp"
 
 namespace couplet::config {
 
 /// The declarations as data, for what is generated from them: reference, schema, values in force.
 struct Item {
-  enum class Kind { key, section, optional, map, list, variant } kind = Kind::key;
-  Key::Facts facts;  ///< name and doc for all kinds
+  Declaration::Kind kind = Declaration::Kind::key;
+  KeyFacts facts;
   Slot slot = static_cast<double*>(nullptr);
   std::string type, value;         ///< of a key: "number", text of the value the member holds ("" for none)
   std::vector<std::string> words;  ///< of a choice

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "common/config/visitor.hpp"
+#include "common/config/section.hpp"
 
 namespace couplet::config {
 

@@ -21,37 +21,17 @@ std::string one_of(const std::vector<std::string>& words) {
 }
 
 /// The keys a declaration makes at its own level; touches no member.
-class NameCollector final : public Visitor {
- public:
-  std::vector<std::string> names;
-
-  void key(const Facts& facts, const Slot&) override { names.push_back(facts.name); }
-  void section(std::string_view name, std::string_view, const Declare&) override { names.emplace_back(name); }
-  void optional(std::string_view name, bool, std::string_view, const Declare&) override {
-    names.emplace_back(name);
-  }
-  void map(std::string_view name, const std::vector<std::string>&, std::string_view, std::string_view,
-           const std::function<void(const std::string&, Section&)>&) override {
-    names.emplace_back(name);
-  }
-  void list(std::string_view name, std::size_t, std::string_view,
-            const std::function<void(std::size_t, Section&)>&) override {
-    names.emplace_back(name);
-  }
-  void variant(const Facts& facts, const Cases& cases, const std::string&,
-               const std::function<void(const std::string&)>&) override {
-    names.push_back(facts.name);
-    Section section(*this);
-    for (const auto& [word, declare] : cases) declare(section);
-  }
-  void check(const std::function<std::string()>&, std::string_view) override {}
-};
-
 std::vector<std::string> names_of(const Section::Declare& declare) {
-  NameCollector collector;
-  Section section(collector);
+  std::vector<std::string> names;
+  const Visitor collect = [&](const Declaration& d) {
+    if (d.rule) return;
+    names.push_back(d.facts.name);
+    Section section(collect);
+    for (const auto& [word, keys] : d.cases) keys(section);
+  };
+  Section section(collect);
   declare(section);
-  return collector.names;
+  return names;
 }
 
 std::string kind_of(const YAML::Node& node) {
@@ -93,11 +73,11 @@ Entry Reader::take(std::string_view name) {
   return find(frame.node, name);
 }
 
-std::string Reader::keys_of(const Place& place, const std::string& path, const Declare& declare) {
+std::string Reader::keys_of(const Place& place, const std::string& path, const Section::Declare& declare) {
   constexpr std::size_t most = 12;
   const std::vector<Message> kept = messages_, kept_doubts = doubts_;
   frames_.push_back({YAML::Node(YAML::NodeType::Map), place, path, {}, {}, messages_.size(), {}, false});
-  Section section(*this);
+  Section section(visitor_);
   declare(section);
   std::vector<std::string> keys = frames_.back().known;
   frames_.pop_back();
@@ -110,7 +90,7 @@ std::string Reader::keys_of(const Place& place, const std::string& path, const D
 }
 
 void Reader::read_mapping(const YAML::Node& node, const Place& place, const std::string& path,
-                          const Declare& declare) {
+                          const Section::Declare& declare) {
   const bool is_empty = !node.IsDefined() || node.IsNull();
   if (!is_empty && !node.IsMap()) {
     report(place, path,
@@ -120,7 +100,7 @@ void Reader::read_mapping(const YAML::Node& node, const Place& place, const std:
   }
   frames_.push_back(
       {is_empty ? YAML::Node(YAML::NodeType::Map) : node, place, path, {}, {}, messages_.size(), {}, false});
-  Section section(*this);
+  Section section(visitor_);
   declare(section);
   report_unknown_keys();
   frames_.pop_back();
@@ -155,7 +135,7 @@ void Reader::report_unknown_keys() {
     report(frame.place, frame.path, fmt::format("{} more unknown keys follow.", unknown - most));
 }
 
-std::string Reader::problem_of(const Facts& facts, const Slot& slot) const {
+std::string Reader::problem_of(const KeyFacts& facts, const Slot& slot) const {
   if (!check_expression_) return "";
   if (const auto* text = std::get_if<ExpressionText*>(&slot)) return check_expression_(**text);
   if (const auto* text = std::get_if<std::optional<ExpressionText>*>(&slot))
@@ -173,7 +153,7 @@ std::string Reader::problem_of(const Facts& facts, const Slot& slot) const {
   return "";
 }
 
-void Reader::key(const Facts& facts, const Slot& slot) {
+void Reader::key(const KeyFacts& facts, const Slot& slot) {
   Frame& frame = frames_.back();
   const std::string path = join_path(frame.path, facts.name);
   const Entry entry = take(facts.name);
@@ -199,79 +179,63 @@ void Reader::key(const Facts& facts, const Slot& slot) {
   }
 }
 
-void Reader::section(std::string_view name, std::string_view, const Declare& declare) {
+void Reader::below(const Declaration& d) {
+  using Kind = Declaration::Kind;
   const Place outside = frames_.back().place;
-  const std::string path = join_path(frames_.back().path, name);
-  const Entry entry = take(name);
-  read_mapping(entry.node, entry.found ? entry.place : outside, path, declare);
-}
-
-void Reader::optional(std::string_view name, bool, std::string_view, const Declare& declare) {
-  const std::string path = join_path(frames_.back().path, name);
-  const Entry entry = take(name);
-  if (entry.found) read_mapping(entry.node, entry.place, path, declare);
-}
-
-void Reader::map(std::string_view name, const std::vector<std::string>&, std::string_view what,
-                 std::string_view, const std::function<void(const std::string&, Section&)>& declare) {
-  const std::string path = join_path(frames_.back().path, name);
-  const Entry entry = take(name);
+  const std::string path = join_path(frames_.back().path, d.facts.name);
+  const Entry entry = take(d.facts.name);
+  const auto read = [&](const YAML::Node& node, const Place& place, const std::string& at,
+                        const std::string& name, std::size_t i) {
+    read_mapping(node, place, at, [&](Section& s) { d.declare(s, name, i); });
+  };
+  if (d.kind == Kind::section || (d.kind == Kind::optional && entry.found))
+    return read(entry.node, entry.found ? entry.place : outside, path, "", 0);
   if (!entry.found || entry.node.IsNull()) return;
-  if (!entry.node.IsMap()) {
-    report(
-        entry.place, path,
-        fmt::format("expected a mapping with one entry for each {}, found {}.", what, kind_of(entry.node)));
+  if (d.kind == Kind::map) {
+    if (!entry.node.IsMap())
+      return report(entry.place, path,
+                    fmt::format("expected a mapping with one entry for each {}, found {}.", d.what,
+                                kind_of(entry.node)));
+    for (const auto& item : entry.node) {
+      const std::string& name = item.first.Scalar();
+      read(item.second, place_of(item.first), join_path(path, name), name, 0);
+    }
     return;
   }
-  for (const auto& item : entry.node) {
-    const std::string& key = item.first.Scalar();
-    read_mapping(item.second, place_of(item.first), join_path(path, key),
-                 [&](Section& s) { declare(key, s); });
-  }
-}
-
-void Reader::list(std::string_view name, std::size_t, std::string_view,
-                  const std::function<void(std::size_t, Section&)>& declare) {
-  const std::string path = join_path(frames_.back().path, name);
-  const Entry entry = take(name);
-  if (!entry.found || entry.node.IsNull()) return;
-  if (!entry.node.IsSequence()) {
-    report(entry.place, path,
-           fmt::format("expected a list of mappings, found {}.",
-                       entry.node.IsMap() ? "a mapping" : kind_of(entry.node)));
-    return;
-  }
+  if (!entry.node.IsSequence())
+    return report(entry.place, path,
+                  fmt::format("expected a list of mappings, found {}.",
+                              entry.node.IsMap() ? "a mapping" : kind_of(entry.node)));
   for (std::size_t i = 0; i < entry.node.size(); ++i)
-    read_mapping(entry.node[i], place_of(entry.node[i]), fmt::format("{}[{}]", path, i),
-                 [&](Section& s) { declare(i, s); });
+    read(entry.node[i], place_of(entry.node[i]), fmt::format("{}[{}]", path, i), "", i);
 }
 
-void Reader::variant(const Facts& facts, const Cases& cases, const std::string& current,
-                     const std::function<void(const std::string&)>& set) {
+void Reader::variant(const Declaration& d) {
+  const KeyFacts& facts = d.facts;
   const std::string path = join_path(frames_.back().path, facts.name);
-  Word word{{}, current, set};
-  for (const auto& [text, declare] : cases) word.words.push_back(text);
+  const Word& declared = std::get<Word>(d.slot);
   const Entry entry = take(facts.name);
-  std::string chosen = current;
+  std::string chosen = declared.current;
   if (entry.found || facts.required) {
     try {
-      if (!entry.found) throw Error("{} ({}).", missing_key, one_of(word.words));
+      if (!entry.found) throw Error("{} ({}).", missing_key, one_of(declared.words));
+      Word word = declared;
       word.set = [&](const std::string& text) {
         chosen = text;
-        set(text);
+        declared.set(text);
       };
       read_value(entry.node, {}, word);
     } catch (const Error& error) {
       report_key(entry.found ? entry.place : frames_.back().place, path, error.what());
       // Nobody knows which keys are valid now: take all of them as known, so that only the real mistake is
       // reported.
-      for (const auto& [text, declare] : cases)
+      for (const auto& [text, declare] : d.cases)
         for (const std::string& key : names_of(declare)) frames_.back().known.push_back(key);
       return;
     }
   }
-  Section section(*this);
-  for (const auto& [text, declare] : cases) {
+  Section section(visitor_);
+  for (const auto& [text, declare] : d.cases) {
     if (text == chosen) {
       declare(section);
       continue;
@@ -281,18 +245,34 @@ void Reader::variant(const Facts& facts, const Cases& cases, const std::string& 
   }
 }
 
-std::optional<Message> Reader::finding(const std::function<std::string()>& rule, std::string_view key) const {
+void Reader::apply_rule(const Declaration& d) {
   const Frame& frame = frames_.back();
   // The rule may look at any key of the mappings around this one.
   const bool wrong_key =
       std::any_of(frames_.begin(), frames_.end(), [](const Frame& f) { return f.wrong_key; });
-  if (wrong_key || messages_.size() != frame.messages_before) return {};
-  std::string text = rule();
-  if (text.empty()) return {};
+  if (wrong_key || messages_.size() != frame.messages_before) return;
+  std::string text = d.rule();
+  if (text.empty()) return;
   if (text.back() != '.') text += '.';
+  const std::string& key = d.facts.name;
   const Entry entry = find(frame.node, key);
-  return message(entry.found ? entry.place : frame.place,
-                 key.empty() ? frame.path : join_path(frame.path, key), text);
+  (d.kind == Declaration::Kind::check ? messages_ : doubts_)
+      .push_back(message(entry.found ? entry.place : frame.place,
+                         key.empty() ? frame.path : join_path(frame.path, key), text));
+}
+
+void Reader::on(const Declaration& d) {
+  switch (d.kind) {
+    case Declaration::Kind::key:
+      return key(d.facts, d.slot);
+    case Declaration::Kind::variant:
+      return variant(d);
+    case Declaration::Kind::check:
+    case Declaration::Kind::doubt:
+      return apply_rule(d);
+    default:
+      return below(d);
+  }
 }
 
 }  // namespace couplet::config

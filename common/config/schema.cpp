@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "common/base/numbers.hpp"
 #include "common/base/text.hpp"
+#include "common/base/units.hpp"
 #include "common/config/description.hpp"
 #include "common/config/load.hpp"
 #include "common/config/values.hpp"
@@ -106,12 +106,12 @@ std::string mapping_schema(const std::vector<Item>& items);
 
 std::string item_schema(const Item& item) {
   switch (item.kind) {
-    case Item::Kind::key:
+    case Declaration::Kind::key:
       return value_schema(item);
-    case Item::Kind::map:
+    case Declaration::Kind::map:
       return object(
           {member("type", "\"object\""), member("additionalProperties", mapping_schema(item.items))});
-    case Item::Kind::list:
+    case Declaration::Kind::list:
       return list_schema(mapping_schema(item.items), {}, {});
     default:
       return mapping_schema(item.items);
@@ -143,7 +143,8 @@ std::string documented(const Item& item) {
 
 bool has_required(const std::vector<Item>& items) {
   for (const Item& item : items)
-    if ((item.kind == Item::Kind::section && has_required(item.items)) || item.facts.required) return true;
+    if ((item.kind == Declaration::Kind::section && has_required(item.items)) || item.facts.required)
+      return true;
   return false;
 }
 
@@ -155,9 +156,9 @@ struct Alternative {
 std::vector<Alternative> alternatives(const std::vector<Item>& items) {
   std::vector<Alternative> all(1);
   for (const Item& item : items) {
-    if (item.kind != Item::Kind::variant) {
+    if (item.kind != Declaration::Kind::variant) {
       const bool needed =
-          item.facts.required || (item.kind == Item::Kind::section && has_required(item.items));
+          item.facts.required || (item.kind == Declaration::Kind::section && has_required(item.items));
       for (Alternative& a : all) {
         a.properties.push_back(member(item.facts.name, documented(item)));
         if (needed) a.required.push_back(item.facts.name);

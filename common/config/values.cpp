@@ -12,10 +12,9 @@
 #include <vector>
 
 #include "common/base/error.hpp"
-#include "common/base/numbers.hpp"
 #include "common/base/text.hpp"
 #include "common/base/units.hpp"
-#include "common/config/visitor.hpp"
+#include "common/config/section.hpp"
 
 namespace couplet::config {
 

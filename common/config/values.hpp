@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "common/config/visitor.hpp"
+#include "common/config/section.hpp"
 
 namespace couplet::config {
 

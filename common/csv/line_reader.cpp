@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/csv/line_reader.hpp"
+#include "common/csv/csv_reader.hpp"
 
 #include <zlib.h>
 

@@ -9,7 +9,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/log/progress.hpp"
 
 namespace couplet::diagnostics {

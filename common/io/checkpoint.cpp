@@ -76,19 +76,16 @@ CheckpointWriter::CheckpointWriter(MPI_Comm comm, const std::filesystem::path& f
   state_->comm = comm;
   state_->file = file;
   state_->part = file.string() + ".part";
-  std::string trouble;
-  if (parallel::comm_rank(comm) == 0) {
+  parallel::on_root(comm, [&] {
     std::error_code code;
     const std::filesystem::path folder = folder_of(file);
     std::filesystem::create_directories(folder, code);
     if (!std::filesystem::is_directory(folder))
-      trouble = fmt::format("Cannot create the folder '{}' for the checkpoint '{}' ({}).", folder.string(),
-                            file.string(), code.message());
-    else if (::access(folder.c_str(), W_OK) != 0)
-      trouble = fmt::format("Cannot write to the folder '{}' of the checkpoint '{}'.", folder.string(),
-                            file.string());
-  }
-  hdf5::throw_together(comm, trouble);
+      throw Error("Cannot create the folder '{}' for the checkpoint '{}' ({}).", folder.string(),
+                  file.string(), code.message());
+    if (::access(folder.c_str(), W_OK) != 0)
+      throw Error("Cannot write to the folder '{}' of the checkpoint '{}'.", folder.string(), file.string());
+  });
   std::string stamp = parallel::comm_rank(comm) == 0 ? stamp_being_written(folder_of(file)) : "";
   if (stamp.empty()) stamp = "alone";
   parallel::broadcast(comm, stamp);
@@ -126,19 +123,12 @@ void CheckpointWriter::on(const mesh::Mesh& mesh) {
   hdf5::write_table(state_->id, shares_table, hdf5::distribute_rows(state_->comm, 1, 1), &share);
 }
 
-void CheckpointWriter::write(mesh::Entries entries, const std::string& name, std::span<const double> values) {
-  if (memory_)
-    memory_->arrays_[name].assign(values.begin(), values.end());
-  else
-    state_->write_field(state_->orders.value().of(entries), name, values);
-}
-
-void CheckpointWriter::write(const parallel::GlobalOrder& order, const std::string& name,
+void CheckpointWriter::write(const FieldEntries& entries, const std::string& name,
                              std::span<const double> values) {
   if (memory_)
     memory_->arrays_[name].assign(values.begin(), values.end());
   else
-    state_->write_field(order, name, values);
+    state_->write_field(entries.order(state_->orders), name, values);
 }
 
 void CheckpointWriter::write(const std::string& name, std::span<const double> values) {
@@ -170,7 +160,7 @@ void CheckpointWriter::write_scalar(const std::string& name, double value) {
 
 void CheckpointWriter::close() {
   if (memory_ || state_->id < 0) return;
-  std::string trouble;
+  std::string trouble;  // closing uses MPI
   try {
     hdf5::close_file(state_->id);
   } catch (const Error& error) {
@@ -178,18 +168,16 @@ void CheckpointWriter::close() {
         fmt::format("Cannot write the checkpoint '{}' ({}). The last good one is kept; is the disk full?",
                     state_->file.string(), error.what());
   }
-  hdf5::throw_together(state_->comm, trouble);
-  if (parallel::comm_rank(state_->comm) == 0) {
+  parallel::throw_together(state_->comm, trouble);
+  parallel::on_root(state_->comm, [&] {
     base::flush_to_disk(state_->part);
     std::error_code code;
     std::filesystem::rename(state_->part, state_->file, code);
     if (code)
-      trouble = fmt::format("Cannot rename the finished checkpoint to '{}' ({}).", state_->file.string(),
-                            code.message());
-    else
-      base::flush_to_disk(folder_of(state_->file));
-  }
-  hdf5::throw_together(state_->comm, trouble);
+      throw Error("Cannot rename the finished checkpoint to '{}' ({}).", state_->file.string(),
+                  code.message());
+    base::flush_to_disk(folder_of(state_->file));
+  });
 }
 
 }  // namespace couplet::io

@@ -6,9 +6,6 @@
 #include <filesystem>
 #include <span>
 #include <string>
-#include <vector>
-
-#include "common/io/hdf5_reader.hpp"
 
 namespace couplet::io {
 
@@ -55,21 +52,5 @@ inline std::uint64_t part_of_checksum(std::span<const double> values, std::uint6
   }
   return sum;
 }
-
-/// Parts of a checkpoint on file, for its reader. What does not fit together is refused: Error, on this rank alone.
-hdf5::Reader open_checkpoint(const std::filesystem::path& file);
-int ranks_that_wrote(const hdf5::Reader& in);
-/// Values that each rank wrote and their checksums, from rank 0 on.
-std::vector<std::int64_t> layout_of_array(const hdf5::Reader& in, const std::string& name, int ranks);
-
-struct FieldCheck {
-  std::uint64_t rows = 0;
-  std::size_t width = 0;
-  std::int64_t checksum = 0;
-};
-FieldCheck check_of_field(const hdf5::Reader& in, const std::string& name);
-double scalar_on_file(const hdf5::Reader& in, const std::string& name);
-/// The file as a whole, in a process of its own. Its digest is compared before HDF5 sees it.
-void examine_checkpoint(const std::filesystem::path& file);
 
 }  // namespace couplet::io

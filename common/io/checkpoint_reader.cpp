@@ -8,9 +8,116 @@
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/checkpoint_format.hpp"
+#include "common/io/checkpoint_set.hpp"
+#include "common/io/hdf5.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::io {
+
+namespace {
+
+constexpr const char* what = "checkpoint";
+constexpr const char* advice = "Use an earlier one.";
+constexpr std::int64_t most_wide = 1 << 20;  // values per entry
+
+hdf5::Reader open_checkpoint(const std::filesystem::path& file) { return {file, what, advice}; }
+
+/// Values that each rank wrote and their checksums, from rank 0 on.
+std::vector<std::int64_t> layout_of_array(const hdf5::Reader& in, const std::string& name, int ranks) {
+  const auto n = std::uint64_t(ranks);
+  if (const std::uint64_t rows = in.rows(layout_path(name), 2); rows != n)
+    in.refuse(fmt::format("the layout of '{}' is for {} ranks; expected {}", name, rows, n));
+  std::vector<std::int64_t> layout(2 * n);
+  in.read(layout_path(name), {0, n, n, 2}, layout.data());
+  const std::uint64_t total = in.rows(array_path(name), 1);
+  std::uint64_t left = total;
+  for (std::size_t r = 0; r < n; ++r) {
+    if (layout[2 * r] < 0 || std::uint64_t(layout[2 * r]) > left)
+      in.refuse(
+          fmt::format("the array '{}' has {} values; its layout assigns to rank {} {} of the {} "
+                      "remaining",
+                      name, total, r, layout[2 * r], left));
+    left -= std::uint64_t(layout[2 * r]);
+  }
+  if (left != 0)
+    in.refuse(fmt::format("the array '{}' has {} values; its layout assigns {} of them to no rank", name,
+                          total, left));
+  return layout;
+}
+
+struct FieldCheck {
+  std::uint64_t rows = 0;
+  std::size_t width = 0;
+  std::int64_t checksum = 0;
+};
+FieldCheck check_of_field(const hdf5::Reader& in, const std::string& name) {
+  std::array<std::int64_t, 3> check{};
+  in.read(check_path(name), {0, 1, 1, 3}, check.data());
+  const auto [rows, width, sum] = check;
+  if (rows < 0 || width < 0 || width > most_wide || (rows == 0) != (width == 0))
+    in.refuse(fmt::format("the field '{}' claims {} rows of {} values", name, rows, width));
+  const std::uint64_t found = in.rows(field_path(name), std::uint64_t(std::max<std::int64_t>(width, 1)));
+  if (found != std::uint64_t(rows))
+    in.refuse(fmt::format("the field '{}' has {} rows; expected {}", name, found, rows));
+  return {std::uint64_t(rows), std::size_t(width), sum};
+}
+
+double scalar_on_file(const hdf5::Reader& in, const std::string& name) {
+  double value = 0;
+  in.read(scalar_path(name), {0, 1, 1, 1}, &value);
+  return value;
+}
+
+int ranks_that_wrote(const hdf5::Reader& in) {
+  const double written = in.number("/", "ranks");
+  if (!(written >= 1 && written < 1e8) || written != std::floor(written))
+    in.refuse(fmt::format("it was written on {} ranks", written));
+  return int(written);
+}
+
+/// Refuses a file whose stamp is not that of the set it lies in.
+void examine_stamp(const hdf5::Reader& in) {
+  const auto set = read_checkpoint_set(folder_of(in.file()));
+  if (!set || in.text("/", "set", 1024) == set->stamp.text()) return;
+  throw Error(
+      "'{}' is from another step or another run than the checkpoint that contains it (step {}, t = {:g} s "
+      "of run {}).",
+      in.file().string(), set->stamp.step, set->stamp.time, set->stamp.run);
+}
+
+/// All of the file but the values, which HDF5 copies as they are.
+void examine_content(const hdf5::Reader& in) {
+  if (!in.has_attribute("/", "format") || in.text("/", "format") != checkpoint_format)
+    throw Error("'{}' is an HDF5 file, but not a checkpoint.", in.file().string());
+  if (const double version = in.number("/", "version"); version != checkpoint_version)
+    throw Error(
+        "The checkpoint '{}' has format version {}; this program reads version {}. Continue it with the "
+        "release that wrote it, or start again.",
+        in.file().string(), version, checkpoint_version);
+  const int ranks = ranks_that_wrote(in);
+  examine_stamp(in);
+  for (const std::string& name : in.leaves("arrays")) layout_of_array(in, name, ranks);
+  for (const std::string& name : in.leaves("fields")) check_of_field(in, name);
+  for (const std::string& name : in.leaves("scalars")) scalar_on_file(in, name);
+}
+
+/// Refuses a file that is damaged. Its digest is compared before HDF5 sees it.
+void examine_checkpoint(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) throw Error("The checkpoint '{}' does not exist.", file.string());
+  if (const std::string problem = problem_in_set(file); !problem.empty()) throw Error(problem);
+  examine_content(open_checkpoint(file));
+}
+
+}  // namespace
+
+std::string problem_of_checkpoint(const std::filesystem::path& file) {
+  try {
+    examine_checkpoint(file);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
 
 struct CheckpointReader::State {
   MPI_Comm comm;
@@ -18,20 +125,6 @@ struct CheckpointReader::State {
   int ranks = 0;            // that wrote it
   bool same_share = false;  // of the mesh, on all ranks; of a state without a mesh: as many ranks
   std::optional<mesh::OrderOfEntries> orders{};
-
-  /// What `read` throws on some rank is thrown on all.
-  template <class Read>
-  auto together(Read read) const {
-    std::string trouble;
-    decltype(read()) result{};
-    try {
-      result = read();
-    } catch (const Error& error) {
-      trouble = error.what();
-    }
-    hdf5::throw_together(comm, trouble);
-    return result;
-  }
 
   [[noreturn]] void missing(const std::string& name) const {
     throw Error("The checkpoint '{}' has no array '{}'. It was written by another program or another case.",
@@ -47,7 +140,7 @@ struct CheckpointReader::State {
 
   /// What rank `from` wrote, read by this rank.
   std::vector<double> array_of(const std::string& name, int from) const {
-    return together([&] {
+    return parallel::on_all(comm, [&] {
       if (!in.has(array_path(name)) || !in.has(layout_path(name))) missing(name);
       const std::vector<std::int64_t> layout = layout_of_array(in, name, ranks);
       hdf5::Rows rows;
@@ -77,18 +170,17 @@ struct CheckpointReader::State {
   void put_copies(const std::string& name, std::vector<double>& values) const {
     if (!same_share || ranks == 1 || !in.has(array_path(copies_of(name)))) return;
     const std::vector<double> copies = own_array(copies_of(name));
-    together([&] {
+    parallel::on_all(comm, [&] {
       for (std::size_t i = 0; i + 1 < copies.size(); i += 2) {
         if (!(copies[i] >= 0 && copies[i] < double(values.size())))
           in.refuse(fmt::format("the field '{}' has a copy of value {}", name, copies[i]));
         values[std::size_t(copies[i])] = copies[i + 1];
       }
-      return 0;
     });
   }
 
   std::vector<double> field(const parallel::GlobalOrder& order, const std::string& name) const {
-    const FieldCheck check = together([&] {
+    const FieldCheck check = parallel::on_all(comm, [&] {
       if (!in.has(field_path(name)) || !in.has(check_path(name))) missing(name);
       const FieldCheck found = check_of_field(in, name);
       if (found.rows > 0 && found.rows != std::uint64_t(order.n_global()))
@@ -99,7 +191,7 @@ struct CheckpointReader::State {
     });
     if (check.rows == 0) return {};
     const auto first = std::uint64_t(order.first());
-    const std::vector<double> block = together([&] {
+    const std::vector<double> block = parallel::on_all(comm, [&] {
       std::vector<double> rows(order.count() * check.width);
       if (!rows.empty())
         in.read(field_path(name), {first, order.count(), check.rows, check.width}, rows.data());
@@ -114,31 +206,18 @@ struct CheckpointReader::State {
   }
 
   void require(const std::string& name, std::size_t found, std::size_t wanted) const {
-    hdf5::throw_together(
+    parallel::throw_together(
         comm, found == wanted
                   ? ""
                   : fmt::format("The checkpoint '{}' has {} values of '{}' on rank {}, but {} are expected. "
                                 "Is it from the same mesh?",
                                 in.file().string(), found, name, parallel::comm_rank(comm), wanted));
   }
-
-  std::vector<double> common(const std::string& name) const { return array_of(name, 0); }
 };
 
 CheckpointReader::CheckpointReader(MPI_Comm comm, const std::filesystem::path& file) {
-  std::string trouble;
-  const auto attempt = [&](auto&& act) {
-    try {
-      act();
-    } catch (const Error& error) {
-      trouble = error.what();
-    }
-    hdf5::throw_together(comm, trouble);
-  };
-  attempt([&] {
-    if (parallel::comm_rank(comm) == 0) examine_checkpoint(file);
-  });
-  attempt([&] {
+  parallel::on_root(comm, [&] { examine_checkpoint(file); });
+  parallel::on_all(comm, [&] {
     state_ = std::make_unique<State>(State{comm, open_checkpoint(file)});
     state_->ranks = ranks_that_wrote(state_->in);
     state_->same_share = state_->ranks == parallel::comm_size(comm);
@@ -156,7 +235,7 @@ void CheckpointReader::on(const mesh::Mesh& mesh) {
   if (memory_) return;
   const auto now = mesh::identity_of(mesh);
   const auto share = std::bit_cast<std::int64_t>(mesh::share_of_rank(mesh));
-  const bool same = state_->together([&] {
+  const bool same = parallel::on_all(state_->comm, [&] {
     const hdf5::Reader& in = state_->in;
     auto then = now;
     if (!in.has(mesh_table)) in.refuse("it holds no mesh: it was written by another program or another case");
@@ -185,67 +264,50 @@ const std::vector<double>& CheckpointReader::in_memory(const std::string& name) 
   return found->second;
 }
 
-void CheckpointReader::fill_from_memory(const std::string& name, std::span<double> values) const {
-  const std::vector<double>& kept = in_memory(name);
-  if (kept.size() != values.size())
-    throw Error("The saved state has {} values of '{}', but {} are expected.", kept.size(), name,
+void CheckpointReader::fill(const std::string& name, std::span<double> values,
+                            const std::vector<double>& all) const {
+  if (!memory_)
+    state_->require(name, all.size(), values.size());
+  else if (all.size() != values.size())
+    throw Error("The saved state has {} values of '{}', but {} are expected.", all.size(), name,
                 values.size());
-  std::copy(kept.begin(), kept.end(), values.begin());
-}
-
-std::vector<double> CheckpointReader::read(mesh::Entries entries, const std::string& name) {
-  if (memory_) return in_memory(name);
-  return state_->field(state_->orders.value().of(entries), name);
-}
-
-std::vector<double> CheckpointReader::read(const parallel::GlobalOrder& order, const std::string& name) {
-  return memory_ ? in_memory(name) : state_->field(order, name);
-}
-
-void CheckpointReader::read(mesh::Entries entries, const std::string& name, std::span<double> values) {
-  if (memory_) return fill_from_memory(name, values);
-  const std::vector<double> all = read(entries, name);
-  state_->require(name, all.size(), values.size());
   std::ranges::copy(all, values.begin());
 }
 
-void CheckpointReader::read(const parallel::GlobalOrder& order, const std::string& name,
-                            std::span<double> values) {
-  if (memory_) return fill_from_memory(name, values);
-  const std::vector<double> all = state_->field(order, name);
-  state_->require(name, all.size(), values.size());
-  std::ranges::copy(all, values.begin());
+std::vector<double> CheckpointReader::read(const FieldEntries& entries, const std::string& name) {
+  return memory_ ? in_memory(name) : state_->field(entries.order(state_->orders), name);
 }
 
-std::vector<double> CheckpointReader::read_or_none(mesh::Entries entries, const std::string& name,
+void CheckpointReader::read(const FieldEntries& entries, const std::string& name, std::span<double> values) {
+  fill(name, values, read(entries, name));
+}
+
+std::vector<double> CheckpointReader::read_or_none(const FieldEntries& entries, const std::string& name,
                                                    std::size_t width) {
-  if (memory_) return in_memory(name);
-  return read_or_none(state_->orders.value().of(entries), name, width);
-}
-
-std::vector<double> CheckpointReader::read_or_none(const parallel::GlobalOrder& order,
-                                                   const std::string& name, std::size_t width) {
-  if (memory_) return in_memory(name);
-  std::vector<double> values = state_->field(order, name);
-  const bool none = !parallel::any(state_->comm, !values.empty());
-  if (!none) state_->require(name, values.size(), width * order.n_local());
+  std::vector<double> values = read(entries, name);
+  if (!memory_ && parallel::any(state_->comm, !values.empty()))
+    state_->require(name, values.size(), width * entries.order(state_->orders).n_local());
   return values;
 }
 
 std::vector<double> CheckpointReader::read_common(const std::string& name) {
-  return memory_ ? in_memory(name) : state_->common(name);
+  return memory_ ? in_memory(name) : state_->array_of(name, 0);
 }
 
 void CheckpointReader::read_common(const std::string& name, std::span<double> values) {
-  if (memory_) return fill_from_memory(name, values);
-  const std::vector<double> all = state_->common(name);
-  state_->require(name, all.size(), values.size());
-  std::ranges::copy(all, values.begin());
+  fill(name, values, read_common(name));
+}
+
+std::vector<double> CheckpointReader::read(const std::string& name) {
+  return memory_ ? in_memory(name) : state_->own_array(name);
+}
+
+void CheckpointReader::read(const std::string& name, std::span<double> values) {
+  fill(name, values, read(name));
 }
 
 void CheckpointReader::read_sums(const std::string& name, std::span<double> values) {
-  if (memory_) return fill_from_memory(name, values);
-  if (state_->ranks == parallel::comm_size(state_->comm)) return read(name, values);
+  if (memory_ || state_->ranks == parallel::comm_size(state_->comm)) return read(name, values);
   std::ranges::fill(values, 0.);
   for (int from = 0; from < state_->ranks; ++from) {
     const std::vector<double> part = state_->array_of(name, from);
@@ -253,17 +315,6 @@ void CheckpointReader::read_sums(const std::string& name, std::span<double> valu
     for (std::size_t i = 0; i < part.size() && parallel::comm_rank(state_->comm) == 0; ++i)
       values[i] += part[i];
   }
-}
-
-void CheckpointReader::read(const std::string& name, std::span<double> values) {
-  if (memory_) return fill_from_memory(name, values);
-  const std::vector<double> own = state_->own_array(name);
-  state_->require(name, own.size(), values.size());
-  std::ranges::copy(own, values.begin());
-}
-
-std::vector<double> CheckpointReader::read(const std::string& name) {
-  return memory_ ? in_memory(name) : state_->own_array(name);
 }
 
 std::size_t CheckpointReader::read_count(const std::string& name, std::size_t most) {
@@ -278,7 +329,7 @@ std::size_t CheckpointReader::read_count(const std::string& name, std::size_t mo
 
 double CheckpointReader::read_scalar(const std::string& name) {
   if (memory_) return in_memory(scalar_path(name)).front();
-  return state_->together([&] {
+  return parallel::on_all(state_->comm, [&] {
     if (!state_->in.has(scalar_path(name)))
       throw Error("The checkpoint '{}' has no value '{}'. It was written by another program or another case.",
                   state_->in.file().string(), name);

@@ -184,14 +184,4 @@ void write_attribute(hid_t object, const std::string& name, const std::string& t
   check(H5Awrite(attribute, type, text.c_str()), "write the attribute", name);
 }
 
-void throw_together(MPI_Comm comm, const std::string& text) {
-  const int none = parallel::comm_size(comm);
-  int first = text.empty() ? none : parallel::comm_rank(comm);
-  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm);
-  if (first == none) return;
-  std::string agreed = text;
-  parallel::broadcast(comm, agreed, first);
-  throw Error(agreed);
-}
-
 }  // namespace couplet::io::hdf5

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/io/hdf5_reader.hpp"
+#include "common/io/hdf5.hpp"
 
 #include <fmt/format.h>
 #include <hdf5.h>
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -14,44 +13,6 @@
 namespace couplet::io::hdf5 {
 namespace {
 
-struct Named {
-  hid_t type;
-  const char* name;
-};
-
-std::array<Named, 16> integer_types() {
-  return {{{H5T_STD_I8LE, "int8"},
-           {H5T_STD_I8BE, "int8"},
-           {H5T_STD_U8LE, "uint8"},
-           {H5T_STD_U8BE, "uint8"},
-           {H5T_STD_I16LE, "int16"},
-           {H5T_STD_I16BE, "int16"},
-           {H5T_STD_U16LE, "uint16"},
-           {H5T_STD_U16BE, "uint16"},
-           {H5T_STD_I32LE, "int32"},
-           {H5T_STD_I32BE, "int32"},
-           {H5T_STD_U32LE, "uint32"},
-           {H5T_STD_U32BE, "uint32"},
-           {H5T_STD_I64LE, "int64"},
-           {H5T_STD_I64BE, "int64"},
-           {H5T_STD_U64LE, "uint64"},
-           {H5T_STD_U64BE, "uint64"}}};
-}
-
-std::array<Named, 4> real_types() {
-  return {{{H5T_IEEE_F64LE, "float64"},
-           {H5T_IEEE_F64BE, "float64"},
-           {H5T_IEEE_F32LE, "float32"},
-           {H5T_IEEE_F32BE, "float32"}}};
-}
-
-template <class List>
-const char* name_in(const List& list, hid_t type) {
-  for (const Named& named : list)
-    if (H5Tequal(type, named.type) > 0) return named.name;
-  return nullptr;
-}
-
 /// Dimensions of a dataspace: none of a single value. Not sound: an empty one, or one of more than four.
 struct Shape {
   bool sound = false;
@@ -60,16 +21,24 @@ struct Shape {
   bool is_one_value() const;
 };
 
-/// One of the standard types of numbers, of either order of bytes; all others are refused.
-bool is_integer(hid_t type) { return name_in(integer_types(), type) != nullptr; }
+/// A standard type of numbers, of either order of bytes; all others are refused.
+bool is_integer(hid_t type) {
+  const std::size_t size = H5Tget_size(type);
+  return H5Tget_class(type) == H5T_INTEGER && H5Tget_precision(type) == 8 * size &&
+         (size == 1 || size == 2 || size == 4 || size == 8);
+}
 
-bool is_real(hid_t type) { return name_in(real_types(), type) != nullptr; }
+bool is_real(hid_t type) {
+  for (const hid_t known : {H5T_IEEE_F64LE, H5T_IEEE_F64BE, H5T_IEEE_F32LE, H5T_IEEE_F32BE})
+    if (H5Tequal(type, known) > 0) return true;
+  return false;
+}
 
 /// For messages: "float64", "text of 14 bytes", "a compound type".
 std::string name_of(hid_t type) {
-  if (const char* name = name_in(integer_types(), type)) return name;
-  if (const char* name = name_in(real_types(), type)) return name;
   const std::size_t size = H5Tget_size(type);
+  if (is_integer(type)) return fmt::format("{}int{}", H5Tget_sign(type) == H5T_SGN_NONE ? "u" : "", 8 * size);
+  if (is_real(type)) return fmt::format("float{}", 8 * size);
   switch (H5Tget_class(type)) {
     case H5T_INTEGER:
       return fmt::format("an unusual integer of {} bytes", size);

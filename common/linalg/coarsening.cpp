@@ -16,13 +16,11 @@ constexpr float strong = 0.5F;
 // Damping of the prolongation smoother: 4/3 over the largest eigenvalue of D^-1 A, which is below 2.
 constexpr float omega = 0.66F;
 
-float total(float v) { return v; }
-float total(const FourFloats& v) { return v[0] + v[1] + v[2] + v[3]; }
-float number(const float* v, float) { return v[0]; }
-FourFloats number(const float* v, FourFloats) { return FourFloats{v[0], v[1], v[2], v[3]}; }
-void put(float v, float* to) { to[0] = v; }
-void put(const FourFloats& v, float* to) {
-  for (int l = 0; l < 4; ++l) to[l] = v[l];
+template <class Number>
+float total(const Number& v) {
+  float sum = 0;
+  for (int l = 0; l < AggregationMultigrid<Number>::lanes; ++l) sum += lane(v, l);
+  return sum;
 }
 
 /// For each entry whether it is strong; those of other ranks never are.
@@ -153,7 +151,7 @@ typename AggregationMultigrid<Number>::GhostRows AggregationMultigrid<Number>::r
       const Index at = fine.p_offset[i] + k;
       if (at >= fine.p_offset[i + 1]) continue;
       entries[i].column = first + fine.p_index[at];
-      put(fine.p_value[at], entries[i].value);
+      for (int l = 0; l < lanes; ++l) entries[i].value[l] = lane(fine.p_value[at], l);
     }
     fine.map->update_ghosts(std::as_writable_bytes(std::span(entries)), sizeof(Entry));
     for (Index i = n; i < n_local; ++i)
@@ -168,7 +166,8 @@ typename AggregationMultigrid<Number>::GhostRows AggregationMultigrid<Number>::r
     for (const Entry& e : row) {
       const auto place = std::ranges::lower_bound(columns, e.column) - columns.begin();
       ghosts.index.push_back(n_coarse + static_cast<Index>(place));
-      ghosts.value.push_back(number(e.value, Lanes{}));
+      Lanes& value = ghosts.value.emplace_back();
+      for (int l = 0; l < lanes; ++l) set_lane(value, l, e.value[l]);
     }
     ghosts.offset.push_back(static_cast<Index>(ghosts.index.size()));
   }

@@ -10,12 +10,7 @@
 namespace couplet::linalg {
 namespace {
 
-float get(float v, int) { return v; }
-float get(const FourFloats& v, int l) { return v[l]; }
-void set(float& v, int, float value) { v = value; }
-void set(FourFloats& v, int l, float value) { v[l] = value; }
-
-constexpr int most_levels = 12;
+constexpr std::size_t most_levels = 12;
 // Rows of all ranks that are factored where they could not be made fewer, which are those of many ranks.
 constexpr GlobalIndex largest_dense = 1000;
 /// Neighbours ascending, by insertion: rows are short and nearly in order.
@@ -37,7 +32,7 @@ AggregationMultigrid<Number>::AggregationMultigrid(Rows rows, const Options& opt
       closed_(options.closed),
       comm_(options.map && parallel::comm_size(options.comm) > 1 ? options.comm : MPI_COMM_SELF) {
   add_level(std::move(rows), comm_ == MPI_COMM_SELF ? nullptr : options.map, nullptr);
-  while (n_levels() < most_levels && coarsen()) {
+  while (levels_.size() < most_levels && coarsen()) {
   }
   factor_coarsest();
   // What the sweeps use is the inverse.
@@ -85,7 +80,7 @@ void AggregationMultigrid<Number>::factor_coarsest() {
   std::vector<Entry> entries;
   const auto add = [&](Index i, GlobalIndex column, const Lanes& v) {
     entries.push_back({first_coarsest_ + i, static_cast<Index>(column), {}});
-    for (int l = 0; l < lanes; ++l) entries.back().value[l] = get(v, l);
+    for (int l = 0; l < lanes; ++l) entries.back().value[l] = lane(v, l);
   };
   for (Index i = 0; i < a.size(); ++i) {
     add(i, first_coarsest_ + i, a.diagonal[i] * (1 + 1e-5F));  // a pure Neumann problem is singular
@@ -111,11 +106,12 @@ void AggregationMultigrid<Number>::solve_coarsest(Level& level) const {
   const std::vector<Lanes> right = comm_ == MPI_COMM_SELF ? level.b : parallel::all_gather(comm_, level.b);
   Eigen::VectorXd b(std::ssize(right));
   for (int l = 0; l < lanes; ++l) {
-    for (std::size_t i = 0; i < right.size(); ++i) b[Index(i)] = get(right[i], l);
+    for (std::size_t i = 0; i < right.size(); ++i) b[Index(i)] = lane(right[i], l);
     if (closed_) b.array() -= b.mean();
     b = coarsest_[l].solve(b).eval();
     if (closed_) b.array() -= b.mean();
-    for (Index i = 0; i < level.a.size(); ++i) set(level.x[i], l, static_cast<float>(b[first_coarsest_ + i]));
+    for (Index i = 0; i < level.a.size(); ++i)
+      set_lane(level.x[i], l, static_cast<float>(b[first_coarsest_ + i]));
   }
 }
 
@@ -190,12 +186,12 @@ void AggregationMultigrid<Number>::apply(std::span<const double> b, std::span<do
   for (Index i = 0; i < finest.a.size(); ++i) {
     Lanes value{};
     for (int c = 0; c < components; ++c)
-      set(value, c, static_cast<float>(scale * b[std::size_t(i) * components + c]));
+      set_lane(value, c, static_cast<float>(scale * b[std::size_t(i) * components + c]));
     finest.b[i] = value;
   }
   cycle();
   for (Index i = 0; i < finest.a.size(); ++i)
-    for (int c = 0; c < components; ++c) x[std::size_t(i) * components + c] = largest * get(finest.x[i], c);
+    for (int c = 0; c < components; ++c) x[std::size_t(i) * components + c] = largest * lane(finest.x[i], c);
 }
 
 template class AggregationMultigrid<FourFloats>;

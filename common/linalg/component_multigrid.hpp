@@ -16,6 +16,10 @@
 namespace couplet::linalg {
 
 using FourFloats [[gnu::vector_size(16)]] = float;
+inline float lane(float v, int) { return v; }
+inline float lane(const FourFloats& v, int l) { return v[l]; }
+inline void set_lane(float& v, int, float value) { v = value; }
+inline void set_lane(FourFloats& v, int l, float value) { v[l] = value; }
 
 /// One smoothed-aggregation V-cycle for scalar M-matrices that share one graph, in single precision: a preconditioner. `Number`:
 /// FourFloats for up to four matrices at once (the components of a vector field, in one register: a cycle moves a fifth of what four
@@ -53,7 +57,6 @@ class AggregationMultigrid {
 
   /// x = V(b) with `components` values a row. Collective.
   void apply(std::span<const double> b, std::span<double> x, int components);
-  int n_levels() const { return static_cast<int>(levels_.size()); }
 
  private:
   struct Level {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/linalg/residual_projection.hpp"
-#include "common/base/error.hpp"
-#include "common/base/numbers.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "common/base/error.hpp"
+#include "common/base/numbers.hpp"
 #include "common/linalg/matrix.hpp"
 
 namespace couplet::linalg {
@@ -80,9 +80,12 @@ void ResidualProjection::accept() {
 }
 
 std::vector<double> ResidualProjection::products() const {
-  std::vector<double> values = {double(kept_.size()), double(oldest_)};
-  values.insert(values.end(), gram_.data(), gram_.data() + gram_.size());
-  return values;
+  base::Numbers numbers;
+  std::size_t n = kept_.size(), oldest = oldest_;
+  auto gram = gram_;
+  numbers(n, oldest);
+  numbers.fill({gram.data(), std::size_t(gram.size())});
+  return numbers.values();
 }
 
 std::vector<std::span<const double>> ResidualProjection::vectors() const {
@@ -92,17 +95,22 @@ std::vector<std::span<const double>> ResidualProjection::vectors() const {
 }
 
 std::size_t ResidualProjection::vectors_of(std::span<const double> products) {
-  base::SavedNumbers saved(products, "corrections of solves");
-  return 2 * saved.count(most);
+  base::Numbers saved(products, "corrections of solves");
+  std::size_t n = 0;
+  saved(n);
+  if (n > most) saved.damaged();
+  return 2 * n;
 }
 
 void ResidualProjection::set_values(std::span<const double> products,
                                     std::vector<std::vector<double>> vectors, const LinearMap& apply) {
-  base::SavedNumbers saved(products, "corrections of solves");
-  kept_.assign(saved.count(most), {});
-  oldest_ = saved.count(most);
+  base::Numbers saved(products, "corrections of solves");
+  std::size_t n = 0;
+  saved(n, oldest_);
   saved.fill({gram_.data(), std::size_t(gram_.size())});
-  if (saved.left() > 0 || vectors.size() != 2 * kept_.size()) saved.damaged();
+  saved.finish();
+  if (n > most || oldest_ > most || vectors.size() != 2 * n) saved.damaged();
+  kept_.assign(n, {});
   is_pending_ = false;
   bool fits = kept_.size() <= std::size_t(depth_) && oldest_ < std::size_t(std::max(depth_, 1));
   std::vector<double> image;

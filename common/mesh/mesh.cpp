@@ -42,17 +42,10 @@ class Grid {
             at(0, 0, up), at(1, 0, up), at(1, 1, up), at(0, 1, up)};
   }
 
-  void add(CellType type, std::initializer_list<Index> points) {
+  void add(CellType type, std::span<const Index> points) {
     mesh.cell_type.push_back(type);
     mesh.cell_zone.push_back(0);
-    mesh.cell_points.push_row({points.begin(), points.size()});
-  }
-
-  Index add_centre(const std::array<Index, 8>& p) {
-    Vec3 x = Vec3::Zero();
-    for (const Index i : p) x += mesh.points[i] / 8;
-    mesh.points.push_back(x);
-    return static_cast<Index>(mesh.points.size()) - 1;
+    mesh.cell_points.push_row(points);
   }
 
   RawMesh mesh;
@@ -62,60 +55,73 @@ class Grid {
   int dim_;
 };
 
-void add_quadrilateral(Grid& g, const std::array<Index, 8>& p) {
-  g.add(CellType::quadrilateral, {p[0], p[1], p[2], p[3]});
-}
+/// A cell in a grid cell: its points among the corners in the order of a hexahedron or quadrilateral, 8 is the center.
+struct Cut {
+  CellType type;
+  std::array<int, 8> points;
+};
+using Cuts = std::span<const Cut>;
+constexpr int center = 8;
 
-void add_triangles(Grid& g, const std::array<Index, 8>& p) {
-  g.add(CellType::triangle, {p[0], p[1], p[2]});
-  g.add(CellType::triangle, {p[0], p[2], p[3]});
-}
+constexpr Cut whole_quadrilateral[]{{CellType::quadrilateral, {0, 1, 2, 3}}};
+constexpr Cut two_triangles[]{{CellType::triangle, {0, 1, 2}}, {CellType::triangle, {0, 2, 3}}};
+constexpr Cut whole_hexahedron[]{{CellType::hexahedron, {0, 1, 2, 3, 4, 5, 6, 7}}};
+constexpr Cut two_prisms[]{{CellType::prism, {0, 1, 2, 4, 5, 6}}, {CellType::prism, {0, 2, 3, 4, 6, 7}}};
+// Kuhn's cut along the diagonal 0-6: the same in every grid cell, so neighbors agree.
+constexpr Cut six_tetrahedra[]{{CellType::tetrahedron, {0, 1, 2, 6}}, {CellType::tetrahedron, {0, 2, 3, 6}},
+                               {CellType::tetrahedron, {0, 3, 7, 6}}, {CellType::tetrahedron, {0, 7, 4, 6}},
+                               {CellType::tetrahedron, {0, 4, 5, 6}}, {CellType::tetrahedron, {0, 5, 1, 6}}};
+// From the center: pyramids on the side faces; top and bottom as pyramids or, beside prisms, as two tetrahedra each.
+constexpr Cut star_sides[]{{CellType::pyramid, {0, 4, 5, 1, center}},
+                           {CellType::pyramid, {1, 5, 6, 2, center}},
+                           {CellType::pyramid, {2, 6, 7, 3, center}},
+                           {CellType::pyramid, {3, 7, 4, 0, center}}};
+constexpr Cut star_ends[]{{CellType::pyramid, {0, 1, 2, 3, center}},
+                          {CellType::pyramid, {7, 6, 5, 4, center}}};
+constexpr Cut cut_star_ends[]{{CellType::tetrahedron, {0, 1, 2, center}},
+                              {CellType::tetrahedron, {0, 2, 3, center}},
+                              {CellType::tetrahedron, {4, 6, 5, center}},
+                              {CellType::tetrahedron, {4, 7, 6, center}}};
 
-void add_hexahedron(Grid& g, const std::array<Index, 8>& p) {
-  g.add(CellType::hexahedron, {p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7]});
-}
-
-void add_prisms(Grid& g, const std::array<Index, 8>& p) {
-  g.add(CellType::prism, {p[0], p[1], p[2], p[4], p[5], p[6]});
-  g.add(CellType::prism, {p[0], p[2], p[3], p[4], p[6], p[7]});
-}
-
-/// Kuhn's cut along the diagonal 0-6: the same in every grid cell, so neighbours agree.
-void add_tetrahedra(Grid& g, const std::array<Index, 8>& p) {
-  constexpr std::array<int, 7> ring{1, 2, 3, 7, 4, 5, 1};
-  for (int i = 0; i < 6; ++i) g.add(CellType::tetrahedron, {p[0], p[ring[i]], p[ring[i + 1]], p[6]});
-}
-
-/// From the centre: pyramids on the side faces; top and bottom as pyramids or, beside prisms, as two
-/// tetrahedra each.
-void add_star(Grid& g, const std::array<Index, 8>& p, bool cut_top_and_bottom) {
-  const Index c = g.add_centre(p);
-  g.add(CellType::pyramid, {p[0], p[4], p[5], p[1], c});
-  g.add(CellType::pyramid, {p[1], p[5], p[6], p[2], c});
-  g.add(CellType::pyramid, {p[2], p[6], p[7], p[3], c});
-  g.add(CellType::pyramid, {p[3], p[7], p[4], p[0], c});
-  if (cut_top_and_bottom) {
-    g.add(CellType::tetrahedron, {p[0], p[1], p[2], c});
-    g.add(CellType::tetrahedron, {p[0], p[2], p[3], c});
-    g.add(CellType::tetrahedron, {p[4], p[6], p[5], c});
-    g.add(CellType::tetrahedron, {p[4], p[7], p[6], c});
-  } else {
-    g.add(CellType::pyramid, {p[0], p[1], p[2], p[3], c});
-    g.add(CellType::pyramid, {p[7], p[6], p[5], p[4], c});
+/// The cells of a grid cell; the second part is that of a star. `mixed`: columns of hexahedra, of prisms with stars in every second
+/// layer, and of stars: all four types, conforming.
+std::array<Cuts, 2> cuts_of(BoxCells cells, int i, int j, int k) {
+  switch (cells) {
+    case BoxCells::quadrilaterals:
+      return {whole_quadrilateral};
+    case BoxCells::triangles:
+      return {two_triangles};
+    case BoxCells::hexahedra:
+      return {whole_hexahedron};
+    case BoxCells::tetrahedra:
+      return {six_tetrahedra};
+    case BoxCells::prisms:
+      return {two_prisms};
+    case BoxCells::mixed:
+      break;
   }
+  if ((i + j) % 3 == 0) return {whole_hexahedron};
+  if ((i + j) % 3 == 2) return {star_sides, star_ends};
+  if (k % 2 == 0) return {two_prisms};
+  return {star_sides, cut_star_ends};
 }
 
-/// Columns of hexahedra, of prisms with stars in every second layer, and of stars: all four types,
-/// conforming.
-void add_mixed(Grid& g, const std::array<Index, 8>& p, int i, int j, int k) {
-  switch ((i + j) % 3) {
-    case 0:
-      return add_hexahedron(g, p);
-    case 1:
-      return k % 2 == 0 ? add_prisms(g, p) : add_star(g, p, true);
-    default:
-      return add_star(g, p, false);
+void add_cells(Grid& grid, const std::array<Cuts, 2>& cuts, const std::array<Index, 8>& corners) {
+  std::array<Index, 9> all{};
+  std::ranges::copy(corners, all.begin());
+  if (!cuts[1].empty()) {
+    Vec3 x = Vec3::Zero();
+    for (const Index i : corners) x += grid.mesh.points[i] / 8;
+    all[center] = static_cast<Index>(grid.mesh.points.size());
+    grid.mesh.points.push_back(x);
   }
+  std::vector<Index> points;
+  for (const Cuts& cells : cuts)
+    for (const Cut& cell : cells) {
+      points.clear();
+      for (int i = 0; i < shape_of(cell.type).n_points; ++i) points.push_back(all[cell.points[i]]);
+      grid.add(cell.type, points);
+    }
 }
 
 void name_sides(RawMesh& mesh, const Vec3& lower, const Vec3& upper) {
@@ -148,29 +154,7 @@ RawMesh make_box(BoxCells cells, const std::array<int, 3>& n, const Vec3& lower,
   Grid grid(n, lower, upper, flat ? 2 : 3);
   for (int k = 0; k < (flat ? 1 : n[2]); ++k)
     for (int j = 0; j < n[1]; ++j)
-      for (int i = 0; i < n[0]; ++i) {
-        const auto p = grid.corners(i, j, k);
-        switch (cells) {
-          case BoxCells::quadrilaterals:
-            add_quadrilateral(grid, p);
-            break;
-          case BoxCells::triangles:
-            add_triangles(grid, p);
-            break;
-          case BoxCells::hexahedra:
-            add_hexahedron(grid, p);
-            break;
-          case BoxCells::tetrahedra:
-            add_tetrahedra(grid, p);
-            break;
-          case BoxCells::prisms:
-            add_prisms(grid, p);
-            break;
-          case BoxCells::mixed:
-            add_mixed(grid, p, i, j, k);
-            break;
-        }
-      }
+      for (int i = 0; i < n[0]; ++i) add_cells(grid, cuts_of(cells, i, j, k), grid.corners(i, j, k));
   name_sides(grid.mesh, lower, upper);
   return std::move(grid.mesh);
 }

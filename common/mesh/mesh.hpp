@@ -145,17 +145,20 @@ std::vector<double> swept_volumes(const Mesh& mesh, std::span<const Vec3> from, 
 /// The box around a mesh [m], over all ranks.
 struct Extent {
   Vec3 lower, upper;
-  double diagonal() const { return (upper - lower).norm(); }
+  Vec3 size() const { return upper - lower; }
+  double diagonal() const { return size().norm(); }
 };
 
 /// Collective.
-inline Extent extent_of(const Mesh& mesh, const Geometry& geometry) {
+inline Extent extent_of(MPI_Comm comm, std::span<const Vec3> points) {
   Extent box{Vec3::Constant(1e300), Vec3::Constant(-1e300)};
-  for (const Vec3& x : geometry.points) box.lower = box.lower.cwiseMin(x), box.upper = box.upper.cwiseMax(x);
-  for (int a = 0; a < 3; ++a)
-    box.lower[a] = parallel::min(mesh.comm, box.lower[a]),
-    box.upper[a] = parallel::max(mesh.comm, box.upper[a]);
+  for (const Vec3& x : points) box.lower = box.lower.cwiseMin(x), box.upper = box.upper.cwiseMax(x);
+  MPI_Allreduce(MPI_IN_PLACE, box.lower.data(), 3, MPI_DOUBLE, MPI_MIN, comm);
+  MPI_Allreduce(MPI_IN_PLACE, box.upper.data(), 3, MPI_DOUBLE, MPI_MAX, comm);
   return box;
+}
+inline Extent extent_of(const Mesh& mesh, const Geometry& geometry) {
+  return extent_of(mesh.comm, geometry.points);
 }
 
 }  // namespace couplet::mesh

@@ -128,6 +128,13 @@ std::optional<CellTrouble> find_inverted(const Mesh& mesh, const Geometry& geome
 
 namespace {
 
+/// The lowest cell of all ranks. Collective.
+std::optional<CellTrouble> first_of(MPI_Comm comm, const std::vector<CellTrouble>& found) {
+  const std::vector<CellTrouble> all = parallel::all_gather(comm, found);
+  if (all.empty()) return std::nullopt;
+  return *std::ranges::min_element(all, {}, &CellTrouble::cell_id);
+}
+
 Vec3 turn(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - b); }
 
 /// Of four corners none turns another way than the rest in a convex quadrilateral, one in a concave one, two
@@ -154,9 +161,7 @@ std::optional<CellTrouble> find_crossed(const Mesh& mesh, const Geometry& geomet
     for (Index c = 0; c < mesh.cells.n_owned(); ++c) judge(mesh.cell_points[c], c);
   else
     for (Index f = 0; f < mesh.n_flux_faces(); ++f) judge(mesh.face_points[f], mesh.owner[f]);
-  const std::vector<CellTrouble> all = parallel::all_gather(mesh.comm, found);
-  if (all.empty()) return std::nullopt;
-  return *std::ranges::min_element(all, {}, &CellTrouble::cell_id);
+  return first_of(mesh.comm, found);
 }
 
 std::optional<CellTrouble> find_fold(const Mesh& mesh, const Geometry& g) {
@@ -169,9 +174,7 @@ std::optional<CellTrouble> find_fold(const Mesh& mesh, const Geometry& g) {
     if ((there - g.cell_centre[owner]).dot(g.face_area[f]) > 0) continue;
     found.push_back({mesh.cell_id[owner], g.face_centre[f], g.volume[owner]});
   }
-  const std::vector<CellTrouble> all = parallel::all_gather(mesh.comm, found);
-  if (all.empty()) return std::nullopt;
-  return *std::ranges::min_element(all, {}, &CellTrouble::cell_id);
+  return first_of(mesh.comm, found);
 }
 
 void check_and_report(const Mesh& mesh, const Geometry& geometry) {

@@ -7,9 +7,40 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "common/base/text.hpp"
 
 namespace couplet::mesh {
+
+namespace {
+
+constexpr CellShape triangle{2, 3, 3, {{{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 0, -1, -1}}}, {0, 2, 1}};
+constexpr CellShape quadrilateral{
+    2, 4, 4, {{{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 3, -1, -1}, {3, 0, -1, -1}}}, {0, 3, 2, 1}};
+constexpr CellShape tetrahedron{
+    3, 4, 4, {{{0, 2, 1, -1}, {0, 1, 3, -1}, {1, 2, 3, -1}, {2, 0, 3, -1}}}, {0, 2, 1, 3}};
+constexpr CellShape hexahedron{
+    3,
+    8,
+    6,
+    {{{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}},
+    {0, 3, 2, 1, 4, 7, 6, 5}};
+constexpr CellShape prism{
+    3, 6, 5, {{{0, 2, 1, -1}, {3, 4, 5, -1}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}}}, {0, 2, 1, 3, 5, 4}};
+constexpr CellShape pyramid{
+    3, 5, 5, {{{0, 3, 2, 1}, {0, 1, 4, -1}, {1, 2, 4, -1}, {2, 3, 4, -1}, {3, 0, 4, -1}}}, {0, 3, 2, 1, 4}};
+
+}  // namespace
+
+const CellShape& shape_of(CellType type) {
+  static constexpr std::array<const CellShape*, 6> shapes{&triangle,   &quadrilateral, &tetrahedron,
+                                                          &hexahedron, &prism,         &pyramid};
+  return *shapes[static_cast<std::size_t>(type)];
+}
+
+const char* name_of(CellType type) {
+  static constexpr std::array<const char*, 6> names{"triangle",   "quadrilateral", "tetrahedron",
+                                                    "hexahedron", "prism",         "pyramid"};
+  return names[static_cast<std::size_t>(type)];
+}
 
 namespace {
 
@@ -43,6 +74,13 @@ double extent(const RawMesh& raw, Index cell) {
 }
 
 }  // namespace
+
+FacePoints::FacePoints(const RawMesh& raw, Index cell, int face, int turn) {
+  const CellShape& shape = shape_of(raw.cell_type[cell]);
+  n = std::size_t(shape.face_size(face));
+  for (std::size_t i = 0; i < n; ++i)
+    points[i] = raw.cell_points[cell][shape.faces[face][(i + std::size_t(turn)) % n]];
+}
 
 std::string place(const Vec3& x, int dim) {
   // + 0.0 turns -0 into 0
@@ -89,31 +127,6 @@ void check_plane(std::span<const Vec3> points, double diagonal) {
       throw Error(
           "The 2-D mesh has a point at {}. A 2-D mesh must lie in the plane z = 0; rotate or shift it there.",
           place(x, 3));
-}
-
-std::vector<int> materials_of_cells(const RawMesh& raw) {
-  if (raw.materials.empty()) return {};
-  std::vector<int> of_zone(raw.zones.size(), -1);
-  for (std::size_t m = 0; m < raw.materials.size(); ++m)
-    for (const std::string& name : raw.materials[m]) {
-      const auto zone = std::ranges::find(raw.zones, name);
-      if (zone == raw.zones.end())
-        throw Error("It has no zone '{}' for a material. {} The zones (physical {} of gmsh) are {}.", name,
-                    base::did_you_mean(name, raw.zones, "zones"), raw.dim == 2 ? "surfaces" : "volumes",
-                    base::join(raw.zones));
-      int& material = of_zone[zone - raw.zones.begin()];
-      if (material >= 0)
-        throw Error("Its zone '{}' is assigned to two materials; each zone has exactly one.", name);
-      material = static_cast<int>(m);
-    }
-  for (std::size_t z = 0; z < of_zone.size(); ++z)
-    if (of_zone[z] < 0)
-      throw Error("Its zone '{}' has no material; add it to the zones of a material. The zones are {}.",
-                  raw.zones[z], base::join(raw.zones));
-  if (raw.materials.size() == 1) return {};
-  std::vector<int> result;
-  for (const int zone : raw.cell_zone) result.push_back(of_zone[zone]);
-  return result;
 }
 
 }  // namespace couplet::mesh

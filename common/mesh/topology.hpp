@@ -3,17 +3,42 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "common/mesh/cell_shapes.hpp"
 #include "common/mesh/load.hpp"
 #include "common/mesh/mesh.hpp"
 
 namespace couplet::mesh {
+
+/// Faces of a cell type as positions in the cell's point list, turning right-handed about the outward normal.
+/// Point order: VTK and gmsh agree on it (prism: the normal of points 0 1 2 looks towards points 3 4 5).
+/// 2-D: a face is an edge (a, b) whose outward normal is (dy, -dx) of b - a, for cells that turn
+/// anticlockwise.
+struct CellShape {
+  int dim, n_points, n_faces;
+  std::array<std::array<std::int8_t, 4>, 6> faces;  ///< -1: no such point
+  std::array<std::int8_t, 8> mirrored;  ///< point order that turns an inverted cell right side out
+  int face_size(int face) const {
+    if (dim == 2) return 2;
+    return faces[face][3] < 0 ? 3 : 4;
+  }
+};
+
+const CellShape& shape_of(CellType type);
+const char* name_of(CellType type);
+
+/// Points of face `face` of a cell in the order of its shape, the one at position `turn` first.
+struct FacePoints {
+  std::array<Index, 4> points{};
+  std::size_t n;
+  FacePoints(const RawMesh& raw, Index cell, int face, int turn);
+  operator std::span<const Index>() const { return {points.data(), n}; }
+};
 
 /// A face as one of its cells has it.
 struct HalfFace {
@@ -73,13 +98,7 @@ class HalfFaces {
     }
   }
 
-  std::vector<Index> points(const HalfFace& h) const {
-    const CellShape& shape = shape_of(raw_.cell_type[h.cell]);
-    std::vector<Index> result(shape.face_size(h.face));
-    for (std::size_t i = 0; i < result.size(); ++i)
-      result[i] = raw_.cell_points[h.cell][shape.faces[h.face][i]];
-    return result;
-  }
+  FacePoints points(const HalfFace& h) const { return {raw_, h.cell, h.face, 0}; }
 
  private:
   const RawMesh& raw_;
@@ -97,10 +116,6 @@ void orient_cells(RawMesh& raw, GlobalIndex first = 0);
 
 /// Throws Error for a point out of the plane z = 0 of a 2-D mesh whose points lie in a box of this diagonal.
 void check_plane(std::span<const Vec3> points, double diagonal);
-
-/// The material of each cell after RawMesh::materials; empty with fewer than two. Throws Error for a zone
-/// without material or a material without zone.
-std::vector<int> materials_of_cells(const RawMesh& raw);
 
 /// "(1, 2.5)" in 2-D, "(1, 2.5, 3)" in 3-D.
 std::string place(const Vec3& x, int dim);

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <utility>
 
 #include "common/modes/modal_model.hpp"
 
@@ -231,32 +229,6 @@ std::string order_problem_of(const ModalModel& model) {
       "neighbouring vertices differ {:.2g} times less (mean square). The rows must be per vertex, with "
       "three components each",
       lowest + 1, by_vertex / std::max(by_component, 1e-12 * by_vertex));
-}
-
-std::string surface_problem_of(const ModalModel& model) {
-  std::vector<bool> used(model.vertices.size(), false);
-  std::map<std::pair<Index, Index>, std::vector<Index>>
-      faces_of;  // of an edge in the direction in which they go
-  for (Index f = 0; f < model.faces.size(); ++f) {
-    const auto corners = model.faces[f];
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      const Index from = corners[i], to = corners[(i + 1) % corners.size()];
-      used[std::size_t(from)] = true;
-      for (std::size_t j = 0; j < i; ++j)
-        if (corners[j] == from) return fmt::format("face {} refers to vertex {} twice", f + 1, from);
-      faces_of[{from, to}].push_back(f);
-    }
-  }
-  // More than two faces at an edge may be two bodies that touch there: they turn alike in pairs.
-  for (const auto& [edge, faces] : faces_of)
-    if (faces.size() > 1 && !faces_of.contains({edge.second, edge.first}))
-      return fmt::format(
-          "faces {} and {} traverse their edge between vertices {} and {} in the same direction: one of "
-          "them is inside out",
-          faces[0] + 1, faces[1] + 1, edge.first, edge.second);
-  for (std::size_t v = 0; v < used.size(); ++v)
-    if (!used[v]) return fmt::format("vertex {} belongs to no face", v);
-  return "";
 }
 
 }  // namespace couplet::modes

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/modes/surface_parts.hpp"
+#include "common/modes/modal_checks.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -62,7 +62,12 @@ std::vector<Index> places_of(const ModalModel& model) {
   return place;
 }
 
-}  // namespace
+/// The faces of a surface with one number for all vertices that stand at the same place (to 1e-6 of the surface's size and
+/// a hundredth of its shortest edge): another program may write them once for every face or every part.
+struct WeldedSurface {
+  mesh::Csr faces;  ///< numbers of places in place of vertices; those left with fewer than 3 are empty
+  std::vector<std::vector<Index>> part;  ///< faces of each part that hangs together by its edges
+};
 
 WeldedSurface weld(const ModalModel& model) {
   WeldedSurface welded;
@@ -90,6 +95,8 @@ WeldedSurface weld(const ModalModel& model) {
   return welded;
 }
 
+/// Tells whether two faces that meet along an edge, be it by vertices of their own, do not turn alike. Where more than two faces
+/// meet nothing is said: they may be bodies that touch.
 std::string neighbour_problem_of(const ModalModel& model, const WeldedSurface& welded) {
   for (const auto& [edge, uses] : edges_of(welded.faces)) {
     if (uses.size() != 2 || uses[0].forward != uses[1].forward) continue;
@@ -102,24 +109,16 @@ std::string neighbour_problem_of(const ModalModel& model, const WeldedSurface& w
   return "";
 }
 
-namespace {
-
 /// A surface whose area vectors add up to more than this share of its area is a sheet: those of a closed one cancel,
 /// of a plate they leave the missing rim, of half of a tube 0.64.
 constexpr double sheet_share = 0.25;
 
 /// The middle of the edges that one face alone has; none: the surface is closed.
 std::optional<Vec3> middle_of_rim(const ModalModel& model) {
-  std::map<std::pair<Index, Index>, int> uses;
-  for (Index f = 0; f < model.faces.size(); ++f) {
-    const auto corners = model.faces[f];
-    for (std::size_t i = 0; i < corners.size(); ++i)
-      ++uses[std::minmax(corners[i], corners[(i + 1) % corners.size()])];
-  }
   Vec3 sum = Vec3::Zero();
   double length = 0;
-  for (const auto& [edge, n] : uses) {
-    if (n > 1) continue;
+  for (const auto& [edge, uses] : edges_of(model.faces)) {
+    if (uses.size() > 1) continue;
     const Vec3 &a = model.vertices[edge.first], &b = model.vertices[edge.second];
     sum += (b - a).norm() * 0.5 * (a + b);
     length += (b - a).norm();
@@ -129,6 +128,31 @@ std::optional<Vec3> middle_of_rim(const ModalModel& model) {
 }
 
 }  // namespace
+
+std::string surface_problem_of(const ModalModel& model) {
+  std::vector<bool> used(model.vertices.size(), false);
+  for (Index f = 0; f < model.faces.size(); ++f) {
+    const auto corners = model.faces[f];
+    for (auto v = corners.begin(); v != corners.end(); ++v) {
+      used[std::size_t(*v)] = true;
+      if (std::find(corners.begin(), v, *v) != v)
+        return fmt::format("face {} refers to vertex {} twice", f + 1, *v);
+    }
+  }
+  // More than two faces at an edge may be two bodies that touch there: they turn alike in pairs.
+  for (const auto& [edge, uses] : edges_of(model.faces)) {
+    const bool forward = uses.front().forward;
+    if (uses.size() > 1 && std::ranges::all_of(uses, [&](const Use& u) { return u.forward == forward; }))
+      return fmt::format(
+          "faces {} and {} traverse their edge between vertices {} and {} in the same direction: one of "
+          "them is inside out",
+          uses[0].face + 1, uses[1].face + 1, forward ? edge.first : edge.second,
+          forward ? edge.second : edge.first);
+  }
+  for (std::size_t v = 0; v < used.size(); ++v)
+    if (!used[v]) return fmt::format("vertex {} belongs to no face", v);
+  return "";
+}
 
 std::optional<double> volume_behind(const ModalModel& model) {
   const std::vector<Vec3> centres = face_centres(model), areas = face_areas(model);

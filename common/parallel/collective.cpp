@@ -13,12 +13,6 @@ T reduce(MPI_Comm comm, T value, MPI_Datatype type, MPI_Op op) {
   return value;
 }
 
-std::vector<int> offsets(const std::vector<int>& counts) {
-  std::vector<int> first(counts.size() + 1, 0);
-  std::partial_sum(counts.begin(), counts.end(), first.begin() + 1);
-  return first;
-}
-
 }  // namespace
 
 int comm_rank(MPI_Comm comm) {
@@ -52,44 +46,34 @@ void broadcast(MPI_Comm comm, std::string& text, int root) {
   MPI_Bcast(text.data(), length, MPI_CHAR, root, comm);
 }
 
-namespace detail {
+void broadcast(MPI_Comm comm, std::vector<std::string>& texts) {
+  int size = static_cast<int>(texts.size());
+  MPI_Bcast(&size, 1, MPI_INT, 0, comm);
+  texts.resize(size);
+  for (std::string& text : texts) broadcast(comm, text);
+}
 
-std::vector<char> all_gather_bytes(MPI_Comm comm, const void* data, std::size_t bytes) {
-  std::vector<int> counts(comm_size(comm));
+void throw_together(MPI_Comm comm, const std::string& text) {
+  const int none = comm_size(comm);
+  int first = text.empty() ? none : comm_rank(comm);
+  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm);
+  if (first == none) return;
+  std::string agreed = text;
+  broadcast(comm, agreed, first);
+  throw Error(agreed);
+}
+
+std::vector<char> detail::gather_bytes(MPI_Comm comm, const void* data, std::size_t bytes, bool everywhere) {
+  std::vector<int> counts(comm_size(comm)), first(counts.size() + 1, 0);
   const int count = static_cast<int>(bytes);
   MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
-  const std::vector<int> first = offsets(counts);
-  std::vector<char> all(first.back());
-  MPI_Allgatherv(data, count, MPI_BYTE, all.data(), counts.data(), first.data(), MPI_BYTE, comm);
+  std::partial_sum(counts.begin(), counts.end(), first.begin() + 1);
+  std::vector<char> all(everywhere || comm_rank(comm) == 0 ? first.back() : 0);
+  if (everywhere)
+    MPI_Allgatherv(data, count, MPI_BYTE, all.data(), counts.data(), first.data(), MPI_BYTE, comm);
+  else
+    MPI_Gatherv(data, count, MPI_BYTE, all.data(), counts.data(), first.data(), MPI_BYTE, 0, comm);
   return all;
 }
-
-std::vector<char> gather_bytes(MPI_Comm comm, const void* data, std::size_t bytes) {
-  std::vector<int> counts(comm_size(comm));
-  const int count = static_cast<int>(bytes);
-  MPI_Gather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, comm);
-  const std::vector<int> first = offsets(counts);
-  std::vector<char> all(comm_rank(comm) == 0 ? first.back() : 0);
-  MPI_Gatherv(data, count, MPI_BYTE, all.data(), counts.data(), first.data(), MPI_BYTE, 0, comm);
-  return all;
-}
-
-std::vector<std::vector<char>> all_to_all_bytes(MPI_Comm comm, const std::vector<std::vector<char>>& send) {
-  const int size = comm_size(comm);
-  std::vector<int> send_counts(size), receive_counts(size);
-  for (int r = 0; r < size; ++r) send_counts[r] = static_cast<int>(send[r].size());
-  MPI_Alltoall(send_counts.data(), 1, MPI_INT, receive_counts.data(), 1, MPI_INT, comm);
-  const std::vector<int> send_first = offsets(send_counts), receive_first = offsets(receive_counts);
-  std::vector<char> out(send_first.back()), in(receive_first.back());
-  for (int r = 0; r < size; ++r) std::copy(send[r].begin(), send[r].end(), out.begin() + send_first[r]);
-  MPI_Alltoallv(out.data(), send_counts.data(), send_first.data(), MPI_BYTE, in.data(), receive_counts.data(),
-                receive_first.data(), MPI_BYTE, comm);
-  std::vector<std::vector<char>> received(size);
-  for (int r = 0; r < size; ++r)
-    received[r].assign(in.begin() + receive_first[r], in.begin() + receive_first[r + 1]);
-  return received;
-}
-
-}  // namespace detail
 
 }  // namespace couplet::parallel

@@ -3,9 +3,12 @@
 
 #include <mpi.h>
 
+#include <algorithm>
+#include <exception>
 #include <limits>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "common/base/error.hpp"
@@ -26,21 +29,50 @@ bool any(MPI_Comm comm, bool value);
 GlobalIndex exclusive_scan(MPI_Comm comm, GlobalIndex value);
 
 void broadcast(MPI_Comm comm, std::string& text, int root = 0);
+void broadcast(MPI_Comm comm, std::vector<std::string>& texts);
+/// Rank 0's values on every rank, in pieces that MPI's int counts can hold. Collective.
+template <class T>
+void broadcast(MPI_Comm comm, std::vector<T>& values) {
+  GlobalIndex size = static_cast<GlobalIndex>(values.size());
+  MPI_Bcast(&size, 1, MPI_INT64_T, 0, comm);
+  values.resize(size);
+  char* data = reinterpret_cast<char*>(values.data());
+  const GlobalIndex bytes = size * GlobalIndex(sizeof(T)), piece = GlobalIndex(1) << 30;
+  for (GlobalIndex at = 0; at < bytes; at += piece)
+    MPI_Bcast(data + at, static_cast<int>(std::min(piece, bytes - at)), MPI_BYTE, 0, comm);
+}
 
-/// All values of all ranks, rank by rank, on every rank.
-template <class T>
-std::vector<T> all_gather(MPI_Comm comm, const std::vector<T>& local);
-/// The same on rank 0 only (empty elsewhere).
-template <class T>
-std::vector<T> gather(MPI_Comm comm, const std::vector<T>& local);
-/// send[r] goes to rank r; the result holds at [r] what rank r sent here. Any trivially copyable T.
-template <class T>
-std::vector<std::vector<T>> all_to_all(MPI_Comm comm, const std::vector<std::vector<T>>& send);
+/// Throws the text of the lowest rank that has one, on every rank; does nothing if all are empty. Collective.
+void throw_together(MPI_Comm comm, const std::string& text);
+
+/// Runs `work` on every rank and returns its result; what it throws on the lowest rank that throws is thrown on all, as Error
+/// with the same text. `work` must not use MPI. Collective.
+template <class Work>
+auto on_all(MPI_Comm comm, Work&& work) {
+  using Result = decltype(work());
+  std::conditional_t<std::is_void_v<Result>, int, Result> result{};
+  std::string trouble;
+  try {
+    if constexpr (std::is_void_v<Result>)
+      work();
+    else
+      result = work();
+  } catch (const std::exception& e) {
+    trouble = e.what();
+  }
+  throw_together(comm, trouble);
+  if constexpr (!std::is_void_v<Result>) return result;
+}
+/// Likewise, on rank 0 only.
+template <class Work>
+void on_root(MPI_Comm comm, Work&& work) {
+  on_all(comm, [&] {
+    if (comm_rank(comm) == 0) work();
+  });
+}
 
 namespace detail {
-std::vector<char> all_gather_bytes(MPI_Comm comm, const void* data, std::size_t bytes);
-std::vector<char> gather_bytes(MPI_Comm comm, const void* data, std::size_t bytes);
-std::vector<std::vector<char>> all_to_all_bytes(MPI_Comm comm, const std::vector<std::vector<char>>& send);
+std::vector<char> gather_bytes(MPI_Comm comm, const void* data, std::size_t bytes, bool everywhere);
 template <class T>
 std::vector<T> from_bytes(const std::vector<char>& bytes) {
   std::vector<T> values(bytes.size() / sizeof(T));
@@ -49,27 +81,15 @@ std::vector<T> from_bytes(const std::vector<char>& bytes) {
 }
 }  // namespace detail
 
+/// All values of all ranks, rank by rank, on every rank. Any trivially copyable T.
 template <class T>
 std::vector<T> all_gather(MPI_Comm comm, const std::vector<T>& local) {
-  return detail::from_bytes<T>(detail::all_gather_bytes(comm, local.data(), local.size() * sizeof(T)));
+  return detail::from_bytes<T>(detail::gather_bytes(comm, local.data(), local.size() * sizeof(T), true));
 }
-
+/// The same on rank 0 only (empty elsewhere).
 template <class T>
 std::vector<T> gather(MPI_Comm comm, const std::vector<T>& local) {
-  return detail::from_bytes<T>(detail::gather_bytes(comm, local.data(), local.size() * sizeof(T)));
-}
-
-template <class T>
-std::vector<std::vector<T>> all_to_all(MPI_Comm comm, const std::vector<std::vector<T>>& send) {
-  std::vector<std::vector<char>> bytes(send.size());
-  for (std::size_t r = 0; r < send.size(); ++r) {
-    const char* first = reinterpret_cast<const char*>(send[r].data());
-    bytes[r].assign(first, first + send[r].size() * sizeof(T));
-  }
-  std::vector<std::vector<T>> received;
-  for (const auto& part : detail::all_to_all_bytes(comm, bytes))
-    received.push_back(detail::from_bytes<T>(part));
-  return received;
+  return detail::from_bytes<T>(detail::gather_bytes(comm, local.data(), local.size() * sizeof(T), false));
 }
 
 /// What goes to each rank, or came from each, rank by rank in one array: rank r's items are [first[r], first[r + 1]).
@@ -104,8 +124,7 @@ Parcels<T> sort_by_rank(MPI_Comm comm, const std::vector<T>& items, RankOf&& ran
   return parcels;
 }
 
-/// Sends each rank its parcel and gives what came from each; T is copied byte by byte. Unlike all_to_all() it holds what
-/// goes and what comes once, nothing else. Collective.
+/// Sends each rank its parcel and gives what came from each; T is copied byte by byte. Collective.
 template <class T>
 Parcels<T> exchange(MPI_Comm comm, const Parcels<T>& out) {
   const int size = comm_size(comm);
@@ -127,6 +146,20 @@ Parcels<T> exchange(MPI_Comm comm, const Parcels<T>& out) {
                 in_first.data(), type, comm);
   MPI_Type_free(&type);
   return in;
+}
+
+/// Does the same with one list per rank: send[r] goes to rank r, the result holds at [r] what rank r sent here.
+template <class T>
+std::vector<std::vector<T>> all_to_all(MPI_Comm comm, const std::vector<std::vector<T>>& send) {
+  std::vector<std::size_t> count;
+  for (const auto& list : send) count.push_back(list.size());
+  Parcels<T> out = make_parcels<T>(count);
+  for (std::size_t r = 0; r < send.size(); ++r) std::ranges::copy(send[r], out.of(int(r)).begin());
+  const Parcels<T> in = exchange(comm, out);
+  std::vector<std::vector<T>> received;
+  for (std::size_t r = 0; r < send.size(); ++r)
+    received.emplace_back(in.of(int(r)).begin(), in.of(int(r)).end());
+  return received;
 }
 
 }  // namespace couplet::parallel

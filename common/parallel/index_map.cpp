@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstring>
 #include <numeric>
 
 #include "common/base/error.hpp"
@@ -21,31 +22,31 @@ struct IndexMap::Exchange {
   std::vector<Peer> ghosts_of;  // ghosts here that others own
   static constexpr int tag = 7001;
 
-  template <class T, class Unpack>
-  void run(const std::vector<Peer>& from, const std::vector<Peer>& to, std::span<const T> values,
-           int components, MPI_Datatype type, Unpack&& unpack) const {
-    std::vector<std::vector<T>> in(to.size()), out(from.size());
+  /// Sends entries of `size` bytes and calls unpack(entry, its bytes) for those that come.
+  template <class Unpack>
+  void run(const std::vector<Peer>& from, const std::vector<Peer>& to, std::span<const std::byte> values,
+           std::size_t size, Unpack&& unpack) const {
+    std::vector<std::vector<std::byte>> in(to.size()), out(from.size());
     std::vector<MPI_Request> requests;
     requests.reserve(to.size() + from.size());
     for (std::size_t p = 0; p < to.size(); ++p) {
-      in[p].resize(to[p].entries.size() * components);
-      MPI_Irecv(in[p].data(), static_cast<int>(in[p].size()), type, to[p].rank, tag, comm,
+      in[p].resize(to[p].entries.size() * size);
+      MPI_Irecv(in[p].data(), static_cast<int>(in[p].size()), MPI_BYTE, to[p].rank, tag, comm,
                 &requests.emplace_back());
     }
     for (std::size_t p = 0; p < from.size(); ++p) {
-      out[p].reserve(from[p].entries.size() * components);
+      out[p].reserve(from[p].entries.size() * size);
       for (const Index e : from[p].entries) {
-        const auto entry = values.subspan(std::size_t(e) * components, components);
+        const auto entry = values.subspan(std::size_t(e) * size, size);
         out[p].insert(out[p].end(), entry.begin(), entry.end());
       }
-      MPI_Isend(out[p].data(), static_cast<int>(out[p].size()), type, from[p].rank, tag, comm,
+      MPI_Isend(out[p].data(), static_cast<int>(out[p].size()), MPI_BYTE, from[p].rank, tag, comm,
                 &requests.emplace_back());
     }
     MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
     for (std::size_t p = 0; p < to.size(); ++p)
       for (std::size_t i = 0; i < to[p].entries.size(); ++i)
-        for (int c = 0; c < components; ++c)
-          unpack(std::size_t(to[p].entries[i]) * components + c, in[p][i * components + c]);
+        unpack(std::size_t(to[p].entries[i]), in[p].data() + i * size);
   }
 };
 
@@ -75,31 +76,33 @@ IndexMap::IndexMap(MPI_Comm comm, Index n_owned, const std::vector<int>& ghost_o
   update_ghosts(std::span<GlobalIndex>(global_));
 }
 
-void IndexMap::update_ghosts(std::span<double> values, int components) const {
-  assert(values.size() == std::size_t(n_local_) * components);
-  if (!exchange_) return;
-  exchange_->run<double>(exchange_->owned_for, exchange_->ghosts_of, values, components, MPI_DOUBLE,
-                         [&](std::size_t i, double v) { values[i] = v; });
-}
-
-void IndexMap::update_ghosts(std::span<GlobalIndex> values) const {
-  if (!exchange_) return;
-  exchange_->run<GlobalIndex>(exchange_->owned_for, exchange_->ghosts_of, values, 1, MPI_INT64_T,
-                              [&](std::size_t i, GlobalIndex v) { values[i] = v; });
-}
-
 void IndexMap::update_ghosts(std::span<std::byte> values, std::size_t size) const {
   assert(values.size() == std::size_t(n_local_) * size);
   if (!exchange_) return;
-  exchange_->run<std::byte>(exchange_->owned_for, exchange_->ghosts_of, values, static_cast<int>(size),
-                            MPI_BYTE, [&](std::size_t i, std::byte v) { values[i] = v; });
+  exchange_->run(exchange_->owned_for, exchange_->ghosts_of, values, size,
+                 [&](std::size_t entry, const std::byte* bytes) {
+                   std::copy_n(bytes, size, values.begin() + std::ptrdiff_t(entry * size));
+                 });
+}
+
+void IndexMap::update_ghosts(std::span<double> values, int components) const {
+  update_ghosts(std::as_writable_bytes(values), std::size_t(components) * sizeof(double));
+}
+
+void IndexMap::update_ghosts(std::span<GlobalIndex> values) const {
+  update_ghosts(std::as_writable_bytes(values), sizeof(GlobalIndex));
 }
 
 void IndexMap::add_to_owners(std::span<double> values, int components) const {
   assert(values.size() == std::size_t(n_local_) * components);
   if (!exchange_) return;
-  exchange_->run<double>(exchange_->ghosts_of, exchange_->owned_for, values, components, MPI_DOUBLE,
-                         [&](std::size_t i, double v) { values[i] += v; });
+  const auto n = std::size_t(components);
+  std::vector<double> come(n);
+  exchange_->run(exchange_->ghosts_of, exchange_->owned_for, std::as_bytes(values), n * sizeof(double),
+                 [&](std::size_t entry, const std::byte* bytes) {
+                   std::memcpy(come.data(), bytes, n * sizeof(double));
+                   for (std::size_t c = 0; c < n; ++c) values[entry * n + c] += come[c];
+                 });
 }
 
 namespace {

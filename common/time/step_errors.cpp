@@ -76,36 +76,25 @@ StepErrors::Seen VelocityErrors::add(std::span<const double> before, std::span<c
 }
 
 std::vector<double> VelocityErrors::numbers() const {
-  std::vector<double> values{(judged_ ? 1. : 0.) + (has_before_ ? 2. : 0.)};
-  const std::vector<double> sums = errors_.state();
-  values.insert(values.end(), sums.begin(), sums.end());
-  return values;
+  base::Numbers numbers;
+  const_cast<VelocityErrors*>(this)->visit_sums(numbers);  // writing changes nothing
+  return numbers.values();
 }
 
 void VelocityErrors::restore(std::span<const double> numbers, std::vector<double> before) {
+  *this = VelocityErrors(local_);
   v_before_ = std::move(before);
-  errors_ = {};
-  judged_ = has_before_ = false;
   if (numbers.empty()) return;
-  base::SavedNumbers saved(numbers, "step errors");
-  const double kind = saved.real();
-  judged_ = kind == 1 || kind == 3;
-  has_before_ = kind >= 2;
-  errors_.restore(saved.rest());
+  base::Numbers saved(numbers, "step errors");
+  visit_sums(saved);
+  saved.finish();
 }
 
-std::vector<double> VelocityErrors::state() const {
-  std::vector<double> values{double(v_before_.size())};
-  const std::vector<double> all = numbers();
-  for (const auto* part : {&v_before_, &all}) values.insert(values.end(), part->begin(), part->end());
-  return values;
-}
+std::vector<double> VelocityErrors::state() const { return base::to_numbers(*this); }
 
 void VelocityErrors::restore(std::span<const double> state) {
-  if (state.empty()) return restore({}, {});
-  base::SavedNumbers saved(state, "step errors");
-  const std::span<const double> v = saved.next(saved.count_of(1));
-  restore(saved.rest(), {v.begin(), v.end()});
+  *this = VelocityErrors(local_);
+  if (!state.empty()) base::from_numbers(state, *this, "step errors");
 }
 
 }  // namespace couplet::time

@@ -90,7 +90,22 @@ class VelocityErrors {
   std::span<const double> before() const { return v_before_; }
   void restore(std::span<const double> numbers, std::vector<double> before);
 
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(v_before_);
+    visit_sums(numbers);
+  }
+
  private:
+  explicit VelocityErrors(const LocalError& local) : local_(local) {}
+  template <class Numbers>
+  void visit_sums(Numbers& numbers) {
+    int kind = (judged_ ? 1 : 0) + (has_before_ ? 2 : 0);
+    numbers(kind, errors_);
+    judged_ = kind % 2 == 1;
+    has_before_ = kind >= 2;
+  }
+
   LocalError local_;
   std::vector<double> v_before_;  // at the start of the step before
   bool has_before_ = false;       // a rank without cells has it, too

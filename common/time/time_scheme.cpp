@@ -18,11 +18,12 @@ constexpr Levels x{1, 0, 0, 0, 0, 0}, u{0, 1, 0, 0, 0, 0}, v{0, 0, 1, 0, 0, 0}, 
 // The first part of a Bathe step: both parts then have the same matrix.
 constexpr double bathe_part = 2 - std::numbers::sqrt2;
 
-const std::vector<std::pair<std::string, TimeScheme>> first_order_words{
+const std::vector<std::pair<std::string, TimeScheme>> scheme_words{
     {"euler", TimeScheme::euler},
     {"three-point", TimeScheme::three_point},
     {"trapezoidal", TimeScheme::trapezoidal},
-    {"bathe", TimeScheme::bathe}};
+    {"bathe", TimeScheme::bathe},
+    {"generalised-alpha", TimeScheme::generalised_alpha}};
 
 Stage euler(double dt) {
   Stage s{.dt = dt};
@@ -82,9 +83,8 @@ std::vector<Stage> bathe(double dt) {
 }  // namespace
 
 void declare(config::Section& s, TimeSchemeParameters& p, const std::string& automatic) {
-  auto words = first_order_words;
+  auto words = scheme_words;
   if (!automatic.empty()) words.emplace(words.begin(), "auto", TimeScheme::automatic);
-  words.emplace_back("generalised-alpha", TimeScheme::generalised_alpha);
   s.choice("type", p.type, words)
       .doc(
           "time integration scheme; all but euler are second order, all but trapezoidal damp the highest "
@@ -95,10 +95,6 @@ void declare(config::Section& s, TimeSchemeParameters& p, const std::string& aut
       .doc(
           "for generalised-alpha: spectral radius at high frequencies, the share of the highest modes that "
           "remains after a step; 1 damps nothing");
-}
-
-void declare_first_order(config::Section& s, TimeSchemeParameters& p) {
-  s.choice("type", p.type, first_order_words).doc("time integration scheme; all but euler are second order");
 }
 
 std::vector<Stage> second_order_stages(const TimeSchemeParameters& scheme, double dt,
@@ -119,13 +115,6 @@ std::vector<Stage> second_order_stages(const TimeSchemeParameters& scheme, doubl
       return {first ? trapezoidal(dt) : generalised_alpha(dt, scheme.spectral_radius)};
   }
   throw std::logic_error("no time scheme is chosen");
-}
-
-std::vector<Stage> first_order_stages(const TimeSchemeParameters& scheme, double dt,
-                                      const StepHistory& history) {
-  if (scheme.type == TimeScheme::generalised_alpha)
-    throw std::logic_error("generalised-alpha requires second derivatives in time");
-  return second_order_stages(scheme, dt, history);
 }
 
 bool uses_old_level(TimeScheme scheme) { return scheme == TimeScheme::three_point; }
@@ -150,9 +139,9 @@ LocalError local_error(const TimeSchemeParameters& scheme) {
 }
 
 std::string name(TimeScheme scheme) {
-  for (const auto& [word, value] : first_order_words)
+  for (const auto& [word, value] : scheme_words)
     if (value == scheme) return word;
-  return scheme == TimeScheme::automatic ? "auto" : "generalised-alpha";
+  return "auto";
 }
 
 namespace {

@@ -20,8 +20,6 @@ struct TimeSchemeParameters {
 /// The keys of `time-scheme` of an equation with second time derivatives. `automatic`: what `auto` chooses, for the document; empty: no such
 /// word.
 void declare(config::Section& section, TimeSchemeParameters& parameters, const std::string& automatic = "");
-/// The same for first derivatives: all schemes but generalised-alpha.
-void declare_first_order(config::Section& section, TimeSchemeParameters& parameters);
 
 /// A linear combination of what a stage knows: its unknown x (a value within the stage), value, rate and
 /// acceleration at the start of the stage, value and rate one level further back.
@@ -66,10 +64,6 @@ struct StepHistory {
 /// below.
 std::vector<Stage> second_order_stages(const TimeSchemeParameters& scheme, double dt,
                                        const StepHistory& history);
-/// The stages of a step for C u' + K u = F; `rate` and `end_value` are to be used, which need u and u_old
-/// alone. Throws std::logic_error for generalised-alpha.
-std::vector<Stage> first_order_stages(const TimeSchemeParameters& scheme, double dt,
-                                      const StepHistory& history);
 
 /// The scheme needs the level before the last one at the start of a step.
 bool uses_old_level(TimeScheme scheme);

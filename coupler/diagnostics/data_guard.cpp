@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "coupler/diagnostics/view.hpp"
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "coupler/diagnostics/view.hpp"
 
 namespace couplet::coupler {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/time/step_errors.hpp"
 #include "coupler/diagnostics/guards.hpp"
 #include "coupler/diagnostics/view.hpp"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "coupler/diagnostics/view.hpp"
 

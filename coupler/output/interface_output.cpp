@@ -6,7 +6,6 @@
 
 #include "common/base/error.hpp"
 #include "common/csv/csv_reader.hpp"
-#include "common/csv/line_reader.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::coupler {

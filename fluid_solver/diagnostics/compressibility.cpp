@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/diagnostics/effects.hpp"
 #include "fluid_solver/diagnostics/view.hpp"

@@ -8,7 +8,7 @@
 
 #include "common/base/processor_clones.hpp"
 #include "common/coupling/error_parts.hpp"
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/time/step_errors.hpp"
 #include "fluid_solver/diagnostics/driving.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/diagnostics/view.hpp"
 

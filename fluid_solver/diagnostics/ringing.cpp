@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "fluid_solver/diagnostics/view.hpp"
 
 namespace couplet::fluid {

@@ -8,7 +8,7 @@
 #include "common/base/constants.hpp"
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
-#include "common/io/probes/mesh_scale.hpp"
+#include "common/io/probes/place_search.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/output/derived.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "plate_modal/diagnostics/motion.hpp"
 #include "plate_modal/diagnostics/view.hpp"
 

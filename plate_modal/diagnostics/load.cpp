@@ -6,7 +6,8 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
+#include "common/mesh/load.hpp"
 #include "plate_modal/diagnostics/motion.hpp"
 #include "plate_modal/diagnostics/view.hpp"
 

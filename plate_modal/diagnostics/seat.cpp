@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "plate_modal/diagnostics/motion.hpp"
 #include "plate_modal/diagnostics/view.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/time/step_errors.hpp"
 #include "plate_modal/diagnostics/motion.hpp"
 #include "plate_modal/diagnostics/view.hpp"

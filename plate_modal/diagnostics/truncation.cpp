@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "common/base/error.hpp"
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/linalg/linear_solver.hpp"
 #include "common/mesh/load.hpp"
 #include "plate_modal/diagnostics/motion.hpp"

@@ -11,10 +11,10 @@
 #include "common/log/log.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
 #include "common/mesh/load.hpp"
-#include "common/mesh/msh/read_msh.hpp"
 #include "common/mesh/quality.hpp"
-#include "common/modes/modes_file.hpp"
-#include "common/modes/surface_parts.hpp"
+#include "common/mesh/readers/read_msh.hpp"
+#include "common/modes/modal_checks.hpp"
+#include "common/modes/modal_model.hpp"
 #include "plate_modal/model/midsurface.hpp"
 
 namespace couplet::plate {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/diagnostics/neglected.hpp"
 #include "solid_solver/diagnostics/view.hpp"

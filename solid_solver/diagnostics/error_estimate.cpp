@@ -8,7 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/time/step_errors.hpp"
 #include "solid_solver/body/inner_variation.hpp"

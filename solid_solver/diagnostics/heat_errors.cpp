@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::solid {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "common/base/error.hpp"
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "solid_solver/diagnostics/buckling_estimate.hpp"
 #include "solid_solver/diagnostics/neglected.hpp"

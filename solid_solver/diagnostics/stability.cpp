@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/equilibrium/load_path.hpp"
 

@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "common/elasticity/vector_at.hpp"
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/body/inner_variation.hpp"
 #include "solid_solver/diagnostics/recovered_strain.hpp"

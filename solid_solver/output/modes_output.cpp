@@ -9,7 +9,7 @@
 #include "common/base/error.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/log/log.hpp"
-#include "common/modes/modes_file.hpp"
+#include "common/modes/modal_model.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/body/inner_variation.hpp"
 #include "solid_solver/output/buckling.hpp"

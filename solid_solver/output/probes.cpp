@@ -9,7 +9,7 @@
 
 #include "common/base/constants.hpp"
 #include "common/base/error.hpp"
-#include "common/io/probes/mesh_scale.hpp"
+#include "common/io/probes/place_search.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/body/stress.hpp"
 

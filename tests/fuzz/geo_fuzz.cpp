@@ -8,8 +8,8 @@
 #include <cstdlib>
 
 #include "common/base/error.hpp"
-#include "common/mesh/gmsh/barrier.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
+#include "common/mesh/gmsh/sandbox.hpp"
 #include "common/mesh/load.hpp"
 #include "tests/fuzz/crafted_geo.hpp"
 

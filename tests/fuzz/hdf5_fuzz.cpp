@@ -14,7 +14,7 @@
 #include "common/io/checkpoint.hpp"
 #include "common/io/checkpoint_format.hpp"
 #include "common/io/checkpoint_set.hpp"
-#include "common/modes/modes_file.hpp"
+#include "common/modes/modal_model.hpp"
 #include "coupler/acceleration/quasi_newton.hpp"
 #include "coupler/parameters/parameters.hpp"
 #include "tests/fuzz/craft_hdf5.hpp"

@@ -8,7 +8,7 @@
 
 #include "common/coupling/participant.hpp"
 #include "common/diagnostics/diagnostics.hpp"
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 
 namespace couplet::support {
 

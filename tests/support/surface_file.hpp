@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "common/base/types.hpp"
-#include "common/io/hdf5_reader.hpp"
+#include "common/io/hdf5.hpp"
 
 namespace couplet::testing {
 

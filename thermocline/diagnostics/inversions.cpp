@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "thermocline/diagnostics/tank_diagnostic.hpp"
 
 namespace couplet::thermocline {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "thermocline/diagnostics/tank_diagnostic.hpp"
 
 namespace couplet::thermocline {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "thermocline/diagnostics/tank_diagnostic.hpp"
 
 namespace couplet::thermocline {

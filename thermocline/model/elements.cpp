@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "common/base/error.hpp"
-#include "common/io/archive.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"

@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "common/base/error.hpp"
-#include "common/io/archive.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/finding.hpp"
 #include "common/log/log.hpp"

@@ -11,7 +11,6 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/csv/csv_reader.hpp"
-#include "common/csv/line_reader.hpp"
 
 namespace couplet::thermocline {
 namespace {

@@ -13,9 +13,9 @@
 #include "common/config/document.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/checkpoint_set.hpp"
-#include "common/io/cut/cut_mesh.hpp"
+#include "common/io/cut_mesh.hpp"
 #include "common/mesh/gmsh/geo_script.hpp"
-#include "common/mesh/gmsh/meshio.hpp"
+#include "common/mesh/gmsh/gmsh.hpp"
 #include "common/mesh/load.hpp"
 
 namespace couplet::app {

@@ -11,8 +11,8 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/csv/csv_reader.hpp"
-#include "common/io/cut/cut_mesh.hpp"
-#include "common/mesh/distributed/box_block.hpp"
+#include "common/io/cut_mesh.hpp"
+#include "common/mesh/distributed/mesh_block.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/parallel/mpi_start.hpp"
@@ -41,8 +41,7 @@ double peak_memory() {
 void cut(MPI_Comm comm, const Words& words) {
   if (parallel::comm_size(comm) > 1)
     throw Error("A mesh is cut by one process, which reads it as a whole. Start mesh_tool without mpirun.");
-  mesh::MeshBlock block =
-      mesh::block_of(comm, mesh::read_mesh(words.file, words.dimension, words.parameters));
+  mesh::MeshBlock block = mesh::read_mesh(comm, words.file, words.dimension, words.parameters);
   mesh::drop_unused_points(comm, block);
   io::write_cut_mesh(comm, block, words.output);
   std::printf("%s: %lld cells, patches %s\n", words.output.c_str(),

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "common/io/fields/xdmf.hpp"
-#include "common/io/hdf5_reader.hpp"
+#include "common/io/hdf5.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/parallel/index_map.hpp"
@@ -203,14 +203,8 @@ bool FieldWriter::State::continue_from(double restart_time) {
   int there = parallel::comm_rank(mesh.comm) == 0 && std::filesystem::exists(file()) ? 1 : 0;
   MPI_Bcast(&there, 1, MPI_INT, 0, mesh.comm);
   if (there == 0) return false;
-  std::string trouble;
-  std::vector<std::string> dropped;
-  try {
-    dropped = read_index(restart_time);
-  } catch (const Error& error) {
-    trouble = error.what();
-  }
-  hdf5::throw_together(mesh.comm, trouble);
+  const std::vector<std::string> dropped =
+      parallel::on_all(mesh.comm, [&] { return read_index(restart_time); });
   find_order();
   number = static_cast<int>(index.entries.size());
   if (dropped.empty()) return true;
@@ -223,14 +217,12 @@ bool FieldWriter::State::continue_from(double restart_time) {
 void FieldWriter::State::begin(std::span<const Vec3> places, double restart_time) {
   point_rows = hdf5::distribute_rows(mesh.comm, mesh.points.n_owned(), 1);
   cell_rows = hdf5::distribute_rows(mesh.comm, mesh.cells.n_owned(), 1);
-  std::string trouble;
-  if (parallel::comm_rank(mesh.comm) == 0) {
+  parallel::on_root(mesh.comm, [&] {
     std::error_code code;
     std::filesystem::create_directories(folder, code);
     if (!std::filesystem::is_directory(folder))
-      trouble = fmt::format("Cannot create the output folder '{}' ({}).", folder.string(), code.message());
-  }
-  hdf5::throw_together(mesh.comm, trouble);
+      throw Error("Cannot create the output folder '{}' ({}).", folder.string(), code.message());
+  });
   if (std::isnan(restart_time) || !continue_from(restart_time)) start(places);
   if (parallel::comm_rank(mesh.comm) == 0) xdmf::write(folder / (name + ".xdmf"), index);
 }
@@ -239,7 +231,7 @@ FieldWriter::FieldWriter(const mesh::Mesh& mesh, std::span<const Vec3> places, s
                          std::string name, bool moving, double restart_time, const FieldChoice& choice) {
   if (choice.box) {
     part_ = make_part(mesh, places, cells_within(mesh, places, *choice.box));
-    if (parallel::sum(mesh.comm, GlobalIndex(part_->cells.size())) == 0) {
+    if (parallel::sum(mesh.comm, GlobalIndex(part_->entries.size())) == 0) {
       if (parallel::comm_rank(mesh.comm) == 0)
         log::warn("simulation.output.box: no cell of '{}' lies in it; none of its fields are written.", name);
       return;
@@ -251,8 +243,8 @@ FieldWriter::FieldWriter(const mesh::Mesh& mesh, std::span<const Vec3> places, s
   state_->begin(part_ ? part_->places : places, restart_time);
 }
 
-FieldWriter::FieldWriter(const SurfaceMesh& surface, std::filesystem::path folder, std::string name,
-                         bool moving, double restart_time)
+FieldWriter::FieldWriter(const MeshPart& surface, std::filesystem::path folder, std::string name, bool moving,
+                         double restart_time)
     : state_(std::make_unique<State>(
           State{surface.mesh, std::move(folder), std::move(name), moving, surface_format, {}, 0, {}, {}})) {
   state_->begin(surface.places, restart_time);
@@ -277,7 +269,8 @@ void FieldWriter::write(double time, std::span<const Vec3> points, const std::ve
       const bool on_cells = field.place == OutputField::Place::cells;
       const std::string path =
           fmt::format("{}/{}/{}", entry.group, on_cells ? "cells" : "points", field.name);
-      s.write_field(id, path, part_ ? part_of(field, *part_, values) : field);
+      s.write_field(id, path,
+                    part_ ? picked(field, on_cells ? part_->entries : part_->points, values) : field);
       const hdf5::Handle table = hdf5::open_written(id, path);
       const int components = field.components == 2 ? 3 : field.components;
       hdf5::write_attribute(table, "unit", field.unit);

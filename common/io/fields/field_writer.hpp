@@ -25,7 +25,7 @@ class FieldWriter {
   FieldWriter(const mesh::Mesh& mesh, std::span<const Vec3> places, std::filesystem::path folder,
               std::string name, bool moving, double restart_time, const FieldChoice& choice = {});
   /// Of a surface, which `cells` are the faces of.
-  FieldWriter(const SurfaceMesh& surface, std::filesystem::path folder, std::string name, bool moving,
+  FieldWriter(const MeshPart& surface, std::filesystem::path folder, std::string name, bool moving,
               double restart_time);
   ~FieldWriter();
   FieldWriter(const FieldWriter&) = delete;
@@ -34,7 +34,7 @@ class FieldWriter {
 
  private:
   struct State;
-  std::optional<CellPart> part_;
+  std::optional<MeshPart> part_;
   std::unique_ptr<State> state_;  // none: nothing lies in the box
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/fields/mesh_part.hpp"
 
+#include <numeric>
 #include <utility>
 
 #include "common/parallel/collective.hpp"
@@ -28,56 +29,64 @@ parallel::IndexMap map_points(const mesh::Mesh& body, std::span<const Index> poi
   return {body.comm, static_cast<Index>(points.size() - owner.size()), owner, remote};
 }
 
-/// Numbers of a part's points by local point of the body (-1: not of the part), owned ones first: also those that only other ranks
-/// use. `uses`: 1 for those that are used here. `points` becomes the local points of the body. Collective.
-std::vector<Index> number_points(const mesh::Mesh& body, std::vector<double> uses,
-                                 std::vector<Index>& points) {
-  body.points.add_to_owners(uses);
+/// The part of `entries`, whose points `points_of` gives; without types and ids. Collective.
+template <class PointsOf>
+MeshPart part_of(const mesh::Mesh& body, std::span<const Vec3> places, std::vector<Index> entries,
+                 const PointsOf& points_of) {
+  MeshPart part;
+  part.entries = std::move(entries);
+  part.mesh.comm = body.comm;
+  part.mesh.cells = parallel::IndexMap(body.comm, static_cast<Index>(part.entries.size()), {}, {});
+  std::vector<double> uses(body.points.n_local(), 0);
+  for (const Index e : part.entries)
+    for (const Index v : points_of(e)) uses[v] = 1;
+  body.points.add_to_owners(uses);  // also points that only other ranks use
   std::vector<Index> number(uses.size(), unused);
   for (std::size_t v = 0; v < uses.size(); ++v) {
     if (uses[v] == 0) continue;
-    number[v] = static_cast<Index>(points.size());
-    points.push_back(static_cast<Index>(v));
+    number[v] = static_cast<Index>(part.points.size());
+    part.points.push_back(static_cast<Index>(v));
+    part.mesh.point_id.push_back(body.point_id[v]);
+    part.places.push_back(places[v]);
   }
-  return number;
-}
-
-/// Their map, ids and places [m]. Collective.
-void set_points(mesh::Mesh& part, std::vector<Vec3>& there, const mesh::Mesh& body,
-                std::span<const Vec3> places, std::span<const Index> points, std::span<const Index> number) {
-  part.comm = body.comm;
-  part.points = map_points(body, points, number);
-  for (const Index v : points) {
-    part.point_id.push_back(body.point_id[v]);
-    there.push_back(places[v]);
+  part.mesh.points = map_points(body, part.points, number);
+  std::vector<Index> corners;
+  for (const Index e : part.entries) {
+    corners.clear();
+    for (const Index v : points_of(e)) corners.push_back(number[v]);
+    part.mesh.cell_points.push_row(corners);
   }
+  return part;
 }
 
 }  // namespace
 
-CellPart make_part(const mesh::Mesh& body, std::span<const Vec3> places,
+MeshPart make_part(const mesh::Mesh& body, std::span<const Vec3> places,
                    const std::vector<std::uint8_t>& flags) {
-  CellPart part;
-  mesh::Mesh& mesh = part.mesh;
-  mesh.dim = body.dim;
-  std::vector<double> uses(body.points.n_local(), 0);
-  for (Index c = 0; c < body.cells.n_owned(); ++c) {
-    if (!flags[c]) continue;
-    part.cells.push_back(c);
-    for (const Index v : body.cell_points[c]) uses[v] = 1;
-  }
-  const std::vector<Index> number = number_points(body, std::move(uses), part.points);
-  set_points(mesh, part.places, body, places, part.points, number);
-  mesh.cells = parallel::IndexMap(body.comm, static_cast<Index>(part.cells.size()), {}, {});
-  std::vector<Index> corners;
-  for (const Index c : part.cells) {
-    corners.clear();
-    for (const Index v : body.cell_points[c]) corners.push_back(number[v]);
-    mesh.cell_points.push_row(corners);
-    mesh.cell_type.push_back(body.cell_type[c]);
-    mesh.cell_id.push_back(body.cell_id[c]);
+  std::vector<Index> cells;
+  for (Index c = 0; c < body.cells.n_owned(); ++c)
+    if (flags[c]) cells.push_back(c);
+  MeshPart part = part_of(body, places, std::move(cells), [&](Index c) { return body.cell_points[c]; });
+  part.mesh.dim = body.dim;
+  for (const Index c : part.entries) {
+    part.mesh.cell_type.push_back(body.cell_type[c]);
+    part.mesh.cell_id.push_back(body.cell_id[c]);
   }
   return part;
+}
+
+MeshPart make_surface(const mesh::Mesh& body, std::span<const Vec3> places, const mesh::Patch& patch) {
+  std::vector<Index> faces(std::size_t(patch.count));
+  std::iota(faces.begin(), faces.end(), patch.first);
+  MeshPart surface = part_of(body, places, std::move(faces), [&](Index f) { return body.face_points[f]; });
+  surface.mesh.dim = body.dim - 1;
+  for (const Index f : surface.entries) {
+    // An edge has no type of its own: FieldWriter knows it by its two points.
+    surface.mesh.cell_type.push_back(body.face_points[f].size() == 4 ? mesh::CellType::quadrilateral
+                                                                     : mesh::CellType::triangle);
+    surface.mesh.cell_id.push_back(body.boundary_id[f - body.n_interior]);
+  }
+  return surface;
 }
 
 std::vector<std::uint8_t> cells_within(const mesh::Mesh& mesh, std::span<const Vec3> places,
@@ -94,38 +103,16 @@ std::vector<std::uint8_t> cells_within(const mesh::Mesh& mesh, std::span<const V
   return flags;
 }
 
-OutputField part_of(const OutputField& field, const CellPart& part, std::vector<double>& values) {
+OutputField picked(const OutputField& field, std::span<const Index> entries, std::vector<double>& values) {
   const std::size_t n = field.components;
   values.clear();
-  for (const Index i : field.place == OutputField::Place::cells ? part.cells : part.points) {
+  for (const Index i : entries) {
     const auto one = field.values.subspan(std::size_t(i) * n, n);
     values.insert(values.end(), one.begin(), one.end());
   }
   OutputField here = field;
   here.values = values;
   return here;
-}
-
-SurfaceMesh make_surface(const mesh::Mesh& body, std::span<const Vec3> places, const mesh::Patch& patch) {
-  SurfaceMesh surface;
-  mesh::Mesh& mesh = surface.mesh;
-  mesh.dim = body.dim - 1;
-  std::vector<double> uses(body.points.n_local(), 0);
-  for (Index f = patch.first; f < patch.first + patch.count; ++f)
-    for (const Index v : body.face_points[f]) uses[v] = 1;
-  const std::vector<Index> number = number_points(body, std::move(uses), surface.points);
-  set_points(mesh, surface.places, body, places, surface.points, number);
-  mesh.cells = parallel::IndexMap(body.comm, patch.count, {}, {});
-  std::vector<Index> corners;
-  for (Index f = patch.first; f < patch.first + patch.count; ++f) {
-    corners.clear();
-    for (const Index v : body.face_points[f]) corners.push_back(number[v]);
-    mesh.cell_points.push_row(corners);
-    // An edge has no type of its own: FieldWriter knows it by its two points.
-    mesh.cell_type.push_back(corners.size() == 4 ? mesh::CellType::quadrilateral : mesh::CellType::triangle);
-    mesh.cell_id.push_back(body.boundary_id[f - body.n_interior]);
-  }
-  return surface;
 }
 
 }  // namespace couplet::io

@@ -33,31 +33,25 @@ struct OutputField {
   std::span<const double> values;  ///< per local cell or point (ghosts are ignored), entry by entry
 };
 
-/// Some cells of a body as a mesh, for what is written of them.
-struct CellPart {
-  mesh::Mesh mesh;                   ///< ids are those of the body; no faces
-  std::vector<Index> points, cells;  ///< per local point or cell: that of the body
-  std::vector<Vec3> places;          ///< of the points [m]
+/// Some cells or boundary faces of a body as a mesh, for what is written of them; without faces. Its points are those of these
+/// cells or faces, each owned by the rank that owns it in the body.
+struct MeshPart {
+  mesh::Mesh mesh;             ///< ids are those of the body, cell_id of a surface its boundary_id
+  std::vector<Index> points;   ///< per local point: that of the body
+  std::vector<Index> entries;  ///< per local cell: the cell or face of the body
+  std::vector<Vec3> places;    ///< of the points [m]
 };
 
-/// Of the owned cells with a flag. `places`: per local point of the body [m]. Collective.
-CellPart make_part(const mesh::Mesh& body, std::span<const Vec3> places,
+/// Part of the owned cells with a flag. `places`: per local point of the body [m]. Collective.
+MeshPart make_part(const mesh::Mesh& body, std::span<const Vec3> places,
                    const std::vector<std::uint8_t>& flags);
-/// Of the owned cells, by the mean of their points. `places`: per local point [m].
+/// Flags of the owned cells the mean of whose points lies in a box. `places`: per local point [m].
 std::vector<std::uint8_t> cells_within(const mesh::Mesh& mesh, std::span<const Vec3> places,
                                        const FieldChoice::Box& box);
-/// The same field on the cells or points of the part; its values go to `values`.
-OutputField part_of(const OutputField& field, const CellPart& part, std::vector<double>& values);
+/// The faces of one patch as cells of one dimension less, in their order (edges in 2-D). Collective.
+MeshPart make_surface(const mesh::Mesh& body, std::span<const Vec3> places, const mesh::Patch& patch);
 
-/// The faces of one patch as a mesh, for what is written of them. Its cells are the patch's faces on this rank in their
-/// order (edges in 2-D), its points those of these faces, each owned by the rank that owns it in the body.
-struct SurfaceMesh {
-  mesh::Mesh mesh;            ///< dim: that of the body less 1; cell_id: boundary_id of the body; no faces
-  std::vector<Index> points;  ///< per local point: the local point of the body
-  std::vector<Vec3> places;   ///< of the points [m]
-};
-
-/// `places`: per local point of the body [m]. Collective.
-SurfaceMesh make_surface(const mesh::Mesh& body, std::span<const Vec3> places, const mesh::Patch& patch);
+/// The same field at some of its entries; its values go to `values`.
+OutputField picked(const OutputField& field, std::span<const Index> entries, std::vector<double>& values);
 
 }  // namespace couplet::io

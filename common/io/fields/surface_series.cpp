@@ -44,17 +44,8 @@ std::string wrong_surfaces(const std::vector<std::string>& names, const std::vec
 }
 
 struct SurfaceSeries::Surface {
-  SurfaceMesh surface;
+  MeshPart surface;
   std::optional<FieldWriter> writer{};
-
-  std::vector<double> pick(const OutputField& field) const {
-    const std::size_t n = field.components;
-    std::vector<double> values;
-    values.reserve(surface.points.size() * n);
-    for (const Index v : surface.points)
-      for (std::size_t c = 0; c < n; ++c) values.push_back(field.values[std::size_t(v) * n + c]);
-    return values;
-  }
 };
 
 SurfaceSeries::SurfaceSeries(const mesh::Mesh& body, std::span<const Vec3> places,
@@ -96,14 +87,14 @@ void SurfaceSeries::write(std::size_t i, double time, std::span<const Vec3> plac
   Surface& one = *surfaces_[i];
   std::vector<Vec3> points;
   for (const Index v : one.surface.points) points.push_back(places[v]);
-  std::deque<std::vector<double>> picked;
+  std::deque<std::vector<double>> values;
   std::vector<OutputField> here = fields;
   for (OutputField& field : here) {
     const std::size_t n = field.components;
     if (field.place == OutputField::Place::cells)
       field.values = field.values.subspan(std::size_t(patch.first - body_.n_interior) * n, patch.count * n);
     else
-      field.values = picked.emplace_back(one.pick(field));
+      field = picked(field, one.surface.points, values.emplace_back());
   }
   one.writer->write(time, points, here);
 }

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
+#include <iterator>
 
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
@@ -26,25 +28,19 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
+struct Kind {
+  std::int64_t code;
+  const char* name;
+  std::uint64_t points;
+};
+/// In the order of mesh::CellType, then edges.
+constexpr Kind kinds[] = {{4, "Triangle", 3},        {5, "Quadrilateral", 4}, {6, "Tetrahedron", 4},
+                          {9, "Hexahedron", 8},      {8, "Wedge", 6},         {7, "Pyramid", 5},
+                          {edge_code, "Polyline", 2}};
+
 const char* kind_name(std::int64_t code) {
-  switch (code) {
-    case edge_code:
-      return "Polyline";
-    case 4:
-      return "Triangle";
-    case 5:
-      return "Quadrilateral";
-    case 6:
-      return "Tetrahedron";
-    case 7:
-      return "Pyramid";
-    case 8:
-      return "Wedge";
-    case 9:
-      return "Hexahedron";
-    default:
-      return "Mixed";
-  }
+  const auto kind = std::ranges::find(kinds, code, &Kind::code);
+  return kind == std::end(kinds) ? "Mixed" : kind->name;
 }
 
 std::string topology(const Series& s) {
@@ -90,29 +86,9 @@ std::string grid(const Series& s, const Entry& entry) {
 
 }  // namespace
 
-std::int64_t cell_code(mesh::CellType type) {
-  switch (type) {
-    case mesh::CellType::triangle:
-      return 4;
-    case mesh::CellType::quadrilateral:
-      return 5;
-    case mesh::CellType::tetrahedron:
-      return 6;
-    case mesh::CellType::pyramid:
-      return 7;
-    case mesh::CellType::prism:
-      return 8;
-    case mesh::CellType::hexahedron:
-      return 9;
-  }
-  return 0;
-}
+std::int64_t cell_code(mesh::CellType type) { return kinds[static_cast<std::size_t>(type)].code; }
 
-std::uint64_t points_of(std::int64_t code) {
-  if (code == edge_code) return 2;
-  constexpr std::uint64_t points[] = {3, 4, 4, 5, 6, 8};
-  return points[code - 4];
-}
+std::uint64_t points_of(std::int64_t code) { return std::ranges::find(kinds, code, &Kind::code)->points; }
 
 void write(const std::filesystem::path& index, const Series& series) {
   const std::filesystem::path part = index.string() + ".part";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/probes/place_search.hpp"
 
+#include <fmt/format.h>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -11,15 +12,15 @@
 #include <span>
 
 #include "common/base/point_tree.hpp"
+#include "common/log/finding.hpp"
+#include "common/mesh/topology.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::io {
 
 namespace {
 
-bool is_flat(mesh::CellType type) {
-  return type == mesh::CellType::triangle || type == mesh::CellType::quadrilateral;
-}
+bool is_flat(mesh::CellType type) { return mesh::shape_of(type).dim == 2; }
 
 // Reference coordinates r, s, t of a hexahedron corner in VTK order; the quadrilateral uses the first four.
 constexpr int corner[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
@@ -81,23 +82,6 @@ ShapeValues pyramid(const Vec3& x) {
   return v;
 }
 
-int n_points_of(mesh::CellType type) {
-  switch (type) {
-    case mesh::CellType::triangle:
-      return 3;
-    case mesh::CellType::quadrilateral:
-    case mesh::CellType::tetrahedron:
-      return 4;
-    case mesh::CellType::pyramid:
-      return 5;
-    case mesh::CellType::prism:
-      return 6;
-    case mesh::CellType::hexahedron:
-      return 8;
-  }
-  return 0;
-}
-
 bool inside(mesh::CellType type, const Vec3& x, double slack) {
   const bool by_box = type == mesh::CellType::quadrilateral || type == mesh::CellType::hexahedron ||
                       type == mesh::CellType::pyramid;
@@ -132,7 +116,7 @@ ShapeValues shape_functions(mesh::CellType type, const Vec3& reference) {
 
 std::optional<std::array<double, 8>> weights_in_cell(mesh::CellType type, std::span<const Vec3> points,
                                                      const Vec3& place, double slack) {
-  const int n = n_points_of(type);
+  const int n = mesh::shape_of(type).n_points;
   Vec3 low = points[0], high = points[0];
   for (const Vec3& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
   const double size = (high - low).norm();
@@ -235,12 +219,7 @@ Balls face_balls(const mesh::Mesh& mesh, std::span<const Vec3> places) {
 }  // namespace
 
 double mesh_size(const mesh::Mesh& mesh, std::span<const Vec3> places) {
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()),
-       high = Vec3::Constant(-std::numeric_limits<double>::infinity());
-  for (const Vec3& p : places) low = low.cwiseMin(p), high = high.cwiseMax(p);
-  MPI_Allreduce(MPI_IN_PLACE, low.data(), 3, MPI_DOUBLE, MPI_MIN, mesh.comm);
-  MPI_Allreduce(MPI_IN_PLACE, high.data(), 3, MPI_DOUBLE, MPI_MAX, mesh.comm);
-  return (high - low).norm();
+  return mesh::extent_of(mesh.comm, places).diagonal();
 }
 
 PlaceSearch::PlaceSearch(const mesh::Mesh& mesh, std::span<const Vec3> places)
@@ -255,6 +234,32 @@ std::vector<Index> PlaceSearch::faces(const Vec3& x, double slack) const {
   std::vector<Index> faces = faces_.near(x, slack);
   for (Index& f : faces) f += mesh_.n_interior;
   return faces;
+}
+
+void doubt_mesh_scale(const mesh::Mesh& mesh, std::span<const Vec3> points, std::span<const Vec3> places) {
+  constexpr double smallest = 1e-6, largest = 2e3;  // [m]
+  constexpr double corner = 1.0 / 300;  // between sizes that occur in one scene and millimetres for metres
+  const double size = mesh_size(mesh, points);
+  if (size < smallest || size > largest)
+    log::finding(parallel::comm_rank(mesh.comm),
+                 {.id = "questionable-mesh-scale",
+                  .number = size,
+                  .limit = size < smallest ? smallest : largest,
+                  .sentence = fmt::format("mesh size: {:.3g} m (usual: {:g} to {:g} m): implausible", size,
+                                          smallest, largest),
+                  .advice = "check 'mesh-scale' (0.001 for a mesh in millimetres)"});
+  double farthest = 0;
+  for (const Vec3& place : places) farthest = std::max(farthest, place.norm());
+  if (farthest > 0 && farthest < corner * size)
+    log::finding(parallel::comm_rank(mesh.comm),
+                 {.id = "questionable-mesh-scale",
+                  .number = farthest,
+                  .limit = corner * size,
+                  .sentence = fmt::format(
+                      "probe positions: all within {:.3g} m of the origin in a mesh of {:.3g} m (usual: "
+                      "over {:.3g} m): implausible",
+                      farthest, size, corner * size),
+                  .advice = "is the mesh in millimetres? Then set 'mesh-scale: 0.001'"});
 }
 
 }  // namespace couplet::io

@@ -6,20 +6,11 @@
 
 #include "common/base/error.hpp"
 #include "common/mesh/distributed/match_faces.hpp"
-#include "common/mesh/distributed/periodic_faces.hpp"
 #include "common/mesh/load.hpp"
 #include "common/mesh/topology.hpp"
 
 namespace couplet::mesh {
 namespace {
-
-/// Box around the points of all blocks: its diagonal.
-double diagonal_of_all(MPI_Comm comm, const std::vector<Vec3>& points) {
-  Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
-  for (const Vec3& x : points) low = low.cwiseMin(x), high = high.cwiseMax(x);
-  for (int a = 0; a < 3; ++a) low[a] = parallel::min(comm, low[a]), high[a] = parallel::max(comm, high[a]);
-  return (high - low).norm();
-}
 
 /// Record of a cell of another block, or of this one.
 struct RecordOfCell {
@@ -63,7 +54,7 @@ class BlockFaces {
     raw.cell_points.index.reserve(cells.points.size());
     for (const GlobalIndex p : cells.points) raw.cell_points.index.push_back(numbers.place(p));
     raw.points = fetch(comm_, block_.point_shares, std::span<const Vec3>(block_.points), numbers.numbers());
-    const double diagonal = block_.dim == 2 ? diagonal_of_all(comm_, block_.points) : 0;
+    const double diagonal = extent_of(comm_, block_.points).diagonal();
     on_all(comm_, [&] {
       orient_cells(raw, first_cell_);
       if (block_.dim == 2) check_plane(raw.points, diagonal);
@@ -73,33 +64,23 @@ class BlockFaces {
     return raw;
   }
 
-  std::vector<GlobalIndex> face_points(Index cell, int face) const {
-    const CellShape& shape = shape_of(block_.cells.type[cell]);
-    std::vector<GlobalIndex> points;
-    for (int i = 0; i < shape.face_size(face); ++i)
-      points.push_back(block_.cells.points_of(cell)[shape.faces[face][i]]);
-    return points;
-  }
-
   FaceSide side_of(const HalfFace& half) const {
-    return make_side(face_points(half.cell, half.face), first_cell_ + half.cell, block_.cells.zone[half.cell],
-                     half.face);
+    return make_side(block_.cells.face_of(half.cell, half.face), first_cell_ + half.cell,
+                     block_.cells.zone[half.cell], half.face);
   }
 
   void match_within_block(GlobalIndex first_element) {
     const RawMesh raw = oriented_cells();
-    material_of_zone_ = materials_of_zones();
+    material_of_zone_ = materials_of_zones(block_);
     HalfFaces halves(raw);
     within_.reserve(halves.size() / 2);
     // A face of three cells or more is refused here if they are all in this block, and else where the parts are put together.
-    FaceFaults faults;
+    std::vector<FaceFault> faults;
     halves.for_each_face([&](std::span<const HalfFace> cells) {
       if (cells.size() == 1) {
         sides_.push_back(side_of(cells[0]));
       } else if (cells.size() > 2) {
-        faults.faults.push_back({side_of(cells[0]).key, [n = cells.size()](const std::string& at) {
-                                   return face_of_many_cells(n, at);
-                                 }});
+        faults.push_back({FaceFault::Kind::many_cells, side_of(cells[0]).key, 0, 0, std::ssize(cells)});
       } else {
         const bool bonded = is_bonded(block_.cells.zone[cells[0].cell], block_.cells.zone[cells[1].cell]);
         within_.push_back({cells[0].cell, cells[1].cell, static_cast<std::int8_t>(cells[0].face), bonded});
@@ -109,14 +90,6 @@ class BlockFaces {
     throw_face_faults(comm_, block_, faults);
     for (Index e = 0; e < block_.n_elements(); ++e)
       sides_.push_back(make_side(block_.element(e), -1 - (first_element + e), block_.element_patch[e], 0));
-  }
-
-  /// Empty with fewer than two materials.
-  std::vector<int> materials_of_zones() const {
-    RawMesh names;  // one cell of each zone
-    names.dim = block_.dim, names.zones = block_.zones, names.materials = block_.materials;
-    for (std::size_t z = 0; z < block_.zones.size(); ++z) names.cell_zone.push_back(static_cast<int>(z));
-    return materials_of_cells(names);
   }
 
   bool is_bonded(int zone, int other) const {

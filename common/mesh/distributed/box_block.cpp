@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/distributed/box_block.hpp"
+#include "common/mesh/distributed/mesh_block.hpp"
 
 #include "common/base/error.hpp"
-#include "common/mesh/cell_shapes.hpp"
+#include "common/mesh/topology.hpp"
 
 namespace couplet::mesh {
 namespace {

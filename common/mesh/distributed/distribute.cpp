@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "common/base/error.hpp"
-#include "common/mesh/distributed/piece.hpp"
+#include "common/mesh/distributed/surroundings.hpp"
 #include "common/mesh/partition.hpp"
 #include "common/mesh/quality.hpp"
 

@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "common/base/error.hpp"
-#include "common/mesh/distributed/piece.hpp"
+#include "common/mesh/distributed/surroundings.hpp"
 #include "common/mesh/load.hpp"
 #include "common/mesh/partition.hpp"
 #include "common/mesh/topology.hpp"
@@ -81,8 +81,8 @@ class Part {
   }
   std::string place_of(const HalfFaces& halves, const HalfFace& half) const {
     Vec3 sum = Vec3::Zero();
-    const std::vector<Index> points = halves.points(half);
-    for (const Index p : points) sum += raw_.points[p] / double(points.size());
+    const FacePoints face = halves.points(half);
+    for (const Index p : std::span<const Index>(face)) sum += raw_.points[p] / double(face.n);
     return place(sum, raw_.dim);
   }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,22 +12,19 @@ namespace couplet::mesh {
 /// The points of a face, ascending; after the last one -1.
 using FaceKey = std::array<GlobalIndex, 4>;
 
-/// Faults of the faces that this rank has compared, told with their places, which other ranks may have.
-struct FaceFaults {
-  struct Fault {
-    FaceKey face;
-    std::function<std::string(const std::string& place)> text;
-  };
-  std::vector<Fault> faults;
-  std::vector<FaceKey> unassigned;               ///< boundary faces without an element
-  std::vector<std::pair<FaceKey, int>> orphans;  ///< boundary elements without a cell, and their patches
+/// A fault of a face, as far as the rank that found it knows; its points may be on other ranks.
+struct FaceFault {
+  enum class Kind { many_cells, inside, two_patches, orphan, unassigned };
+  Kind kind;
+  FaceKey face;
+  int patch = 0, other = 0;  ///< of its boundary elements
+  GlobalIndex cells = 0;     ///< that share it
 };
-
-/// Throws the Error that build_faces() throws of such a mesh, on all ranks, if any has found something. Collective.
-void throw_face_faults(MPI_Comm comm, const MeshBlock& block, const FaceFaults& found);
+/// Throws an Error with the place of the first fault, on all ranks, if any has found one. Collective.
+void throw_face_faults(MPI_Comm comm, const MeshBlock& block, const std::vector<FaceFault>& found);
 
 /// Describes the fault of a face that more than two cells share. `where`: its middle.
-std::string face_of_many_cells(std::size_t cells, const std::string& where);
+std::string face_of_many_cells(GlobalIndex cells, const std::string& where);
 
 /// One side of a face: seen from a cell, or from a boundary element (then `cell` is -1 - element).
 struct FaceSide {
@@ -67,5 +63,23 @@ struct MatchedFaces {
 /// `first_element`: of each rank's block, and their number. Collective.
 MatchedFaces match_faces(MPI_Comm comm, const MeshBlock& block, const std::vector<FaceSide>& sides,
                          const std::vector<GlobalIndex>& first_element);
+
+/// A boundary face that is joined with one of the other patch of its pair.
+struct JoinedFace {
+  GlobalIndex element, cell, other;  ///< boundary element, its cell, the cell beyond
+  std::int8_t face;                  ///< position in the cell's shape
+  std::int8_t side;                  ///< 0: on the first patch of the pair, 1: on the second
+  int pair;                          ///< of MeshBlock::periodic
+};
+
+struct PeriodicFaces {
+  std::vector<JoinedFace> joined;  ///< of this rank's boundary elements, ascending
+  std::vector<Vec3> translation;   ///< of each pair, from its first patch to its second
+};
+
+/// Joins the faces of periodic patches by their centers. Each rank sees all faces of these patches, which are few beside the
+/// cells. Throws Error naming the place of a face without a partner. `first_element`: of this rank's block. Collective.
+PeriodicFaces find_periodic_faces(MPI_Comm comm, const MeshBlock& block,
+                                  const std::vector<BoundedCell>& bounded, GlobalIndex first_element);
 
 }  // namespace couplet::mesh

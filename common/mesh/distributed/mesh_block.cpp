@@ -1,9 +1,112 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/distributed/mesh_block.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
 #include "common/mesh/load.hpp"
+#include "common/mesh/topology.hpp"
 
 namespace couplet::mesh {
+
+std::vector<GlobalIndex> CellList::face_of(Index c, int face) const {
+  const CellShape& shape = shape_of(type[c]);
+  std::vector<GlobalIndex> result;
+  for (int i = 0; i < shape.face_size(face); ++i) result.push_back(points_of(c)[shape.faces[face][i]]);
+  return result;
+}
+
+void CellList::push(const CellList& other, Index c, GlobalIndex number) {
+  id.push_back(number);
+  type.push_back(other.type[c]);
+  zone.push_back(other.zone[c]);
+  const auto cell_points = other.points_of(c);
+  points.insert(points.end(), cell_points.begin(), cell_points.end());
+  point_offset.push_back(static_cast<Index>(points.size()));
+  const auto cell_records = other.records_of(c);
+  records.insert(records.end(), cell_records.begin(), cell_records.end());
+  record_offset.push_back(static_cast<Index>(records.size()));
+}
+
+std::size_t packed_size(const CellList& cells, Index c) {
+  return 2 + cells.points_of(c).size() + 2 * cells.records_of(c).size();
+}
+
+// number; type, number of records, zone; points; of each record: face, turn, patch; number.
+GlobalIndex* pack(const CellList& cells, Index c, GlobalIndex id, GlobalIndex* to) {
+  const auto records = cells.records_of(c);
+  *to++ = id;
+  *to++ = GlobalIndex(cells.type[c]) | GlobalIndex(records.size()) << 8 | GlobalIndex(cells.zone[c]) << 32;
+  to = std::ranges::copy(cells.points_of(c), to).out;
+  for (const FaceRecord& r : records) {
+    *to++ = GlobalIndex(r.face) | GlobalIndex(r.turn) << 8 | GlobalIndex(r.patch) * (GlobalIndex(1) << 32);
+    *to++ = r.number;
+  }
+  return to;
+}
+
+void unpack(std::span<const GlobalIndex> packed, CellList& cells) {
+  for (auto at = packed.begin(); at != packed.end();) {
+    cells.id.push_back(*at++);
+    cells.type.push_back(static_cast<CellType>(*at & 0xff));
+    const auto n_records = std::size_t(*at >> 8 & 0xff);
+    cells.zone.push_back(static_cast<int>(*at++ >> 32));
+    const auto n_points = shape_of(cells.type.back()).n_points;
+    cells.points.insert(cells.points.end(), at, at + n_points);
+    at += n_points;
+    for (std::size_t i = 0; i < n_records; ++i, at += 2)
+      cells.records.push_back({static_cast<std::int8_t>(at[0] & 0xff),
+                               static_cast<std::int8_t>(at[0] >> 8 & 0xff), static_cast<int>(at[0] >> 32),
+                               at[1]});
+    cells.point_offset.push_back(static_cast<Index>(cells.points.size()));
+    cells.record_offset.push_back(static_cast<Index>(cells.records.size()));
+  }
+}
+
+CellList sorted(const CellList& cells) {
+  std::vector<Index> order(cells.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, [&](Index a, Index b) { return cells.id[a] < cells.id[b]; });
+  const auto repeated =
+      std::ranges::unique(order, [&](Index a, Index b) { return cells.id[a] == cells.id[b]; });
+  order.erase(repeated.begin(), repeated.end());
+  CellList result;
+  result.id.reserve(order.size()), result.type.reserve(order.size()), result.zone.reserve(order.size());
+  result.points.reserve(cells.points.size()), result.records.reserve(cells.records.size());
+  result.point_offset.reserve(order.size() + 1), result.record_offset.reserve(order.size() + 1);
+  for (const Index c : order) result.push(cells, c, cells.id[c]);
+  return result;
+}
+
+PointNumbers::PointNumbers(std::span<const GlobalIndex> all) {
+  if (all.empty()) return;
+  const auto [least, most] = std::ranges::minmax(all);
+  // Points of a part are mostly numbered close together: a table of them is quicker than searching.
+  if (std::size_t(most - least) > all.size()) {
+    numbers_.assign(all.begin(), all.end());
+    std::ranges::sort(numbers_);
+    numbers_.erase(std::ranges::unique(numbers_).begin(), numbers_.end());
+    numbers_.shrink_to_fit();
+    return;
+  }
+  table_.assign(std::size_t(most - least) + 1, 0);
+  for (const GlobalIndex number : all) table_[number - least] = 1;
+  numbers_.reserve(std::accumulate(table_.begin(), table_.end(), std::size_t(0)));
+  for (std::size_t i = 0; i < table_.size(); ++i)
+    if (table_[i] != 0) {
+      table_[i] = static_cast<Index>(numbers_.size());
+      numbers_.push_back(least + GlobalIndex(i));
+    }
+}
+
+Index PointNumbers::place(GlobalIndex number) const {
+  if (!table_.empty()) return table_[number - numbers_.front()];
+  return static_cast<Index>(std::ranges::lower_bound(numbers_, number) - numbers_.begin());
+}
 
 void MeshBlock::push_cell(CellType type, int zone, std::span<const GlobalIndex> cell_points) {
   cells.type.push_back(type);
@@ -58,6 +161,40 @@ MeshBlock block_of(MPI_Comm comm, const RawMesh& raw, int holders) {
   return block;
 }
 
+double MeshFacts::smallest_side() const { return dim == 2 ? std::min(size[0], size[1]) : size.minCoeff(); }
+
+void MeshFacts::find_mean_cell() {
+  double volume = 1;
+  for (int a = 0; a < dim; ++a) volume *= size[a];
+  mean_cell = cells == 0 ? 0 : std::pow(volume / double(cells), 1.0 / dim);
+}
+
+void MeshFacts::scale(double factor) {
+  size *= factor;
+  shortest_edge *= factor;
+  mean_cell *= factor;
+}
+
+MeshFacts facts_of(MPI_Comm comm, const MeshBlock& block) {
+  MeshFacts facts{.dim = block.dim, .cells = std::size_t(block.cell_shares.n), .patches = block.patches};
+  if (block.point_shares.n == 0 || facts.cells == 0) return facts;
+  facts.size = extent_of(comm, block.points).size();
+  facts.find_mean_cell();
+  const PointNumbers numbers(block.cells.points);
+  const std::vector<Vec3> x =
+      fetch(comm, block.point_shares, std::span<const Vec3>(block.points), numbers.numbers());
+  double shortest = std::numeric_limits<double>::infinity();
+  for (Index c = 0; c < block.cells.size(); ++c) {
+    const auto points = block.cells.points_of(c);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      for (std::size_t j = i + 1; j < points.size(); ++j)
+        shortest =
+            std::min(shortest, (x[numbers.place(points[i])] - x[numbers.place(points[j])]).squaredNorm());
+  }
+  facts.shortest_edge = std::sqrt(parallel::min(comm, shortest));
+  return facts;
+}
+
 RawMesh raw_of(MeshBlock block) {
   RawMesh raw;
   raw.dim = block.dim;
@@ -108,6 +245,28 @@ void drop_unused_points(MPI_Comm comm, MeshBlock& block) {
         std::size_t(std::clamp(block.point_shares.first(r), first_kept, next) - first_kept));
   parcels.items = std::move(points);
   block.points = std::move(parallel::exchange(comm, parcels).items);
+}
+
+std::vector<int> materials_of_zones(const MeshBlock& block) {
+  if (block.materials.empty()) return {};
+  std::vector<int> of_zone(block.zones.size(), -1);
+  for (std::size_t m = 0; m < block.materials.size(); ++m)
+    for (const std::string& name : block.materials[m]) {
+      const auto zone = std::ranges::find(block.zones, name);
+      if (zone == block.zones.end())
+        throw Error("It has no zone '{}' for a material. {} The zones (physical {} of gmsh) are {}.", name,
+                    base::did_you_mean(name, block.zones, "zones"), block.dim == 2 ? "surfaces" : "volumes",
+                    base::join(block.zones));
+      int& material = of_zone[zone - block.zones.begin()];
+      if (material >= 0)
+        throw Error("Its zone '{}' is assigned to two materials; each zone has exactly one.", name);
+      material = static_cast<int>(m);
+    }
+  for (std::size_t z = 0; z < of_zone.size(); ++z)
+    if (of_zone[z] < 0)
+      throw Error("Its zone '{}' has no material; add it to the zones of a material. The zones are {}.",
+                  block.zones[z], base::join(block.zones));
+  return block.materials.size() == 1 ? std::vector<int>() : of_zone;
 }
 
 }  // namespace couplet::mesh

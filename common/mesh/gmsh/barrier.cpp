@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/gmsh/barrier.hpp"
+#include "common/mesh/gmsh/sandbox.hpp"
 
 #include <fcntl.h>
 #include <linux/audit.h>

@@ -3,11 +3,8 @@
 
 #include <unistd.h>
 
-#include <algorithm>
-#include <cmath>
 #include <csignal>
 #include <fstream>
-#include <limits>
 #include <sstream>
 #include <string>
 
@@ -15,7 +12,6 @@
 #include "common/base/own_file.hpp"
 #include "common/base/text.hpp"
 #include "common/log/log.hpp"
-#include "common/mesh/gmsh/geo_script.hpp"
 #include "common/mesh/gmsh/sandbox.hpp"
 
 namespace couplet::mesh {
@@ -24,9 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string read_text(const fs::path& file) {
+/// Nothing if it cannot be read.
+std::string text_of(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw Error("Cannot open the file '{}'. Check the path and the permissions.", file.string());
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();
@@ -103,13 +99,6 @@ void put(const fs::path& mesh, const fs::path& result, const fs::path& source) {
 
 constexpr std::string_view head = "$Comments\ncouplet ";
 
-std::string text_if_any(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 std::string seal_of(std::string_view text, const std::string& name) {
   const std::size_t digest = base::stable_hash(fmt::format("{}\n{:016x}", name, base::stable_hash(text)));
   return fmt::format("{}{:016x}\n$EndComments\n", head, digest);
@@ -117,7 +106,7 @@ std::string seal_of(std::string_view text, const std::string& name) {
 
 /// Appends a digest of the file and of its `name` to a .msh 4.1, as a section that every reader passes over.
 void seal_cache(const std::filesystem::path& file, const std::string& name) {
-  const std::string seal = seal_of(text_if_any(file), name);
+  const std::string seal = seal_of(text_of(file), name);
   std::ofstream out(file, std::ios::binary | std::ios::app);
   out << seal;
   out.close();
@@ -128,7 +117,7 @@ void seal_cache(const std::filesystem::path& file, const std::string& name) {
 
 bool is_sound_cache(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) return false;
-  const std::string text = text_if_any(file);
+  const std::string text = text_of(file);
   const std::size_t at = text.rfind(head);
   if (at != std::string::npos && std::string_view(text).substr(at) ==
                                      seal_of(std::string_view(text).substr(0, at), file.filename().string()))
@@ -188,58 +177,14 @@ fs::path convert_mesh(const fs::path& file) {
         "Cannot read the mesh '{}': the gmsh on the PATH was built without {}. Convert it elsewhere, for "
         "example with meshio, to .msh 4.1 with its groups as physical names.",
         file.string(), kind == ".med" ? "MED" : "CGNS");
-  const std::string text = read_text(file);
-  const std::string hash = fmt::format("{:016x}", base::stable_hash(text));
+  if (!std::ifstream(file))
+    throw Error("Cannot open the file '{}'. Check the path and the permissions.", file.string());
+  const std::string hash = fmt::format("{:016x}", base::stable_hash(text_of(file)));
   const fs::path result = file.parent_path() / (file.stem().string() + "." + hash + ".cache.msh");
   if (is_sound_cache(result)) return result;
   log::info("reading {} with gmsh", file.string());
   run_gmsh({"-0"}, file, false, result, "read");
   return result;
-}
-
-double MeshFacts::smallest_side() const { return dim == 2 ? std::min(size[0], size[1]) : size.minCoeff(); }
-double MeshFacts::largest_side() const { return size.maxCoeff(); }
-
-MeshFacts facts_of(const RawMesh& raw) {
-  MeshFacts facts;
-  facts.dim = raw.dim;
-  facts.cells = raw.cell_type.size();
-  if (raw.points.empty() || facts.cells == 0) return facts;
-  Vec3 low = raw.points.front(), high = low;
-  for (const Vec3& x : raw.points) low = low.cwiseMin(x), high = high.cwiseMax(x);
-  facts.size = high - low;
-  double volume = 1;
-  for (int a = 0; a < raw.dim; ++a) volume *= facts.size[a];
-  facts.mean_cell = std::pow(volume / double(facts.cells), 1.0 / raw.dim);
-  double shortest = std::numeric_limits<double>::infinity();
-  for (Index c = 0; c < Index(facts.cells); ++c) {
-    const auto points = raw.cell_points[c];
-    for (std::size_t i = 0; i < points.size(); ++i)
-      for (std::size_t j = i + 1; j < points.size(); ++j)
-        shortest = std::min(shortest, (raw.points[points[i]] - raw.points[points[j]]).squaredNorm());
-  }
-  facts.shortest_edge = std::sqrt(shortest);
-  return facts;
-}
-
-namespace {
-
-RawMesh read_raw(const std::filesystem::path& file, const MeshParameters& parameters) {
-  if (file.extension() != ".geo") return read_finished_mesh(file);
-  const GeoScript script = read_geo(file);
-  const bool is_solid =
-      !script.groups.at(3) || !script.groups.at(3)->empty();  // nothing: some name is computed
-  return read_msh(mesh_geo(file, is_solid ? 3 : 2, parameters));
-}
-
-}  // namespace
-
-MeshFacts facts_of_file(const std::filesystem::path& file, const MeshParameters& parameters, double scale) {
-  MeshFacts facts = facts_of(read_raw(file, parameters));
-  facts.size *= scale;
-  facts.shortest_edge *= scale;
-  facts.mean_cell *= scale;
-  return facts;
 }
 
 }  // namespace couplet::mesh

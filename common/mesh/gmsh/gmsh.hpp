@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/mesh/load.hpp"
+#include "common/mesh/distributed/mesh_block.hpp"
 
 namespace couplet::mesh {
 
@@ -25,27 +25,21 @@ std::filesystem::path convert_mesh(const std::filesystem::path& file);
 /// Whether the gmsh at hand was built with a library, "Med" or "Cgns". False where there is none.
 bool gmsh_has(const std::string& library);
 
-/// A mesh that is finished: .msh, .inp, or of another program. Throws Error.
-RawMesh read_finished_mesh(const std::filesystem::path& file);
-
-/// That, or the mesh that gmsh makes of a .geo with these parameters. Throws Error if it has not `dim` dimensions. On this rank
-/// alone.
-RawMesh read_mesh(const std::filesystem::path& file, int dim, const MeshParameters& parameters);
-
-/// What estimates before a run look at.
-struct MeshFacts {
-  int dim = 3;               ///< 2: cells in the plane only
-  Vec3 size = Vec3::Zero();  ///< of the box around the points [m]
-  double shortest_edge = 0;  ///< of any cell [m]
-  double mean_cell = 0;      ///< (volume of the box over the number of cells)^(1/dim) [m]
-  std::size_t cells = 0;
-  double smallest_side() const;  ///< of the box, in the directions that the mesh has [m]
-  double largest_side() const;
-};
-MeshFacts facts_of(const RawMesh& raw);
+/// This rank's block of a mesh in a .msh, .inp or .geo (meshed with these parameters) file, or of another program. Throws Error if
+/// it has not `dim` dimensions. Collective.
+MeshBlock read_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
+                    const MeshParameters& parameters = {});
 
 /// Of a .msh or .geo (meshed, with its cache), its lengths times `scale`: in three dimensions if it names a physical
 /// volume. Throws Error.
 MeshFacts facts_of_file(const std::filesystem::path& file, const MeshParameters& parameters, double scale);
+
+/// Formats that the Python module meshio reads for us: .med, .exo, .e, .ex2.
+bool is_read_by_meshio(const std::string& extension);
+
+/// Reads such a mesh: python3 runs meshio in a sandbox, as gmsh runs, and hands it over as an input deck (read_inp): groups of cells are
+/// zones, groups of faces and sets of nodes patches. Throws Error where python3 or the module is not there, with what to
+/// install, and with what meshio has said.
+RawMesh read_by_meshio(const std::filesystem::path& file);
 
 }  // namespace couplet::mesh

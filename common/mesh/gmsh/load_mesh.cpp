@@ -9,12 +9,11 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/log/log.hpp"
-#include "common/mesh/gmsh/barrier.hpp"
 #include "common/mesh/gmsh/geo_script.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
-#include "common/mesh/gmsh/meshio.hpp"
+#include "common/mesh/gmsh/sandbox.hpp"
 #include "common/mesh/load.hpp"
-#include "common/mesh/msh/read_msh.hpp"
+#include "common/mesh/readers/read_msh.hpp"
 
 namespace couplet::mesh {
 
@@ -35,6 +34,27 @@ RawMesh read_deck(const std::filesystem::path& file) {
 
 std::filesystem::path finished_msh(const std::filesystem::path& file) {
   return file.extension() == ".msh" ? file : convert_mesh(file);
+}
+
+/// This rank's block of a mesh; a .geo is meshed in `dim` dimensions. Collective.
+MeshBlock read_block(MPI_Comm comm, const std::filesystem::path& file, int dim,
+                     const MeshParameters& parameters) {
+  RawMesh deck;
+  std::string msh;  // empty: the mesh is a deck
+  int holders = 1;
+  on_root(comm, [&] {
+    if (file.extension() == ".geo")
+      msh = mesh_geo(file, dim, parameters);
+    else if (is_deck(file))
+      deck = read_deck(file);
+    else
+      msh = finished_msh(file);
+    if (!msh.empty() && std::filesystem::file_size(msh) >= bytes_of_large_msh)
+      holders = parallel::comm_size(comm);
+  });
+  parallel::broadcast(comm, msh);
+  MPI_Bcast(&holders, 1, MPI_INT, 0, comm);
+  return msh.empty() ? block_of(comm, deck) : read_msh_block(comm, msh, holders);
 }
 
 void check_file(const std::filesystem::path& file, const MeshParameters& parameters) {
@@ -74,16 +94,12 @@ void check_dimension(const std::filesystem::path& file, int found, GlobalIndex c
 
 }  // namespace
 
-RawMesh read_finished_mesh(const std::filesystem::path& file) {
-  return is_deck(file) ? read_deck(file) : read_msh(finished_msh(file));
-}
-
-RawMesh read_mesh(const std::filesystem::path& file, int dim, const MeshParameters& parameters) {
-  check_file(file, parameters);
-  RawMesh raw =
-      file.extension() == ".geo" ? read_msh(mesh_geo(file, dim, parameters)) : read_finished_mesh(file);
-  check_dimension(file, raw.dim, GlobalIndex(raw.cell_type.size()), dim);
-  return raw;
+MeshBlock read_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
+                    const MeshParameters& parameters) {
+  on_root(comm, [&] { check_file(file, parameters); });
+  MeshBlock block = read_block(comm, file, dim, parameters);
+  check_dimension(file, block.dim, block.cell_shares.n, dim);
+  return block;
 }
 
 LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
@@ -91,29 +107,22 @@ LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
                      const std::vector<std::array<std::string, 2>>& periodic,
                      const std::vector<std::vector<std::string>>& materials, bool find_wide_points,
                      double scale) {
-  RawMesh deck;
-  std::string msh;  // empty: the mesh is a deck
-  int holders = 1;
-  on_root(comm, [&] {
-    check_file(file, parameters);
-    if (file.extension() == ".geo")
-      msh = mesh_geo(file, dim, parameters);
-    else if (is_deck(file))
-      deck = read_deck(file);
-    else
-      msh = finished_msh(file);
-    if (!msh.empty() && std::filesystem::file_size(msh) >= bytes_of_large_msh)
-      holders = parallel::comm_size(comm);
-  });
-  parallel::broadcast(comm, msh);
-  MPI_Bcast(&holders, 1, MPI_INT, 0, comm);
-  MeshBlock block = msh.empty() ? block_of(comm, deck) : read_msh_block(comm, msh, holders);
-  deck = {};
-  check_dimension(file, block.dim, block.cell_shares.n, dim);
+  MeshBlock block = read_mesh(comm, file, dim, parameters);
   block.periodic = periodic;
   block.materials = materials;
   block.find_wide_points = find_wide_points;
   return load_block(comm, std::move(block), file, scale);
+}
+
+MeshFacts facts_of_file(const std::filesystem::path& file, const MeshParameters& parameters, double scale) {
+  int dim = 3;
+  if (file.extension() == ".geo") {
+    const auto volumes = read_geo(file).groups.at(3);
+    if (volumes && volumes->empty()) dim = 2;  // nothing: some name is computed
+  }
+  MeshFacts facts = facts_of(MPI_COMM_SELF, read_block(MPI_COMM_SELF, file, dim, parameters));
+  facts.scale(scale);
+  return facts;
 }
 
 namespace {
@@ -144,25 +153,6 @@ void check_counts(const std::filesystem::path& geo, const std::map<std::string, 
           "Curve): it must be {} above 0 and below 1e7, not {}.",
           name, geo.string(), count->second ? "a whole number" : "a number", value);
   }
-}
-
-/// Whether a .msh 4.1 of gmsh (ASCII) has a block of elements of this dimension.
-bool has_cells(const std::filesystem::path& mesh, int dim) {
-  std::ifstream in(mesh);
-  std::string line;
-  while (std::getline(in, line) && line != "$Elements") {
-  }
-  std::size_t blocks = 0, n = 0, ignored = 0;
-  in >> blocks >> ignored >> ignored >> ignored;
-  for (std::size_t b = 0; b < blocks && in; ++b) {
-    int of = 0, tag = 0, type = 0;
-    in >> of >> tag >> type >> n;
-    if (in && of == dim && n > 0) return true;
-    std::getline(in, line);
-    for (std::size_t i = 0; i < n && std::getline(in, line); ++i) {
-    }
-  }
-  return false;
 }
 
 /// gmsh calls it a success when it makes nothing, and when it makes points or curves alone.

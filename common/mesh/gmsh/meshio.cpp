@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/gmsh/meshio.hpp"
+#include "common/mesh/gmsh/gmsh.hpp"
 
 #include <algorithm>
 
 #include "common/base/error.hpp"
-#include "common/csv/line_reader.hpp"
+#include "common/csv/csv_reader.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/gmsh/sandbox.hpp"
 

@@ -21,7 +21,6 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/log/log.hpp"
-#include "common/mesh/gmsh/barrier.hpp"
 
 namespace couplet::mesh {
 namespace {
@@ -32,6 +31,12 @@ struct ChildProcess {
   std::filesystem::path folder;          ///< to work in; empty: as it is
   std::filesystem::path output;
   const Barrier* barrier = nullptr;  ///< around the program; nullptr: none
+
+  // Filled before the fork: between fork and exec only calls to the kernel are sound.
+  std::vector<char*> arguments{}, variables{};
+  rlim_t memory = 0;
+  pid_t parent = 0;
+  int failures = -1;  ///< a pipe that exec closes
 };
 
 constexpr rlim_t hours = 3600;
@@ -51,16 +56,6 @@ void limit(__rlimit_resource_t what, rlim_t most) {
   setrlimit(what, &now);
 }
 
-/// Everything that a child needs, made before the fork: between fork and exec only calls to the kernel are sound.
-struct Prepared {
-  std::vector<char*> arguments, environment;
-  std::string folder, output;
-  rlim_t memory = 0;
-  const Barrier* barrier = nullptr;
-  pid_t parent = 0;
-  int failures = -1;  // a pipe that exec closes
-};
-
 /// The step that failed goes to the parent as errno.
 [[noreturn]] void fail(int pipe) {
   const int error = errno;
@@ -68,7 +63,7 @@ struct Prepared {
   _exit(127);
 }
 
-[[noreturn]] void be_child(const Prepared& p) {
+[[noreturn]] void be_child(const ChildProcess& p) {
   // This is of the thread that forked, not of the process: it waits, and so it is there as long as the child.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != p.parent) _exit(127);
@@ -90,19 +85,15 @@ struct Prepared {
   // Neither files nor sockets of this program. The pipe closes itself.
   for (int fd = 3; fd < 4096; ++fd)
     if (fd != p.failures) close(fd);
-  execve(p.arguments[0], p.arguments.data(), p.environment.data());
+  execve(p.arguments[0], p.arguments.data(), p.variables.data());
   fail(p.failures);
 }
 
 /// Starts it and waits. It gets SIGKILL when the thread that called this ends, so that nothing is left behind by a program
 /// that is killed. Throws Error if it cannot be started.
-ProgramEnd run_child(const ChildProcess& child) {
-  Prepared p;
-  p.arguments = pointers(child.command);
-  p.environment = pointers(child.environment);
-  p.folder = child.folder.string();
-  p.output = child.output.string();
-  p.barrier = child.barrier;
+ProgramEnd run_child(ChildProcess p) {
+  p.arguments = pointers(p.command);
+  p.variables = pointers(p.environment);
   p.memory = rlim_t(sysconf(_SC_PHYS_PAGES)) * rlim_t(sysconf(_SC_PAGESIZE));
   p.parent = getpid();
   std::array<int, 2> pipe{};
@@ -115,11 +106,11 @@ ProgramEnd run_child(const ChildProcess& child) {
   int error = 0;
   const bool failed = id > 0 && read(pipe[0], &error, sizeof error) == sizeof error;
   close(pipe[0]);
-  if (id < 0) throw Error("Cannot start the program '{}': {}.", child.command[0], std::strerror(fork_error));
+  if (id < 0) throw Error("Cannot start the program '{}': {}.", p.command[0], std::strerror(fork_error));
   int status = 0;
   while (waitpid(id, &status, 0) < 0 && errno == EINTR) {
   }
-  if (failed) throw Error("Cannot start the program '{}': {}.", child.command[0], std::strerror(error));
+  if (failed) throw Error("Cannot start the program '{}': {}.", p.command[0], std::strerror(error));
   if (WIFEXITED(status)) return {WEXITSTATUS(status), 0};
   return {-1, WIFSIGNALED(status) ? WTERMSIG(status) : 0};
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bytes and lines: gzip and its limits, what is no text.
-#include "common/csv/line_reader.hpp"
+#include "common/csv/csv_reader.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

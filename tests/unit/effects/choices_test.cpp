@@ -169,14 +169,15 @@ TEST(AutoSolid, scene_15_damping_asks_for_motion_and_a_plane_mesh_for_two_dimens
 // -- meshes ---------------------------------------------------------------------------------------------------
 TEST(MeshFacts, are_those_of_a_box) {
   const RawMesh raw = make_box(BoxCells::hexahedra, {4, 2, 1}, Vec3::Zero(), Vec3(2, 1, 1));
-  const MeshFacts facts = facts_of(raw);
+  const MeshFacts facts = facts_of(MPI_COMM_SELF, block_of(MPI_COMM_SELF, raw));
   EXPECT_EQ(facts.dim, 3);
   EXPECT_EQ(facts.cells, 8u);
   EXPECT_NEAR((facts.size - Vec3(2, 1, 1)).norm(), 0, 1e-14);
   EXPECT_DOUBLE_EQ(facts.shortest_edge, 0.5);
   EXPECT_NEAR(facts.mean_cell, std::cbrt(0.25), 1e-14);
   EXPECT_DOUBLE_EQ(facts.smallest_side(), 1);
-  EXPECT_EQ(facts_of(make_box(BoxCells::triangles, {4, 2, 1}, Vec3::Zero(), Vec3(2, 1, 0))).dim, 2);
+  const RawMesh flat = make_box(BoxCells::triangles, {4, 2, 1}, Vec3::Zero(), Vec3(2, 1, 0));
+  EXPECT_EQ(facts_of(MPI_COMM_SELF, block_of(MPI_COMM_SELF, flat)).dim, 2);
 }
 
 }  // namespace

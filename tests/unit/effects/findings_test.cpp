@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "common/diagnostics/diagnostics.hpp"
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "fluid_solver/diagnostics/effects.hpp"
 

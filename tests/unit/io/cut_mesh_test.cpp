@@ -5,9 +5,9 @@
 #include <fstream>
 
 #include "common/base/error.hpp"
-#include "common/io/cut/cut_mesh.hpp"
+#include "common/io/cut_mesh.hpp"
 #include "common/io/hdf5.hpp"
-#include "common/mesh/order/entries.hpp"
+#include "common/mesh/entries.hpp"
 #include "common/parallel/collective.hpp"
 #include "scratch.hpp"
 

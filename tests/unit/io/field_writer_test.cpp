@@ -6,7 +6,7 @@
 
 #include "common/base/error.hpp"
 #include "common/io/fields/field_writer.hpp"
-#include "common/io/hdf5_reader.hpp"
+#include "common/io/hdf5.hpp"
 #include "common/mesh/load.hpp"
 #include "tests/support/world.hpp"
 #include "tests/unit/io/scratch.hpp"

@@ -8,7 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/io/fields/surface_series.hpp"
-#include "common/io/hdf5_reader.hpp"
+#include "common/io/hdf5.hpp"
 #include "common/mesh/load.hpp"
 #include "tests/support/world.hpp"
 #include "tests/unit/io/scratch.hpp"

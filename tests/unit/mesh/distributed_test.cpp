@@ -9,9 +9,8 @@
 #include <tuple>
 
 #include "common/base/error.hpp"
-#include "common/mesh/distributed/box_block.hpp"
+#include "common/mesh/entries.hpp"
 #include "common/mesh/load.hpp"
-#include "common/mesh/order/entries.hpp"
 #include "common/parallel/collective.hpp"
 #include "support.hpp"
 

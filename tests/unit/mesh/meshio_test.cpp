@@ -28,11 +28,11 @@ TEST(Meshio, med_groups_are_zones_and_patches) {
   if (gmsh_has("Med")) GTEST_SKIP() << "gmsh reads it itself";
   const auto file = test::data / "groups.med";
   if (!has_module("meshio, numpy, h5py")) {
-    EXPECT_THAT(test::error_of([&] { read_finished_mesh(file); }),
+    EXPECT_THAT(test::error_of([&] { read_mesh(MPI_COMM_SELF, file, 3); }),
                 AllOf(HasSubstr("groups.med"), HasSubstr("apt install python3-meshio python3-h5py")));
     return;
   }
-  const RawMesh raw = read_finished_mesh(file);
+  const MeshBlock raw = read_mesh(MPI_COMM_SELF, file, 3);
   EXPECT_THAT(raw.zones, ElementsAre("lower", "upper"));
   EXPECT_THAT(raw.patches, ElementsAre("bottom", "top", "side_s"));
   EXPECT_EQ(raw.points.size(), 12u);
@@ -42,11 +42,11 @@ TEST(Meshio, med_groups_are_zones_and_patches) {
 TEST(Meshio, exodus_sets_of_nodes_are_patches) {
   const auto file = test::data / "groups.exo";
   if (!has_module("meshio, numpy, netCDF4")) {
-    EXPECT_THAT(test::error_of([&] { read_finished_mesh(file); }),
+    EXPECT_THAT(test::error_of([&] { read_mesh(MPI_COMM_SELF, file, 3); }),
                 AllOf(HasSubstr("groups.exo"), HasSubstr("apt install python3-meshio python3-netcdf4")));
     return;
   }
-  const RawMesh raw = read_finished_mesh(file);
+  const MeshBlock raw = read_mesh(MPI_COMM_SELF, file, 3);
   EXPECT_THAT(raw.patches, ElementsAre("bottom", "top", "rest"));
   EXPECT_EQ(distribute(MPI_COMM_SELF, raw).mesh.cells.n_global(), 2);
 }
@@ -55,7 +55,7 @@ TEST(Meshio, what_it_cannot_read_is_told_with_its_words) {
   if (!has_module("meshio, numpy, netCDF4")) GTEST_SKIP() << "meshio is not installed";
   const auto file = std::filesystem::temp_directory_path() / fmt::format("couplet-broken-{}.exo", ::getpid());
   std::ofstream(file) << "no mesh";
-  EXPECT_THAT(test::error_of([&] { read_finished_mesh(file); }), HasSubstr("meshio could not read"));
+  EXPECT_THAT(test::error_of([&] { read_mesh(MPI_COMM_SELF, file, 3); }), HasSubstr("meshio could not read"));
   std::filesystem::remove(file);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/msh/read_msh.hpp"
+#include "common/mesh/readers/read_msh.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

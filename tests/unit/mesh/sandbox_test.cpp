@@ -6,7 +6,6 @@
 #include <csignal>
 #include <cstdlib>
 
-#include "common/mesh/gmsh/barrier.hpp"
 #include "support.hpp"
 
 namespace couplet::sandbox_test {

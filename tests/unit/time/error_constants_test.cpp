@@ -18,7 +18,7 @@ double grown(const TimeSchemeParameters& scheme, double dt, int steps) {
   for (int n = 0; n < steps; ++n) {
     const double start = u;
     double old = before;
-    for (const Stage& s : first_order_stages(scheme, dt, {n + 1, dt})) {
+    for (const Stage& s : second_order_stages(scheme, dt, {n + 1, dt})) {
       if (s.start > 0) old = start;
       const double x = -of(s.rate, 0, u, old) / (s.rate.x - 1);
       u = of(s.end_value, x, u, old);

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "common/io/archive.hpp"
+#include "common/io/checkpoint.hpp"
 #include "tests/verification/heat/support.hpp"
 
 namespace couplet::testing::errors_test {

@@ -8,7 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/config/load.hpp"
-#include "common/modes/modes_file.hpp"
+#include "common/modes/modal_model.hpp"
 #include "plate_modal/model/build_model.hpp"
 #include "plate_modal/structure.hpp"
 #include "tests/support/observed_run.hpp"

@@ -214,7 +214,7 @@ TEST(TimeSchemes, have_their_order_for_first_derivatives) {
     double y = 1, old = 0;
     for (int i = 0; i < n; ++i) {
       const double start = y;
-      for (const Stage& s : first_order_stages({scheme}, dt, {i, dt})) {
+      for (const Stage& s : second_order_stages({scheme}, dt, {i, dt})) {
         const double before = s.start > 0 ? start : old;
         const double load = std::sin(i * dt + s.start + s.place * s.dt);
         const double x = (load - s.rate.u * y - s.rate.u_old * before) / (s.rate.x + 1);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/order/entries.hpp"
+#include "common/mesh/entries.hpp"
 
 #include <algorithm>
 #include <numeric>
 
 #include "common/base/error.hpp"
-#include "common/mesh/cell_shapes.hpp"
+#include "common/mesh/topology.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::mesh {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/msh/msh_cursor.hpp"
+#include "common/mesh/readers/read_msh.hpp"
 
 #include <fcntl.h>
 #include <sys/mman.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/inp/inp_deck.hpp"
+#include "common/mesh/readers/inp_deck.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -13,31 +13,16 @@
 namespace couplet::mesh {
 namespace {
 
-constexpr InpShape triangle{CellType::triangle, 2, 3, 3, {{{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 0, -1, -1}}}};
-constexpr InpShape quadrilateral{
-    CellType::quadrilateral, 2, 4, 4, {{{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 3, -1, -1}, {3, 0, -1, -1}}}};
-constexpr InpShape tetrahedron{
-    CellType::tetrahedron, 3, 4, 4, {{{0, 1, 2, -1}, {0, 3, 1, -1}, {1, 3, 2, -1}, {2, 3, 0, -1}}}};
-constexpr InpShape hexahedron{
-    CellType::hexahedron,
-    3,
-    8,
-    6,
-    {{{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1}, {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}}}};
-constexpr InpShape prism{
-    CellType::prism, 3, 6, 5, {{{0, 1, 2, -1}, {3, 5, 4, -1}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}}}};
-constexpr InpShape pyramid{
-    CellType::pyramid, 3, 5, 5, {{{0, 1, 2, 3}, {0, 4, 1, -1}, {1, 4, 2, -1}, {2, 4, 3, -1}, {3, 4, 0, -1}}}};
-
 struct Row {
   std::string_view family;
   int n_nodes;
-  const InpShape* shape;
+  CellType cell;
 };
-constexpr Row rows[] = {{"C3D", 4, &tetrahedron},   {"C3D", 10, &tetrahedron}, {"C3D", 8, &hexahedron},
-                        {"C3D", 20, &hexahedron},   {"C3D", 6, &prism},        {"C3D", 15, &prism},
-                        {"C3D", 5, &pyramid},       {"CPS", 3, &triangle},     {"CPS", 6, &triangle},
-                        {"CPS", 4, &quadrilateral}, {"CPS", 8, &quadrilateral}};
+constexpr Row rows[] = {
+    {"C3D", 4, CellType::tetrahedron},   {"C3D", 10, CellType::tetrahedron}, {"C3D", 8, CellType::hexahedron},
+    {"C3D", 20, CellType::hexahedron},   {"C3D", 6, CellType::prism},        {"C3D", 15, CellType::prism},
+    {"C3D", 5, CellType::pyramid},       {"CPS", 3, CellType::triangle},     {"CPS", 6, CellType::triangle},
+    {"CPS", 4, CellType::quadrilateral}, {"CPS", 8, CellType::quadrilateral}};
 
 // Bars and beams with their numbers of nodes; 0: what has no part in a mesh.
 constexpr std::pair<std::string_view, int> others[] = {
@@ -48,7 +33,7 @@ constexpr std::pair<std::string_view, int> others[] = {
 /// `name` in capitals.
 InpType inp_type(std::string_view name) {
   for (const auto& [other, n] : others)
-    if (name == other) return {n > 0 ? InpType::Use::edge : InpType::Use::nothing, nullptr, n};
+    if (name == other) return {n > 0 ? InpType::Use::edge : InpType::Use::nothing, {}, n};
   if (name.size() < 4) return {};
   const std::string_view family = name.starts_with("CPE") ? "CPS" : name.substr(0, 3);
   std::string_view rest = name.substr(3);
@@ -58,7 +43,7 @@ InpType inp_type(std::string_view name) {
   // The letters that follow say how they are integrated: reduced, hybrid, incompatible modes, modified.
   if (rest.find_first_not_of("RHIMS") != std::string_view::npos) return {};
   for (const Row& row : rows)
-    if (row.family == family && row.n_nodes == n) return {InpType::Use::cell, row.shape, n};
+    if (row.family == family && row.n_nodes == n) return {InpType::Use::cell, row.cell, n};
   return {};
 }
 
@@ -200,7 +185,7 @@ class DeckReader {
     const std::string* own_set = k.find("ELSET");
     if (own_set) deck_.element_sets.at(*own_set);
     deck_.elements.groups.push_back(own_set ? deck_.element_sets.find(*own_set)->name : "");
-    const std::size_t n_kept = type.shape ? std::size_t(type.shape->n_corners) : 2;
+    const std::size_t n_kept = type.is_cell() ? std::size_t(type.shape().n_points) : 2;
     while (lines_.next() && !lines_.is_keyword()) {
       const std::uint64_t mark = lines_.mark();
       lines_.identifiers(std::size_t(type.n_nodes) + 1, numbers_);
@@ -216,7 +201,7 @@ class DeckReader {
       deck_.elements.all.push_back(
           {numbers_[0], mark, type, deck_.elements.nodes.size(), deck_.elements.groups.size() - 1});
       deck_.elements.nodes.insert(deck_.elements.nodes.end(), corners.begin(), corners.end());
-      if (type.shape && type.n_nodes > type.shape->n_corners) ++deck_.second_order;
+      if (type.is_cell() && type.n_nodes > type.shape().n_points) ++deck_.second_order;
       if (own_set) add(deck_.element_sets.at(*own_set), {numbers_[0], numbers_[0], 1});
     }
     return lines_.is_keyword();

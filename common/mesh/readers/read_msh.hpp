@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "common/base/error.hpp"
+#include "common/mesh/distributed/mesh_block.hpp"
 #include "common/mesh/mesh.hpp"
 
 namespace couplet::mesh {
@@ -76,5 +77,16 @@ class MshCursor {
   std::size_t at_ = 0, given_back_ = 0;
   std::string section_;
 };
+
+/// This rank's block of the mesh in a .msh, which the first `holders` ranks read; the order is that of read_msh(). Throws Error
+/// with file and line. Collective.
+MeshBlock read_msh_block(MPI_Comm comm, const std::filesystem::path& file, int holders);
+
+/// Tells whether a .msh has elements of this dimension. False for a file without any, or one that is none.
+bool has_cells(const std::filesystem::path& file, int dim);
+
+/// The elementary entity (gmsh's tag of a curve or surface of the drawing) of each boundary element that read_msh() gives
+/// for this file, in the order of RawMesh::boundary_points; 0 where the file names none. Throws as read_msh().
+std::vector<int> read_boundary_entities(const std::filesystem::path& file);
 
 }  // namespace couplet::mesh

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/io/cut/cut_mesh.hpp"
+#include "common/io/cut_mesh.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +11,8 @@
 
 #include "common/base/error.hpp"
 #include "common/io/hdf5.hpp"
-#include "common/io/hdf5_reader.hpp"
-#include "common/mesh/cell_shapes.hpp"
 #include "common/mesh/load.hpp"
+#include "common/mesh/topology.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::io {
@@ -80,30 +79,6 @@ class CutMeshWriter {
   MPI_Comm comm_;
   hdf5::Handle& file_;
 };
-
-/// Gives the size of the box around all points. Collective.
-Vec3 size_of(MPI_Comm comm, const std::vector<Vec3>& points) {
-  Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
-  for (const Vec3& x : points) low = low.cwiseMin(x), high = high.cwiseMax(x);
-  for (int a = 0; a < 3; ++a) low[a] = parallel::min(comm, low[a]), high[a] = parallel::max(comm, high[a]);
-  return high - low;
-}
-
-/// Gives the shortest edge of all cells. Collective.
-double shortest_edge(MPI_Comm comm, const mesh::MeshBlock& block) {
-  const mesh::PointNumbers numbers(block.cells.points);
-  const std::vector<Vec3> x =
-      mesh::fetch(comm, block.point_shares, std::span<const Vec3>(block.points), numbers.numbers());
-  double shortest = 1e300;
-  for (Index c = 0; c < block.cells.size(); ++c) {
-    const auto points = block.cells.points_of(c);
-    for (std::size_t i = 0; i < points.size(); ++i)
-      for (std::size_t j = i + 1; j < points.size(); ++j)
-        shortest =
-            std::min(shortest, (x[numbers.place(points[i])] - x[numbers.place(points[j])]).squaredNorm());
-  }
-  return std::sqrt(parallel::min(comm, shortest));
-}
 
 void write_cells(MPI_Comm comm, CutMeshWriter& to, const mesh::CellList& cells) {
   std::vector<std::int64_t> numbers;
@@ -275,9 +250,9 @@ void write_cut_mesh(MPI_Comm comm, const mesh::MeshBlock& block, const std::file
   CutMeshWriter to(comm, out);
   hdf5::write_attribute(out, cut::version_name, cut::version);
   hdf5::write_attribute(out, cut::dimension_name, block.dim);
-  const Vec3 size = size_of(comm, block.points);
-  for (int a = 0; a < 3; ++a) hdf5::write_attribute(out, fmt::format("size-{}", "xyz"[a]), size[a]);
-  hdf5::write_attribute(out, cut::edge_name, shortest_edge(comm, block));
+  const mesh::MeshFacts facts = mesh::facts_of(comm, block);
+  for (int a = 0; a < 3; ++a) hdf5::write_attribute(out, fmt::format("size-{}", "xyz"[a]), facts.size[a]);
+  hdf5::write_attribute(out, cut::edge_name, facts.shortest_edge);
   to.names("zone", block.zones);
   to.names("patch", block.patches);
   static_assert(sizeof(Vec3) == 3 * sizeof(double));
@@ -286,7 +261,7 @@ void write_cut_mesh(MPI_Comm comm, const mesh::MeshBlock& block, const std::file
   write_cells(comm, to, block.cells);
   write_boundary(to, block);
   hdf5::close_file(out);
-  mesh::on_root(comm, [&] { std::filesystem::rename(part, file); });
+  parallel::on_root(comm, [&] { std::filesystem::rename(part, file); });
 }
 
 bool is_cut_mesh(const std::filesystem::path& file) { return file.extension() == ".h5"; }
@@ -294,7 +269,7 @@ bool is_cut_mesh(const std::filesystem::path& file) { return file.extension() ==
 mesh::MeshBlock read_cut_mesh(MPI_Comm comm, const std::filesystem::path& file) {
   mesh::MeshBlock block;
   std::vector<CutMeshBlock::Digest> digests;
-  mesh::on_all(comm, [&] {
+  parallel::on_all(comm, [&] {
     CutMeshBlock reader(file, parallel::comm_rank(comm), parallel::comm_size(comm));
     block = reader.read();
     digests = reader.digests;
@@ -309,14 +284,15 @@ mesh::MeshBlock read_cut_mesh(MPI_Comm comm, const std::filesystem::path& file) 
   return block;
 }
 
-CutMeshFacts read_cut_mesh_facts(const std::filesystem::path& file) {
+mesh::MeshFacts read_cut_mesh_facts(const std::filesystem::path& file) {
   const hdf5::Reader in = open_cut_mesh(file);
-  CutMeshFacts facts;
+  mesh::MeshFacts facts;
   facts.dim = whole_number(in, cut::dimension_name, 3) == 2 ? 2 : 3;
-  facts.cells = GlobalIndex(in.rows(cut::kind_table, 1));
+  facts.cells = in.rows(cut::kind_table, 1);
   for (int a = 0; a < 3; ++a) facts.size[a] = in.number("/", fmt::format("size-{}", "xyz"[a]));
   facts.shortest_edge = in.number("/", cut::edge_name);
   facts.patches = names_of(in, "patch");
+  facts.find_mean_cell();
   return facts;
 }
 
@@ -345,15 +321,8 @@ mesh::LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int
 mesh::MeshFacts facts_of_file(const std::filesystem::path& file, const mesh::MeshParameters& parameters,
                               double scale) {
   if (!is_cut_mesh(file)) return mesh::facts_of_file(file, parameters, scale);
-  const CutMeshFacts cut = read_cut_mesh_facts(file);
-  mesh::MeshFacts facts;
-  facts.dim = cut.dim;
-  facts.cells = std::size_t(cut.cells);
-  facts.size = cut.size * scale;
-  facts.shortest_edge = cut.shortest_edge * scale;
-  double volume = 1;
-  for (int a = 0; a < cut.dim; ++a) volume *= facts.size[a];
-  facts.mean_cell = std::pow(volume / double(std::max<std::size_t>(1, facts.cells)), 1.0 / cut.dim);
+  mesh::MeshFacts facts = read_cut_mesh_facts(file);
+  facts.scale(scale);
   return facts;
 }
 

@@ -9,8 +9,8 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/log/log.hpp"
-#include "common/mesh/inp/inp_deck.hpp"
 #include "common/mesh/load.hpp"
+#include "common/mesh/readers/inp_deck.hpp"
 #include "common/mesh/topology.hpp"
 
 namespace couplet::mesh {
@@ -25,28 +25,28 @@ struct InpBody {
   std::vector<const InpElements::Element*> elements;  ///< per cell
   std::int64_t work = 300000000;                      ///< members of ranges that may still be looked at
 
-  /// Calls use(number in `index`) for the members that are there. Throws Error where a crafted deck has too many.
+  /// Calls use(number in `index`) for the members that are there, each as often as it is named. Throws Error where a crafted
+  /// deck has too many.
   template <class Use>
   void visit(const std::vector<InpRange>& members, const std::unordered_map<std::int64_t, Index>& index,
              const Use& use) {
-    if (!for_each_member(members, index, work, use))
-      throw Error("{}: the sets of this deck have too many members.", lines.place());
+    for (const InpRange& r : members) {
+      work -= std::min<std::int64_t>((r.last - r.first) / r.step, std::ssize(index)) + 1;
+      if (work < 0) throw Error("{}: the sets of this deck have too many members.", lines.place());
+      if (std::size_t((r.last - r.first) / r.step) < index.size()) {
+        for (std::int64_t id = r.first; id <= r.last; id += r.step)
+          if (const auto found = index.find(id); found != index.end()) use(found->second);
+      } else {
+        for (const auto& [id, value] : index)
+          if (id >= r.first && id <= r.last && (id - r.first) % r.step == 0) use(value);
+      }
+    }
   }
 };
 
-/// Numbers of names whose case does not count.
-class InpNames {
- public:
-  /// Appended to `names` where it is new.
-  int number_of(std::vector<std::string>& names, const std::string& name);
-  bool contains(const std::string& name) const { return numbers_.contains(upper(name)); }
-
- private:
-  std::map<std::string, int> numbers_;
-};
-
-int InpNames::number_of(std::vector<std::string>& names, const std::string& name) {
-  const auto [found, is_new] = numbers_.try_emplace(upper(name), static_cast<int>(names.size()));
+/// Number of a name, whose case does not count; appended to `names` where it is new.
+int number_in(std::vector<std::string>& names, std::map<std::string, int>& numbers, const std::string& name) {
+  const auto [found, is_new] = numbers.try_emplace(upper(name), static_cast<int>(names.size()));
   if (is_new) names.push_back(name);
   return found->second;
 }
@@ -63,6 +63,8 @@ Corners key_of(std::span<const Index> points) {
   return key;
 }
 
+/// Gives every boundary face of the cells its patch: by *SURFACE, by elements of one dimension less with an ELSET, by the smallest
+/// NSET that has all its nodes; the patch "rest" is what is left.
 class InpPatches {
  public:
   explicit InpPatches(InpBody& body)
@@ -76,6 +78,7 @@ class InpPatches {
     std::ranges::sort(faces_);
   }
 
+  /// Returns how many faces of surfaces lie between two cells. Throws Error.
   std::size_t name() {
     for (const InpSurface& surface : deck_.surfaces) take_surface(surface);
     take_flat_elements();
@@ -85,7 +88,7 @@ class InpPatches {
   }
 
  private:
-  int number_of(const std::string& name) { return names_.number_of(raw_.patches, name); }
+  int number_of(const std::string& name) { return number_in(raw_.patches, numbers_, name); }
 
   /// Into outer_; none: it lies between two cells, or is a face of no cell.
   Index outer_face(std::span<const Index> points) const {
@@ -113,7 +116,7 @@ class InpPatches {
     std::vector<Index> points;
     for (const InpSurface::Part& part : surface.parts)
       body_.visit(part.elements, body_.cell_of_element, [&](Index cell) {
-        const InpShape& shape = *body_.elements[std::size_t(cell)]->type.shape;
+        const CellShape& shape = shape_of(raw_.cell_type[std::size_t(cell)]);
         if (part.face >= shape.n_faces)
           throw Error("{}: surface '{}': element {} has faces S1 to S{} only.",
                       body_.lines.place_of(part.mark), surface.name, body_.elements[std::size_t(cell)]->id,
@@ -136,8 +139,8 @@ class InpPatches {
     std::unordered_map<std::int64_t, Index> face_of_element;
     std::vector<Index> points;
     for (const auto& e : deck_.elements.all) {
-      const int corners = e.type.use == InpType::Use::edge ? 2 : e.type.shape->n_corners;
-      if ((e.type.use == InpType::Use::edge ? 1 : e.type.shape->dim) != raw_.dim - 1) continue;
+      const int corners = e.type.is_cell() ? e.type.shape().n_points : 2;
+      if ((e.type.is_cell() ? e.type.shape().dim : 1) != raw_.dim - 1) continue;
       points.clear();
       for (int i = 0; i < corners; ++i) {
         const auto found = deck_.point_of_node.find(deck_.elements.nodes[e.first_node + std::size_t(i)]);
@@ -172,7 +175,8 @@ class InpPatches {
         n += seen[std::size_t(p)] != static_cast<Index>(s);
         seen[std::size_t(p)] = static_cast<Index>(s);
       });
-      if (n >= 2 && n < raw_.points.size() && !names_.contains(set.name)) by_size.emplace_back(n, &set);
+      if (n >= 2 && n < raw_.points.size() && !numbers_.contains(upper(set.name)))
+        by_size.emplace_back(n, &set);
     }
     std::ranges::stable_sort(by_size, {}, &std::pair<std::size_t, const InpSet*>::first);
     for (const auto& [n, set] : by_size) take_nodes(set->members, number_of(set->name), false);
@@ -180,7 +184,10 @@ class InpPatches {
 
   /// The faces all of whose points are in this set.
   void take_nodes(const std::vector<InpRange>& members, int patch, bool is_surface) {
-    if (faces_of_point_.offset.size() == 1) find_faces_of_points();
+    if (marked_.empty()) {
+      marked_.assign(raw_.points.size(), none);
+      faces_of_point_ = transpose(outer_, 0, static_cast<Index>(raw_.points.size()));
+    }
     std::vector<Index> points;
     body_.visit(members, deck_.point_of_node, [&](Index p) {
       if (marked_[std::size_t(p)] != patch) points.push_back(p);
@@ -192,18 +199,6 @@ class InpPatches {
             std::ranges::all_of(outer_[f], [&](Index q) { return marked_[std::size_t(q)] == patch; });
         if (is_whole && (is_surface || patch_of_face_[std::size_t(f)] == none)) assign(f, patch);
       }
-  }
-
-  void find_faces_of_points() {
-    marked_.assign(raw_.points.size(), none);
-    std::vector<Index>& first = faces_of_point_.offset;
-    first.assign(raw_.points.size() + 1, 0);
-    for (const Index p : outer_.index) ++first[std::size_t(p) + 1];
-    for (std::size_t p = 1; p < first.size(); ++p) first[p] += first[p - 1];
-    faces_of_point_.index.resize(outer_.index.size());
-    std::vector<Index> next(first.begin(), first.end() - 1);
-    for (Index f = 0; f < outer_.size(); ++f)
-      for (const Index p : outer_[f]) faces_of_point_.index[std::size_t(next[std::size_t(p)]++)] = f;
   }
 
   /// Patches without a face are left out.
@@ -227,7 +222,7 @@ class InpPatches {
   InpBody& body_;
   InpDeck& deck_;
   RawMesh& raw_;
-  InpNames names_;
+  std::map<std::string, int> numbers_;  // of patches, by their names in capitals
   Csr outer_;
   std::vector<std::pair<Corners, Index>> faces_;  // outer_ by its points, ascending
   std::vector<int> patch_of_face_;
@@ -235,11 +230,6 @@ class InpPatches {
   std::vector<int> marked_;  // per point: the patch whose points were marked last
   std::size_t inner_ = 0;
 };
-
-/// Gives every boundary face of the cells its patch: by *SURFACE, by elements of one dimension less with an ELSET, by the smallest
-/// NSET that has all its nodes; the patch "rest" is what is left. Returns how many faces of surfaces lie between two cells.
-/// Throws Error.
-std::size_t name_patches(InpBody& body) { return InpPatches(body).name(); }
 
 constexpr std::size_t most_words = 20;  // in a message
 
@@ -251,14 +241,14 @@ class InpMesh {
   RawMesh make() {
     raw_.dim = 2;
     for (const auto& e : deck_.elements.all)
-      if (e.type.use == InpType::Use::cell && e.type.shape->dim == 3) raw_.dim = 3;
+      if (e.type.is_cell() && e.type.shape().dim == 3) raw_.dim = 3;
     raw_.points = std::move(deck_.points);
     make_cells();
     if (raw_.cell_type.empty())
       throw Error("{}: the deck has no solid elements (C3D4, C3D8, CPS4, ...).", lines_.name());
     drop_unused();
     find_zones();
-    report(name_patches(body_));
+    report(InpPatches(body_).name());
     return std::move(raw_);
   }
 
@@ -272,7 +262,7 @@ class InpMesh {
   }
 
   bool is_cell(const InpElements::Element& e) const {
-    return e.type.use == InpType::Use::cell && e.type.shape->dim == raw_.dim;
+    return e.type.is_cell() && e.type.shape().dim == raw_.dim;
   }
 
   void make_cells() {
@@ -280,11 +270,11 @@ class InpMesh {
     for (const auto& e : deck_.elements.all) {
       if (!is_cell(e)) continue;
       points.clear();
-      for (int i = 0; i < e.type.shape->n_corners; ++i)
+      for (int i = 0; i < e.type.shape().n_points; ++i)
         points.push_back(point_of(e, deck_.elements.nodes[e.first_node + std::size_t(i)]));
       if (!body_.cell_of_element.emplace(e.id, static_cast<Index>(raw_.cell_type.size())).second)
         throw Error("{}: element {} is defined twice.", lines_.place_of(e.mark), e.id);
-      raw_.cell_type.push_back(e.type.shape->cell);
+      raw_.cell_type.push_back(e.type.cell);
       raw_.cell_points.push_row(points);
       body_.elements.push_back(&e);
     }
@@ -310,7 +300,7 @@ class InpMesh {
   void find_zones() {
     raw_.cell_zone.assign(raw_.cell_type.size(), -1);
     for (const auto& [name, members] : deck_.sections) {
-      const int zone = zones_.number_of(raw_.zones, name);
+      const int zone = number_in(raw_.zones, zones_, name);
       body_.visit(members, body_.cell_of_element, [&](Index cell) {
         int& of_cell = raw_.cell_zone[std::size_t(cell)];
         if (of_cell >= 0 && of_cell != zone)
@@ -323,7 +313,7 @@ class InpMesh {
     for (std::size_t c = 0; c < raw_.cell_zone.size(); ++c) {
       if (raw_.cell_zone[c] >= 0) continue;
       const std::string& set = deck_.elements.groups[body_.elements[c]->group];
-      raw_.cell_zone[c] = zones_.number_of(raw_.zones, set.empty() ? "default" : set);
+      raw_.cell_zone[c] = number_in(raw_.zones, zones_, set.empty() ? "default" : set);
     }
   }
 
@@ -347,7 +337,7 @@ class InpMesh {
   InpBody body_;
   InpDeck& deck_ = body_.deck;
   RawMesh& raw_ = body_.raw;
-  InpNames zones_;
+  std::map<std::string, int> zones_;  // numbers by their names in capitals
 };
 
 }  // namespace

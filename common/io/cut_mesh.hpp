@@ -11,16 +11,7 @@
 
 namespace couplet::io {
 
-/// What a cut mesh tells of itself without being read.
-struct CutMeshFacts {
-  int dim = 3;
-  GlobalIndex cells = 0;
-  Vec3 size = Vec3::Zero();  ///< of the box around its points [m]
-  double shortest_edge = 0;  ///< of a cell, diagonals included [m]
-  std::vector<std::string> patches;
-};
-
-/// Whether the name says so: it ends in .h5.
+/// Tells by the name, which ends in .h5.
 bool is_cut_mesh(const std::filesystem::path& file);
 
 /// Writes the blocks of a mesh into one HDF5 file, under another name until it is complete; see docs/formats.md. Points
@@ -31,8 +22,8 @@ void write_cut_mesh(MPI_Comm comm, const mesh::MeshBlock& block, const std::file
 /// damaged or of another version. Collective.
 mesh::MeshBlock read_cut_mesh(MPI_Comm comm, const std::filesystem::path& file);
 
-/// On this rank alone.
-CutMeshFacts read_cut_mesh_facts(const std::filesystem::path& file);
+/// Facts that are written in the file. On this rank alone.
+mesh::MeshFacts read_cut_mesh_facts(const std::filesystem::path& file);
 
 /// As mesh::load_mesh(), of a cut mesh (.h5), too, of which no rank ever has the whole. Collective.
 mesh::LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
@@ -41,7 +32,7 @@ mesh::LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int
                            const std::vector<std::vector<std::string>>& materials = {},
                            bool find_wide_points = false, double scale = 1);
 
-/// As mesh::facts_of_file(), of a cut mesh, too, which has them written in it.
+/// As mesh::facts_of_file(), of a cut mesh, too.
 mesh::MeshFacts facts_of_file(const std::filesystem::path& file, const mesh::MeshParameters& parameters,
                               double scale);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/msh/read_msh.hpp"
+#include "common/mesh/readers/read_msh.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,6 @@
 #include <map>
 
 #include "common/mesh/load.hpp"
-#include "common/mesh/msh/msh_cursor.hpp"
 
 namespace couplet::mesh {
 namespace {
@@ -139,8 +138,12 @@ class MshReader {
       in_.end_section();
     }
     if (!has_nodes || !has_elements) in_.fail("The file has no $Nodes or no $Elements. It is incomplete.");
-    const auto is_solid = [](const ElementRun& e) { return e.type->dim == 3 && e.count > 0; };
-    block_.dim = std::ranges::any_of(elements_, is_solid) ? 3 : 2;
+    block_.dim = has_dimension(3) ? 3 : 2;
+  }
+
+  bool has_dimension(int dim) const {
+    return std::ranges::any_of(elements_,
+                               [&](const ElementRun& e) { return e.type->dim == dim && e.count > 0; });
   }
 
   MeshBlock read() {
@@ -427,6 +430,14 @@ MeshBlock read_msh_block(MPI_Comm comm, const std::filesystem::path& file, int h
   block.cell_shares = {counts[2], ranks, holders};
   broadcast(comm, block.zones), broadcast(comm, block.patches);
   return block;
+}
+
+bool has_cells(const std::filesystem::path& file, int dim) {
+  try {
+    return MshReader(file, 0, 1).has_dimension(dim);
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 std::vector<int> read_boundary_entities(const std::filesystem::path& file) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/inp/inp_lines.hpp"
+#include "common/mesh/readers/inp_deck.hpp"
 
 #include <fmt/format.h>
 
