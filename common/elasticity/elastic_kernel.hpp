@@ -13,6 +13,9 @@
 
 namespace couplet::elastic {
 
+class SymmetricKernel;
+class SymmetricSpace;
+
 /// How the displacement gradient at a face is formed.
 enum class FaceGradientScheme {
   thesis,     ///< (2.53)-(2.58): the operator that ElasticOperator assembles; locks in bending
@@ -107,12 +110,30 @@ class ElasticKernel {
   void apply_mixed(std::span<const double> unknowns, std::span<const double> pressure, double mass_factor,
                    std::span<double> result, std::span<double> defect) const;
 
-  class Implementation;
+  /// With the published gradient or its corrections.
+  class LeastSquares {
+   public:
+    virtual ~LeastSquares() = default;
+    virtual void apply(std::span<const double> unknowns, std::span<const double> known,
+                       std::span<double> result) = 0;
+    virtual void face_gradients(std::span<const double> unknowns, std::span<const double> known,
+                                const TakeGradient& take, Index first, Index end) = 0;
+    virtual void point_values(std::span<const double> unknowns, std::span<const double> known,
+                              std::span<double> points) = 0;
+  };
 
  private:
+  SymmetricSpace& filled(std::span<const double> unknowns, std::span<const double> known) const;
+  SymmetricSpace& cleared() const;
+
   const ElasticOperator* rows_;
   FaceGradientScheme scheme_;
-  std::unique_ptr<Implementation> implementation_;
+  std::unique_ptr<SymmetricKernel> symmetric_;  // one of both, the other is null
+  std::unique_ptr<LeastSquares> least_squares_;
 };
+
+std::unique_ptr<ElasticKernel::LeastSquares> make_least_squares_kernel(const mesh::Mesh& mesh,
+                                                                       const ElasticOperator& rows,
+                                                                       bool is_corrected);
 
 }  // namespace couplet::elastic

@@ -2,58 +2,13 @@
 #pragma once
 
 #include <algorithm>
-#include <memory>
 #include <span>
 #include <vector>
 
-#include "common/elasticity/elastic_kernel.hpp"
+#include "common/elasticity/elasticity.hpp"
 #include "common/elasticity/lanes.hpp"
 
 namespace couplet::elastic {
-
-class ElasticKernel::Implementation {
- public:
-  virtual ~Implementation() = default;
-  virtual void apply(std::span<const double> unknowns, std::span<const double> known,
-                     std::span<double> result) = 0;
-  virtual void face_gradients(std::span<const double> unknowns, std::span<const double> known,
-                              const TakeGradient& take, Index first, Index end) = 0;
-  virtual void point_values(std::span<const double> unknowns, std::span<const double> known,
-                            std::span<double> points) = 0;
-  // Of the symmetric kernel alone, see ElasticKernel.
-  virtual bool set_density(std::span<const double> /*of_cells*/) { return false; }
-  virtual void apply_with_mass(std::span<const double> /*unknowns*/, std::span<const double> /*known*/,
-                               double /*mass_factor*/, bool /*with_stiffness*/,
-                               std::span<double> /*result*/) {}
-  virtual double product(ElasticPart /*part*/, const ElasticField& /*force*/,
-                         const ElasticField& /*motion*/) {
-    return 0;
-  }
-  virtual Vec3 add_face_forces(std::span<const double> /*forces*/, std::span<double> /*rhs*/) {
-    return Vec3::Zero();
-  }
-  virtual void face_means(std::span<const Index> /*faces*/, std::span<const double> /*unknowns*/,
-                          std::span<const double> /*known*/, std::span<double> /*means*/) {}
-  virtual void add_cell_forces(std::span<const double> /*forces*/, std::span<double> /*rhs*/) {}
-  virtual void add_pressure(std::span<const double> /*pressure*/, std::span<double> /*rhs*/) {}
-  virtual std::vector<Wrench> holding_forces(std::span<const double> /*unknowns*/,
-                                             std::span<const double> /*known*/,
-                                             const ElasticLoads& /*loads*/) {
-    return {};
-  }
-  virtual void apply_mixed(std::span<const double> /*unknowns*/, std::span<const double> /*pressure*/,
-                           double /*mass_factor*/, std::span<double> /*result*/,
-                           std::span<double> /*defect*/) {}
-};
-
-std::unique_ptr<ElasticKernel::Implementation> make_thesis_kernel(const mesh::Mesh& mesh,
-                                                                  const ElasticOperator& rows);
-std::unique_ptr<ElasticKernel::Implementation> make_corrected_kernel(const mesh::Mesh& mesh,
-                                                                     const ElasticOperator& rows);
-std::unique_ptr<ElasticKernel::Implementation> make_symmetric_kernel(const mesh::Mesh& mesh,
-                                                                     const ElasticOperator& rows);
-std::unique_ptr<ElasticKernel::Implementation> make_axisymmetric_kernel(const mesh::Mesh& mesh,
-                                                                        const ElasticOperator& rows);
 
 /// Lame's constants of a face: the owner's where cells have their own, the mean of both across an interior
 /// face.
@@ -91,20 +46,20 @@ class FaceLames {
   std::vector<LameConstants> value_;
 };
 
-/// Displacements of all nodes (local cells, then boundary faces) padded to whole lanes, and the forces on the
-/// cells. A symmetry face is a node of value zero.
-template <int D>
+/// Displacements of all nodes (local cells, then boundary faces), four doubles each, and room for further places behind
+/// them; the forces on the cells. A symmetry face is a node of value zero.
 class ElasticNodes {
  public:
-  static constexpr int stride = lanes::width<D>;
+  static constexpr int stride = 4;
 
-  ElasticNodes(const mesh::Mesh& mesh, const ElasticOperator& rows)
+  ElasticNodes(const mesh::Mesh& mesh, const ElasticOperator& rows, Index n_further = 0)
       : mesh_(&mesh),
         rows_(&rows),
-        value_(std::size_t(mesh.cells.n_local() + mesh.boundary.n_local()) * stride, 0.0) {}
+        value_(std::size_t(mesh.cells.n_local() + mesh.boundary.n_local() + n_further) * stride, 0.0) {}
 
   const double* operator[](Index node) const { return value_.data() + std::size_t(node) * stride; }
-  double* value(Index node) { return at(node); }
+  double* value(Index node) { return value_.data() + std::size_t(node) * stride; }
+  std::span<double> all() { return value_; }
   const double* of_face(Index face) const {
     return (*this)[mesh_->cells.n_local() + face - mesh_->n_interior];
   }
@@ -114,56 +69,83 @@ class ElasticNodes {
 
   /// Node values of all local nodes. `supports_hold`: supports have their known components, whatever the
   /// unknowns say. Collective.
+  template <int D>
   void fill(std::span<const double> unknowns, std::span<const double> known, bool supports_hold = false) {
     const Index n_owned = mesh_->cells.n_owned(), n_cells = mesh_->cells.n_local();
-    for (Index c = 0; c < n_owned; ++c) copy(unknowns.data() + std::size_t(c) * D, at(c));
+    const auto copy = [](const double* from, double* to) { std::copy_n(from, D, to); };
+    for (Index c = 0; c < n_owned; ++c) copy(unknowns.data() + std::size_t(c) * D, value(c));
     const auto& open = rows_->unknown_faces();
     for (std::size_t i = 0; i < open.size(); ++i)
-      copy(unknowns.data() + (n_owned + i) * D, at(n_cells + open[i] - mesh_->n_interior));
+      copy(unknowns.data() + (n_owned + i) * D, value(n_cells + open[i] - mesh_->n_interior));
     for (const Index f : rows_->known_faces()) {
-      if (!rows_->at(f).fixed) {
-        if (supports_hold) hold(f, known);
-        continue;
-      }
-      double* here = at(n_cells + f - mesh_->n_interior);
-      if (known.empty())
-        std::fill_n(here, D, 0.0);
-      else
-        copy(known.data() + std::size_t(rows_->known_of_face(f)) * D, here);
+      double* here = value(n_cells + f - mesh_->n_interior);
+      Vec3 g = Vec3::Zero();
+      if (!known.empty()) copy(known.data() + std::size_t(rows_->known_of_face(f)) * D, g.data());
+      if (rows_->at(f).fixed)
+        copy(g.data(), here);
+      else if (supports_hold)
+        Eigen::Map<Vec3>(here) += rows_->at(f).known * (g - Eigen::Map<const Vec3>(here));
     }
-    const std::span<double> all(value_);
-    mesh_->cells.update_ghosts(all.first(std::size_t(n_cells) * stride), stride);
-    mesh_->boundary.update_ghosts(all.subspan(std::size_t(n_cells) * stride), stride);
+    const std::span<double> cells = all().first(std::size_t(n_cells) * stride);
+    mesh_->cells.update_ghosts(cells, stride);
+    mesh_->boundary.update_ghosts(
+        all().subspan(cells.size(), std::size_t(mesh_->boundary.n_local()) * stride), stride);
     for (std::size_t b = 0; b < mesh_->twin.size(); ++b) {
       const Index first = mesh_->twin[b];
       if (first < 0 || mesh_->boundary_id[first] > mesh_->boundary_id[b]) continue;
-      copy(at(n_cells + first), at(n_cells + static_cast<Index>(b)));
+      copy(value(n_cells + first), value(n_cells + static_cast<Index>(b)));
     }
   }
 
   /// The rows of the owned cells from the forces collected.
+  template <int D>
   void take_forces(std::span<double> result) const {
     for (Index c = 0; c < mesh_->cells.n_owned(); ++c)
-      copy(force_.data() + std::size_t(c) * stride, result.data() + std::size_t(c) * D);
+      std::copy_n(force_.data() + std::size_t(c) * stride, D, result.data() + std::size_t(c) * D);
   }
 
  private:
-  void hold(Index f, std::span<const double> known) {
-    double* here = at(mesh_->cells.n_local() + f - mesh_->n_interior);
-    Vec3 gap = Vec3::Zero();
-    for (int a = 0; a < D; ++a)
-      gap[a] = (known.empty() ? 0 : known[std::size_t(rows_->known_of_face(f)) * D + a]) - here[a];
-    const Vec3 step = rows_->at(f).known * gap;
-    for (int a = 0; a < D; ++a) here[a] += step[a];
-  }
-  double* at(Index node) { return value_.data() + std::size_t(node) * stride; }
-  static void copy(const double* from, double* to) {
-    for (int a = 0; a < D; ++a) to[a] = from[a];
-  }
-
   const mesh::Mesh* mesh_;
   const ElasticOperator* rows_;
   std::vector<double> value_, force_;
+};
+
+/// Which vertices a kernel interpolates and which it constrains: u_V = F_V sum_i w_i u_i + g_V.
+class ElasticVertices {
+ public:
+  std::vector<Index> free;         ///< points whose nodes matter
+  std::vector<Index> constrained;  ///< points with F_V other than I; those that are not free have F_V = 0
+
+  ElasticVertices(const mesh::Mesh& mesh, const ElasticOperator& rows) : rows_(&rows) {
+    for (Index v = 0; v < mesh.points.n_local(); ++v) {
+      if (rows.constraints().is_constrained(v)) constrained.push_back(v);
+      if (!rows.constraints().is_fixed(v) && !rows.vertices().nodes(v).empty()) free.push_back(v);
+    }
+    free.shrink_to_fit();
+  }
+
+  /// take(point) for all points that have a value.
+  template <class Take>
+  void visit(const Take& take) const {
+    for (const Index v : free) take(v);
+    for (const Index v : constrained) take(v);
+  }
+
+  /// Applies F_V and g_V to the values, `stride` doubles a point, whose first D are the displacement.
+  template <int D>
+  void constrain(std::span<double> values, int stride, std::span<const double> known) const {
+    const VertexConstraints& constraints = rows_->constraints();
+    for (const Index v : constrained) {
+      Eigen::Map<Vec<D>> u(values.data() + std::size_t(v) * stride);
+      u = (constraints.free_part(v).topLeftCorner<D, D>() * u).eval();
+      const Index column = constraints.column(v);
+      if (column >= 0 && !known.empty())
+        u += Eigen::Map<const Vec<D>>(known.data() + std::size_t(column) * D);
+    }
+  }
+
+ private:
+  const ElasticOperator* rows_;
 };
 
 }  // namespace couplet::elastic

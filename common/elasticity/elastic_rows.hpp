@@ -31,8 +31,8 @@ class ElasticRows {
   /// Adds the forces to the cells and writes the rows of the unknown faces. `force(f)`: sigma . S;
   /// `slope(f)`: n . grad u.
   template <int D, class Force, class Slope>
-  [[gnu::always_inline]] inline void add_rows(ElasticNodes<D>& nodes, std::span<const double> known,
-                                              double* row, const Force& force, const Slope& slope) const {
+  [[gnu::always_inline]] inline void add_rows(ElasticNodes& nodes, std::span<const double> known, double* row,
+                                              const Force& force, const Slope& slope) const {
     for (const Index f : held_) lanes::add<D>(nodes.force(mesh_->owner[f]), -force(f));
     for (const auto& [f, normal] : symmetry_) {
       lanes::Lane<D> n{};
@@ -46,7 +46,7 @@ class ElasticRows {
       if (rows_->known_of_face(f) >= 0) {
         std::array<double, lanes::width<D>> here{};
         lanes::store<D>(here.data(), force(f));
-        hold(f, stiffness_[i], nodes, known, here);
+        hold<D>(f, stiffness_[i], nodes, known, here);
         own = lanes::load<D>(here.data());
       } else if (rows_->at(f).level) {
         const LameConstants lame = rows_->lame(mesh_->owner[f]);
@@ -63,7 +63,7 @@ class ElasticRows {
   /// The force on the face becomes its row. No lanes in the signature: how they are passed depends on the
   /// processor.
   template <int D, std::size_t Width>
-  void hold(Index f, double stiffness, ElasticNodes<D>& nodes, std::span<const double> known,
+  void hold(Index f, double stiffness, ElasticNodes& nodes, std::span<const double> known,
             std::array<double, Width>& force) const {
     const BoundaryRow& boundary = rows_->at(f);
     const double area = geometry_->face_area[f].norm();

@@ -244,28 +244,6 @@ void ElasticOperator::subtract_known(std::span<const double> known, std::span<do
     }
 }
 
-Tensor3 ElasticOperator::gradient(Index face, std::span<const double> cells, std::span<const double> boundary,
-                                  std::span<const double> points) const {
-  const int dim = mesh_->dim;
-  const auto at = [dim](std::span<const double> values, Index i) {
-    Vec3 u = Vec3::Zero();
-    for (int c = 0; c < dim; ++c) u[c] = values[std::size_t(i) * dim + c];
-    return u;
-  };
-  const auto [line, weights] = weights_of(face);
-  Tensor3 tangential = Tensor3::Zero();
-  for (Index e = mesh_->face_points.offset[face]; e < mesh_->face_points.offset[face + 1]; ++e)
-    tangential +=
-        weights[e - mesh_->face_points.offset[face]] * at(points, mesh_->face_points.index[e]).transpose();
-  const Vec3& n = line.normal;
-  const Vec3 here = at(cells, mesh_->owner[face]);
-  if (mirrored(face)) return n * (-n.dot(here) * line.inverse_dn * n).transpose() + tangential;
-  const Vec3 there =
-      face < mesh_->n_interior ? at(cells, mesh_->neighbour[face]) : at(boundary, face - mesh_->n_interior);
-  const Vec3 normal = (there - here) * line.inverse_dn + tangential.transpose() * line.skew;
-  return n * normal.transpose() + tangential;
-}
-
 Tensor3 ElasticOperator::stress(Index cell, const Tensor3& gradient) const {
   if (is_anisotropic()) return stress_of(elastic_matrix(cell), gradient);
   const auto [mu, lambda] = lame(cell);

@@ -113,10 +113,6 @@ class ElasticOperator {
   /// Gives the second side of bonded faces the value of the first. The ghosts of `faces` must be up to date.
   void join_twins(std::span<double> faces) const;
 
-  /// Gradient at a face, entry (i, j) = d u_j / d x_i; packed displacements of cells, boundary faces and
-  /// points.
-  Tensor3 gradient(Index face, std::span<const double> cells, std::span<const double> boundary,
-                   std::span<const double> points) const;
   /// Stress for the gradient in a cell (or at one of its faces).
   Tensor3 stress(Index cell, const Tensor3& gradient) const;
   /// Force [N] with which a boundary face is held: R sigma . n S less that of the springs, none where it is shared.

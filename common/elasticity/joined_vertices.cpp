@@ -9,6 +9,7 @@
 namespace couplet::elastic {
 namespace {
 
+constexpr int stride = ElasticNodes::stride;
 // Of the entries of F_V at the copies of a point, which are 0 to 1.
 constexpr double alike = 1e-6;
 
@@ -140,36 +141,27 @@ JoinedVertices::Weights JoinedVertices::weights(fv::VertexWeights kind) const {
   return result;
 }
 
-template <int D>
 void JoinedVertices::interpolate(const double* nodes, std::span<double> points) const {
-  constexpr int stride = lanes::width<D>;
   for (const Index v : periodic_.points()) std::fill_n(points.data() + std::size_t(v) * stride, stride, 0.0);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const auto around = rows_.vertices().nodes(points_[i]);
     double* value = points.data() + std::size_t(points_[i]) * stride;
     for (std::size_t k = 0; k < around.size(); ++k)
-      for (int a = 0; a < D; ++a)
-        value[a] += weight_[std::size_t(offset_[i]) + k] * nodes[std::size_t(around[k]) * stride + a];
+      lanes::add<3>(value, weight_[std::size_t(offset_[i]) + k] *
+                               lanes::load<3>(nodes + std::size_t(around[k]) * stride));
   }
   periodic_.add_up(points, stride);
 }
 
-template <int D>
 void JoinedVertices::to_nodes(std::span<double> point_forces, double* node_forces) const {
-  constexpr int stride = lanes::width<D>;
   periodic_.add_up(point_forces, stride, mesh::PeriodicPoints::Ghosts::count);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const auto around = rows_.vertices().nodes(points_[i]);
-    const double* force = point_forces.data() + std::size_t(points_[i]) * stride;
+    const lanes::Lane<3> force = lanes::load<3>(point_forces.data() + std::size_t(points_[i]) * stride);
     for (std::size_t k = 0; k < around.size(); ++k)
-      for (int a = 0; a < D; ++a)
-        node_forces[std::size_t(around[k]) * stride + a] += weight_[std::size_t(offset_[i]) + k] * force[a];
+      lanes::add<3>(node_forces + std::size_t(around[k]) * stride,
+                    weight_[std::size_t(offset_[i]) + k] * force);
   }
 }
-
-template void JoinedVertices::interpolate<2>(const double*, std::span<double>) const;
-template void JoinedVertices::interpolate<3>(const double*, std::span<double>) const;
-template void JoinedVertices::to_nodes<2>(std::span<double>, double*) const;
-template void JoinedVertices::to_nodes<3>(std::span<double>, double*) const;
 
 }  // namespace couplet::elastic

@@ -5,8 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "common/elasticity/elasticity.hpp"
-#include "common/elasticity/lanes.hpp"
+#include "common/elasticity/elastic_nodes.hpp"
 #include "common/fv/vertex_interpolation.hpp"
 #include "common/mesh/periodic_points.hpp"
 
@@ -26,11 +25,9 @@ class JoinedVertices {
   const std::vector<Index>& all() const { return periodic_.points(); }
   bool has(Index point) const { return joined_[point] != 0; }
 
-  /// Values of all copies. `nodes`, `points`: lanes::width<D> a node, a local point. Collective.
-  template <int D>
+  /// Values of all copies. `nodes`, `points`: ElasticNodes::stride doubles a node, a local point. Collective.
   void interpolate(const double* nodes, std::span<double> points) const;
   /// Adds the forces on the points, of which each rank has its own part, to those on the nodes. Collective.
-  template <int D>
   void to_nodes(std::span<double> point_forces, double* node_forces) const;
 
  private:

@@ -61,3 +61,10 @@ template <int D>
 }
 
 }  // namespace couplet::elastic::lanes
+
+namespace couplet::elastic {
+
+/// Four places side by side.
+using Four = lanes::Lane<3>;
+
+}  // namespace couplet::elastic

@@ -110,11 +110,11 @@ BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fie
   std::vector<double> of_stress(force.size());
   if (!method.approximate_inverse(force, of_stress)) return {};
   compression_seen = here;
-  const auto stress = elastic::make_stress_stiffness(mesh, body.elastic(), std::move(prestress));
+  elastic::StressStiffness stress(mesh, body.elastic(), std::move(prestress));
   const modes::Pencil of{
       .comm = mesh.comm,
       .n = force.size(),
-      .k = [&](std::span<const double> x, std::span<double> y) { stress->apply(x, y); },
+      .k = [&](std::span<const double> x, std::span<double> y) { stress.apply(x, y); },
       .m = [&](std::span<const double> x, std::span<double> y) { body.kernel().apply(x, {}, y); },
       .solve = [&](std::span<const double> r, std::span<double> z) { method.approximate_inverse(r, z); }};
   const auto look = [&](double load) {

@@ -46,7 +46,7 @@ class Forces {
       laws_.push_back(laws::of(name)->make(lame_constants(body.parameters(), material), {}));
       all.push_back(laws_.back().get());
     }
-    kernel_ = elastic::make_finite_kernel(body.mesh(), body.elastic(), all);
+    kernel_ = std::make_unique<elastic::FiniteKernel>(body.mesh(), body.elastic(), all);
   }
   /// [F(s u) + sign F(-s u)] / 2.
   Values part(double s, const Displacement& u, double sign) {

@@ -80,7 +80,8 @@ FiniteStrain::FiniteStrain(const mesh::Mesh& mesh, const elastic::ElasticOperato
           "cell; use 'volume-strain: faces' or another law.",
           law.name);
   }
-  kernel_ = elastic::make_finite_kernel(mesh, rows, all, parameters.plane == SolidParameters::Plane::stress);
+  kernel_ = std::make_unique<elastic::FiniteKernel>(mesh, rows, all,
+                                                    parameters.plane == SolidParameters::Plane::stress);
   using Preconditioner = MethodParameters::Preconditioner;
   const GlobalIndex cells = mesh.cells.n_global();
   const bool is_small = cells <= (mesh.dim == 2 ? tangent_factors_up_to_2d : tangent_factors_up_to_3d);

@@ -85,7 +85,7 @@ Buckling find_buckling(const SolidBody& body, const elastic::Prestress& prestres
   if (!(largest_stress(body, prestress) > 0))
     throw SolveFailure("The loads cause no stress in the body; add a load or a moving support.");
   const mesh::Mesh& mesh = body.mesh();
-  const auto stress = elastic::make_stress_stiffness(mesh, body.elastic(), prestress);
+  elastic::StressStiffness stress(mesh, body.elastic(), prestress);
   elastic::TiedMatrix stiffness(mesh, body.elastic(), {});
   stiffness.factorise();
   const modes::Pencil of{
@@ -93,7 +93,7 @@ Buckling find_buckling(const SolidBody& body, const elastic::Prestress& prestres
       .n = body.elastic().n_unknowns(),
       .k =
           [&](std::span<const double> x, std::span<double> y) {
-            stress->apply(x, y);
+            stress.apply(x, y);
             for (double& v : y) v = -v;
           },
       .m = [&](std::span<const double> x, std::span<double> y) { body.kernel().apply(x, {}, y); },
@@ -148,7 +148,7 @@ modes::EigenModes preloaded_modes(const SolidBody& body, const elastic::Prestres
   elastic::TiedMatrix shifted(mesh, body.elastic(),
                               {.mass = shift, .density = density, .stress = 1, .prestress = &prestress});
   shifted.factorise();
-  const auto stress = elastic::make_stress_stiffness(mesh, body.elastic(), prestress);
+  elastic::StressStiffness stress(mesh, body.elastic(), prestress);
   std::vector<double> of_stress(body.elastic().n_unknowns());
   const modes::Pencil of{
       .comm = mesh.comm,
@@ -156,7 +156,7 @@ modes::EigenModes preloaded_modes(const SolidBody& body, const elastic::Prestres
       .k =
           [&](std::span<const double> x, std::span<double> y) {
             kernel.apply(x, {}, y);
-            stress->apply(x, of_stress);
+            stress.apply(x, of_stress);
             for (std::size_t i = 0; i < y.size(); ++i) y[i] += of_stress[i];
           },
       .m = [&](std::span<const double> x,

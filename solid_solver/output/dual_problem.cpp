@@ -5,6 +5,7 @@
 
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/elasticity/symmetric/symmetric_space.hpp"
+#include "common/elasticity/vector_at.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/body/stress.hpp"
 
@@ -13,43 +14,25 @@ namespace {
 
 using Values = std::vector<double>;
 
-template <int D>
 Values rows_of_points(const SolidBody& body, std::span<const double> weights) {
-  elastic::SymmetricSpace<D> space(body.mesh(), body.elastic());
-  constexpr std::size_t stride = elastic::SymmetricSpace<D>::stride;
+  elastic::SymmetricSpace space(body.mesh(), body.elastic());
   space.clear_forces();
-  for (std::size_t i = 0; i < weights.size(); ++i) space.point_forces()[i / D * stride + i % D] = weights[i];
+  const int dim = body.mesh().dim;
+  for (Index v = 0; v * dim < Index(weights.size()); ++v)
+    space.force(space.place_of_point(v)) = elastic::vector_at(weights, v, dim);
   Values rows(body.elastic().n_unknowns(), 0);
   space.add_collected(rows);
   return rows;
 }
 
-/// The transpose of the gradient of SymmetricFace: forces of sum_f stress_f : G_f.
-template <int D>
+/// The transpose of the gradient of FaceRows: forces of sum_f stress_f : G_f.
 Values rows_of_stress(const SolidBody& body, const std::vector<Tensor3>& stress) {
-  elastic::SymmetricSpace<D> space(body.mesh(), body.elastic());
-  constexpr std::size_t stride = elastic::SymmetricSpace<D>::stride;
+  elastic::SymmetricSpace space(body.mesh(), body.elastic());
   space.clear_forces();
-  const auto add = [](double* forces, Index at, const Vec3& force) {
-    for (int a = 0; a < D; ++a) forces[std::size_t(at) * stride + std::size_t(a)] += force[a];
-  };
-  const auto times = [](const Tensor3& s, const std::array<double, D>& area) {
-    Vec3 v = Vec3::Zero();
-    for (int a = 0; a < D; ++a) v[a] = area[std::size_t(a)];
-    return Vec3(s * v);
-  };
   for (Index f = 0; f < body.mesh().n_flux_faces(); ++f) {
-    const Tensor3& s = stress[std::size_t(f)];
-    if (s.isZero(0)) continue;
-    const elastic::SymmetricFace<D> face = elastic::symmetric_face<D>(body.mesh(), body.elastic(), f);
-    const Vec3 across = face.inverse * times(s, face.area);
-    add(space.forces(), space.node_across(f), across);
-    add(space.forces(), body.mesh().owner[f], -across);
-    for (std::size_t i = 0; i < D - 1; ++i) {
-      const Vec3 along = face.inverse * times(s, face.across[i]);
-      add(space.point_forces(), face.plus[i], along);
-      add(space.point_forces(), face.minus[i], -along);
-    }
+    if (stress[std::size_t(f)].isZero(0)) continue;
+    const elastic::FaceRows face = elastic::symmetric_rows(body.mesh(), body.elastic(), f);
+    for (const auto& [place, b] : face.all()) space.force(place) += stress[std::size_t(f)] * b;
   }
   Values rows(body.elastic().n_unknowns(), 0);
   space.add_collected(rows);
@@ -87,7 +70,7 @@ std::vector<Tensor3> DualProblem::gap(std::span<const double> unknowns, std::spa
 }
 
 std::vector<double> DualProblem::of_points(std::span<const double> weights) const {
-  return body_.mesh().dim == 2 ? rows_of_points<2>(body_, weights) : rows_of_points<3>(body_, weights);
+  return rows_of_points(body_, weights);
 }
 
 std::vector<double> DualProblem::of_stress(std::span<const Index> cells, const Tensor3& weights) const {
@@ -101,7 +84,7 @@ std::vector<double> DualProblem::of_stress(std::span<const Index> cells, const T
   });
   volume = parallel::sum(mesh.comm, volume);
   for (Tensor3& s : stress) s /= volume;
-  return mesh.dim == 2 ? rows_of_stress<2>(body_, stress) : rows_of_stress<3>(body_, stress);
+  return rows_of_stress(body_, stress);
 }
 
 double DualProblem::missed(std::span<const double> j, SolutionMethod& method) const {

@@ -17,7 +17,7 @@ FILES = {
         *_of("fluid_solver", "rates face_flux predictor projection pressure boundary turbulence viscous_solver placement immersed "
                              "yielding_walls absorbing compression"),
         *_of("solid_solver", "heat heat_boundaries solid_fields stress finite_strain updated_lagrangian orthotropic mixed_form"),
-        *_of("common/elasticity", "face_terms symmetric_faces symmetric_kernel symmetric_space elasticity least_squares_kernel "
+        *_of("common/elasticity", "symmetric_faces symmetric_kernel symmetric_space elasticity least_squares_kernel "
                                   "shared_edges finite_edges finite_kernel anisotropic joined_vertices "
                                   "elastic_corrections vertex_constraints"),
         *_of("common/fv", "conduction gradients vertex_interpolation prescribed_motion"),
@@ -36,7 +36,7 @@ FILES = {
     ],
     "loads": [
         *_of("fluid_solver", "fractional_step rotation fluid"),
-        *_of("common/elasticity", "space_kernel follower_pressure"),
+        *_of("common/elasticity", "elastic_kernel surface_pressure"),
         *_of("plate_modal", "pressure_load contact"),
         *_of("solid_solver", "thermal_strain solid_forces boundaries solid_body interface_data solid_interface"),
         *_of("coupler", "volume_level"), *_of("thermocline", "mechanics"),

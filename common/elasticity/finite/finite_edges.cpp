@@ -2,7 +2,6 @@
 #include "common/elasticity/finite/finite_edges.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 namespace couplet::elastic {
 namespace {
@@ -35,7 +34,8 @@ FiniteEdges::FiniteEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, st
     for (std::size_t i = 0; i < faces.size(); ++i)
       for (const Index e : edges_.edges_of(i)) material[e] = mesh.material_of(mesh.owner[faces[i]]);
   for (std::size_t m = 0; m < laws.size(); ++m) {
-    Group group{laws[m], {}, {}, {}, {}, {}};
+    Group group;
+    group.law = laws[m];
     Index last = -1;  // filling stands in the same block
     std::size_t n = 0;
     const auto add = [&](Index e, double of_edge) {
@@ -79,10 +79,7 @@ double FiniteEdges::to_stress(bool with_bulk, double& energy) {
         if (!(at.j[k] >= least)) least = at.j[k];
       if (!(least > 0)) return least;
       Energy e;
-      const std::span<const Four> stretch(group.stretch.data() + (group.stretch.empty() ? 0 : i),
-                                          group.stretch.empty() ? 0 : 1);
-      finite::evaluate(*group.law, {&at, 1}, stretch, with_bulk, {&e, 1});
-      finite::keep(e, state);
+      group.evaluate(i, {&at, 1}, with_bulk, {&e, 1});
       for (int k = 0; k < 4; ++k) energy += group.volume[i][k] * e.w[k];
       Four p[3][3];
       group.law->has_second_invariant() ? finite::stress<true>(state, p) : finite::stress<false>(state, p);
@@ -92,16 +89,7 @@ double FiniteEdges::to_stress(bool with_bulk, double& energy) {
 }
 
 void FiniteEdges::set_start(bool with_bulk) {
-  for (Group& group : groups_) {
-    group.start.resize(group.states.size());
-    for (std::size_t i = 0; i < group.states.size(); ++i) {
-      std::memcpy(group.start[i].f, group.states[i].f, sizeof group.start[i].f);
-      const Invariants at = finite::invariants(group.start[i].f);
-      Energy energy;
-      group.law->evaluate({&at, 1}, with_bulk, {&energy, 1});
-      group.start[i].energy = energy.w;
-    }
-  }
+  for (Group& group : groups_) group.set_start(with_bulk);
 }
 
 void FiniteEdges::to_conserving(bool with_bulk) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <memory>
+#include <array>
 #include <span>
 #include <vector>
 
-#include "common/elasticity/finite/finite_strain.hpp"
+#include "common/elasticity/finite/finite_places.hpp"
 #include "common/elasticity/symmetric/shared_edges.hpp"
 
 namespace couplet::elastic {
@@ -15,13 +15,9 @@ namespace couplet::elastic {
 class FiniteEdges {
  public:
   /// Of one material, four edges a block, the last one filled up with the last edge at volume 0.
-  struct Group {
-    const FiniteLaw* law;
+  struct Group : finite::Places {
     std::vector<std::array<Index, 4>> edges;
     std::vector<std::array<double, 4>> volume;  ///< of edges that this rank owns; 0: another rank counts them
-    std::vector<finite::State> states;
-    std::vector<finite::Start> start;
-    std::vector<Four> stretch;  ///< thermal; empty: none
   };
 
   /// `faces`: the three-cornered flux faces, this rank's first; `volume`: V_f of this rank's, 0 of the others;

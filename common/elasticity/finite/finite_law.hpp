@@ -8,9 +8,6 @@
 
 namespace couplet::elastic {
 
-/// Four places side by side.
-using Four = lanes::Lane<3>;
-
 /// Of C = F^T F: I1 = tr C, I2 = (I1^2 - tr C^2) / 2, and J = det F.
 struct Invariants {
   Four i1, i2, j;

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "common/elasticity/elasticity.hpp"
-#include "common/elasticity/symmetric/prestress.hpp"
+#include "common/elasticity/symmetric/surface_pressure.hpp"
+#include "common/elasticity/symmetric/symmetric_blocks.hpp"
 
 namespace couplet::elastic {
 
@@ -14,13 +14,22 @@ namespace couplet::elastic {
 /// share with their edges (SharedEdges) those with the mean gradients and the mean stress there; and the stiffness of the pressure.
 class StressStiffness {
  public:
-  virtual ~StressStiffness() = default;
+  /// All by reference but what is kept of `of`. Collective.
+  StressStiffness(const mesh::Mesh& mesh, const ElasticOperator& rows, Prestress of);
   /// y = K_sigma x on the rows of ElasticOperator. Collective.
-  virtual void apply(std::span<const double> x, std::span<double> y) = 0;
-};
+  void apply(std::span<const double> x, std::span<double> y);
 
-/// All by reference but what is kept of `of`. Collective.
-std::unique_ptr<StressStiffness> make_stress_stiffness(const mesh::Mesh& mesh, const ElasticOperator& rows,
-                                                       Prestress of);
+ private:
+  template <int D>
+  void push(const FaceGroup& group);
+  void push_edges();
+
+  SymmetricSpace space_;
+  std::vector<FaceGroup> groups_;
+  std::unique_ptr<SharedEdges> edges_;
+  std::vector<Tensor3> edge_stress_;
+  std::vector<double> edge_value_;
+  Prestress of_;
+};
 
 }  // namespace couplet::elastic

@@ -7,7 +7,7 @@
 
 #include "common/elasticity/elastic_nodes.hpp"
 #include "common/elasticity/solve/rigid_coarse_space.hpp"
-#include "common/elasticity/symmetric/face_terms.hpp"
+#include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/fv/vertex_interpolation.hpp"
 #include "common/parallel/collective.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/elasticity/elasticity.hpp"
-#include "common/elasticity/symmetric/face_terms.hpp"
+#include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/mesh/mesh.hpp"
 
 namespace couplet::elastic {

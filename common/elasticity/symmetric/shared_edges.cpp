@@ -172,37 +172,30 @@ void SharedEdges::find_mirrors(const mesh::Mesh& mesh, const ElasticOperator& ro
     for (const Vec3& n : list) mirrors_.emplace_back(e, n);
 }
 
-void SharedEdges::finish_means() {
+/// Entry (a, b) of the tensor at an edge stands at place[3 a + b].
+void SharedEdges::finish(std::span<double> values, int step, std::span<const int, 9> place) const {
   if (parallel_) {
-    map_.add_to_owners(value_, stride);
-    map_.update_ghosts(value_, stride);
+    map_.add_to_owners(values, step);
+    map_.update_ghosts(values, step);
   }
+  const int n = 1 + std::ranges::max(place);
   for (std::size_t e = 0; e < inverse_volume_.size(); ++e)
-    for (int i = 0; i < size; ++i) value_[e * stride + i] *= inverse_volume_[e];
-  for (const auto& [e, n] : mirrors_) {
-    double* v = at(e);
-    Tensor3 strain;
-    strain << v[0], v[3], v[5], v[3], v[1], v[4], v[5], v[4], v[2];
-    const Tensor3 turn = Tensor3::Identity() - 2 * n * n.transpose();
-    strain = (0.5 * (strain + turn * strain * turn)).eval();
-    v[0] = strain(0, 0), v[1] = strain(1, 1), v[2] = strain(2, 2);
-    v[3] = strain(0, 1), v[4] = strain(1, 2), v[5] = strain(0, 2);
+    for (int i = 0; i < n; ++i) values[e * step + i] *= inverse_volume_[e];
+  for (const auto& [e, n_plane] : mirrors_) {
+    double* v = values.data() + std::size_t(e) * step;
+    Tensor3 g;
+    for (int i = 0; i < 9; ++i) g(i / 3, i % 3) = v[place[i]];
+    const Tensor3 turn = Tensor3::Identity() - 2 * n_plane * n_plane.transpose();
+    g = (0.5 * (g + turn * g * turn)).eval();
+    for (int i = 0; i < 9; ++i) v[place[i]] = g(i / 3, i % 3);
   }
 }
 
+void SharedEdges::finish_means() { finish(value_, stride, of_strain); }
+
 void SharedEdges::finish_gradients(std::span<double> values) const {
-  if (parallel_) {
-    map_.add_to_owners(values, gradient_stride);
-    map_.update_ghosts(values, gradient_stride);
-  }
-  for (std::size_t e = 0; e < inverse_volume_.size(); ++e)
-    for (int i = 0; i < 9; ++i) values[e * gradient_stride + i] *= inverse_volume_[e];
-  for (const auto& [e, n] : mirrors_) {
-    Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> g(values.data() +
-                                                               std::size_t(e) * gradient_stride);
-    const Tensor3 turn = Tensor3::Identity() - 2 * n * n.transpose(), here = g;
-    g = 0.5 * (here + turn * here * turn);
-  }
+  constexpr std::array<int, 9> in_order{0, 1, 2, 3, 4, 5, 6, 7, 8};
+  finish(values, gradient_stride, in_order);
 }
 
 void SharedEdges::to_stress() {
@@ -233,7 +226,7 @@ SharedFaces shared_faces(const mesh::Mesh& mesh, const ElasticOperator& rows) {
       continue;
     }
     result.faces.push_back(f);
-    result.volume.push_back(symmetric_face<3>(mesh, rows, f).volume);
+    result.volume.push_back(symmetric_rows(mesh, rows, f).volume);
   }
   result.n_mine = result.faces.size();
   result.faces.insert(result.faces.end(), elsewhere.begin(), elsewhere.end());
@@ -254,9 +247,8 @@ void find_edge_stresses(const SharedFaces& shared, std::span<const Tensor3> stre
 }
 
 Tensor3 edge_tensor(SharedEdges& edges, Index e) {
-  const double* v = edges.at(e);
   Tensor3 s;
-  s << v[0], v[3], v[5], v[3], v[1], v[4], v[5], v[4], v[2];
+  for (int i = 0; i < 9; ++i) s(i / 3, i % 3) = edges.at(e)[SharedEdges::of_strain[std::size_t(i)]];
   return s;
 }
 

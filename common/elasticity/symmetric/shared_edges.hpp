@@ -22,6 +22,8 @@ class SharedEdges {
  public:
   static constexpr double share = 0.9;
   static constexpr int size = 6;  ///< xx, yy, zz, xy, yz, xz
+  static constexpr std::array<int, 9> of_strain{0, 3, 5, 3, 1,
+                                                4, 5, 4, 2};  ///< where a tensor's entries stand
   static constexpr int stride = 8;
   static constexpr int gradient_stride = 12;  ///< of finish_gradients()
 
@@ -61,6 +63,7 @@ class SharedEdges {
   void number(const mesh::Mesh& mesh, std::span<const Index> faces);
   void find_matrices(const mesh::Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
                      std::span<const double> volume);
+  void finish(std::span<double> values, int step, std::span<const int, 9> place) const;
   void find_mirrors(const mesh::Mesh& mesh, const ElasticOperator& rows);
 
   std::vector<std::array<Index, 3>> edges_of_;

@@ -1,76 +1,96 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "common/elasticity/lanes.hpp"
+#include "common/elasticity/symmetric/shared_edges.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 
 namespace couplet::elastic {
 
-/// Four faces side by side: the kernels' arithmetic is on one number of each at a time.
-template <int D>
-struct BlockGeometry {
-  static constexpr int width = 4;
-  using Wide [[gnu::vector_size(32)]] = double;
-  double vector[D][D][width];                          ///< S, c_0 (, c_1): components of each face
-  std::array<Index, width> from, to;                   ///< nodes
-  std::array<Index, width> plus[D - 1], minus[D - 1];  ///< points
+/// The rows of four faces, side by side: the kernels' arithmetic is on one number of each at a time. All indices are places.
+struct FaceBlock {
+  double b[3][3][4];                       ///< of the node across, plus_0 (, plus_1): see FaceRows
+  std::array<Index, 4> plus[3], minus[3];  ///< the node across and the owner's, then points
 };
 
-/// With Hooke's law.
-template <int D>
-struct FaceBlock : BlockGeometry<D> {
-  double mu[4], lambda[4];  ///< Lame's constants times V / (S . d)^2
+/// What else of four faces matters. Filling has no volume.
+struct FaceVolumes {
+  double whole[4];           ///< V [m^3]
+  double here[4], there[4];  ///< V_fP of both sides over V
+  Index face[4];             ///< -1: filling
 };
 
-/// In place of Hooke's isotropic law: the upper triangle of the elastic matrix times V / (S . d)^2, row by row; in the
-/// plane that of xx, yy, xy.
-template <int D>
-struct ElasticBlock {
-  static constexpr int size = D == 3 ? 6 : 3;
-  double c[size * (size + 1) / 2][4];
+/// Faces that a rank computes, in blocks in their order; the last block is filled up.
+struct FaceGroup {
+  std::vector<Index> faces;
+  std::vector<FaceBlock> blocks;
+  std::vector<FaceVolumes> volumes;
+  double own = 1;                                          ///< share of their energy that is not the edges'
+  std::vector<std::array<std::array<Index, 3>, 4>> edges;  ///< of each block; empty: they share nothing
 };
+
+FaceGroup make_group(const mesh::Mesh& mesh, const ElasticOperator& rows, std::vector<Index> faces);
+
+/// This rank's flux faces with takes(f): those that share with `edges`, or the others if none are given.
+template <class Takes>
+FaceGroup make_group(const mesh::Mesh& mesh, const ElasticOperator& rows, const SharedFaces& shared,
+                     const SharedEdges* edges, const Takes& takes) {
+  std::vector<Index> faces;
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f)
+    if (mesh.owner[f] < mesh.cells.n_owned() && takes(f) &&
+        (mesh.dim == 3 && mesh.face_points[f].size() == 3) == (edges != nullptr))
+      faces.push_back(f);
+  FaceGroup group = make_group(mesh, rows, std::move(faces));
+  if (!edges) return group;
+  group.own = 1 - SharedEdges::share;
+  group.edges.resize(group.blocks.size());
+  const auto end = shared.faces.begin() + std::ptrdiff_t(shared.n_mine);
+  for (std::size_t i = 0; i < group.edges.size() * 4; ++i) {
+    const Index f = group.faces[std::min(i, group.faces.size() - 1)];
+    const auto at = std::lower_bound(shared.faces.begin(), end, f) - shared.faces.begin();
+    group.edges[i / 4][i % 4] = edges->edges_of(std::size_t(at));
+  }
+  return group;
+}
 
 namespace blocks {
 
-template <int D>
-using Wide = typename BlockGeometry<D>::Wide;
+[[gnu::always_inline]] inline Four wide(const double* from) { return lanes::load<3>(from); }
 
-[[gnu::always_inline]] inline lanes::Lane<3> wide(const double* from) { return lanes::load<3>(from); }
-
-/// Four nodes' vectors as components, each over the four faces.
+/// Four places' vectors as components, each over the four faces.
 template <int D>
 [[gnu::always_inline]] inline void gather(const double* values, const std::array<Index, 4>& at,
-                                          lanes::Lane<3> (&to)[D]) {
-  using V = lanes::Lane<3>;
+                                          Four (&to)[D]) {
   if constexpr (D == 3) {
-    const V a = wide(values + std::size_t(at[0]) * 4), b = wide(values + std::size_t(at[1]) * 4),
-            c = wide(values + std::size_t(at[2]) * 4), d = wide(values + std::size_t(at[3]) * 4);
-    const V ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), cd = __builtin_shufflevector(c, d, 0, 4, 2, 6);
-    const V y = __builtin_shufflevector(a, b, 1, 5, 3, 7), w = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    const Four a = wide(values + std::size_t(at[0]) * 4), b = wide(values + std::size_t(at[1]) * 4),
+               c = wide(values + std::size_t(at[2]) * 4), d = wide(values + std::size_t(at[3]) * 4);
+    const Four ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), cd = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+    const Four y = __builtin_shufflevector(a, b, 1, 5, 3, 7), w = __builtin_shufflevector(c, d, 1, 5, 3, 7);
     to[0] = __builtin_shufflevector(ab, cd, 0, 1, 4, 5);
     to[1] = __builtin_shufflevector(y, w, 0, 1, 4, 5);
     to[2] = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
   } else {
     for (int a = 0; a < D; ++a) {
-      const double of_faces[4] = {values[std::size_t(at[0]) * 2 + a], values[std::size_t(at[1]) * 2 + a],
-                                  values[std::size_t(at[2]) * 2 + a], values[std::size_t(at[3]) * 2 + a]};
+      const double of_faces[4] = {values[std::size_t(at[0]) * 4 + a], values[std::size_t(at[1]) * 4 + a],
+                                  values[std::size_t(at[2]) * 4 + a], values[std::size_t(at[3]) * 4 + a]};
       to[a] = wide(of_faces);
     }
   }
 }
 
 /// The components of four faces as vectors.
-[[gnu::always_inline]] inline void transpose(const lanes::Lane<3> (&from)[3], lanes::Lane<3> (&to)[4]) {
-  using V = lanes::Lane<3>;
-  const V zero{};
-  const V low = __builtin_shufflevector(from[0], from[1], 0, 4, 2, 6);  // x0 y0 x2 y2
-  const V high = __builtin_shufflevector(from[0], from[1], 1, 5, 3, 7);
-  const V z = __builtin_shufflevector(from[2], zero, 0, 4, 2, 6);
-  const V zh = __builtin_shufflevector(from[2], zero, 1, 5, 3, 7);
+[[gnu::always_inline]] inline void transpose(const Four (&from)[3], Four (&to)[4]) {
+  const Four zero{};
+  const Four low = __builtin_shufflevector(from[0], from[1], 0, 4, 2, 6);  // x0 y0 x2 y2
+  const Four high = __builtin_shufflevector(from[0], from[1], 1, 5, 3, 7);
+  const Four z = __builtin_shufflevector(from[2], zero, 0, 4, 2, 6);
+  const Four zh = __builtin_shufflevector(from[2], zero, 1, 5, 3, 7);
   to[0] = __builtin_shufflevector(low, z, 0, 1, 4, 5);
   to[1] = __builtin_shufflevector(high, zh, 0, 1, 4, 5);
   to[2] = __builtin_shufflevector(low, z, 2, 3, 6, 7);
@@ -80,10 +100,9 @@ template <int D>
 /// values[plus] += force, values[minus] -= force, of each of the four.
 template <int D>
 [[gnu::always_inline]] inline void scatter(double* values, const std::array<Index, 4>& plus,
-                                           const std::array<Index, 4>& minus,
-                                           const lanes::Lane<3> (&force)[D]) {
+                                           const std::array<Index, 4>& minus, const Four (&force)[D]) {
   if constexpr (D == 3) {
-    lanes::Lane<3> of[4];
+    Four of[4];
     transpose(force, of);
     for (int k = 0; k < 4; ++k) {
       lanes::add<3>(values + std::size_t(plus[k]) * 4, of[k]);
@@ -92,118 +111,62 @@ template <int D>
   } else {
     for (int k = 0; k < 4; ++k)
       for (int a = 0; a < D; ++a) {
-        values[std::size_t(plus[k]) * 2 + a] += force[a][k];
-        values[std::size_t(minus[k]) * 2 + a] -= force[a][k];
+        values[std::size_t(plus[k]) * 4 + a] += force[a][k];
+        values[std::size_t(minus[k]) * 4 + a] -= force[a][k];
       }
   }
 }
 
-/// u_Q - u_P, then u_plus - u_minus, by components.
+/// G, entry (k, j) = d u_k / d x_j.
 template <int D>
-[[gnu::always_inline]] inline void differences(const BlockGeometry<D>& block, const double* nodes,
-                                               const double* points, lanes::Lane<3> (&u)[D][D]) {
-  lanes::Lane<3> other[D];
-  gather<D>(nodes, block.to, u[0]);
-  gather<D>(nodes, block.from, other);
-  for (int a = 0; a < D; ++a) u[0][a] -= other[a];
-  for (int i = 0; i < D - 1; ++i) {
-    gather<D>(points, block.plus[i], u[i + 1]);
-    gather<D>(points, block.minus[i], other);
-    for (int a = 0; a < D; ++a) u[i + 1][a] -= other[a];
+[[gnu::always_inline]] inline void gradient(const FaceBlock& block, const double* values, Four (&g)[D][D]) {
+  Four u[D][D], other[D];
+  for (int i = 0; i < D; ++i) {
+    gather<D>(values, block.plus[i], u[i]);
+    gather<D>(values, block.minus[i], other);
+    for (int a = 0; a < D; ++a) u[i][a] -= other[a];
   }
-}
-
-/// H = (u_Q - u_P) S^T + sum_i (u_plus - u_minus) c_i^T, entry (k, j) of the displacement's component k.
-template <int D>
-[[gnu::always_inline]] inline void stretch(const BlockGeometry<D>& block, const double* nodes,
-                                           const double* points, lanes::Lane<3> (&h)[D][D]) {
-  lanes::Lane<3> u[D][D];
-  differences<D>(block, nodes, points, u);
   for (int a = 0; a < D; ++a)
     for (int b = 0; b < D; ++b) {
-      h[a][b] = u[0][a] * wide(block.vector[0][b]);
-      for (int k = 1; k < D; ++k) h[a][b] += u[k][a] * wide(block.vector[k][b]);
+      g[a][b] = u[0][a] * wide(block.b[0][b]);
+      for (int k = 1; k < D; ++k) g[a][b] += u[k][a] * wide(block.b[k][b]);
     }
 }
 
-/// The forces that belong to difference k of differences().
+/// The forces of a stress times V on nodes and points: dE/du.
 template <int D>
-[[gnu::always_inline]] inline void pull(const BlockGeometry<D>& block, int k,
-                                        const lanes::Lane<3> (&force)[D], double* nodes, double* points) {
-  if (k == 0)
-    scatter<D>(nodes, block.to, block.from, force);
-  else
-    scatter<D>(points, block.plus[k - 1], block.minus[k - 1], force);
-}
-
-/// The forces of a stress (times V / (S . d)) on nodes and points: dE/du.
-template <int D>
-[[gnu::always_inline]] inline void push(const BlockGeometry<D>& block, const lanes::Lane<3> (&stress)[D][D],
-                                        double* nodes, double* points) {
+[[gnu::always_inline]] inline void push(const FaceBlock& block, const Four (&stress)[D][D], double* forces) {
   for (int k = 0; k < D; ++k) {
-    lanes::Lane<3> force[D];
+    Four force[D];
     for (int a = 0; a < D; ++a) {
-      force[a] = stress[a][0] * wide(block.vector[k][0]);
-      for (int b = 1; b < D; ++b) force[a] += stress[a][b] * wide(block.vector[k][b]);
+      force[a] = stress[a][0] * wide(block.b[k][0]);
+      for (int b = 1; b < D; ++b) force[a] += stress[a][b] * wide(block.b[k][b]);
     }
-    pull<D>(block, k, force, nodes, points);
+    scatter<D>(forces, block.plus[k], block.minus[k], force);
   }
 }
 
-/// V / (S . d) sigma of H.
-template <int D>
-[[gnu::always_inline]] inline void hooke(const FaceBlock<D>& block, const lanes::Lane<3> (&h)[D][D],
-                                         lanes::Lane<3> (&stress)[D][D]) {
-  const lanes::Lane<3> mu = wide(block.mu);
-  lanes::Lane<3> trace = h[0][0];
-  for (int a = 1; a < D; ++a) trace += h[a][a];
-  trace *= wide(block.lambda);
-  for (int a = 0; a < D; ++a) {
-    for (int b = a; b < D; ++b) {
-      stress[a][b] = mu * (h[a][b] + h[b][a]);
-      stress[b][a] = stress[a][b];
-    }
-    stress[a][a] += trace;
+/// (V_fP p_P + V_fQ p_Q) / V of values of cells.
+[[gnu::always_inline]] inline Four between(const FaceBlock& block, const FaceVolumes& volumes,
+                                           const double* of_nodes) {
+  double here[4], there[4];
+  for (int k = 0; k < 4; ++k) {
+    here[k] = of_nodes[std::size_t(block.minus[0][k])];
+    there[k] = of_nodes[std::size_t(block.plus[0][k])];
   }
+  return wide(volumes.here) * wide(here) + wide(volumes.there) * wide(there);
 }
 
-/// The same with a matrix.
-template <int D>
-[[gnu::always_inline]] inline void elastic(const ElasticBlock<D>& block, const lanes::Lane<3> (&h)[D][D],
-                                           lanes::Lane<3> (&stress)[D][D]) {
-  constexpr int n = ElasticBlock<D>::size;
-  constexpr int first[6] = {0, 1, D == 3 ? 2 : 0, 0, 1, 0}, second[6] = {0, 1, D == 3 ? 2 : 1, 1, 2, 2};
-  lanes::Lane<3> strain[n], s[n];
-  for (int k = 0; k < n; ++k) {
-    const int i = first[k], j = second[k];
-    strain[k] = k < D ? h[i][j] : h[i][j] + h[j][i];
-    s[k] = lanes::Lane<3>{};
+/// Adds V_fP times the value of a face to its cells.
+[[gnu::always_inline]] inline void add_to_cells(const FaceBlock& block, const FaceVolumes& volumes,
+                                                const Four& value, double* of_nodes) {
+  const Four whole = value * wide(volumes.whole);
+  for (int k = 0; k < 4; ++k) {
+    of_nodes[std::size_t(block.minus[0][k])] += volumes.here[k] * whole[k];
+    of_nodes[std::size_t(block.plus[0][k])] += volumes.there[k] * whole[k];
   }
-  for (int i = 0, at = 0; i < n; ++i)
-    for (int j = i; j < n; ++j, ++at) {
-      const lanes::Lane<3> c = wide(block.c[at]);
-      s[i] += c * strain[j];
-      if (j != i) s[j] += c * strain[i];
-    }
-  for (int k = 0; k < n; ++k) stress[first[k]][second[k]] = stress[second[k]][first[k]] = s[k];
 }
 
 }  // namespace blocks
-
-/// The blocks of these faces in their order; the last one is filled up with faces without area between the
-/// first node and itself. `n_cells`: nodes before those of the boundary.
-template <int D>
-std::vector<FaceBlock<D>> make_blocks(const mesh::Mesh& mesh, const ElasticOperator& rows,
-                                      std::span<const Index> faces);
-
-/// Their elastic matrices; none where the body has none.
-template <int D>
-std::vector<ElasticBlock<D>> make_elastic_blocks(const mesh::Mesh& mesh, const ElasticOperator& rows,
-                                                 std::span<const Index> faces);
-
-/// Puts face f into place k of a block, or, as filling, without area.
-template <int D>
-void set_geometry(const mesh::Mesh& mesh, const SymmetricFace<D>& face, Index f, std::size_t k,
-                  bool is_filling, BlockGeometry<D>& block);
 
 }  // namespace couplet::elastic

@@ -2,7 +2,6 @@
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 
 #include <Eigen/Geometry>
-#include <cmath>
 #include <numbers>
 
 namespace couplet::elastic {
@@ -17,74 +16,56 @@ Vec3 line_across(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f
   return 2 * n.dot(geometry.face_centre[f] - here) * n;
 }
 
-}  // namespace
-
-template <int D>
-SymmetricFace<D> symmetric_face(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f) {
-  const mesh::Geometry& geometry = rows.geometry();
-  const bool mirrored = rows.mirrored(f);
-  const Vec3 d = line_across(mesh, geometry, f, mirrored);
-  const auto point = mesh.face_points[f];
-  const bool diagonals = point.size() == 4;
-  SymmetricFace<D> face;
-  std::array<Vec3, 2> side{Vec3::Zero(), Vec3::Zero()};
-  for (int i = 0; i < D - 1; ++i) {
-    face.plus[i] = point[diagonals ? i : i + 1];
-    face.minus[i] = point[diagonals ? i + 2 : 0];
-    side[i] = geometry.points[face.plus[i]] - geometry.points[face.minus[i]];
-  }
-  Vec3 area, c[2];
-  if constexpr (D == 3) {
-    area = 0.5 * side[0].cross(side[1]);
-    c[0] = 0.5 * side[1].cross(d);
-    c[1] = 0.5 * d.cross(side[0]);
-  } else {
-    const Vec3& e = side[0];
-    const double turn = geometry.face_area[f].dot(Vec3(e[1], -e[0], 0)) > 0 ? 1 : -1;
-    area = turn * Vec3(e[1], -e[0], 0);
-    c[0] = turn * Vec3(-d[1], d[0], 0);
-  }
-  const double whole = area.dot(d);
-  face.inverse = 1 / whole;
-  face.volume = whole / D * (mirrored ? 0.5 : 1);
-  for (int a = 0; a < D; ++a) {
-    face.area[a] = area[a];
-    for (int i = 0; i < D - 1; ++i) face.across[i][a] = c[i][a];
-  }
-  return face;
-}
-
-template SymmetricFace<2> symmetric_face<2>(const mesh::Mesh&, const ElasticOperator&, Index);
-template SymmetricFace<3> symmetric_face<3>(const mesh::Mesh&, const ElasticOperator&, Index);
-
-namespace {
-
 Index node_across(const mesh::Mesh& mesh, Index f) {
   return f < mesh.n_interior ? mesh.neighbour[f] : mesh.cells.n_local() + f - mesh.n_interior;
-}
-
-template <int D>
-FaceRows rows_of(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f) {
-  const SymmetricFace<D> face = symmetric_face<D>(mesh, rows, f);
-  FaceRows result{.row = {}, .n = 2 * D, .volume = face.volume};
-  const auto set = [&](int i, Index place, const std::array<double, D>& from, double sign) {
-    result.row[i] = {place, Vec3::Zero()};
-    for (int a = 0; a < D; ++a) result.row[i].b[a] = sign * from[a] * face.inverse;
-  };
-  const Index first_point = n_node_places(mesh);
-  set(0, mesh.owner[f], face.area, -1);
-  set(1, node_across(mesh, f), face.area, 1);
-  for (int i = 0; i < D - 1; ++i) {
-    set(2 + 2 * i, first_point + face.plus[i], face.across[i], 1);
-    set(3 + 2 * i, first_point + face.minus[i], face.across[i], -1);
-  }
-  return result;
 }
 
 double cross(const Vec3& a, const Vec3& b) { return a[0] * b[1] - a[1] * b[0]; }
 
 /// Twice the signed area.
 double twice_area(const Vec3& a, const Vec3& b, const Vec3& c) { return cross(b - a, c - a); }
+
+template <int D>
+FaceRows rows_of(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f) {
+  const mesh::Geometry& geometry = rows.geometry();
+  const bool mirrored = rows.mirrored(f);
+  const Vec3 d = line_across(mesh, geometry, f, mirrored);
+  const auto point = mesh.face_points[f];
+  const bool diagonals = point.size() == 4;
+  Index plus[D - 1], minus[D - 1];
+  Vec3 side[D - 1], c[D - 1], area;
+  for (int i = 0; i < D - 1; ++i) {
+    plus[i] = point[diagonals ? i : i + 1];
+    minus[i] = point[diagonals ? i + 2 : 0];
+    side[i] = geometry.points[plus[i]] - geometry.points[minus[i]];
+  }
+  if constexpr (D == 3) {
+    area = 0.5 * side[0].cross(side[1]);
+    c[0] = 0.5 * side[1].cross(d);
+    c[1] = 0.5 * d.cross(side[0]);
+  } else {
+    const Vec3 normal(side[0][1], -side[0][0], 0);
+    const double turn = geometry.face_area[f].dot(normal) > 0 ? 1 : -1;
+    area = turn * normal;
+    c[0] = turn * Vec3(-d[1], d[0], 0);
+  }
+  const double whole = area.dot(d), inverse = 1 / whole;
+  FaceRows face;
+  face.n = 2 * D;
+  face.volume = whole / D * (mirrored ? 0.5 : 1);
+  const auto set = [&](int i, Index place, const Vec3& from, double sign) {
+    face.row[i].place = place;
+    face.row[i].b = (sign * inverse) * from;
+  };
+  const Index first_point = n_node_places(mesh);
+  set(0, mesh.owner[f], area, -1);
+  set(1, node_across(mesh, f), area, 1);
+  for (int i = 0; i < D - 1; ++i) {
+    set(2 + 2 * i, first_point + plus[i], c[i], 1);
+    set(3 + 2 * i, first_point + minus[i], c[i], -1);
+  }
+  return face;
+}
 
 }  // namespace
 
@@ -166,6 +147,81 @@ std::array<double, 2> pyramids(const mesh::Mesh& mesh, const mesh::Geometry& geo
   if (f >= mesh.n_interior) return {here, 0};
   const Vec3 there = geometry.cell_centre[mesh.neighbour[f]] + mesh.shift(f);
   return {here, s.dot(there - geometry.face_centre[f]) / mesh.dim};
+}
+
+void add_term(FaceTermList& terms, const FaceTerm& term) {
+  for (FaceTerm& t : terms)
+    if (t.block == term.block && t.turn == term.turn) {
+      t.b += term.b;
+      return;
+    }
+  terms.push_back(term);
+}
+
+/// The hoop strain of a ring comes by the radial displacement; without shear each component has its own derivative.
+void FaceTerms::take(GlobalIndex block, const Vec3& b, const Tensor3& turn) {
+  if (block < 0) return;
+  if (!ring_) return add_term(terms_, {block, b, turn});
+  const auto along = [&](int component, const Tensor3& of) {
+    add_term(terms_, {block, b[component] * Vec3::Unit(component), of});
+  };
+  const auto pick = [&](int to, int from) { return Tensor3(Vec3::Unit(to) * turn.row(from)); };
+  if (ring_->has_shear)
+    add_term(terms_, {block, Vec3(b[0], b[1], 0), turn});
+  else
+    along(0, pick(0, 0)), along(1, pick(1, 1));
+  along(2, pick(2, 0));
+}
+
+void FaceTerms::take_node(Index node, const Vec3& b) {
+  const Index f = node - mesh_.cells.n_local() + mesh_.n_interior;
+  if (node < mesh_.cells.n_local()) return take(number_.node[node], b, Tensor3::Identity());
+  if (!rows_.mirrored(f)) return take(number_.node[node], b, Tensor3::Identity() - rows_.at(f).known);
+  if (ring_) return;
+  const Vec3 n = rows_.geometry().face_area[f].normalized();
+  take(number_.node[mesh_.owner[f]], b, Tensor3::Identity() - 2 * n * n.transpose());
+}
+
+void FaceTerms::take_point(Index v, const Vec3& b) {
+  if (!number_.point.empty()) return take(number_.point[v], b, Tensor3::Identity());
+  const VertexConstraints& constraints = rows_.constraints();
+  if (constraints.is_fixed(v)) return;
+  const auto nodes = rows_.vertices().nodes(v);
+  const auto weights = rows_.vertices().weights(v);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    Tensor3 turn = constraints.free_part(v);
+    const Index f = nodes[i] - mesh_.cells.n_local() + mesh_.n_interior;
+    if (nodes[i] >= mesh_.cells.n_local() && rows_.at(f).held)
+      turn = (turn * (Tensor3::Identity() - rows_.at(f).known)).eval();
+    take(number_.node[nodes[i]], weights[i] * b, turn);
+  }
+}
+
+const FaceTermList& FaceTerms::of_face(const FaceRows& face) {
+  terms_.clear();
+  ring_ = face.is_ring ? &face : nullptr;
+  const Index first_point = n_node_places(mesh_);
+  for (const FaceRows::Row& row : face.all())
+    row.place < first_point ? take_node(row.place, row.b) : take_point(row.place - first_point, row.b);
+  ring_ = nullptr;
+  return terms_;
+}
+
+const FaceTermList& FaceTerms::of_mean(Index f) {
+  terms_.clear();
+  const double of_node = 1.0 / mesh_.dim;
+  take_node(mesh_.cells.n_local() + f - mesh_.n_interior, Vec3(of_node, 0, 0));
+  const auto shares = point_shares(mesh_, rows_.geometry(), f);
+  const auto points = mesh_.face_points[f];
+  for (std::size_t i = 0; i < points.size(); ++i)
+    take_point(points[i], Vec3((1 - of_node) * shares[i], 0, 0));
+  return terms_;
+}
+
+const FaceTermList& FaceTerms::of_point(Index v) {
+  terms_.clear();
+  take_point(v, Vec3(1, 0, 0));
+  return terms_;
 }
 
 }  // namespace couplet::elastic

@@ -5,278 +5,233 @@
 #include "common/parallel/collective.hpp"
 
 namespace couplet::elastic {
+namespace {
 
-template <int D>
-SymmetricKernel<D>::SymmetricKernel(const mesh::Mesh& mesh, const ElasticOperator& rows)
-    : SpaceKernel<D>(mesh, rows), mesh_(mesh), geometry_(rows.geometry()), rows_(rows) {
+// Tensor indices of xx, yy, zz, xy, yz, xz; in the plane of xx, yy, xy.
+constexpr int first[6] = {0, 1, 2, 0, 1, 0}, second[6] = {0, 1, 2, 1, 2, 2};
+constexpr int entry[2][6] = {{0, 1, 3, 0, 0, 0}, {0, 1, 2, 3, 4, 5}};
+
+}  // namespace
+
+SymmetricKernel::SymmetricKernel(const mesh::Mesh& mesh, const ElasticOperator& rows)
+    : mesh_(mesh), rows_(rows), space_(mesh, rows) {
+  if (is_axisymmetric(rows)) {
+    for (Index f = 0; f < mesh.n_flux_faces(); ++f)
+      if (mesh.owner[f] < mesh.cells.n_owned()) make_ring(f);
+    return;
+  }
   const SharedFaces shared = shared_faces(mesh, rows);
-  std::vector<Index> others;
-  for (Index f = 0; f < mesh.n_flux_faces(); ++f)
-    if (mesh.owner[f] < mesh.cells.n_owned() && (D == 2 || mesh.face_points[f].size() != 3))
-      others.push_back(f);
-  plain_ = make_group(std::move(others));
-  sharing_ = make_group({shared.faces.begin(), shared.faces.begin() + std::ptrdiff_t(shared.n_mine)});
-  if (parallel::any(mesh.comm, shared.n_mine > 0)) make_edges(shared);
-  if (!rows.volume_by_cells()) return;
+  const auto all = [](Index) { return true; };
+  plain_ = {make_group(mesh, rows, shared, nullptr, all), {}, {}};
+  add_laws(plain_);
+  if (parallel::any(mesh.comm, shared.n_mine > 0)) {
+    edges_ = std::make_unique<SharedEdges>(mesh, rows, shared.faces, shared.volume);
+    sharing_ = {make_group(mesh, rows, shared, edges_.get(), all), {}, {}};
+    add_laws(sharing_);
+    kept_.resize(sharing_.blocks.size());
+    shared_index_.assign(mesh.n_flux_faces(), -1);
+    for (std::size_t i = 0; i < shared.faces.size(); ++i) shared_index_[shared.faces[i]] = Index(i);
+  }
+  if (!rows.volume_by_cells()) {
+    plain_.volumes = {};  // only their cells' strain needs them
+    return;
+  }
   pressure_.assign(space_.n_nodes(), 0);
-  const std::vector<double> volume = pyramid_volumes(mesh, geometry_);
+  const std::vector<double> volume = pyramid_volumes(mesh, rows.geometry());
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
     bulk_.push_back(bulk_of_cells(rows.lame(c), rows.volume_strain()) / volume[c]);
 }
 
-template <int D>
-typename SymmetricKernel<D>::Group SymmetricKernel<D>::make_group(std::vector<Index> faces) const {
-  Group group{std::move(faces), {}, {}, {}};
-  if (!group.faces.empty()) group.blocks = make_blocks<D>(mesh_, rows_, group.faces);
-  group.elastic = make_elastic_blocks<D>(mesh_, rows_, group.faces);
-  if (!rows_.volume_by_cells()) return group;
-  group.volumes.resize(group.blocks.size());
-  for (std::size_t i = 0; i < group.volumes.size() * 4; ++i) {
-    VolumeBlock& block = group.volumes[i / 4];
-    block.from[i % 4] = block.to[i % 4] = 0;
-    if (i >= group.faces.size()) continue;
-    const auto [here, there] = pyramids(mesh_, geometry_, group.faces[i]);
-    const double inverse = symmetric_face<D>(mesh_, rows_, group.faces[i]).inverse;
-    block.from[i % 4] = here * inverse;
-    block.to[i % 4] = there * inverse;
-  }
-  return group;
-}
-
-template <int D>
-void SymmetricKernel<D>::make_edges(const SharedFaces& shared) {
-  edges_ = std::make_unique<SharedEdges>(mesh_, rows_, shared.faces, shared.volume);
-  shared_index_.assign(mesh_.n_flux_faces(), -1);
-  for (std::size_t i = 0; i < shared.faces.size(); ++i) shared_index_[shared.faces[i]] = Index(i);
-  shared_.resize(sharing_.blocks.size());
-  for (std::size_t i = 0; i < shared_.size() * 4; ++i) {
-    SharedBlock& block = shared_[i / 4];
-    const bool is_filling = i >= shared.n_mine;
-    block.edges[i % 4] = edges_->edges_of(is_filling ? 0 : i);
-    block.inverse[i % 4] = block.part[i % 4] = block.weight[i % 4] = 0;
-    if (is_filling) continue;
-    const SymmetricFace<D> face = symmetric_face<D>(mesh_, rows_, shared.faces[i]);
-    block.inverse[i % 4] = face.inverse;
-    block.part[i % 4] = SharedEdges::share * face.volume / 3;
-    block.weight[i % 4] = SharedEdges::share * face.volume * face.inverse / 3;
+void SymmetricKernel::add_laws(Group& group) const {
+  rows_.is_anisotropic() ? group.matrix.resize(group.blocks.size()) : group.hooke.resize(group.blocks.size());
+  const int n = mesh_.dim == 3 ? 6 : 3;
+  for (std::size_t i = 0; i < group.blocks.size() * 4; ++i) {
+    const Index f = group.faces[std::min(i, group.faces.size() - 1)];
+    const double volume = group.volumes[i / 4].whole[i % 4];
+    if (!rows_.is_anisotropic()) {
+      const LameConstants lame = part_of_faces(face_lame(mesh_, rows_, f), rows_.volume_strain());
+      group.hooke[i / 4].mu[i % 4] = volume * lame.mu;
+      group.hooke[i / 4].lambda[i % 4] = volume * lame.lambda;
+      continue;
+    }
+    const ElasticMatrix c = face_matrix(mesh_, rows_, f);
+    for (int a = 0, at = 0; a < n; ++a)
+      for (int b = a; b < n; ++b)
+        group.matrix[i / 4].c[at++][i % 4] = volume * c(entry[mesh_.dim - 2][a], entry[mesh_.dim - 2][b]);
   }
 }
 
-/// V / (S . d) sigma of a block of the group without the pressure of cells.
-template <int D>
-inline void SymmetricKernel<D>::stress_of(const Group& group, const FaceBlock<D>& block, const V (&h)[D][D],
-                                          V (&stress)[D][D]) const {
-  if (group.elastic.empty())
-    blocks::hooke<D>(block, h, stress);
-  else
-    blocks::elastic<D>(group.elastic[std::size_t(&block - group.blocks.data())], h, stress);
+void SymmetricKernel::make_ring(Index f) {
+  const FaceRows face = ring_rows(mesh_, rows_, f);
+  const LameConstants lame = face_lame(mesh_, rows_, f);
+  RingFace& to = rings_.emplace_back();
+  to.mu = face.volume * lame.mu;
+  to.lambda = face.volume * lame.lambda;
+  to.shear = face.has_shear ? to.mu : 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    to.place[i] = face.row[i].place;
+    std::copy_n(face.row[i].b.data(), 3, to.b[i]);
+  }
 }
 
-/// Adds (V_fP p_P + V_fQ p_Q) / (S . d), p being the mean stress of the cells.
+/// V sigma of block i of the group without the pressure of cells.
 template <int D>
-inline void SymmetricKernel<D>::add_pressure_of_cells(const Group& group, const FaceBlock<D>& block,
-                                                      V (&stress)[D][D]) const {
-  if (group.volumes.empty()) return;
-  const VolumeBlock& volume = group.volumes[std::size_t(&block - group.blocks.data())];
-  double here[4], there[4];
-  for (int k = 0; k < 4; ++k) {
-    here[k] = pressure_[std::size_t(block.from[k])];
-    there[k] = pressure_[std::size_t(block.to[k])];
+inline void SymmetricKernel::stress_of(const Group& group, std::size_t i, const Four (&g)[D][D],
+                                       Four (&stress)[D][D]) const {
+  if (group.matrix.empty()) {
+    const Four mu = blocks::wide(group.hooke[i].mu);
+    Four trace = g[0][0];
+    for (int a = 1; a < D; ++a) trace += g[a][a];
+    trace *= blocks::wide(group.hooke[i].lambda);
+    for (int a = 0; a < D; ++a) {
+      for (int b = a; b < D; ++b) {
+        stress[a][b] = mu * (g[a][b] + g[b][a]);
+        stress[b][a] = stress[a][b];
+      }
+      stress[a][a] += trace;
+    }
+    return;
   }
-  const V pressure =
-      blocks::wide(volume.from) * blocks::wide(here) + blocks::wide(volume.to) * blocks::wide(there);
+  constexpr int n = D == 3 ? 6 : 3;
+  Four strain[n], s[n] = {};
+  for (int k = 0; k < n; ++k) {
+    const int a = first[entry[D - 2][k]], b = second[entry[D - 2][k]];
+    strain[k] = k < D ? g[a][b] : g[a][b] + g[b][a];
+  }
+  for (int a = 0, at = 0; a < n; ++a)
+    for (int b = a; b < n; ++b, ++at) {
+      const Four c = blocks::wide(group.matrix[i].c[at]);
+      s[a] += c * strain[b];
+      if (b != a) s[b] += c * strain[a];
+    }
+  for (int k = 0; k < n; ++k) {
+    const int a = first[entry[D - 2][k]], b = second[entry[D - 2][k]];
+    stress[a][b] = stress[b][a] = s[k];
+  }
+}
+
+/// Adds V_fP p_P + V_fQ p_Q to V sigma, p being the mean stress of the cells.
+template <int D>
+inline void SymmetricKernel::add_pressure_of_cells(const Group& group, std::size_t i,
+                                                   Four (&stress)[D][D]) const {
+  if (pressure_.empty()) return;
+  const Four pressure = blocks::wide(group.volumes[i].whole) *
+                        blocks::between(group.blocks[i], group.volumes[i], pressure_.data());
   for (int a = 0; a < D; ++a) stress[a][a] += pressure;
 }
 
-// V / (S . d) sigma of four faces, and what it does to their nodes and points.
+// V sigma of four faces, and what it does to their nodes and points.
 template <int D>
-inline void SymmetricKernel<D>::faces_loop() {
-  const double *nodes = space_.nodes(), *points = space_.points();
-  double *force = space_.forces(), *point_force = space_.point_forces();
-  for (const FaceBlock<D>& block : plain_.blocks) {
-    V h[D][D], stress[D][D];
-    blocks::stretch<D>(block, nodes, points, h);
-    stress_of(plain_, block, h, stress);
-    add_pressure_of_cells(plain_, block, stress);
-    blocks::push<D>(block, stress, force, point_force);
+inline void SymmetricKernel::faces_loop() {
+  const double* values = space_.values();
+  double* forces = space_.forces();
+  for (std::size_t i = 0; i < plain_.blocks.size(); ++i) {
+    Four g[D][D], stress[D][D];
+    blocks::gradient<D>(plain_.blocks[i], values, g);
+    stress_of<D>(plain_, i, g, stress);
+    add_pressure_of_cells<D>(plain_, i, stress);
+    blocks::push<D>(plain_.blocks[i], stress, forces);
   }
 }
 
 /// V_fP tr e_f to the cells.
 template <int D>
-inline void SymmetricKernel<D>::volumes_loop() {
+inline void SymmetricKernel::volumes_loop() {
   for (const Group* group : {&plain_, &sharing_})
-    for (std::size_t i = 0; i < group->volumes.size(); ++i) {
-      const FaceBlock<D>& block = group->blocks[i];
-      V h[D][D];
-      blocks::stretch<D>(block, space_.nodes(), space_.points(), h);
-      V trace = h[0][0];
-      for (int a = 1; a < D; ++a) trace += h[a][a];
-      for (int k = 0; k < 4; ++k) {
-        pressure_[std::size_t(block.from[k])] += group->volumes[i].from[k] * trace[k];
-        pressure_[std::size_t(block.to[k])] += group->volumes[i].to[k] * trace[k];
-      }
+    for (std::size_t i = 0; i < group->blocks.size(); ++i) {
+      Four g[D][D];
+      blocks::gradient<D>(group->blocks[i], space_.values(), g);
+      Four trace = g[0][0];
+      for (int a = 1; a < D; ++a) trace += g[a][a];
+      blocks::add_to_cells(group->blocks[i], group->volumes[i], trace, pressure_.data());
     }
 }
 
 // The faces' own part, kept, and t V / 3 e to the edges.
-template <int D>
-inline void SymmetricKernel<D>::shared_first_loop() {
-  if constexpr (D == 3) {
-    const double *nodes = space_.nodes(), *points = space_.points();
-    constexpr int first[6] = {0, 1, 2, 0, 1, 0}, second[6] = {0, 1, 2, 1, 2, 2};
-    const double own = 1 - SharedEdges::share;
-    for (std::size_t i = 0; i < shared_.size(); ++i) {
-      SharedBlock& shared = shared_[i];
-      V h[D][D], stress[D][D];
-      blocks::stretch<D>(sharing_.blocks[i], nodes, points, h);
-      stress_of(sharing_, sharing_.blocks[i], h, stress);
-      const V scale = blocks::wide(shared.inverse) * blocks::wide(shared.part) * 0.5;
-      V strain[6];
-      for (int k = 0; k < 6; ++k) {
-        lanes::store<3>(shared.stress[k], own * stress[first[k]][second[k]]);
-        strain[k] = scale * (h[first[k]][second[k]] + h[second[k]][first[k]]);
-      }
-      const V xyz[3] = {strain[0], strain[1], strain[2]}, rest[3] = {strain[3], strain[4], strain[5]};
-      V low[4], high[4];
-      blocks::transpose(xyz, low);
-      blocks::transpose(rest, high);
-      for (int k = 0; k < 4; ++k)
-        for (const Index e : shared.edges[k]) {
-          double* at = edges_->at(e);
-          for (int c = 0; c < 3; ++c) at[c] += low[k][c], at[3 + c] += high[k][c];
-        }
+inline void SymmetricKernel::shared_first_loop() {
+  const double* values = space_.values();
+  for (std::size_t i = 0; i < sharing_.blocks.size(); ++i) {
+    Four g[3][3], stress[3][3];
+    blocks::gradient<3>(sharing_.blocks[i], values, g);
+    stress_of<3>(sharing_, i, g, stress);
+    const Four scale = blocks::wide(sharing_.volumes[i].whole) * (SharedEdges::share / 6);
+    Four strain[6];
+    for (int k = 0; k < 6; ++k) {
+      lanes::store<3>(kept_[i].stress[k], sharing_.own * stress[first[k]][second[k]]);
+      strain[k] = scale * (g[first[k]][second[k]] + g[second[k]][first[k]]);
     }
+    const Four xyz[3] = {strain[0], strain[1], strain[2]}, rest[3] = {strain[3], strain[4], strain[5]};
+    Four low[4], high[4];
+    blocks::transpose(xyz, low);
+    blocks::transpose(rest, high);
+    for (int k = 0; k < 4; ++k)
+      for (const Index e : sharing_.edges[i][std::size_t(k)]) {
+        double* at = edges_->at(e);
+        for (int c = 0; c < 3; ++c) at[c] += low[k][c], at[3 + c] += high[k][c];
+      }
   }
 }
 
 // With the stress of the edges.
-template <int D>
-inline void SymmetricKernel<D>::shared_second_loop() {
-  if constexpr (D == 3) {
-    double *force = space_.forces(), *point_force = space_.point_forces();
-    constexpr int first[6] = {0, 1, 2, 0, 1, 0}, second[6] = {0, 1, 2, 1, 2, 2};
-    for (std::size_t i = 0; i < shared_.size(); ++i) {
-      const SharedBlock& shared = shared_[i];
-      V stress[D][D];
-      const V weight = blocks::wide(shared.weight);
-      for (int k = 0; k < 6; ++k) {
-        V of_edges{};
-        for (int j = 0; j < 4; ++j)
-          of_edges[j] = edges_->at(shared.edges[j][0])[k] + edges_->at(shared.edges[j][1])[k] +
-                        edges_->at(shared.edges[j][2])[k];
-        stress[first[k]][second[k]] = blocks::wide(shared.stress[k]) + weight * of_edges;
-        stress[second[k]][first[k]] = stress[first[k]][second[k]];
+inline void SymmetricKernel::shared_second_loop() {
+  double* forces = space_.forces();
+  for (std::size_t i = 0; i < sharing_.blocks.size(); ++i) {
+    Four stress[3][3];
+    const Four weight = blocks::wide(sharing_.volumes[i].whole) * (SharedEdges::share / 3);
+    for (int k = 0; k < 6; ++k) {
+      Four of_edges{};
+      for (int j = 0; j < 4; ++j) {
+        const auto& edges = sharing_.edges[i][std::size_t(j)];
+        of_edges[j] = edges_->at(edges[0])[k] + edges_->at(edges[1])[k] + edges_->at(edges[2])[k];
       }
-      add_pressure_of_cells(sharing_, sharing_.blocks[i], stress);
-      blocks::push<D>(sharing_.blocks[i], stress, force, point_force);
+      stress[first[k]][second[k]] = blocks::wide(kept_[i].stress[k]) + weight * of_edges;
+      stress[second[k]][first[k]] = stress[first[k]][second[k]];
     }
+    add_pressure_of_cells<3>(sharing_, i, stress);
+    blocks::push<3>(sharing_.blocks[i], stress, forces);
   }
 }
 
 namespace {
 
 // The loops for several generations of processors; the right one is picked when the program starts.
-COUPLET_PROCESSOR_CLONES void faces_pass(SymmetricKernel<3>& kernel) { kernel.faces_loop(); }
-COUPLET_PROCESSOR_CLONES void faces_pass(SymmetricKernel<2>& kernel) { kernel.faces_loop(); }
-COUPLET_PROCESSOR_CLONES void shared_first_pass(SymmetricKernel<3>& kernel) { kernel.shared_first_loop(); }
-COUPLET_PROCESSOR_CLONES void shared_second_pass(SymmetricKernel<3>& kernel) { kernel.shared_second_loop(); }
-COUPLET_PROCESSOR_CLONES void volumes_pass(SymmetricKernel<3>& kernel) { kernel.volumes_loop(); }
-COUPLET_PROCESSOR_CLONES void volumes_pass(SymmetricKernel<2>& kernel) { kernel.volumes_loop(); }
-void shared_first_pass(SymmetricKernel<2>&) {}
-void shared_second_pass(SymmetricKernel<2>&) {}
+COUPLET_PROCESSOR_CLONES void plane_faces_pass(SymmetricKernel& kernel) { kernel.faces_loop<2>(); }
+COUPLET_PROCESSOR_CLONES void space_faces_pass(SymmetricKernel& kernel) { kernel.faces_loop<3>(); }
+COUPLET_PROCESSOR_CLONES void shared_first_pass(SymmetricKernel& kernel) { kernel.shared_first_loop(); }
+COUPLET_PROCESSOR_CLONES void shared_second_pass(SymmetricKernel& kernel) { kernel.shared_second_loop(); }
+COUPLET_PROCESSOR_CLONES void volumes_pass(SymmetricKernel& kernel, int dim) {
+  dim == 2 ? kernel.volumes_loop<2>() : kernel.volumes_loop<3>();
+}
 
 }  // namespace
 
 /// V theta of the owned cells, in the places of their pressures.
-template <int D>
-std::span<double> SymmetricKernel<D>::sum_volumes() {
+std::span<double> SymmetricKernel::sum_volumes() {
   std::ranges::fill(pressure_, 0.0);
-  volumes_pass(*this);
+  volumes_pass(*this, mesh_.dim);
   const std::span<double> cells = std::span(pressure_).first(std::size_t(mesh_.cells.n_local()));
   mesh_.cells.add_to_owners(cells);
   return cells;
 }
 
-template <int D>
-void SymmetricKernel<D>::find_pressures() {
+void SymmetricKernel::find_pressures() {
   const std::span<double> cells = sum_volumes();
   for (std::size_t c = 0; c < bulk_.size(); ++c) cells[c] *= bulk_[c];
   mesh_.cells.update_ghosts(cells);
 }
 
-template <int D>
-void SymmetricKernel<D>::internal_forces() {
-  if (!pressure_.empty()) find_pressures();
-  forces_of_stress();
-}
-
-template <int D>
-void SymmetricKernel<D>::forces_of_stress() {
-  faces_pass(*this);
-  if (!edges_) return;
+void SymmetricKernel::find_edge_means() {
   edges_->clear();
   shared_first_pass(*this);
   edges_->finish_means();
-  edges_->to_stress();
-  shared_second_pass(*this);
 }
 
-template <int D>
-void SymmetricKernel<D>::face_gradients(std::span<const double> unknowns, std::span<const double> known,
-                                        const ElasticKernel::TakeGradient& take, Index first, Index end) {
-  space_.fill(unknowns, known);
-  const auto node = [&](Index n) { return space_.nodes() + std::size_t(n) * stride; };
-  if (edges_) {
-    edges_->clear();
-    shared_first_pass(*this);
-    edges_->finish_means();
-  }
+void SymmetricKernel::add_internal_forces() {
   if (!pressure_.empty()) find_pressures();
-  for (Index f = first; f < end; ++f) {
-    const SymmetricFace<D> face = symmetric_face<D>(mesh_, rows_, f);
-    const double *across = node(space_.node_across(f)), *here = node(mesh_.owner[f]);
-    Tensor3 gradient = Tensor3::Zero();
-    for (int j = 0; j < D; ++j)
-      for (int k = 0; k < D; ++k) {
-        double h = (across[k] - here[k]) * face.area[j];
-        for (int i = 0; i < D - 1; ++i)
-          h += (space_.points()[std::size_t(face.plus[i]) * stride + k] -
-                space_.points()[std::size_t(face.minus[i]) * stride + k]) *
-               face.across[i][j];
-        gradient(j, k) = h * face.inverse;
-      }
-    if (edges_ && shared_index_[f] >= 0) {
-      const Tensor3 own = 0.5 * (gradient + gradient.transpose());
-      Tensor3 of_edges = Tensor3::Zero();
-      for (const Index e : edges_->edges_of(shared_index_[f])) {
-        const double* v = edges_->at(e);
-        Tensor3 mean;
-        mean << v[0], v[3], v[5], v[3], v[1], v[4], v[5], v[4], v[2];
-        of_edges += mean / 3;
-      }
-      gradient += SharedEdges::share * (of_edges - own);
-    }
-    if (!pressure_.empty()) {
-      // What Hooke's law then makes of it is 2 mu dev(e) + p I.
-      const auto [here, there] = pyramids(mesh_, geometry_, f);
-      const LameConstants lame = face_lame(mesh_, rows_, f);
-      double mean = here * pressure_[std::size_t(mesh_.owner[f])];
-      if (f < mesh_.n_interior) mean += there * pressure_[std::size_t(mesh_.neighbour[f])];
-      mean /= here + there;
-      const double gap = mean - bulk_of_cells(lame, rows_.volume_strain()) * gradient.trace();
-      for (int a = 0; a < D; ++a) gradient(a, a) += gap / (2 * lame.mu + D * lame.lambda);
-    }
-    take(f, gradient);
-  }
+  rings_.empty() ? forces_of_stress() : forces_of_rings();
 }
 
-/// With the mean stresses of its cells as unknowns of their own.
-template <int D>
-void SymmetricKernel<D>::apply_mixed(std::span<const double> unknowns, std::span<const double> pressure,
-                                     double mass_factor, std::span<double> result, std::span<double> defect) {
-  space_.fill(unknowns, {});
-  space_.clear_forces();
+void SymmetricKernel::add_internal_forces(std::span<const double> pressure, std::span<double> defect) {
   const std::span<double> cells = sum_volumes();
   for (std::size_t c = 0; c < bulk_.size(); ++c) {
     defect[c] = cells[c] - pressure[c] / bulk_[c];
@@ -284,39 +239,108 @@ void SymmetricKernel<D>::apply_mixed(std::span<const double> unknowns, std::span
   }
   mesh_.cells.update_ghosts(cells);
   forces_of_stress();
-  space_.add_springs({});
-  if (mass_factor > 0) space_.add_mass_forces(mass_factor);
-  space_.collect();
-  space_.take_rows(unknowns, {}, result);
+}
+
+void SymmetricKernel::forces_of_stress() {
+  mesh_.dim == 2 ? plane_faces_pass(*this) : space_faces_pass(*this);
+  if (!edges_) return;
+  find_edge_means();
+  edges_->to_stress();
+  shared_second_pass(*this);
+}
+
+void SymmetricKernel::forces_of_rings() {
+  for (const RingFace& f : rings_) {
+    double radial = 0, axial = 0, hoop = 0, slide = 0;  // strains, the last one an angle
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Vec3 u = space_.value(f.place[i]);
+      radial += f.b[i][0] * u[0];
+      axial += f.b[i][1] * u[1];
+      hoop += f.b[i][2] * u[0];
+      slide += f.b[i][1] * u[0] + f.b[i][0] * u[1];
+    }
+    const double mean = f.lambda * (radial + axial + hoop);
+    const double stress[4] = {mean + 2 * f.mu * radial, mean + 2 * f.mu * axial, mean + 2 * f.mu * hoop,
+                              f.shear * slide};
+    for (std::size_t i = 0; i < 4; ++i) {
+      auto to = space_.force(f.place[i]);
+      to[0] += stress[0] * f.b[i][0] + stress[3] * f.b[i][1] + stress[2] * f.b[i][2];
+      to[1] += stress[1] * f.b[i][1] + stress[3] * f.b[i][0];
+    }
+  }
+}
+
+void SymmetricKernel::face_gradients(const ElasticKernel::TakeGradient& take, Index first_face, Index end) {
+  if (edges_) find_edge_means();
+  if (!pressure_.empty()) find_pressures();
+  for (Index f = first_face; f < end; ++f) {
+    const FaceRows face = face_rows(mesh_, rows_, f);
+    Tensor3 gradient = Tensor3::Zero();
+    for (std::size_t i = 0; !face.is_ring && i < std::size_t(face.n); i += 2) {
+      const auto& [plus, b] = face.row[i == 0 ? 1 : i];
+      gradient += b * (space_.value(plus) - space_.value(face.row[i == 0 ? 0 : i + 1].place)).transpose();
+    }
+    for (std::size_t i = 0; face.is_ring && i < std::size_t(face.n); ++i) {
+      const auto& [place, b] = face.row[i];
+      const Vec3 u = space_.value(place);
+      for (Index j = 0; j < 2; ++j)
+        for (Index k = 0; k < 2; ++k)
+          if (j == k || face.has_shear) gradient(j, k) += b[j] * u[k];
+      gradient(2, 2) += b[2] * u[0];
+    }
+    // At the surface itself: that of half a cell's middle would be the surface's to first order only.
+    if (face.is_ring && f >= mesh_.n_interior && face.has_shear)
+      gradient(2, 2) = space_.value(face.row[1].place)[0] / rows_.geometry().face_centre[f][0];
+    if (edges_ && shared_index_[f] >= 0) {
+      const Tensor3 own = 0.5 * (gradient + gradient.transpose());
+      Tensor3 of_edges = Tensor3::Zero();
+      for (const Index e : edges_->edges_of(shared_index_[f])) of_edges += edge_tensor(*edges_, e) / 3;
+      gradient += SharedEdges::share * (of_edges - own);
+    }
+    if (!pressure_.empty()) {
+      // What Hooke's law then makes of it is 2 mu dev(e) + p I.
+      const auto [here, there] = pyramids(mesh_, rows_.geometry(), f);
+      const LameConstants lame = face_lame(mesh_, rows_, f);
+      double mean = here * pressure_[std::size_t(mesh_.owner[f])];
+      if (f < mesh_.n_interior) mean += there * pressure_[std::size_t(mesh_.neighbour[f])];
+      mean /= here + there;
+      const double gap = mean - bulk_of_cells(lame, rows_.volume_strain()) * gradient.trace();
+      for (int a = 0; a < mesh_.dim; ++a) gradient(a, a) += gap / (2 * lame.mu + mesh_.dim * lame.lambda);
+    }
+    take(f, gradient);
+  }
 }
 
 /// Where the volume strain is that of the cells it takes no part in the sharing, nor does the pressure that acts on it.
-template <int D>
-std::vector<double> SymmetricKernel<D>::shared_pressure(std::span<const double> pressure) {
+std::vector<double> SymmetricKernel::shared_pressure(std::span<const double> pressure) {
   std::vector<double> result(pressure.begin(), pressure.end());
   if (!edges_ || rows_.volume_by_cells()) return result;
   edges_->clear();
   for (std::size_t i = 0; i < sharing_.faces.size(); ++i)
     for (const Index e : edges_->edges_of(i))
       for (int a = 0; a < 3; ++a)
-        edges_->at(e)[a] += shared_[i / 4].part[i % 4] * pressure[sharing_.faces[i]];
+        edges_->at(e)[a] +=
+            SharedEdges::share / 3 * sharing_.volumes[i / 4].whole[i % 4] * pressure[sharing_.faces[i]];
   edges_->finish_means();
   for (std::size_t i = 0; i < sharing_.faces.size(); ++i) {
     double of_edges = 0;
     for (const Index e : edges_->edges_of(i)) of_edges += edges_->at(e)[0] / 3;
     double& here = result[sharing_.faces[i]];
-    here = (1 - SharedEdges::share) * here + SharedEdges::share * of_edges;
+    here = sharing_.own * here + SharedEdges::share * of_edges;
   }
   return result;
 }
 
-template class SymmetricKernel<2>;
-template class SymmetricKernel<3>;
-
-std::unique_ptr<ElasticKernel::Implementation> make_symmetric_kernel(const mesh::Mesh& mesh,
-                                                                     const ElasticOperator& rows) {
-  if (mesh.dim == 2) return std::make_unique<SymmetricKernel<2>>(mesh, rows);
-  return std::make_unique<SymmetricKernel<3>>(mesh, rows);
+void SymmetricKernel::spread_pressure(std::span<const double> pressure) {
+  const std::vector<double> shared = shared_pressure(pressure);
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    if (mesh_.owner[f] >= mesh_.cells.n_owned()) continue;  // another rank's
+    const FaceRows face = face_rows(mesh_, rows_, f);
+    for (const FaceRows::Row& row : face.all()) {
+      const Vec3 b = face.is_ring ? Vec3(row.b[0] + row.b[2], row.b[1], 0) : row.b;
+      space_.force(row.place) += shared[f] * face.volume * b;
+    }
+  }
 }
 
 }  // namespace couplet::elastic

@@ -211,33 +211,28 @@ void Assembly::add_supports() {
     if (s.spring.isZero(0)) continue;
     const Tensor3 open = Tensor3::Identity() - s.known,
                   spring = geometry_.face_area[f].norm() * (open * s.spring * open);
-    const FaceTermList& mean = terms_.of_mean(f);
-    for (const FaceTerm& i : mean)
-      for (const FaceTerm& j : mean)
-        add(i.block, j.block, i.b[0] * j.b[0] * (i.turn.transpose() * spring * j.turn));
+    add_mean(terms_.of_mean(f), spring);
   }
 }
 
 void Assembly::add_mass(double factor, std::span<const double> density) {
-  mesh_.dim == 2 ? add_lumped<2>(factor, density) : add_lumped<3>(factor, density);
-}
-
-template <int D>
-void Assembly::add_lumped(double factor, std::span<const double> density) {
-  SymmetricSpace<D> space(mesh_, rows_);
+  SymmetricSpace space(mesh_, rows_);
   space.set_density(density);
   for (Index i = 0; i < Index(number_.node.size()); ++i) {
-    const double mass = factor * space.node_mass()[std::size_t(i)];
+    const double mass = factor * space.mass()[std::size_t(i)];
     if (number_.node[i] >= 0 && mass != 0) add(number_.node[i], number_.node[i], mass * open_part(i));
   }
   for (Index v = 0; v < mesh_.points.n_local(); ++v) {
-    const double mass = factor * space.point_mass()[std::size_t(v)];
-    if (mass == 0) continue;
-    const FaceTermList& terms = terms_.of_point(v);
-    for (const FaceTerm& i : terms)
-      for (const FaceTerm& j : terms)
-        add(i.block, j.block, mass * i.b[0] * j.b[0] * (i.turn.transpose() * j.turn));
+    const double mass = factor * space.mass()[std::size_t(space.place_of_point(v))];
+    if (mass != 0) add_mean(terms_.of_point(v), mass * Tensor3::Identity());
   }
+}
+
+/// The stiffness of a displacement that is a sum of terms.
+void Assembly::add_mean(const FaceTermList& terms, const Tensor3& stiffness) {
+  for (const FaceTerm& i : terms)
+    for (const FaceTerm& j : terms)
+      add(i.block, j.block, i.b[0] * j.b[0] * (i.turn.transpose() * stiffness * j.turn));
 }
 
 void Assembly::add_diagonals(std::span<const double> of_nodes) {

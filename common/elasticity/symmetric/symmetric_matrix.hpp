@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "common/elasticity/elasticity.hpp"
-#include "common/elasticity/symmetric/face_terms.hpp"
-#include "common/elasticity/symmetric/prestress.hpp"
+#include "common/elasticity/symmetric/surface_pressure.hpp"
+#include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/linalg/matrix.hpp"
 
 namespace couplet::elastic {
@@ -79,8 +79,7 @@ class Assembly {
   using Pair = std::pair<GlobalIndex, GlobalIndex>;
   using VolumeTerms = std::vector<std::pair<GlobalIndex, Vec3>>;
   void add_squares(VolumeTerms& terms, double modulus);
-  template <int D>
-  void add_lumped(double factor, std::span<const double> density);
+  void add_mean(const FaceTermList& terms, const Tensor3& stiffness);
   Index node_of(Index f) const { return mesh_.cells.n_local() + f - mesh_.n_interior; }
   Tensor3 open_part(Index node) const;
 

@@ -6,11 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "common/elasticity/elastic_kernel.hpp"
 #include "common/elasticity/elastic_nodes.hpp"
-#include "common/elasticity/elastic_vertices.hpp"
 #include "common/elasticity/joined_vertices.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
+#include "common/elasticity/wrench.hpp"
 
 namespace couplet::elastic {
 
@@ -22,10 +21,11 @@ namespace couplet::elastic {
 /// its traction, its vertices the rest.
 ///
 /// Use: fill(), clear_forces(), add forces, collect(), take_rows().
-template <int D>
+/// Displacements and forces stand by places (see FaceRows), four doubles each; the last ones are zero, in the plane two.
 class SymmetricSpace {
  public:
-  static constexpr int stride = lanes::width<D>;
+  static constexpr int stride = ElasticNodes::stride;
+  using Place = Eigen::Map<Vec3>;
 
   /// Keeps both by reference.
   SymmetricSpace(const mesh::Mesh& mesh, const ElasticOperator& rows);
@@ -35,30 +35,17 @@ class SymmetricSpace {
   /// Displacements at all nodes and points. At symmetry planes the face's node is the mirror image of its cell.
   /// Collective.
   void fill(std::span<const double> unknowns, std::span<const double> known);
-  const double* nodes() const { return nodes_[0]; }
-  const double* points() const { return points_.data(); }
-  /// Data of one place, see FaceRows.
-  const double* value(Index place) const {
-    const auto n = Index(n_nodes());
-    return place < n ? nodes_[place] : points_.data() + std::size_t(place - n) * stride;
-  }
-  double* force_at(Index place) {
-    const auto n = Index(n_nodes());
-    return place < n ? force(place) : point_force(place - n);
-  }
+  const double* values() const { return nodes_[0]; }
+  Vec3 value(Index place) const { return Eigen::Map<const Vec3>(nodes_[place]); }
   double* forces() { return force_.data(); }
-  double* point_forces() { return point_force_.data(); }
+  Place force(Index place) { return Place(force_.data() + std::size_t(place) * stride); }
   Index node_of_face(Index f) const { return mesh_.cells.n_local() + f - mesh_.n_interior; }
-  /// The node on the other side of a flux face than its owner.
-  Index node_across(Index f) const { return f < mesh_.n_interior ? mesh_.neighbour[f] : node_of_face(f); }
-  std::size_t n_nodes() const { return force_.size() / stride; }
-  /// take(point) for all points with a value.
-  template <class Take>
-  void visit_points(const Take& take) const {
-    vertices_.visit(take);
-    if (!joined_) return;
-    for (const Index v : joined_->all()) take(v);
-  }
+  Index place_of_point(Index v) const { return n_nodes_ + v; }
+  std::size_t n_nodes() const { return std::size_t(n_nodes_); }
+  /// dim values a local point; those of points without a value are left as they are.
+  void point_values(std::span<double> points) const;
+  /// Mean displacement of the trace of a boundary face: its node has the part 1/dim, its points the rest.
+  Vec3 face_mean(Index f) const;
 
   void clear_forces();
   void negate_forces();
@@ -67,9 +54,8 @@ class SymmetricSpace {
   void spread_face_forces(std::span<const double> forces);
   void spread_cell_forces(std::span<const double> forces);
   void set_density(std::span<const double> of_cells);
-  /// This rank's part, after set_density(): one a local node, one a local point [kg].
-  const std::vector<double>& node_mass() const { return node_mass_; }
-  const std::vector<double>& point_mass() const { return point_mass_; }
+  /// This rank's part of each place, after set_density() [kg].
+  const std::vector<double>& mass() const { return mass_; }
   /// sum of force . displacement, this rank's; fill() may have changed the displacement since the forces.
   double work() const;
 
@@ -92,68 +78,35 @@ class SymmetricSpace {
   [[gnu::always_inline]] inline void to_nodes_loop();
 
  private:
-  void constrain_point_forces();
+  template <int D>
+  void fill_nodes(std::span<const double> unknowns, std::span<const double> known);
+  template <int D>
+  void copy_rows(std::span<double> result);
   void points_to_nodes();
+  /// take(place, share) for the node and the points of a boundary face: the parts of its trace, or of a force on it.
+  template <class Take>
+  void visit_trace(Index f, const Take& take) const;
   void spread_over_base(Index f, const Vec3& force_on_base);
   void spread_around(Index f, const Vec3& force_on_base);
+  /// Force k (u - g) of the springs on the mean of the trace of a face.
+  Vec3 pull_of_springs(Index f, std::span<const double> known) const;
   void held_at_points(std::span<const Index> patch_of, bool moved, std::vector<Wrench>& result);
-  Vec3 place_of(const double* force, bool moved) const;
-  /// Force k (u - g) of the springs on the mean of the trace of a face; back to its node and points by the same parts:
-  /// take(place of the force, value).
-  template <class Take>
-  void visit_spring(Index f, std::span<const double> known, const Take& take);
-  double* force(Index node) { return force_.data() + std::size_t(node) * stride; }
-  double* point_force(Index v) { return point_force_.data() + std::size_t(v) * stride; }
-  Vec3 vector(const double* at) const;
-  void add(double* at, const Vec3& value) const {
-    for (int a = 0; a < D; ++a) at[a] += value[a];
-  }
+  Vec3 position(Index place, bool moved) const;
 
   const mesh::Mesh& mesh_;
   const mesh::Geometry& geometry_;
   const ElasticOperator& rows_;
-  ElasticNodes<D> nodes_;
+  Index n_nodes_;
+  ElasticNodes nodes_;  // with the points behind
   ElasticVertices vertices_;
   std::unique_ptr<JoinedVertices> joined_;  // on periodic patches; none without such
-  std::vector<double> points_, force_, point_force_;
+  std::vector<double> force_;
   std::vector<std::pair<Index, Vec3>> symmetry_;  // faces and normals
   std::vector<double> volume_;                    // sum of the pyramids of each owned cell
-  std::vector<double> node_mass_, point_mass_;    // empty: none
+  std::vector<double> mass_;                      // empty: none
 };
 
 /// Sum of the pyramids of each owned cell: warped faces fill it only nearly.
 std::vector<double> pyramid_volumes(const mesh::Mesh& mesh, const mesh::Geometry& geometry);
-
-/// Mean displacement of the trace of a boundary face: its node has the part 1/dim, its points the rest.
-template <int D>
-Vec3 face_mean(const SymmetricSpace<D>& space, Index f) {
-  constexpr int stride = SymmetricSpace<D>::stride;
-  const auto shares = point_shares(space.mesh(), space.rows().geometry(), f);
-  const auto points = space.mesh().face_points[f];
-  const double* node = space.nodes() + std::size_t(space.node_of_face(f)) * stride;
-  Vec3 mean = Vec3::Zero();
-  for (int a = 0; a < D; ++a) {
-    mean[a] = node[a] / D;
-    for (std::size_t i = 0; i < points.size(); ++i)
-      mean[a] += (1 - 1.0 / D) * shares[i] * space.points()[std::size_t(points[i]) * stride + a];
-  }
-  return mean;
-}
-
-template <int D>
-template <class Take>
-void SymmetricSpace<D>::visit_spring(Index f, std::span<const double> known, const Take& take) {
-  const BoundaryRow& s = rows_.at(f);
-  if (s.spring.isZero(0)) return;
-  const Tensor3 open = Tensor3::Identity() - s.known, spring = open * s.spring * open;
-  Vec3 g = Vec3::Zero();
-  if (!known.empty()) g = vector(known.data() + std::size_t(rows_.known_of_face(f)) * D);
-  const auto shares = point_shares(mesh_, geometry_, f);
-  const auto points = mesh_.face_points[f];
-  const Vec3 pull = geometry_.face_area[f].norm() * (spring * (face_mean(*this, f) - g));
-  take(force(node_of_face(f)), pull / D);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    take(point_force(points[i]), (1 - 1.0 / D) * shares[i] * pull);
-}
 
 }  // namespace couplet::elastic

@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "common/base/processor_clones.hpp"
+#include "common/elasticity/elastic_kernel.hpp"
 #include "common/elasticity/elastic_nodes.hpp"
 #include "common/elasticity/elastic_rows.hpp"
-#include "common/elasticity/elastic_vertices.hpp"
 #include "common/elasticity/thesis/elastic_corrected_face.hpp"
 #include "common/elasticity/thesis/elastic_corrections.hpp"
 #include "common/parallel/collective.hpp"
@@ -18,7 +18,7 @@ namespace couplet::elastic {
 namespace least_squares {
 
 template <int D, bool Corrected>
-class LeastSquaresKernel final : public ElasticKernel::Implementation {
+class LeastSquaresKernel final : public ElasticKernel::LeastSquares {
  public:
   LeastSquaresKernel(const mesh::Mesh& mesh, const ElasticOperator& rows);
 
@@ -51,7 +51,7 @@ class LeastSquaresKernel final : public ElasticKernel::Implementation {
   const mesh::Mesh& mesh_;
   const mesh::Geometry& geometry_;
   const ElasticOperator& rows_;
-  ElasticNodes<D> nodes_;
+  ElasticNodes nodes_;
   ElasticRows boundary_;
   ElasticVertices vertices_;
   std::optional<CellGradients> gradients_;       // here and below what only the corrections need
@@ -103,6 +103,11 @@ LeastSquaresKernel<D, Corrected>::LeastSquaresKernel(const mesh::Mesh& mesh, con
     origin_[a] = parallel::min(mesh.comm, lowest);
   }
 }
+
+template <int D>
+using Corrected = LeastSquaresKernel<D, true>;
+template <int D>
+using Published = LeastSquaresKernel<D, false>;
 
 // Passes over cells and vertices: their values and gradients.
 
@@ -315,17 +320,13 @@ inline void LeastSquaresKernel<D, Corrected>::collect_forces(std::span<const dou
         return force_on<D>(lame_[f], slope(f, here.grad), here);
       },
       [&](Index f) __attribute__((always_inline)) { return slope(f, around(f).grad); });
-  nodes_.take_forces(result);
+  nodes_.take_forces<D>(result);
 }
 
 namespace {
 
 // The loops for several generations of processors; the right one is picked when the program starts. Halo
 // exchanges stand between them.
-template <int D>
-using Corrected = LeastSquaresKernel<D, true>;
-template <int D>
-using Published = LeastSquaresKernel<D, false>;
 using Fields = std::span<const double>;
 
 COUPLET_PROCESSOR_CLONES void cells_pass(Corrected<3>& kernel) { kernel.find_cell_gradients(); }
@@ -361,7 +362,7 @@ COUPLET_PROCESSOR_CLONES void faces_pass(Published<2>& kernel, Fields known, std
 template <int D, bool Corrected>
 void LeastSquaresKernel<D, Corrected>::prepare(std::span<const double> unknowns,
                                                std::span<const double> known) {
-  nodes_.fill(unknowns, known);
+  nodes_.fill<D>(unknowns, known);
   if constexpr (Corrected) find_gradients(known);
   plain_pass(*this);
   vertices_.constrain<D>(points_, record<D>, known);
@@ -430,16 +431,14 @@ void LeastSquaresKernel<D, Corrected>::point_values(std::span<const double> unkn
 
 }  // namespace least_squares
 
-std::unique_ptr<ElasticKernel::Implementation> make_thesis_kernel(const mesh::Mesh& mesh,
-                                                                  const ElasticOperator& rows) {
-  if (mesh.dim == 2) return std::make_unique<least_squares::LeastSquaresKernel<2, false>>(mesh, rows);
-  return std::make_unique<least_squares::LeastSquaresKernel<3, false>>(mesh, rows);
-}
-
-std::unique_ptr<ElasticKernel::Implementation> make_corrected_kernel(const mesh::Mesh& mesh,
-                                                                     const ElasticOperator& rows) {
-  if (mesh.dim == 2) return std::make_unique<least_squares::LeastSquaresKernel<2, true>>(mesh, rows);
-  return std::make_unique<least_squares::LeastSquaresKernel<3, true>>(mesh, rows);
+std::unique_ptr<ElasticKernel::LeastSquares> make_least_squares_kernel(const mesh::Mesh& mesh,
+                                                                       const ElasticOperator& rows,
+                                                                       bool is_corrected) {
+  using namespace least_squares;
+  if (mesh.dim == 2 && is_corrected) return std::make_unique<Corrected<2>>(mesh, rows);
+  if (mesh.dim == 2) return std::make_unique<Published<2>>(mesh, rows);
+  if (is_corrected) return std::make_unique<Corrected<3>>(mesh, rows);
+  return std::make_unique<Published<3>>(mesh, rows);
 }
 
 }  // namespace couplet::elastic

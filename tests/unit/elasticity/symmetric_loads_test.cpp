@@ -41,7 +41,7 @@ void check(BoxCells cells) {
   double work = 0, wanted = 0, size = 0;
   for (std::size_t i = 0; i < v.size(); ++i) work += rhs[i] * v[i];
   const auto take = [&](Index f, const Tensor3& gradient) {
-    const double part = p[std::size_t(f)] * symmetric_face<D>(mesh, rows, f).volume * gradient.trace();
+    const double part = p[std::size_t(f)] * symmetric_rows(mesh, rows, f).volume * gradient.trace();
     wanted += part, size += std::abs(part);
   };
   kernel.face_gradients(v, {}, take, 0, mesh.n_flux_faces());

@@ -245,8 +245,8 @@ TEST(FiniteStrain, tangent_is_the_derivative_of_the_forces_on_all_cells) {
       const auto solid = make(raw, busy(dim, volume));
       const auto law =
           laws::find("mooney-rivlin")->make(lame_constants(solid->body().parameters()), std::vector{0.3});
-      const auto kernel =
-          elastic::make_finite_kernel(solid->body().mesh(), solid->body().elastic(), {law.get()});
+      const auto kernel = std::make_unique<elastic::FiniteKernel>(
+          solid->body().mesh(), solid->body().elastic(), std::vector<const elastic::FiniteLaw*>{law.get()});
       const std::size_t n = solid->body().elastic().n_unknowns();
       const std::vector<double> u = noise(n, 0.02, 1), v = noise(n, 1, 2), w = noise(n, 1, 3);
       const double h = 1e-6;

@@ -229,7 +229,8 @@ TEST(LargeSheet, condensed_tangent_is_the_derivative_of_the_forces_and_symmetric
       const auto solid = make_solid(box(cells), sheet(law, 0.3));
       const auto own = law.make(lame_constants(E, 0.3), std::vector<double>(law.n_coefficients, 0.1));
       const auto kernel =
-          elastic::make_finite_kernel(solid->body().mesh(), solid->body().elastic(), {own.get()}, true);
+          std::make_unique<elastic::FiniteKernel>(solid->body().mesh(), solid->body().elastic(),
+                                                  std::vector<const elastic::FiniteLaw*>{own.get()}, true);
       const std::size_t n = solid->body().elastic().n_unknowns();
       std::vector<double> u(n), v(n), w(n), up(n), down(n), force(n), ahead(n), behind(n), kv(n), kw(n);
       const double h = 1e-6;

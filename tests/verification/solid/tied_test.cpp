@@ -194,7 +194,7 @@ TEST_P(Tied, has_the_stress_stiffness_of_the_faces_loops) {
   const std::size_t n = body.elastic().n_unknowns();
   const std::vector<double> u = any_motion(n, comm_rank(mesh.comm));
   std::vector<double> wanted(n), found(n);
-  make_stress_stiffness(mesh, body.elastic(), prestress)->apply(u, wanted);
+  StressStiffness(mesh, body.elastic(), prestress).apply(u, wanted);
   TiedMatrix(mesh, body.elastic(), {.stiffness = 0, .stress = 1, .prestress = &prestress}).apply(u, found);
   EXPECT_LT(gap(mesh.comm, found, wanted), 1e-12);
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/elasticity/finite/finite_sheet.hpp"
+#include "common/elasticity/finite/finite_places.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace couplet::elastic::finite {
@@ -38,24 +39,34 @@ double step(const Energy& e, const Four& square, const Four& area, Four& l) {
   return change;
 }
 
+/// dW/dJ of a sheet from P_33 = 0: without the rounding of det F times the bulk modulus.
+void balance(State& state) {
+  const Tensor4& f = state.f;
+  const Four square = f[0][0] * f[0][0] + f[0][1] * f[0][1] + f[1][0] * f[1][0] + f[1][1] * f[1][1];
+  const Four area = f[0][0] * f[1][1] - f[0][1] * f[1][0];
+  state.wj = -2.0 * f[2][2] * (state.w1 + square * state.w2) / area;
+}
+
 }  // namespace
 
-double thinning(const FiniteLaw& law) {
+/// -d ln l / d ln (in-plane area) of the linear sheet.
+void Places::set_plane_stress() {
+  sheet.resize(states.size());
   State state{};
   for (int a = 0; a < 3; ++a) state.f[a][a] = Four{} + 1.0;
   const Invariants at = invariants(state.f);
   Energy e;
-  law.evaluate({&at, 1}, true, {&e, 1});
+  law->evaluate({&at, 1}, true, {&e, 1});
   keep(e, state);
-  const Sheet sheet = sheet_of(state);
-  return sheet.d[0][0][0] / sheet.c[0];
+  const Sheet linear = sheet_of(state);
+  thinning = linear.d[0][0][0] / linear.c[0];
 }
 
-void relax(const FiniteLaw& law, double thinning, std::span<const Four> stretch, std::span<Invariants> at,
-           State* states) {
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    const Four square = at[i].i1 - 1.0, area = at[i].j;
-    const std::span<const Four> theta = stretch.empty() ? stretch : stretch.subspan(i, 1);
+void Places::relax(std::size_t first, std::span<Invariants> found) {
+  if (sheet.empty()) return;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const Four square = found[i].i1 - 1.0, area = found[i].j;
+    const std::span<const Four> theta = stretch_at(first + i, 1);
     Four l;
     bool is_sound = true;
     for (int k = 0; k < 4; ++k) {
@@ -68,13 +79,35 @@ void relax(const FiniteLaw& law, double thinning, std::span<const Four> stretch,
     for (int n = 0; n < most_steps && change > converged; ++n) {
       Invariants here = with(square, area, l);
       Energy e;
-      evaluate(law, {&here, 1}, theta, true, {&e, 1});
+      finite::evaluate(*law, {&here, 1}, theta, true, {&e, 1});
       change = step(e, square, area, l);
     }
-    at[i] = with(square, area, l);
+    found[i] = with(square, area, l);
     for (int k = 0; k < 4; ++k)
-      if (!(l[k] > thinnest) || !(change <= 1e3 * converged)) at[i].j[k] = 0;
-    states[i].f[2][2] = l;
+      if (!(l[k] > thinnest) || !(change <= 1e3 * converged)) found[i].j[k] = 0;
+    states[first + i].f[2][2] = l;
+  }
+}
+
+void Places::evaluate(std::size_t first, std::span<Invariants> found, bool with_bulk,
+                      std::span<Energy> energy) {
+  finite::evaluate(*law, found, stretch_at(first, found.size()), with_bulk, energy);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    keep(energy[i], states[first + i]);
+    if (sheet.empty()) continue;
+    balance(states[first + i]);
+    sheet[first + i] = sheet_of(states[first + i]);
+  }
+}
+
+void Places::set_start(bool with_bulk) {
+  start.resize(states.size());
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    std::memcpy(start[i].f, states[i].f, sizeof start[i].f);
+    const Invariants at = invariants(start[i].f);
+    Energy energy;
+    law->evaluate({&at, 1}, with_bulk, {&energy, 1});
+    start[i].energy = energy.w;
   }
 }
 

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/elasticity/symmetric/surface_pressure.hpp"
+
+#include <Eigen/Geometry>
+
+namespace couplet::elastic {
+namespace {
+
+/// A triangle between the node of a face and one of its edges; in the plane a line between the node and a corner.
+struct Piece {
+  std::array<Index, 3> at;      ///< places
+  std::array<Tensor3, 3> turn;  ///< da/dx of each corner
+  Vec3 area;
+  std::size_t n;  ///< corners
+};
+
+Tensor3 cross(const Vec3& e) {
+  Tensor3 m;
+  m << 0, -e[2], e[1], e[2], 0, -e[0], -e[1], e[0], 0;
+  return m;
+}
+
+/// take(piece) for the pieces of a boundary face, whose places stand at position(place).
+template <class Position, class Take>
+void visit_pieces(const mesh::Mesh& mesh, Index face, const Position& position, const Take& take) {
+  const auto points = mesh.face_points[face];
+  const Index node = mesh.cells.n_local() + face - mesh.n_interior, first_point = n_node_places(mesh);
+  if (mesh.dim == 3) {
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      Piece piece{{node, first_point + points[k], first_point + points[(k + 1) % points.size()]}, {}, {}, 3};
+      std::array<Vec3, 3> x;
+      for (std::size_t s = 0; s < 3; ++s) x[s] = position(piece.at[s]);
+      piece.area = 0.5 * (x[1] - x[0]).cross(x[2] - x[0]);
+      for (std::size_t s = 0; s < 3; ++s) piece.turn[s] = 0.5 * cross(x[(s + 2) % 3] - x[(s + 1) % 3]);
+      take(piece);
+    }
+    return;
+  }
+  Tensor3 right = Tensor3::Zero();
+  right(0, 1) = 1, right(1, 0) = -1;
+  for (const auto& [from, to] :
+       {std::pair{first_point + points[0], node}, std::pair{node, first_point + points[1]}})
+    take(Piece{{from, to, -1}, {Tensor3(-right), right, {}}, right * (position(to) - position(from)), 2});
+}
+
+void add_blocks_of(const Piece& piece, double pressure, std::vector<PlaceBlock>& to) {
+  for (std::size_t r = 0; r < piece.n; ++r)
+    for (std::size_t s = 0; s < piece.n; ++s)
+      to.push_back({piece.at[r], piece.at[s], pressure / double(piece.n) * piece.turn[s]});
+}
+
+Vec3 position(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index place) {
+  const Index point = place - n_node_places(mesh);
+  return point >= 0 ? geometry.points[point]
+                    : geometry.face_centre[mesh.n_interior + place - mesh.cells.n_local()];
+}
+
+}  // namespace
+
+void add_blocks(SymmetricSpace& space, std::span<const PlaceBlock> blocks, double factor) {
+  for (const PlaceBlock& b : blocks) space.force(b.i) += factor * (b.block * space.value(b.j));
+}
+
+void FollowerPressure::set(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                           std::span<const double> pressure) {
+  faces_.clear();
+  tangent_.clear();
+  for (std::size_t i = 0; i < pressure.size(); ++i) {
+    if (pressure[i] == 0) continue;
+    const Index f = mesh.n_interior + Index(i);
+    Vec3 area = Vec3::Zero();
+    visit_pieces(
+        mesh, f, [&](Index place) { return position(mesh, geometry, place); },
+        [&](const Piece& piece) { area += piece.area; });
+    faces_.push_back({f, area.dot(geometry.face_area[f]) < 0 ? -pressure[i] : pressure[i]});
+  }
+}
+
+Vec3 FollowerPressure::add_forces(SymmetricSpace& space) {
+  Vec3 total = Vec3::Zero();
+  tangent_.clear();
+  const auto now = [&](Index place) {
+    return Vec3(position(space.mesh(), space.rows().geometry(), place) + space.value(place));
+  };
+  for (const Loaded& loaded : faces_)
+    visit_pieces(space.mesh(), loaded.face, now, [&](const Piece& piece) {
+      const Vec3 inner = loaded.pressure * piece.area;
+      total -= inner;
+      for (std::size_t s = 0; s < piece.n; ++s) space.force(piece.at[s]) += inner / double(piece.n);
+      add_blocks_of(piece, loaded.pressure, tangent_);
+    });
+  return total;
+}
+
+std::vector<PlaceBlock> pressure_stiffness(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                                           std::span<const double> pressure) {
+  FollowerPressure follower;
+  follower.set(mesh, geometry, pressure);
+  std::vector<PlaceBlock> whole, blocks;
+  for (const auto& [face, p] : follower.loaded())
+    visit_pieces(
+        mesh, face, [&](Index place) { return position(mesh, geometry, place); },
+        [&](const Piece& piece) { add_blocks_of(piece, p, whole); });
+  for (const PlaceBlock& b : whole) {
+    blocks.push_back({b.i, b.j, 0.5 * b.block});
+    blocks.push_back({b.j, b.i, 0.5 * b.block.transpose()});
+  }
+  return blocks;
+}
+
+}  // namespace couplet::elastic
