@@ -14,7 +14,7 @@ int run(const couplet::app::Job& job, const couplet::coupler::CouplingParameters
   using namespace couplet;
   const coupler::CouplingParameters parameters = read.in_force();
   log::info("{}",
-            effects::summary(effects::effects_of("coupler", coupler::coupling_effect_cards(), parameters)));
+            diagnostics::summary(diagnostics::effects_of("coupler", coupler::coupling_effect_cards(), parameters)));
   std::vector<std::unique_ptr<coupling::Channel>> channels;
   for (const app::Member& m : job.members)
     if (m.participant != app::coupler_name)
@@ -46,8 +46,8 @@ int main(int argc, char** argv) {
       "coupler",
       "couples a fluid, a structure and a mesh mover, or participants of any kind, each a separate program",
       true, [&](couplet::config::Section& section) { declare(section, parameters); },
-      [&](const couplet::effects::EffectScene&) {
-        return couplet::effects::effects_of("coupler", couplet::coupler::coupling_effect_cards(),
+      [&](const couplet::diagnostics::CaseScene&) {
+        return couplet::diagnostics::effects_of("coupler", couplet::coupler::coupling_effect_cards(),
                                             parameters.in_force());
       }};
   return couplet::app::run_job(argc, argv, kind,

@@ -36,20 +36,20 @@ int main(int argc, char** argv) {
                      diagnostics::Diagnostics& all) { fluid::add_diagnostics(participant, all); },
       .environment = linalg::petsc_environment,
       .effects =
-          [&](const effects::EffectScene& scene) {
-            return effects::effects_of(
+          [&](const diagnostics::CaseScene& scene) {
+            return diagnostics::effects_of(
                 "fluid_solver", fluid::fluid_effect_cards(),
                 fluid::FluidScene{parameters, scene.has_mover || parameters.motion, scene.coupled});
           },
       .choose =
-          [&](const effects::ChoiceScene& scene) {
+          [&](const diagnostics::CaseScene& scene) {
             return fluid::choose_effects(parameters,
                                          io::facts_of_file(scene.folder / parameters.mesh,
                                                            parameters.mesh_parameters, parameters.mesh_scale),
                                          scene);
           },
       .expected =
-          [&](const effects::ChoiceScene& scene) {
+          [&](const diagnostics::CaseScene& scene) {
             return fluid::expected_cost(
                 parameters, io::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters,
                                               parameters.mesh_scale));

@@ -81,7 +81,7 @@ struct Parameters {
 
 void declare(config::Section& section, Parameters& parameters);
 
-using Card = effects::EffectCard<Parameters>;
+using Card = diagnostics::EffectCard<Parameters>;
 std::span<const Card> effect_cards();
 
 }  // namespace couplet::mesh_mover

@@ -20,8 +20,8 @@ int main(int argc, char** argv) {
               add_diagnostics(tank->view(), all);
           },
       .effects =
-          [&](const couplet::effects::EffectScene&) {
-            return couplet::effects::effects_of("thermocline", couplet::thermocline::effect_cards(),
+          [&](const couplet::diagnostics::CaseScene&) {
+            return couplet::diagnostics::effects_of("thermocline", couplet::thermocline::effect_cards(),
                                                 parameters);
           },
       .problems_of_files =

@@ -145,9 +145,9 @@ int speaker(const std::vector<Attendant>& attendants) {
 
 std::string ids_of(base::Severity least, bool with_neglected) {
   std::vector<std::string> ids;
-  for (const log::Finding& f : log::findings())
-    if (f.severity >= least && !log::is_accepted(f.id) && std::ranges::count(ids, f.id) == 0 &&
-        (with_neglected || log::finding_id(f.id).about == log::FindingId::About::answer))
+  for (const diagnostics::Finding& f : diagnostics::findings())
+    if (f.severity >= least && !diagnostics::is_accepted(f.id) && std::ranges::count(ids, f.id) == 0 &&
+        (with_neglected || diagnostics::finding_id(f.id).about == diagnostics::FindingId::About::answer))
       ids.push_back(f.id);
   return base::join(ids);
 }
@@ -155,7 +155,7 @@ std::string ids_of(base::Severity least, bool with_neglected) {
 /// Of a run that has reached its end.
 int code_of_findings(const Job& job, CommandLine::Strict strict) {
   using enum CommandLine::Strict;
-  if (const int n = log::count(base::Severity::wrong, true); n > 0) {
+  if (const int n = diagnostics::count(base::Severity::wrong, true); n > 0) {
     if (job.rank == 0)
       log::error(
           "The result is useless ({}, see above): exit code {}. To accept it anyway: '--accept ID' for all "
@@ -163,7 +163,7 @@ int code_of_findings(const Job& job, CommandLine::Strict strict) {
           ids_of(base::Severity::wrong, true), exit_wrong);
     return exit_wrong;
   }
-  const int n = strict == no ? 0 : log::count(base::Severity::warning, strict == effects);
+  const int n = strict == no ? 0 : diagnostics::count(base::Severity::warning, strict == effects);
   if (n == 0) return 0;
   if (job.rank == 0)
     log::error("--strict: the result is questionable ({} warning{} above: {}); the run counts as failed.", n,
@@ -227,14 +227,14 @@ int attend(const CommandLine& command_line, const ProgramKind& kind, const CaseF
     job.document = &*file.document;
     job.simulation = file.simulation;
     job.choices = file.choices;
-    log::accept(job.simulation.accept);
-    log::accept(command_line.accept);
+    diagnostics::accept(job.simulation.accept);
+    diagnostics::accept(command_line.accept);
     prepare(job, command_line, kind.is_coupler);
     job.enter(Phase::initialise);
     watch.limit_silence(job.simulation.hang_timeout);
     start_guard.reset();
     for (const std::string& doubt : file.doubts)
-      log::finding(job.rank, {.id = "questionable-key", .sentence = doubt});
+      diagnostics::finding(job.rank, {.id = "questionable-key", .sentence = doubt});
     const int code = run(job);
     watch.enter(Phase::waiting);  // for the others: no sign of life of this process is due
     if (code == 0 && Watch::has_stopped()) return exit_stopped;

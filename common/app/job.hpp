@@ -30,7 +30,7 @@ struct Job {
   std::filesystem::path checkpoints;           ///< <output>/checkpoints
   std::filesystem::path restart_folder;        ///< the checkpoint to continue from; empty: fresh start
   double restart_time;                         ///< its time [s]; NaN: fresh start
-  std::vector<effects::EffectChoice> choices;  ///< of `effects: auto`
+  std::vector<diagnostics::EffectChoice> choices;  ///< of `effects: auto`
   Watch* watch = nullptr;
   FaultInjection* faults = nullptr;
 

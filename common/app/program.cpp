@@ -61,10 +61,10 @@ int run(const Job& job, const Program& program) {
   write_effective(job, program);
   log::info("{} runs '{}' with {} rank{}", program.name, job.name, parallel::comm_size(job.comm),
             parallel::comm_size(job.comm) == 1 ? "" : "s");
-  for (const effects::EffectChoice& choice : job.choices) log::info("{}", effects::text(choice));
+  for (const diagnostics::EffectChoice& choice : job.choices) log::info("{}", diagnostics::text(choice));
   if (program.effects) {
     const bool has_mover = config::text_of(*job.document, "coupling.mesh.participant").has_value();
-    log::info("{}", effects::summary(
+    log::info("{}", diagnostics::summary(
                         program.effects({!job.alone, !job.alone && has_mover, job.simulation.time_step})));
   }
   const std::unique_ptr<coupling::Participant> participant = program.make(context);

@@ -48,11 +48,11 @@ struct Program {
   /// empty: nothing. A program without one links no PETSc, whose libraries take 60 ms to load.
   std::function<std::shared_ptr<void>(MPI_Comm)> environment = {};
   /// What the program can simulate, looked at with the parameters that `declare` filled; empty: not told.
-  std::function<std::vector<effects::Effect>(const effects::EffectScene&)> effects = {};
+  std::function<std::vector<diagnostics::Effect>(const diagnostics::CaseScene&)> effects = {};
   /// What `simulation.effects: auto` decides where the YAML leaves it open; empty: nothing.
-  std::function<std::vector<effects::EffectChoice>(const effects::ChoiceScene&)> choose = {};
+  std::function<std::vector<diagnostics::EffectChoice>(const diagnostics::CaseScene&)> choose = {};
   /// Memory and time of a step to be expected, for --explain; empty: not told.
-  std::function<effects::ExpectedCost(const effects::ChoiceScene&)> expected = {};
+  std::function<diagnostics::ExpectedCost(const diagnostics::CaseScene&)> expected = {};
   /// For --check: what is wrong with the files that the parameters name; empty: nothing but what every program's
   /// --check sees.
   std::function<std::vector<ProblemOfKey>(const std::filesystem::path& case_folder)> problems_of_files = {};

@@ -40,8 +40,8 @@ class RunReport {
     time_ = time, count_ = steps, iterations_ = iterations;
   }
   /// Collective over job.comm. `wall` [s]; `problem`: why the run ended early, empty if it did not.
-  void finish(double wall, const std::string& problem, const coupling::ErrorParts& errors,
-              const std::vector<effects::Coordinate>& position);
+  void finish(double wall, const std::string& problem, const diagnostics::ErrorParts& errors,
+              const std::vector<diagnostics::Coordinate>& position);
 
   /// User and system seconds of this process since it began.
   static double processor_seconds();

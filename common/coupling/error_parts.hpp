@@ -51,6 +51,6 @@ double total_error(const std::vector<NamedErrors>& participants);
 /// From an error as large as the solution on the answer is useless. `wrong` where one part alone is so large: parts are good to
 /// a factor of a few, and a sum of several that just reaches it proves nothing; it is a warning. Nothing below.
 constexpr double as_large_as_the_solution = 1;
-std::optional<log::Finding> worthless(const std::vector<NamedErrors>& participants);
+std::optional<diagnostics::Finding> worthless(const std::vector<NamedErrors>& participants);
 
 }  // namespace couplet::coupling

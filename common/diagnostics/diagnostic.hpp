@@ -17,10 +17,10 @@ namespace couplet::diagnostics {
 /// Collects what diagnostics say.
 struct Report {
   /// Findings of an effect or of the answer. A note is a sound one: it is told at the end of the run only.
-  std::vector<log::Finding> findings;
+  std::vector<diagnostics::Finding> findings;
   std::vector<std::string> sentences;  ///< for the end of the log
-  coupling::ErrorParts errors;         ///< parts of the estimated error, each over the size of the solution
-  std::vector<effects::Coordinate> position;  ///< where the run stands on the maps of docs/stability.md
+  diagnostics::ErrorParts errors;         ///< parts of the estimated error, each over the size of the solution
+  std::vector<diagnostics::Coordinate> position;  ///< where the run stands on the maps of docs/stability.md
 };
 
 /// Looks at a run from outside and judges its answer. It reads what the program shows of itself (its view) and changes

@@ -18,7 +18,7 @@ namespace {
 using base::Severity;
 
 /// Tells whether a is further beyond its limit than b; NaN is worse than any number.
-bool exceeds(const log::Finding& a, const log::Finding& b) {
+bool exceeds(const diagnostics::Finding& a, const diagnostics::Finding& b) {
   return !(a.number / a.limit <= b.number / b.limit);
 }
 
@@ -37,21 +37,21 @@ class Timed {
 }  // namespace
 
 void Diagnostics::take(Report& report) {
-  for (log::Finding& f : report.findings) {
-    const auto same = [&](const log::Finding& w) { return w.id == f.id && w.subject == f.subject; };
+  for (diagnostics::Finding& f : report.findings) {
+    const auto same = [&](const diagnostics::Finding& w) { return w.id == f.id && w.subject == f.subject; };
     const auto worst = std::ranges::find_if(worst_, same);
     const bool is_news = f.severity > (worst == worst_.end() ? Severity::note : worst->severity);
     if (is_news) {
-      log::Finding told = f;
+      diagnostics::Finding told = f;
       if (!concluding_ || !f.effect.empty()) told.sentence = fmt::format("t = {:g} s: {}", time_, f.sentence);
-      log::finding(rank_, std::move(told));
+      diagnostics::finding(rank_, std::move(told));
     }
     if (worst == worst_.end())
       worst_.push_back(std::move(f));
     else if (is_news || (f.severity >= worst->severity && exceeds(f, *worst)))
       *worst = std::move(f);
   }
-  effects::keep_nearest(position_, report.position);
+  diagnostics::keep_nearest(position_, report.position);
 }
 
 void Diagnostics::accepted(double time) {
@@ -84,7 +84,7 @@ std::vector<std::string> Diagnostics::conclude(bool failed) {
       add_model(worst_, errors_);
     }
   }
-  for (const log::Finding& f : worst_)
+  for (const diagnostics::Finding& f : worst_)
     if (!(f.saves > 0) && !f.effect.empty() && (!failed || f.severity > Severity::note))
       report.sentences.push_back(fmt::format("{}{}{}", f.sentence,
                                              f.severity > Severity::note && !f.advice.empty() ? "; " : "",
@@ -92,9 +92,9 @@ std::vector<std::string> Diagnostics::conclude(bool failed) {
   return report.sentences;
 }
 
-void add_model(const std::vector<log::Finding>& findings, coupling::ErrorParts& errors) {
+void add_model(const std::vector<diagnostics::Finding>& findings, diagnostics::ErrorParts& errors) {
   double largest = 0;
-  for (const log::Finding& f : findings) {
+  for (const diagnostics::Finding& f : findings) {
     if (f.saves > 0)
       errors.omittable += fmt::format("{}{} saves about {:.0f} % of the time",
                                       errors.omittable.empty() ? "" : ", ", f.sentence, 100 * f.saves);
@@ -110,11 +110,11 @@ void add_model(const std::vector<log::Finding>& findings, coupling::ErrorParts& 
 }
 
 void Diagnostics::visit(io::Archive& archive) {
-  std::vector<log::Finding> found = log::findings();
+  std::vector<diagnostics::Finding> found = diagnostics::findings();
   std::vector<std::string> names;
   for (const Named& one : all_) names.push_back(one.name);
   archive.common("findings", found, worst_, position_, steps_, time_, names);
-  if (archive.reads()) log::resume_findings(rank_, found);
+  if (archive.reads()) diagnostics::resume_findings(rank_, found);
   for (const Named& one : all_) {
     if (std::ranges::count(names, one.name) == 0) continue;  // new in this run
     archive.set_prefix("diagnostic-" + one.name + "-");
@@ -123,9 +123,9 @@ void Diagnostics::visit(io::Archive& archive) {
   archive.set_prefix("");
 }
 
-std::optional<log::Finding> finding_of(const EffectFinding& e) {
+std::optional<diagnostics::Finding> finding_of(const EffectFinding& e) {
   if (std::isnan(e.number)) return {};
-  log::Finding f{.number = e.number, .limit = e.limit, .sentence = {}, .advice = e.advice};
+  diagnostics::Finding f{.number = e.number, .limit = e.limit, .sentence = {}, .advice = e.advice};
   for (const char* c = e.effect; *c != '\0'; ++c) {
     if (std::isalnum(static_cast<unsigned char>(*c)))
       f.id += char(std::tolower(static_cast<unsigned char>(*c)));

@@ -31,11 +31,11 @@ class Diagnostics {
   std::vector<std::string> conclude(bool failed);
 
   /// The worst of each finding so far, notes included.
-  const std::vector<log::Finding>& findings() const { return worst_; }
+  const std::vector<diagnostics::Finding>& findings() const { return worst_; }
   /// Parts of the error, the model's included, once the run is concluded.
-  const coupling::ErrorParts& errors() const { return errors_; }
+  const diagnostics::ErrorParts& errors() const { return errors_; }
   /// Where the run came nearest to the limits of its maps.
-  const std::vector<effects::Coordinate>& position() const { return position_; }
+  const std::vector<diagnostics::Coordinate>& position() const { return position_; }
   void visit(io::Archive& archive);
 
  private:
@@ -50,9 +50,9 @@ class Diagnostics {
   std::vector<Named> all_;
   long steps_ = 0;
   double time_ = 0;
-  std::vector<log::Finding> worst_;            // of each id and subject
-  std::vector<effects::Coordinate> position_;  // nearest to its limit, of each quantity
-  coupling::ErrorParts errors_;
+  std::vector<diagnostics::Finding> worst_;            // of each id and subject
+  std::vector<diagnostics::Coordinate> position_;  // nearest to its limit, of each quantity
+  diagnostics::ErrorParts errors_;
   bool concluding_ = false;
 };
 
@@ -66,12 +66,12 @@ struct EffectFinding {
   bool left_out = true;  ///< false: the scene has it
   /// The answer is useless from here on.
   double wrong_from = std::numeric_limits<double>::infinity();
-  double share = std::numeric_limits<double>::quiet_NaN();  ///< see log::Finding
-  double saves = 0;                                         ///< see log::Finding
+  double share = std::numeric_limits<double>::quiet_NaN();  ///< see diagnostics::Finding
+  double saves = 0;                                         ///< see diagnostics::Finding
 };
-std::optional<log::Finding> finding_of(const EffectFinding& effect);
+std::optional<diagnostics::Finding> finding_of(const EffectFinding& effect);
 
 /// Adds the model's part of the error: the sum of the shares that are known, and what could be omitted.
-void add_model(const std::vector<log::Finding>& findings, coupling::ErrorParts& errors);
+void add_model(const std::vector<diagnostics::Finding>& findings, diagnostics::ErrorParts& errors);
 
 }  // namespace couplet::diagnostics

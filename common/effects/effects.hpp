@@ -38,7 +38,7 @@ struct Effect {
 };
 
 /// What the job around a participant decides about its effects.
-struct EffectScene {
+struct CaseScene {
   bool coupled = false;
   bool has_mover = false;                                       ///< `coupling.mesh` names one
   double time_step = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN: not known
@@ -64,7 +64,7 @@ std::string explanation(const std::vector<Effect>& effects);
 std::string markdown(const std::string& program, const std::vector<Effect>& effects);
 
 /// What `simulation.effects: auto` knows of a scene beside the participant's own parameters.
-struct ChoiceScene {
+struct CaseScene {
   std::filesystem::path folder{};  ///< of the YAML
   double end_time = 0, time_step = 0;
   bool coupled = false;

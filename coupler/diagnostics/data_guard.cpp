@@ -91,8 +91,8 @@ void DataGuard::add(Motion& one, const std::vector<double>& x, const std::vector
   ++one.steps;
 }
 
-std::vector<log::Finding> DataGuard::accepted(const std::vector<coupling::Exchange>& given, double dt) {
-  std::vector<log::Finding> findings;
+std::vector<diagnostics::Finding> DataGuard::accepted(const std::vector<coupling::Exchange>& given, double dt) {
+  std::vector<diagnostics::Finding> findings;
   for (Motion& one : motions_) {
     if (one.reported) continue;
     add(one, values(given[one.side], "displacement"), values(given[one.side], "velocity"), dt);
@@ -137,7 +137,7 @@ class DataOfParticipants final : public CouplingDiagnostic {
     guard_.answered(side, taken, given);
   }
   void observe(diagnostics::Report& report) override {
-    for (log::Finding& finding : guard_.accepted(view_.pass.given(), view_.dt))
+    for (diagnostics::Finding& finding : guard_.accepted(view_.pass.given(), view_.dt))
       report.findings.push_back(std::move(finding));
   }
   std::string remark() const override { return guard_.silent(); }

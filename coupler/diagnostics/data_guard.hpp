@@ -30,7 +30,7 @@ class DataGuard {
 
   /// After an accepted step of length dt: once per participant, where the velocity is not the rate of the displacement.
   /// Compared are v^{n+1} and (v^n + v^{n+1})/2 with (x^{n+1} - x^n)/dt, by least squares over the run. Collective.
-  std::vector<log::Finding> accepted(const std::vector<coupling::Exchange>& given, double dt);
+  std::vector<diagnostics::Finding> accepted(const std::vector<coupling::Exchange>& given, double dt);
 
   /// For checkpoints.
   void visit(io::Archive& archive, const std::vector<Side>& sides);

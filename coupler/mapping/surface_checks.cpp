@@ -298,7 +298,7 @@ void check_mover(MPI_Comm comm, const std::vector<Side>& sides, const Schedule& 
         "that has it in the fluid.",
         mover->name, moves.faces, moved.faces, fluid->name, moves.area, moved.area);
   if (apart > limit)
-    log::finding(parallel::comm_rank(comm),
+    diagnostics::finding(parallel::comm_rank(comm),
                  {.id = "surfaces-apart",
                   .number = apart,
                   .limit = limit,
@@ -385,7 +385,7 @@ void compare_surfaces(MPI_Comm comm, const std::vector<Side>& sides, const Links
     if (!has_size(givers) || !has_size(takers)) continue;
     const SurfaceFacts a = surface_facts(comm, givers), b = surface_facts(comm, takers);
     if (const std::string difference = difference_of(a, b, faceting(a, b)); !difference.empty())
-      log::finding(
+      diagnostics::finding(
           parallel::comm_rank(comm),
           {.id = "surfaces-apart",
            .sentence = fmt::format("surfaces that move together differ: {}: loads and motion are transferred "

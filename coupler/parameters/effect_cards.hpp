@@ -8,7 +8,7 @@
 
 namespace couplet::coupler {
 
-using CouplingCard = effects::EffectCard<CouplingParameters>;
+using CouplingCard = diagnostics::EffectCard<CouplingParameters>;
 /// All that a coupling can have beside one pass a step over matching surfaces, in the order in which it is told.
 std::span<const CouplingCard> coupling_effect_cards();
 

@@ -148,8 +148,8 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     dt_old_ = dt;
     ++seen_;
   }
-  coupling::ErrorParts parts() const {
-    coupling::ErrorParts parts;
+  diagnostics::ErrorParts parts() const {
+    diagnostics::ErrorParts parts;
     parts.dimension = D;
     const double speed = size(fluid_.state().u);
     if (!(speed > 0) || seen_ == 0) return parts;

@@ -17,18 +17,18 @@ struct FluidScene {
   bool coupled = false;
 };
 
-using FluidCard = effects::EffectCard<FluidScene>;
+using FluidCard = diagnostics::EffectCard<FluidScene>;
 std::span<const FluidCard> fluid_effect_cards();
 
 /// `effects: auto` of a fluid: its dimension, laminar or large-eddy, how the viscous term is stepped, whether pressure waves are
 /// computed, and whether the mesh moves.
 /// The speed is the largest that boundaries, profiles and the start name; the Reynolds number stands on the smallest side of
 /// the mesh's box.
-std::vector<effects::EffectChoice> choose_effects(const FluidParameters& parameters,
+std::vector<diagnostics::EffectChoice> choose_effects(const FluidParameters& parameters,
                                                   const mesh::MeshFacts& mesh,
-                                                  const effects::ChoiceScene& scene);
+                                                  const diagnostics::CaseScene& scene);
 
 /// Estimates the cost from configs/cavity and taylor-green-3d on one rank.
-effects::ExpectedCost expected_cost(const FluidParameters& parameters, const mesh::MeshFacts& mesh);
+diagnostics::ExpectedCost expected_cost(const FluidParameters& parameters, const mesh::MeshFacts& mesh);
 
 }  // namespace couplet::fluid

@@ -87,7 +87,7 @@ struct PlateScene {
   bool coupled = false;
   double time_step = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN: not known
 };
-using PlateCard = effects::EffectCard<PlateScene>;
+using PlateCard = diagnostics::EffectCard<PlateScene>;
 /// The effects that a modal structure can simulate beside its modes, for --explain and docs/effects.md.
 std::span<const PlateCard> plate_effect_cards();
 

@@ -60,9 +60,9 @@ double growth_of(const SolidBody& body, const std::vector<double>& u, const std:
 
 }  // namespace
 
-std::optional<log::Finding> dynamic_buckling_finding(const BucklingEstimate& found) {
+std::optional<diagnostics::Finding> dynamic_buckling_finding(const BucklingEstimate& found) {
   if (!found.matters()) return {};
-  return log::Finding{
+  return diagnostics::Finding{
       .id = "buckling",
       .number = found.factor,
       .limit = limit_of(found),
@@ -74,11 +74,11 @@ std::optional<log::Finding> dynamic_buckling_finding(const BucklingEstimate& fou
       .advice = "use 'kinematics: finite-strain'"};
 }
 
-std::optional<log::Finding> buckling_finding(const BucklingEstimate& found, const char* how) {
+std::optional<diagnostics::Finding> buckling_finding(const BucklingEstimate& found, const char* how) {
   if (!found.matters()) return {};
   const bool holds = found.factor >= 1;
   const double limit = holds ? limit_of(found) : 1;
-  return log::Finding{
+  return diagnostics::Finding{
       .id = "buckling",
       .severity = holds ? base::Severity::warning : base::Severity::wrong,
       .number = found.factor,

@@ -25,9 +25,9 @@ struct BucklingEstimate {
 };
 
 /// The finding on it, where it matters; `how` goes before its factor.
-std::optional<log::Finding> buckling_finding(const BucklingEstimate& found, const char* how);
+std::optional<diagnostics::Finding> buckling_finding(const BucklingEstimate& found, const char* how);
 /// The same of a body in motion, whose inertia may outlast a short load: never `wrong`.
-std::optional<log::Finding> dynamic_buckling_finding(const BucklingEstimate& found);
+std::optional<diagnostics::Finding> dynamic_buckling_finding(const BucklingEstimate& found);
 
 /// Conjugate gradients on K + low K_sigma with the preconditioner of `method` meet a negative curvature where the factor is below
 /// `low`: one loose solution more. Nothing is done where the compression is far

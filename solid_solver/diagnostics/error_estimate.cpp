@@ -79,7 +79,7 @@ class ErrorEstimate final : public diagnostics::Diagnostic {
   void see_swing(const time::StepErrors::Seen& step);
   double left_by_solver() const;
   double missed_work() const;
-  void add_heat(coupling::ErrorParts& parts) const;
+  void add_heat(diagnostics::ErrorParts& parts) const;
   double missed_of_large_strain() const;
   double finite_mesh_error() const;
   double thermal_mesh_error(double known) const;
@@ -114,9 +114,9 @@ double ErrorEstimate::missed_work() const {
 
 /// A temperature that errs strains the body wrongly: the displacement that follows from it by as much, |u . b_T| / u . K u
 /// of the whole.
-void ErrorEstimate::add_heat(coupling::ErrorParts& parts) const {
+void ErrorEstimate::add_heat(diagnostics::ErrorParts& parts) const {
   if (!heat_) return;
-  const coupling::ErrorParts load =
+  const diagnostics::ErrorParts load =
       heat_->parts(*heat(), body_.parameters().expansion->reference_temperature);
   if (!load.known()) return;
   const std::vector<double> u = view_.unknowns();
@@ -125,7 +125,7 @@ void ErrorEstimate::add_heat(coupling::ErrorParts& parts) const {
   body_.thermal()->add_loads(view_.now().time, body_.kernel(), forces);
   const double energy = product(view_.comm(), u, force), work = product(view_.comm(), u, forces);
   const double share = energy > 0 ? std::min(1.0, std::abs(work) / energy) : 1;
-  for (const auto part : {&coupling::ErrorParts::mesh, &coupling::ErrorParts::step})
+  for (const auto part : {&diagnostics::ErrorParts::mesh, &diagnostics::ErrorParts::step})
     parts.*part = std::fmax(parts.*part, share * load.*part);  // fmax: a number beats NaN
 }
 
@@ -174,14 +174,14 @@ double ErrorEstimate::finite_mesh_error() const {
     return std::max(energy * body_.equilibrium().softness(unknowns, view_.now().known),
                     soft_mesh_error(body_, unknowns, view_.known(), stability_->softest()));
   } catch (const SolveFailure&) {
-    return coupling::ErrorParts::unknown;
+    return diagnostics::ErrorParts::unknown;
   }
 }
 
 /// At least `known`. Energies are no measure of it where heat strains the body; one in motion need not be held, so that
 /// nothing is known.
 double ErrorEstimate::thermal_mesh_error(double known) const {
-  if (body_.is_dynamic() || is_axisymmetric(body_.elastic())) return coupling::ErrorParts::unknown;
+  if (body_.is_dynamic() || is_axisymmetric(body_.elastic())) return diagnostics::ErrorParts::unknown;
   std::vector<double> pressure = body_.thermal()->pressure(view_.now().time);
   pressure.resize(std::size_t(body_.mesh().n_faces()), 0);
   const double weighted = weighted_mesh_error(body_, view_.unknowns(), view_.known(), pressure);
@@ -190,7 +190,7 @@ double ErrorEstimate::thermal_mesh_error(double known) const {
 
 double ErrorEstimate::linear_mesh_error() const {
   const StrainAudit& audit = strain_->now(true);
-  if (!(audit.strain_energy > 0)) return coupling::ErrorParts::unknown;
+  if (!(audit.strain_energy > 0)) return diagnostics::ErrorParts::unknown;
   const double missed = std::max(audit.mismatch(), audit.missed_by_mesh(body_.mesh().dim));
   return body_.is_dynamic() ? missed + drift_.over_size(missed) : missed;
 }
@@ -227,7 +227,7 @@ void ErrorEstimate::see_swing(const time::StepErrors::Seen& step) {
 }
 
 void ErrorEstimate::conclude(diagnostics::Report& report) {
-  coupling::ErrorParts& parts = report.errors;
+  diagnostics::ErrorParts& parts = report.errors;
   parts.dimension = body_.mesh().dim;
   if (view_.now().steps == 0) return;
   if (body_.is_dynamic()) {

@@ -32,7 +32,7 @@ class HeatErrors {
   /// After a step of a transient.
   void see_step(const HeatState& before, const HeatState& now);
   /// Error of the accepted temperature; with `reference` [K] over the distance from that.
-  coupling::ErrorParts parts(const Heat& heat, std::optional<double> reference = {}) const;
+  diagnostics::ErrorParts parts(const Heat& heat, std::optional<double> reference = {}) const;
   /// On the solid's mesh. Collective.
   void visit(io::Archive& archive);
 

@@ -153,7 +153,7 @@ Opinion thermoelastic_coupling(const P& p, double coupling_number) {
              .limit = 0.005,
              .what = found.what,
              .left_out = false,
-             .saves = effects::saved_share("solid_solver", "thermoelastic coupling")};
+             .saves = diagnostics::saved_share("solid_solver", "thermoelastic coupling")};
   return diagnostics::finding_of(found);
 }
 

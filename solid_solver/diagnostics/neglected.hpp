@@ -12,7 +12,7 @@ namespace couplet::solid {
 
 /// An opinion on an effect that a scene leaves out or has in vain, from numbers that the run has seen. Nothing where the
 /// number is not known (NaN) or says nothing about this scene.
-using Opinion = std::optional<log::Finding>;
+using Opinion = std::optional<diagnostics::Finding>;
 
 /// Largest inertia over the load of a static run with several steps.
 Opinion neglected_inertia(const SolidParameters& parameters, double inertia_over_load);

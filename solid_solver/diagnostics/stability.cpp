@@ -52,7 +52,7 @@ void Stability::see_limits(const LoadPath& path) {
   if (load > 0 && path.factor() != 0)
     force = fmt::format(", a total load of about {:.4g} N", load * std::abs(limit.factor / path.factor()));
   // A note, which diagnostics keep to themselves: it is news of the run.
-  log::finding(
+  diagnostics::finding(
       parallel::comm_rank(view_.comm()),
       {.id = "limit-load",
        .severity = base::Severity::note,

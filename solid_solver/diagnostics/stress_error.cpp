@@ -31,7 +31,7 @@ class StressError final : public diagnostics::Diagnostic {
     const std::string error = std::isnan(s.error) ? "unknown"
                               : s.error < 0.995   ? fmt::format("{:.2g} %", 100 * s.error)
                                                   : fmt::format("{:.0f} %", 100 * s.error);
-    log::finding(parallel::comm_rank(view_.comm()),
+    diagnostics::finding(parallel::comm_rank(view_.comm()),
                  {.id = "stress-error",
                   .severity = is_doubtful ? base::Severity::warning : base::Severity::note,
                   .number = s.error,

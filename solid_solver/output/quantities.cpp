@@ -229,7 +229,7 @@ void tell_quantities(MPI_Comm comm, const SolidContext& context, const std::vect
     const std::string where = q.patch.empty()
                                   ? fmt::format("at ({:g}, {:g}, {:g}) m", q.place[0], q.place[1], q.place[2])
                                   : q.patch;
-    log::finding(rank, {.id = "quantity-error",
+    diagnostics::finding(rank, {.id = "quantity-error",
                         .severity = base::Severity::note,
                         .number = share,
                         .sentence = fmt::format("{}: {} {}: {:.6g} {}, estimated error {}, {}", q.name,

@@ -43,7 +43,7 @@ class FrontError final : public TankDiagnostic {
   /// Share of the bed that the largest flow can have crossed.
   double crossed() const { return std::min(1., seen_->flow * view_.time() / crossing_mass()); }
 
-  coupling::ErrorParts spread_profile() const {
+  diagnostics::ErrorParts spread_profile() const {
     std::vector<double> t;
     bed().filler_temperature(t);
     const std::size_t n = t.size();
@@ -57,7 +57,7 @@ class FrontError final : public TankDiagnostic {
     if (!(size > 1e-9 * std::abs(mean) * double(n))) return {};  // one temperature: nothing to be spread
     const double one_cell = 0.5 * bends / size;                  // s = dz
     const double way = double(n) * crossed();                    // in cells
-    coupling::ErrorParts parts{.mesh = scheme() == Advection::tvd ? one_cell : std::max(1., way) * one_cell};
+    diagnostics::ErrorParts parts{.mesh = scheme() == Advection::tvd ? one_cell : std::max(1., way) * one_cell};
     if (scheme() != Advection::tvd) parts.mesh_order = 1;
     parts.step_order = 1;
     if (scheme() == Advection::implicit)

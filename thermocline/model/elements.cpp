@@ -162,7 +162,7 @@ class ElementParticipant final : public coupling::Participant {
           "coupler and a thermocline that has 'elsewhere'.",
           context.name);
     for (const std::string& sentence : weather_->doubts())
-      log::finding(parallel::comm_rank(comm_),
+      diagnostics::finding(parallel::comm_rank(comm_),
                    {.id = "weather-data", .sentence = fmt::format("{}: {}", context.name, sentence)});
   }
   coupling::Interface initialise() override {

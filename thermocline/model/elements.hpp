@@ -51,7 +51,7 @@ struct ElementParameters {
 };
 void declare(config::Section& section, ElementParameters& parameters);
 /// The effects that a tank can simulate, for --explain and docs/effects.md.
-std::span<const effects::EffectCard<ElementParameters>> effect_cards();
+std::span<const diagnostics::EffectCard<ElementParameters>> effect_cards();
 
 /// The parameters with the rows of flow.file. Throws Error with file:line.
 TankParameters with_files(TankParameters parameters, const std::filesystem::path& case_folder);

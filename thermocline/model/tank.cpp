@@ -76,7 +76,7 @@ Tank::Tank(const TankParameters& p, const app::ParticipantContext& context)
                 fmt::format("participants.{}.insulation.solar-absorptance", context.name));
   const auto report = [&](const char* id, const std::vector<std::string>& sentences) {
     for (const std::string& sentence : sentences)
-      log::finding(rank, {.id = id, .sentence = fmt::format("{}: {}", name_, sentence)});
+      diagnostics::finding(rank, {.id = id, .sentence = fmt::format("{}: {}", name_, sentence)});
   };
   report("weather-data", weather_->doubts());
   if (files_) {

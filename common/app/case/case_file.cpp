@@ -117,7 +117,7 @@ std::string problem_of_expression(const config::ExpressionText& text) {
 
 /// `effects: auto`: what the case leaves open is set in the document as if it stood there; what stands there wins.
 void choose(const CommandLine& command_line, const ProgramKind& kind, CaseFile& result) {
-  effects::ChoiceScene scene;
+  diagnostics::CaseScene scene;
   scene.folder = command_line.case_file.parent_path();
   scene.end_time = result.simulation.end_time;
   scene.time_step = result.simulation.time_step;
@@ -127,7 +127,7 @@ void choose(const CommandLine& command_line, const ProgramKind& kind, CaseFile& 
   result.choices = kind.choose(scene);
   const std::string section = "participants." + result.participant;
   const std::vector<std::string> there = config::keys_of(*result.document, section);
-  for (effects::EffectChoice& choice : result.choices) {
+  for (diagnostics::EffectChoice& choice : result.choices) {
     choice.given = !choice.key.empty() && std::ranges::find(there, choice.key) != there.end();
     if (!choice.given && !choice.value.empty())
       result.document->set(fmt::format("{}.{}={}", section, choice.key, choice.value));

@@ -23,11 +23,11 @@ struct ProgramKind {
   bool is_coupler = false;           ///< reads `coupling` instead of a participant's section
   config::Section::Declare declare;  ///< its keys, without `program`
   /// What it can simulate, with the parameters that were read; empty: not told.
-  std::function<std::vector<effects::Effect>(const effects::EffectScene&)> effects = {};
+  std::function<std::vector<diagnostics::Effect>(const diagnostics::CaseScene&)> effects = {};
   /// What `simulation.effects: auto` decides, with the parameters that were read; empty: nothing.
-  std::function<std::vector<effects::EffectChoice>(const effects::ChoiceScene&)> choose = {};
+  std::function<std::vector<diagnostics::EffectChoice>(const diagnostics::CaseScene&)> choose = {};
   /// Memory and time of a step to be expected, for --explain; empty: not told.
-  std::function<effects::ExpectedCost(const effects::ChoiceScene&)> expected = {};
+  std::function<diagnostics::ExpectedCost(const diagnostics::CaseScene&)> expected = {};
   /// For --check, with the parameters that were read: what is wrong with the files they name.
   std::function<std::vector<ProblemOfKey>(const std::filesystem::path& case_folder)> problems_of_files = {};
 };
@@ -40,7 +40,7 @@ struct CaseFile {
   std::vector<Expected> expected;  ///< the coupler first, if there is a `coupling` section
   bool coupled = false;
   std::size_t hash = 0;                        ///< of the file with the overrides, as all programs see it
-  std::vector<effects::EffectChoice> choices;  ///< of `effects: auto`
+  std::vector<diagnostics::EffectChoice> choices;  ///< of `effects: auto`
   std::vector<std::string> errors;
   std::vector<std::string> doubts;  ///< what is possible but implausible
 };

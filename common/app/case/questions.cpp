@@ -62,10 +62,10 @@ namespace {
 
 /// Without its mesh nothing can be expected; what is wrong with it a run will say.
 void print_expected(const CommandLine& command_line, const ProgramKind& kind) {
-  effects::ChoiceScene scene;
+  diagnostics::CaseScene scene;
   scene.folder = command_line.case_file.parent_path();
   try {
-    fmt::print("expected:         {}\n", effects::text(kind.expected(scene)));
+    fmt::print("expected:         {}\n", diagnostics::text(kind.expected(scene)));
   } catch (const Error& error) {
     fmt::print("expected:         unknown: {}\n", error.what());
   }
@@ -81,9 +81,9 @@ int explain(const CommandLine& command_line, const ProgramKind& kind) {
   const bool has_mover = config::text_of(*file.document, "coupling.mesh.participant").has_value();
   fmt::print("{} as '{}' of {}:\n", kind.name, kind.is_coupler ? "coupler" : file.participant,
              command_line.case_file.string());
-  for (const effects::EffectChoice& choice : file.choices) fmt::print("  {}\n", effects::text(choice));
+  for (const diagnostics::EffectChoice& choice : file.choices) fmt::print("  {}\n", diagnostics::text(choice));
   if (kind.effects)
-    fmt::print("{}", effects::explanation(
+    fmt::print("{}", diagnostics::explanation(
                          kind.effects({file.coupled, file.coupled && has_mover, file.simulation.time_step})));
   if (kind.expected) print_expected(command_line, kind);
   std::string job;
@@ -118,7 +118,7 @@ int answer(const CommandLine& command_line, const ProgramKind& kind) {
     case Task::explain:
       return explain(command_line, kind);
     case Task::effects:
-      if (kind.effects) fmt::print("{}", effects::markdown(kind.name, kind.effects({})));
+      if (kind.effects) fmt::print("{}", diagnostics::markdown(kind.name, kind.effects({})));
       return 0;
     case Task::run:
       break;

@@ -241,7 +241,7 @@ void doubt_mesh_scale(const mesh::Mesh& mesh, std::span<const Vec3> points, std:
   constexpr double corner = 1.0 / 300;  // between sizes that occur in one scene and millimetres for metres
   const double size = mesh_size(mesh, points);
   if (size < smallest || size > largest)
-    log::finding(parallel::comm_rank(mesh.comm),
+    diagnostics::finding(parallel::comm_rank(mesh.comm),
                  {.id = "questionable-mesh-scale",
                   .number = size,
                   .limit = size < smallest ? smallest : largest,
@@ -251,7 +251,7 @@ void doubt_mesh_scale(const mesh::Mesh& mesh, std::span<const Vec3> points, std:
   double farthest = 0;
   for (const Vec3& place : places) farthest = std::max(farthest, place.norm());
   if (farthest > 0 && farthest < corner * size)
-    log::finding(parallel::comm_rank(mesh.comm),
+    diagnostics::finding(parallel::comm_rank(mesh.comm),
                  {.id = "questionable-mesh-scale",
                   .number = farthest,
                   .limit = corner * size,

@@ -15,7 +15,7 @@
 #include "thermocline/diagnostics/tank_diagnostic.hpp"
 
 namespace couplet::testing::cards_test {
-using namespace effects;
+using namespace diagnostics;
 using namespace coupler;
 using namespace solid;
 namespace {
@@ -25,22 +25,22 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 /// The finding with this id, or nothing.
-std::optional<log::Finding> with_id(const std::string& id, const std::vector<log::Finding>& findings) {
-  for (const log::Finding& f : findings)
+std::optional<diagnostics::Finding> with_id(const std::string& id, const std::vector<diagnostics::Finding>& findings) {
+  for (const diagnostics::Finding& f : findings)
     if (f.id == id) return f;
   return {};
 }
 
 /// Tells whether there is such a finding and it is sound.
-bool is_sound(const std::string& id, const std::vector<log::Finding>& findings) {
+bool is_sound(const std::string& id, const std::vector<diagnostics::Finding>& findings) {
   const auto found = with_id(id, findings);
   EXPECT_TRUE(found.has_value()) << id;
   return found && found->severity == base::Severity::note;
 }
 
 /// Gives the model's part of the error that findings add up to.
-coupling::ErrorParts model_of(const std::vector<log::Finding>& findings) {
-  coupling::ErrorParts parts;
+diagnostics::ErrorParts model_of(const std::vector<diagnostics::Finding>& findings) {
+  diagnostics::ErrorParts parts;
   diagnostics::add_model(findings, parts);
   return parts;
 }
@@ -86,7 +86,7 @@ TEST(EffectCards, neglected_effects_say_what_share_of_the_answer_they_change) {
   const auto model = [&](const Opinion& opinion) { return model_of({opinion.value()}); };
   EXPECT_DOUBLE_EQ(model(neglected_inertia(p, 0.04)).model, 0.04);
   EXPECT_DOUBLE_EQ(model(neglected_inertia(p, 430)).model, 1);
-  const coupling::ErrorParts hot = model(neglected_thermal_strain(p, 1e-6, 75, unknown));
+  const diagnostics::ErrorParts hot = model(neglected_thermal_strain(p, 1e-6, 75, unknown));
   EXPECT_NEAR(hot.model, 750, 1e-9);
   EXPECT_EQ(hot.model_by, "thermal strain neglected: use 'thermal-expansion'");
   // The elastica: a cantilever with P L^2 / (E I) = 1 has a slope of 0.46 at its tip, which moves 9.5 % less than the linear one.

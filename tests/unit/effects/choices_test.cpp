@@ -27,7 +27,7 @@ MeshFacts box(int dim, const Vec3& size, double cell) {
 /// What was chosen for a key ("" for what is only told), and why.
 template <class Choices>
 std::string chosen(const Choices& choices, const std::string& key) {
-  for (const effects::EffectChoice& c : choices)
+  for (const diagnostics::EffectChoice& c : choices)
     if (c.key == key) {
       EXPECT_FALSE(c.reason.empty()) << key;
       EXPECT_EQ(c.reason.find('\n'), std::string::npos) << key;
@@ -47,7 +47,7 @@ fluid::FluidParameters flow(double speed, double viscosity) {
 }
 
 std::string fluid_choice(const fluid::FluidParameters& p, const MeshFacts& mesh, const std::string& key,
-                         const effects::ChoiceScene& scene = {.end_time = 1, .time_step = 0.1}) {
+                         const diagnostics::CaseScene& scene = {.end_time = 1, .time_step = 0.1}) {
   return chosen(fluid::choose_effects(p, mesh, scene), key);
 }
 
@@ -79,7 +79,7 @@ TEST(AutoFluid, pressure_waves_by_their_time_and_by_parts_that_are_shut) {
   air.density = 1.2;
   EXPECT_EQ(fluid_choice(air, box(2, flat, 0.01), "compressibility"), "none, incompressible");
   air.boundaries["inlet"].velocity[0] = {"1 + 0.1*sin(2*pi*100*t)"};
-  const effects::ChoiceScene fine{.end_time = 1, .time_step = 5e-4};
+  const diagnostics::CaseScene fine{.end_time = 1, .time_step = 5e-4};
   EXPECT_EQ(fluid_choice(air, box(2, flat, 0.01), "compressibility", fine), "three-level");
   EXPECT_EQ(fluid_choice(air, box(2, 0.1 * flat, 0.01), "compressibility", fine), "none, incompressible");
   auto valve = flow(1, 1.8e-5);
@@ -127,7 +127,7 @@ SolidParameters bar(const std::string& traction) {
 }
 
 std::string solid_choice(const SolidParameters& p, const std::string& key,
-                         const effects::ChoiceScene& scene = {.end_time = 10, .time_step = 0.1}) {
+                         const diagnostics::CaseScene& scene = {.end_time = 10, .time_step = 0.1}) {
   return chosen(choose_effects(p, box(3, Vec3(1, 0.1, 0.1), 0.02), scene), key);
 }
 

@@ -47,7 +47,7 @@ struct Judged {
                     .wrong_from = 0.5};
   EffectFinding mean{.effect = "waves of pressure", .number = NAN, .limit = 0.1, .what = ""};
   Diagnostics all{0, true};
-  std::size_t before = log::findings().size();
+  std::size_t before = diagnostics::findings().size();
   Judged() {
     spdlog::set_level(spdlog::level::off);
     all.add("now", std::make_shared<Saying>([this] { return now; }));
@@ -57,10 +57,10 @@ struct Judged {
   /// Findings told after a step with this number.
   std::size_t step(double number) {
     now.number = number;
-    const std::size_t told = log::findings().size();
+    const std::size_t told = diagnostics::findings().size();
     all.accepted(1);
     all.look();
-    return log::findings().size() - told;
+    return diagnostics::findings().size() - told;
   }
 };
 
@@ -68,11 +68,11 @@ TEST(Findings, are_told_once_and_again_when_they_turn_wrong) {
   Judged run;
   EXPECT_EQ(run.step(0.05), 0u);
   EXPECT_EQ(run.step(0.2), 1u);
-  EXPECT_EQ(log::findings().back().id, "balance-of-the-kinetic-energy");
-  EXPECT_EQ(log::findings().back().severity, Severity::warning);
+  EXPECT_EQ(diagnostics::findings().back().id, "balance-of-the-kinetic-energy");
+  EXPECT_EQ(diagnostics::findings().back().severity, Severity::warning);
   EXPECT_EQ(run.step(0.4), 0u);
   EXPECT_EQ(run.step(0.6), 1u);
-  EXPECT_EQ(log::findings().back().severity, Severity::wrong);
+  EXPECT_EQ(diagnostics::findings().back().severity, Severity::wrong);
   EXPECT_EQ(run.step(0.7), 0u);
   EXPECT_EQ(run.step(0.05), 0u);
   // A fault in the midst of a run is still known at its end.
@@ -87,7 +87,7 @@ TEST(Findings, of_means_over_the_run_count_at_its_end) {
   EXPECT_EQ(run.step(0.01), 0u);
   run.mean.number = 3e-4;
   EXPECT_THAT(run.all.conclude(false), ::testing::Contains(HasSubstr("(limit 0.1): justified")));
-  EXPECT_EQ(log::findings().size(), run.before);
+  EXPECT_EQ(diagnostics::findings().size(), run.before);
 }
 
 TEST(Findings, make_the_models_part_of_the_error) {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace couplet::effects::position_test {
+namespace couplet::diagnostics::position_test {
 
 TEST(Position, is_told_in_one_line_with_the_nearest_limit_and_its_map) {
   EXPECT_EQ(position_sentence({}), "");
@@ -28,4 +28,4 @@ TEST(Position, of_a_run_is_the_nearest_to_each_limit_that_it_has_been) {
   EXPECT_EQ(kept[1].value, 0.3);
 }
 
-}  // namespace couplet::effects::position_test
+}  // namespace couplet::diagnostics::position_test

@@ -15,7 +15,7 @@
 #include "thermocline/model/elements.hpp"
 
 namespace couplet::testing::prices_test {
-using namespace effects;
+using namespace diagnostics;
 namespace {
 
 using ::testing::HasSubstr;

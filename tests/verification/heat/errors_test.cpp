@@ -19,7 +19,7 @@ double cooled(double x, double fo) { return std::exp(-z * z * fo) * std::cos(z *
 const double mean_before = std::sin(z) / z;
 
 struct Outcome {
-  coupling::ErrorParts parts;
+  diagnostics::ErrorParts parts;
   double wrong = 0;  ///< true error over the size of the variation
 };
 
@@ -81,7 +81,7 @@ TEST(HeatErrors, long_steps_dominate_where_they_do) {
 }
 
 TEST(HeatErrors, a_run_that_goes_on_says_the_same) {
-  const coupling::ErrorParts whole = slab(8, 12, HeatScheme::three_point).parts,
+  const diagnostics::ErrorParts whole = slab(8, 12, HeatScheme::three_point).parts,
                              stopped = slab(8, 12, HeatScheme::three_point, true).parts;
   EXPECT_EQ(whole.step, stopped.step);
   EXPECT_EQ(whole.mesh, stopped.mesh);
@@ -108,7 +108,7 @@ TEST(HeatErrors, a_linear_field_errs_nowhere_and_one_temperature_says_nothing) {
                    {{1, 1.0, 1.0}}, p);
     const HeatErrors errors(scene.mesh(), scene.geometry(), p);
     scene.step(1);
-    const coupling::ErrorParts parts = errors.parts(*scene.heat);
+    const diagnostics::ErrorParts parts = errors.parts(*scene.heat);
     if (level) {
       EXPECT_FALSE(parts.known());
     } else {

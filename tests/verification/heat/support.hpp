@@ -60,14 +60,14 @@ struct HeatCase {
     const SolidContext context;
     diagnostics::Diagnostics all(0, true);
     add_diagnostics(HeatView{*heat, p, context}, all);
-    const int before = log::doubts();
+    const int before = diagnostics::doubts();
     for (int i = 0; i < steps; ++i) {
       step(dt);
       all.accepted(heat->accepted().time);
       if (after) after();
     }
     if (sentences) *sentences = all.conclude(false);
-    return log::doubts() - before;
+    return diagnostics::doubts() - before;
   }
   double temperature(Index cell) const { return heat->accepted().cells[cell]; }
   const Vec3& place(Index cell) const { return geometry().cell_centre[cell]; }

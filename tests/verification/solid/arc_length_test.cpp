@@ -93,7 +93,7 @@ double follow(Solid& solid, bool knows_stability) {
 }
 
 TEST(ArcLength, follows_a_shallow_arch_through_both_limit_loads_of_the_closed_form) {
-  const std::size_t before = log::findings().size();
+  const std::size_t before = diagnostics::findings().size();
   const auto solid = make_solid(arch(50), hinged());
   const double gap = follow(*solid, true);
   RecordProperty("gap", fmt::format("{:.4f}", gap));
@@ -103,10 +103,10 @@ TEST(ArcLength, follows_a_shallow_arch_through_both_limit_loads_of_the_closed_fo
   EXPECT_NEAR(limits[0].factor, 1, 0.02);
   EXPECT_TRUE(limits[0].is_maximum);
   EXPECT_NEAR(limits[1].factor, lower_limit / limit, 0.02);
-  ASSERT_EQ(log::findings().size(), before + 2);  // and nothing is said of equilibria on the way
+  ASSERT_EQ(diagnostics::findings().size(), before + 2);  // and nothing is said of equilibria on the way
   for (std::size_t i = before; i < before + 2; ++i) {
-    EXPECT_EQ(log::findings()[i].id, "limit-load");
-    EXPECT_EQ(log::findings()[i].severity, base::Severity::note);
+    EXPECT_EQ(diagnostics::findings()[i].id, "limit-load");
+    EXPECT_EQ(diagnostics::findings()[i].severity, base::Severity::note);
   }
   EXPECT_GT(path_of(*solid).stiffness(), 0);
   const auto reactions = solid->fields().reactions(solid->fields().point_displacement());
@@ -122,7 +122,7 @@ TEST(ArcLength, warns_of_a_last_equilibrium_that_is_unstable_and_only_then) {
   const auto warnings = [&] {
     diagnostics::Report report;
     Stability(solid->view()).conclude(report);
-    return std::ranges::count_if(report.findings, [](const log::Finding& f) {
+    return std::ranges::count_if(report.findings, [](const diagnostics::Finding& f) {
       return f.id == "unstable-equilibrium" && f.severity == base::Severity::warning;
     });
   };

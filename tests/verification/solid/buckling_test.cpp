@@ -46,13 +46,13 @@ std::vector<double> factors(const Solid& solid, int n, double time = 1) {
 /// Of the findings from number `from` on; -1: none has this id.
 int severity_of(const char* id, std::size_t from) {
   int worst = -1;
-  for (std::size_t i = from; i < log::findings().size(); ++i)
-    if (log::findings()[i].id == id) worst = std::max(worst, int(log::findings()[i].severity));
+  for (std::size_t i = from; i < diagnostics::findings().size(); ++i)
+    if (diagnostics::findings()[i].id == id) worst = std::max(worst, int(diagnostics::findings()[i].severity));
   return worst;
 }
 
-const log::Finding& last_of(const char* id) {
-  return *std::ranges::find(log::findings().rbegin(), log::findings().rend(), id, &log::Finding::id);
+const diagnostics::Finding& last_of(const char* id) {
+  return *std::ranges::find(diagnostics::findings().rbegin(), diagnostics::findings().rend(), id, &diagnostics::Finding::id);
 }
 
 class Column : public ::testing::TestWithParam<BoxCells> {};
@@ -161,7 +161,7 @@ TEST(BucklingFinding, is_told_of_linear_runs_near_and_above_the_load) {
   };
   for (const auto& [part, severity] :
        {std::pair(0.1, -1), {0.5, int(base::Severity::warning)}, {1.2, int(base::Severity::wrong)}}) {
-    const std::size_t before = log::findings().size();
+    const std::size_t before = diagnostics::findings().size();
     run(part);
     EXPECT_EQ(severity_of("buckling", before), severity) << part;
   }
@@ -171,7 +171,7 @@ TEST(BucklingFinding, above_a_factor_of_three_is_told_of_what_bends_and_not_of_w
   // Under a load across of any size the deflection grows by 1/(f - 1): of f = 4 a third, of f = 8 a seventh.
   const double critical = euler(0.05);
   const auto told = [&](double part, const char* lateral) {
-    const std::size_t before = log::findings().size();
+    const std::size_t before = diagnostics::findings().size();
     SolidParameters p = column(2, part * critical);
     p.boundaries["xmax"].value[1] = {lateral};
     const auto solid = make_solid(bar(BoxCells::quadrilaterals, 40, 4, 0.05), p);
@@ -179,7 +179,7 @@ TEST(BucklingFinding, above_a_factor_of_three_is_told_of_what_bends_and_not_of_w
     return severity_of("buckling", before);
   };
   EXPECT_EQ(told(0.25, "1e6"), int(base::Severity::warning));
-  const log::Finding& last = last_of("buckling");
+  const diagnostics::Finding& last = last_of("buckling");
   EXPECT_NE(last.sentence.find("adds 0.3"), std::string::npos) << last.sentence;
   EXPECT_EQ(told(0.25, "0"), -1);
   EXPECT_EQ(told(0.125, "1e6"), -1);
@@ -199,7 +199,7 @@ void compress(double part, double lateral, BoxCells cells) {
 }
 
 TEST(Equilibrium, that_does_not_hold_is_told_with_the_load_where_it_was_lost) {
-  const std::size_t before = log::findings().size();
+  const std::size_t before = diagnostics::findings().size();
   compress(0.85, 0, BoxCells::quadrilaterals);
   compress(0.85, 0, BoxCells::tetrahedra);
   compress(-3, 0, BoxCells::quadrilaterals);
@@ -207,7 +207,7 @@ TEST(Equilibrium, that_does_not_hold_is_told_with_the_load_where_it_was_lost) {
   EXPECT_EQ(severity_of("unstable-equilibrium", before), -1);
   compress(2.6, 0, BoxCells::quadrilaterals);
   ASSERT_EQ(severity_of("unstable-equilibrium", before), int(base::Severity::wrong));
-  const log::Finding& last = last_of("unstable-equilibrium");
+  const diagnostics::Finding& last = last_of("unstable-equilibrium");
   EXPECT_LT(last.number, 0);
   EXPECT_NE(last.sentence.find("lost near t = 0.3"), std::string::npos) << last.sentence;  // 1 / 2.6
 }
@@ -234,7 +234,7 @@ TEST(Equilibrium, of_a_slender_column_is_told_apart_within_a_ten_thousandth_of_i
     high = next, at_high = stiffness_under(high);
   }
   const double critical = low - at_low * (high - low) / (at_high - at_low);
-  const std::size_t before = log::findings().size();
+  const std::size_t before = diagnostics::findings().size();
   EXPECT_GT(stiffness_under(critical * (1 - 5e-5)), 0);
   EXPECT_EQ(severity_of("unstable-equilibrium", before), -1);
   const double beyond = stiffness_under(critical * (1 + 5e-5));

@@ -82,7 +82,7 @@ TEST(FiniteStrain, the_estimate_of_the_mesh_is_within_a_factor_of_two) {
   for (const double K : {0.1, 1.6}) {
     const auto coarse = make(beam(BoxCells::hexahedra, 1, 10), bent("neo-hookean", K)),
                fine = make(beam(BoxCells::hexahedra, 2, 20), bent("neo-hookean", K));
-    const coupling::ErrorParts parts = support::observe(*coarse, 1, 1).diagnostics().errors();
+    const diagnostics::ErrorParts parts = support::observe(*coarse, 1, 1).diagnostics().errors();
     step(*fine, 1);
     const double wrong = (tip(*coarse) - tip(*fine)).norm() / tip(*fine).norm();
     fmt::print("K {}: estimated {:.3g}, true {:.3g}\n", K, parts.mesh, wrong);

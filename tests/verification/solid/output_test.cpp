@@ -186,7 +186,7 @@ TEST(SolidOutput, left_out_effects_are_judged_by_numbers) {
   const auto lines = [](Solid& solid, double dt) {
     std::vector<std::string> texts;
     const auto run = support::observe(solid, 3, dt);
-    for (const log::Finding& f : run.diagnostics().findings()) texts.push_back(f.sentence + "; " + f.advice);
+    for (const diagnostics::Finding& f : run.diagnostics().findings()) texts.push_back(f.sentence + "; " + f.advice);
     return texts;
   };
   EXPECT_THAT(

@@ -87,9 +87,9 @@ TEST(Quantities, of_regular_cells_in_bending_err_as_the_whole_body_does) {
   support::observe(solid, 1, 1);
   QuantityEstimate tip = estimates(solid).at(0);
   const double alone = tip.error();
-  const auto told = std::ranges::find(log::findings().rbegin(), log::findings().rend(), "quantity-error",
-                                      &log::Finding::id);
-  ASSERT_NE(told, log::findings().rend());
+  const auto told = std::ranges::find(diagnostics::findings().rbegin(), diagnostics::findings().rend(), "quantity-error",
+                                      &diagnostics::Finding::id);
+  ASSERT_NE(told, diagnostics::findings().rend());
   tip.body = told->number * std::abs(tip.value);
   const double wrong = std::abs(tip.value - truth);
   fmt::print("estimated {:.3g}, by the dual problem {:.3g}, true {:.3g} of {:.4g}\n", tip.error(), alone,

@@ -42,10 +42,10 @@ struct TankRun {
     }
   }
   /// Findings with this id so far.
-  std::vector<log::Finding> found(const std::string& id) {
+  std::vector<diagnostics::Finding> found(const std::string& id) {
     judged.look();
-    std::vector<log::Finding> all;
-    for (const log::Finding& f : judged.findings())
+    std::vector<diagnostics::Finding> all;
+    for (const diagnostics::Finding& f : judged.findings())
       if (f.id == id) all.push_back(f);
     return all;
   }
