@@ -7,7 +7,7 @@
 #include <string>
 
 #include "common/config/section.hpp"
-#include "common/effects/effects.hpp"
+#include "common/diagnostics/effects.hpp"
 #include "common/fv/prescribed_motion.hpp"
 #include "common/linalg/linear_solver.hpp"
 

@@ -22,7 +22,7 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/coupling/wait.hpp"
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/log/progress.hpp"
 #include "common/parallel/collective.hpp"

@@ -15,7 +15,7 @@
 #include "common/coupling/mesh_motion.hpp"
 #include "common/coupling/participant.hpp"
 #include "common/diagnostics/diagnostics.hpp"
-#include "common/effects/effects.hpp"
+#include "common/diagnostics/effects.hpp"
 
 namespace couplet::app {
 

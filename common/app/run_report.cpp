@@ -11,7 +11,7 @@
 #include "common/app/job.hpp"
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/log/progress.hpp"
 #include "common/parallel/collective.hpp"
 

@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 
-#include "common/coupling/error_parts.hpp"
 #include "common/coupling/participant.hpp"
-#include "common/effects/effects.hpp"
+#include "common/diagnostics/effects.hpp"
+#include "common/diagnostics/error_parts.hpp"
 #include "common/io/series.hpp"
 
 namespace couplet::app {

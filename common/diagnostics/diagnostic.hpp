@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "common/coupling/error_parts.hpp"
-#include "common/effects/effects.hpp"
-#include "common/log/finding.hpp"
+#include "common/diagnostics/effects.hpp"
+#include "common/diagnostics/error_parts.hpp"
+#include "common/diagnostics/finding.hpp"
 
 namespace couplet::io {
 class Archive;
@@ -19,7 +19,7 @@ struct Report {
   /// Findings of an effect or of the answer. A note is a sound one: it is told at the end of the run only.
   std::vector<diagnostics::Finding> findings;
   std::vector<std::string> sentences;  ///< for the end of the log
-  diagnostics::ErrorParts errors;         ///< parts of the estimated error, each over the size of the solution
+  diagnostics::ErrorParts errors;      ///< parts of the estimated error, each over the size of the solution
   std::vector<diagnostics::Coordinate> position;  ///< where the run stands on the maps of docs/stability.md
 };
 

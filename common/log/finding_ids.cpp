@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 
 namespace couplet::log {
 namespace {

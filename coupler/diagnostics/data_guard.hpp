@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "coupler/exchange/side.hpp"
 
 namespace couplet::io {

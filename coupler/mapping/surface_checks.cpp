@@ -7,7 +7,7 @@
 #include <set>
 
 #include "common/base/error.hpp"
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "coupler/exchange/transfer.hpp"
@@ -298,15 +298,16 @@ void check_mover(MPI_Comm comm, const std::vector<Side>& sides, const Schedule& 
         "that has it in the fluid.",
         mover->name, moves.faces, moved.faces, fluid->name, moves.area, moved.area);
   if (apart > limit)
-    diagnostics::finding(parallel::comm_rank(comm),
-                 {.id = "surfaces-apart",
-                  .number = apart,
-                  .limit = limit,
-                  .sentence = fmt::format(
-                      "mesh motion: '{}' moves {} faces by the structure, but the interface of '{}' has {}: "
-                      "patches that are not an interface of the fluid follow the nearest vertex",
-                      mover->name, moves.faces, fluid->name, moved.faces),
-                  .advice = "set another type for them"});
+    diagnostics::finding(
+        parallel::comm_rank(comm),
+        {.id = "surfaces-apart",
+         .number = apart,
+         .limit = limit,
+         .sentence = fmt::format(
+             "mesh motion: '{}' moves {} faces by the structure, but the interface of '{}' has {}: "
+             "patches that are not an interface of the fluid follow the nearest vertex",
+             mover->name, moves.faces, fluid->name, moved.faces),
+         .advice = "set another type for them"});
 }
 
 }  // namespace

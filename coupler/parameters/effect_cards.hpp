@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "common/effects/effects.hpp"
+#include "common/diagnostics/effects.hpp"
 #include "coupler/parameters/parameters.hpp"
 
 namespace couplet::coupler {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/base/processor_clones.hpp"
-#include "common/coupling/error_parts.hpp"
+#include "common/diagnostics/error_parts.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/time/step_errors.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/effects/prices.hpp"
+#include "common/diagnostics/prices.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/diagnostics/effects.hpp"
 #include "fluid_solver/diagnostics/view.hpp"

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "common/effects/effects.hpp"
+#include "common/diagnostics/effects.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
 #include "fluid_solver/parameters/parameters.hpp"
 
@@ -25,8 +25,8 @@ std::span<const FluidCard> fluid_effect_cards();
 /// The speed is the largest that boundaries, profiles and the start name; the Reynolds number stands on the smallest side of
 /// the mesh's box.
 std::vector<diagnostics::EffectChoice> choose_effects(const FluidParameters& parameters,
-                                                  const mesh::MeshFacts& mesh,
-                                                  const diagnostics::CaseScene& scene);
+                                                      const mesh::MeshFacts& mesh,
+                                                      const diagnostics::CaseScene& scene);
 
 /// Estimates the cost from configs/cavity and taylor-green-3d on one rank.
 diagnostics::ExpectedCost expected_cost(const FluidParameters& parameters, const mesh::MeshFacts& mesh);

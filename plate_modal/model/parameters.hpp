@@ -10,7 +10,7 @@
 
 #include "common/config/section.hpp"
 #include "common/contact/contact.hpp"
-#include "common/effects/effects.hpp"
+#include "common/diagnostics/effects.hpp"
 #include "common/time/time_scheme.hpp"
 #include "plate_modal/model/skin.hpp"
 

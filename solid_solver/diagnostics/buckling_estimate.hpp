@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "solid_solver/body/solid_state.hpp"
 #include "solid_solver/method/solution_method.hpp"
 #include "solid_solver/output/buckling.hpp"

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "common/coupling/error_parts.hpp"
+#include "common/diagnostics/error_parts.hpp"
 #include "common/mesh/mesh.hpp"
 #include "common/time/step_errors.hpp"
 #include "solid_solver/thermal/heat.hpp"

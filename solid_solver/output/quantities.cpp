@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "common/base/error.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/elasticity/vector_at.hpp"
 #include "common/fv/gradients.hpp"
-#include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/body/stress.hpp"
 #include "solid_solver/output/dual_problem.hpp"
@@ -229,11 +229,12 @@ void tell_quantities(MPI_Comm comm, const SolidContext& context, const std::vect
     const std::string where = q.patch.empty()
                                   ? fmt::format("at ({:g}, {:g}, {:g}) m", q.place[0], q.place[1], q.place[2])
                                   : q.patch;
-    diagnostics::finding(rank, {.id = "quantity-error",
-                        .severity = base::Severity::note,
-                        .number = share,
-                        .sentence = fmt::format("{}: {} {}: {:.6g} {}, estimated error {}, {}", q.name,
-                                                q.what, where, q.value, q.unit, error, method_of(q))});
+    diagnostics::finding(
+        rank, {.id = "quantity-error",
+               .severity = base::Severity::note,
+               .number = share,
+               .sentence = fmt::format("{}: {} {}: {:.6g} {}, estimated error {}, {}", q.name, q.what, where,
+                                       q.value, q.unit, error, method_of(q))});
   }
   if (rank != 0 || context.output_folder.empty()) return;
   std::ofstream file(context.output_folder / "quantities.csv");

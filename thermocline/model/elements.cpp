@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "common/base/error.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/io/checkpoint.hpp"
-#include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
 #include "thermocline/model/questions.hpp"
 #include "thermocline/model/tank.hpp"
@@ -163,7 +163,7 @@ class ElementParticipant final : public coupling::Participant {
           context.name);
     for (const std::string& sentence : weather_->doubts())
       diagnostics::finding(parallel::comm_rank(comm_),
-                   {.id = "weather-data", .sentence = fmt::format("{}: {}", context.name, sentence)});
+                           {.id = "weather-data", .sentence = fmt::format("{}: {}", context.name, sentence)});
   }
   coupling::Interface initialise() override {
     return parallel::comm_rank(comm_) == 0 ? accepted_.describe() : coupling::Interface{};

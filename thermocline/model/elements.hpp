@@ -9,7 +9,7 @@
 #include "common/app/case/check_files.hpp"
 #include "common/app/program.hpp"
 #include "common/coupling/participant.hpp"
-#include "common/effects/effects.hpp"
+#include "common/diagnostics/effects.hpp"
 #include "thermocline/model/parameters.hpp"
 
 /// Elements of a tank as participants of their own: the tank gives temperatures, they give the heat back that

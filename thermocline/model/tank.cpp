@@ -8,8 +8,8 @@
 #include <numeric>
 
 #include "common/base/error.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/io/checkpoint.hpp"
-#include "common/log/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "thermocline/model/questions.hpp"

@@ -12,7 +12,7 @@
 #include "common/app/case/roll_call.hpp"
 #include "common/app/loop/simulation.hpp"
 #include "common/config/load.hpp"
-#include "common/effects/effects.hpp"
+#include "common/diagnostics/effects.hpp"
 
 namespace couplet::app {
 
@@ -39,7 +39,7 @@ struct CaseFile {
   SimulationParameters simulation;
   std::vector<Expected> expected;  ///< the coupler first, if there is a `coupling` section
   bool coupled = false;
-  std::size_t hash = 0;                        ///< of the file with the overrides, as all programs see it
+  std::size_t hash = 0;                            ///< of the file with the overrides, as all programs see it
   std::vector<diagnostics::EffectChoice> choices;  ///< of `effects: auto`
   std::vector<std::string> errors;
   std::vector<std::string> doubts;  ///< what is possible but implausible

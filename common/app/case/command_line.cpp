@@ -9,7 +9,7 @@
 
 #include "common/base/text.hpp"
 #include "common/config/description.hpp"
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 
 namespace couplet::app {
 namespace {

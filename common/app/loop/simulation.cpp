@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "common/coupling/step_plan.hpp"
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 
 namespace couplet::app {
 

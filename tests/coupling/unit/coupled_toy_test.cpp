@@ -9,7 +9,7 @@
 #include <set>
 
 #include "common/base/error.hpp"
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
 #include "tests/coupling/support/passing.hpp"
@@ -361,7 +361,8 @@ TEST(CoupledToy, what_was_learnt_before_a_participant_answers_anew_is_forgotten)
 
 TEST(CoupledToy, a_velocity_that_is_not_the_rate_of_the_displacement_is_found_and_one_that_is_not) {
   const auto found = [] {
-    return std::ranges::count(diagnostics::findings(), std::string("velocity-and-displacement"), &diagnostics::Finding::id);
+    return std::ranges::count(diagnostics::findings(), std::string("velocity-and-displacement"),
+                              &diagnostics::Finding::id);
   };
   for (const double times : {1., 3., 0.2}) {
     ToyRun run;
@@ -395,7 +396,8 @@ TEST(CoupledToy, a_step_that_fails_names_the_participant_that_did_not_answer) {
 
 TEST(CoupledToy, a_step_that_is_accepted_unconverged_is_a_finding_and_a_useless_one_is_wrong) {
   const auto found = [] {
-    return std::ranges::count(diagnostics::findings(), std::string("unconverged-step"), &diagnostics::Finding::id);
+    return std::ranges::count(diagnostics::findings(), std::string("unconverged-step"),
+                              &diagnostics::Finding::id);
   };
   const auto accepted = [&](int iterations, double relaxation) {
     ToyRun run;

@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
 #include "tests/coupling/support/surfaces.hpp"

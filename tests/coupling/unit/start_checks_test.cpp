@@ -7,7 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/coupling/roles.hpp"
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "coupler/mapping/surface_checks.hpp"
 #include "tests/coupling/support/surfaces.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "swing.hpp"
 
 namespace couplet::testing::hard_cases_test {

@@ -4,7 +4,7 @@
 
 #include "common/base/error.hpp"
 #include "common/diagnostics/diagnostics.hpp"
-#include "common/effects/effects.hpp"
+#include "common/diagnostics/effects.hpp"
 #include "coupler/parameters/effect_cards.hpp"
 #include "coupler/parameters/schedule.hpp"
 #include "fluid_solver/diagnostics/effects.hpp"
@@ -25,7 +25,8 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 /// The finding with this id, or nothing.
-std::optional<diagnostics::Finding> with_id(const std::string& id, const std::vector<diagnostics::Finding>& findings) {
+std::optional<diagnostics::Finding> with_id(const std::string& id,
+                                            const std::vector<diagnostics::Finding>& findings) {
   for (const diagnostics::Finding& f : findings)
     if (f.id == id) return f;
   return {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/effects/effects.hpp"
+#include "common/diagnostics/effects.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/effects/prices.hpp"
+#include "common/diagnostics/prices.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "common/effects/effects.hpp"
+#include "common/diagnostics/effects.hpp"
 #include "fluid_solver/parameters/effects.hpp"
 #include "mesh_mover/parameters.hpp"
 #include "plate_modal/model/parameters.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 
 #include <gmock/gmock.h>
 
@@ -20,8 +20,10 @@ using Words = std::vector<std::string>;
 TEST(Findings, count_by_severity_channel_and_consent) {
   EXPECT_EQ(diagnostics::count(Severity::note, true), 0);
   diagnostics::finding(1, {.id = "strain-energy", .severity = Severity::note, .sentence = "a"});
-  diagnostics::finding(1, {.id = "compressibility", .number = 0.4, .limit = 0.3, .sentence = "b", .advice = "\"c\""});
-  EXPECT_EQ(diagnostics::count(Severity::warning, false), 0) << "an opinion on a neglected effect is no doubt";
+  diagnostics::finding(
+      1, {.id = "compressibility", .number = 0.4, .limit = 0.3, .sentence = "b", .advice = "\"c\""});
+  EXPECT_EQ(diagnostics::count(Severity::warning, false), 0)
+      << "an opinion on a neglected effect is no doubt";
   EXPECT_EQ(diagnostics::count(Severity::warning, true), 1);
   EXPECT_EQ(diagnostics::doubts(), 1);
   diagnostics::finding(1, {.id = "energy-growth", .severity = Severity::wrong, .sentence = "d"});

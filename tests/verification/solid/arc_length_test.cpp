@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "common/base/error.hpp"
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/diagnostics/stability.hpp"
 #include "solid_solver/equilibrium/load_path.hpp"

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "common/base/error.hpp"
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "solid_solver/diagnostics/buckling_estimate.hpp"
 #include "solid_solver/output/buckling.hpp"
 #include "tests/support/observed_run.hpp"
@@ -47,12 +47,14 @@ std::vector<double> factors(const Solid& solid, int n, double time = 1) {
 int severity_of(const char* id, std::size_t from) {
   int worst = -1;
   for (std::size_t i = from; i < diagnostics::findings().size(); ++i)
-    if (diagnostics::findings()[i].id == id) worst = std::max(worst, int(diagnostics::findings()[i].severity));
+    if (diagnostics::findings()[i].id == id)
+      worst = std::max(worst, int(diagnostics::findings()[i].severity));
   return worst;
 }
 
 const diagnostics::Finding& last_of(const char* id) {
-  return *std::ranges::find(diagnostics::findings().rbegin(), diagnostics::findings().rend(), id, &diagnostics::Finding::id);
+  return *std::ranges::find(diagnostics::findings().rbegin(), diagnostics::findings().rend(), id,
+                            &diagnostics::Finding::id);
 }
 
 class Column : public ::testing::TestWithParam<BoxCells> {};

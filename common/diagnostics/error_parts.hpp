@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 
 namespace couplet::coupling {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/effects/prices.hpp"
+#include "common/diagnostics/prices.hpp"
 
 #include <fmt/format.h>
 

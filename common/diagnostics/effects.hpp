@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/effects/prices.hpp"
+#include "common/diagnostics/prices.hpp"
 
 namespace couplet::effects {
 

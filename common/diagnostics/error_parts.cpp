@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/coupling/error_parts.hpp"
+#include "common/diagnostics/error_parts.hpp"
 
 #include <fmt/format.h>
 
