@@ -157,19 +157,20 @@ void Coupler::finalise(const std::string& problem) {
   if (const std::string waiting = monitor.waiting(pass_.partners(), pass_.schedule()); !waiting.empty())
     log::info("{}", waiting);
   for (const std::string& line : diagnostics_.conclude(!problem.empty())) log::info("{}", line);
-  std::vector<coupling::NamedErrors> parts = finalise_all(pass_.everyone(), problem);
+  std::vector<diagnostics::NamedErrors> parts = finalise_all(pass_.everyone(), problem);
   if (simulation_.error_estimate && problem.empty()) {
-    if (const coupling::ErrorParts& mine = diagnostics_.errors(); mine.known() || !mine.omittable.empty())
+    if (const diagnostics::ErrorParts& mine = diagnostics_.errors(); mine.known() || !mine.omittable.empty())
       parts.push_back({"coupling", mine});
-    errors_ = coupling::largest(parts);
-    for (const std::string& sentence : coupling::error_sentences(parts)) log::info("{}", sentence);
-    if (const auto finding = coupling::worthless(parts)) log::finding(parallel::comm_rank(comm_), *finding);
+    errors_ = diagnostics::largest(parts);
+    for (const std::string& sentence : diagnostics::error_sentences(parts)) log::info("{}", sentence);
+    if (const auto finding = diagnostics::worthless(parts))
+      diagnostics::finding(parallel::comm_rank(comm_), *finding);
   }
-  if (const std::string where = effects::position_sentence(position()); !where.empty())
+  if (const std::string where = diagnostics::position_sentence(position()); !where.empty())
     log::info("{}", where);
 }
 
-std::vector<effects::Coordinate> Coupler::position() const {
+std::vector<diagnostics::Coordinate> Coupler::position() const {
   if (!pass_.schedule().iterates) return diagnostics_.position();
   if (!(steps() > 0)) return {};
   return {{"passes per step", double(iterations()) / double(steps()),

@@ -19,8 +19,8 @@
 #include "coupler/diagnostics/view.hpp"
 #include "coupler/output/record.hpp"
 #include "coupler/parameters/parameters.hpp"
+#include "coupler/parameters/schedule.hpp"
 #include "coupler/pass.hpp"
-#include "coupler/scheme_choice.hpp"
 
 namespace couplet::coupler {
 
@@ -58,9 +58,9 @@ class Coupler {
   int halvings() const { return loop_.halvings(); }
   long iterations() const { return iterations_; }
   /// The budget of the whole job, once it has ended well.
-  const coupling::ErrorParts& errors() const { return errors_; }
+  const diagnostics::ErrorParts& errors() const { return errors_; }
   /// Where the job stands on the maps of the coupling.
-  std::vector<effects::Coordinate> position() const;
+  std::vector<diagnostics::Coordinate> position() const;
   const coupling::Exchange& given_by(const std::string& name) const {
     return pass_.given()[pass_.index_of(name)];
   }
@@ -103,7 +103,7 @@ class Coupler {
   long iterations_ = 0;
   diagnostics::Diagnostics diagnostics_;
   std::optional<Known> known_;
-  coupling::ErrorParts errors_;
+  diagnostics::ErrorParts errors_;
   std::function<void(app::Phase, std::optional<double>)> enter_ = [](app::Phase, std::optional<double>) {};
 };
 

@@ -39,13 +39,13 @@ int main(int argc, char** argv) {
           },
       .environment = couplet::linalg::petsc_environment,
       .effects =
-          [&](const couplet::effects::EffectScene& scene) {
-            return couplet::effects::effects_of(
+          [&](const couplet::diagnostics::CaseScene& scene) {
+            return couplet::diagnostics::effects_of(
                 "fluid_solver", couplet::fluid::fluid_effect_cards(),
                 couplet::fluid::FluidScene{parameters, scene.has_mover || parameters.motion, scene.coupled});
           },
       .choose =
-          [&](const couplet::effects::ChoiceScene& scene) {
+          [&](const couplet::diagnostics::CaseScene& scene) {
             return couplet::fluid::choose_effects(
                 parameters,
                 couplet::io::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters,
@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
                 scene);
           },
       .expected =
-          [&](const couplet::effects::ChoiceScene& scene) {
+          [&](const couplet::diagnostics::CaseScene& scene) {
             return couplet::fluid::expected_cost(
                 parameters, couplet::io::facts_of_file(scene.folder / parameters.mesh,
                                                        parameters.mesh_parameters, parameters.mesh_scale));

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/io/checkpoint.hpp"
-#include "common/log/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/boundary/cavity.hpp"

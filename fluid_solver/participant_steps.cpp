@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/log/log.hpp"
 #include "fluid_solver/participant.hpp"
 

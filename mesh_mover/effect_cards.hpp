@@ -3,12 +3,12 @@
 
 #include <span>
 
-#include "common/effects/effects.hpp"
+#include "common/diagnostics/effects.hpp"
 #include "mesh_mover/parameters.hpp"
 
 namespace couplet::mesh_mover {
 
-using Card = effects::EffectCard<Parameters>;
+using Card = diagnostics::EffectCard<Parameters>;
 std::span<const Card> effect_cards();
 
 }  // namespace couplet::mesh_mover

@@ -24,9 +24,9 @@ int main(int argc, char** argv) {
           },
       .environment = couplet::linalg::petsc_environment,
       .effects =
-          [&](const couplet::effects::EffectScene&) {
-            return couplet::effects::effects_of("mesh_mover", couplet::mesh_mover::effect_cards(),
-                                                parameters);
+          [&](const couplet::diagnostics::CaseScene&) {
+            return couplet::diagnostics::effects_of("mesh_mover", couplet::mesh_mover::effect_cards(),
+                                                    parameters);
           }};
   return couplet::app::run_program(argc, argv, program);
 }

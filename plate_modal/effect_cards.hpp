@@ -4,7 +4,7 @@
 #include <limits>
 #include <span>
 
-#include "common/effects/effects.hpp"
+#include "common/diagnostics/effects.hpp"
 #include "plate_modal/model/parameters.hpp"
 
 namespace couplet::plate {
@@ -16,7 +16,7 @@ struct PlateScene {
   double time_step = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN: not known
 };
 
-using PlateCard = effects::EffectCard<PlateScene>;
+using PlateCard = diagnostics::EffectCard<PlateScene>;
 /// All that a modal structure can simulate beside its modes, in the order in which it is told.
 std::span<const PlateCard> plate_effect_cards();
 

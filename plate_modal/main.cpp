@@ -22,8 +22,8 @@ int main(int argc, char** argv) {
           },
       .environment = couplet::linalg::petsc_environment,
       .effects =
-          [&](const couplet::effects::EffectScene& scene) {
-            return couplet::effects::effects_of(
+          [&](const couplet::diagnostics::CaseScene& scene) {
+            return couplet::diagnostics::effects_of(
                 "plate_modal", couplet::plate::plate_effect_cards(),
                 couplet::plate::PlateScene{parameters, scene.coupled, scene.time_step});
           },

@@ -47,12 +47,12 @@ int main(int argc, char** argv) {
       .diagnose = couplet::solid::add_diagnostics,
       .environment = couplet::linalg::petsc_environment,
       .effects =
-          [&](const couplet::effects::EffectScene&) {
-            return couplet::effects::effects_of("solid_solver", couplet::solid::solid_effect_cards(),
-                                                parameters);
+          [&](const couplet::diagnostics::CaseScene&) {
+            return couplet::diagnostics::effects_of("solid_solver", couplet::solid::solid_effect_cards(),
+                                                    parameters);
           },
       .choose =
-          [&](const couplet::effects::ChoiceScene& scene) {
+          [&](const couplet::diagnostics::CaseScene& scene) {
             return couplet::solid::choose_effects(
                 parameters,
                 couplet::io::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters,
@@ -60,7 +60,7 @@ int main(int argc, char** argv) {
                 scene);
           },
       .expected =
-          [&](const couplet::effects::ChoiceScene& scene) {
+          [&](const couplet::diagnostics::CaseScene& scene) {
             return couplet::solid::expected_cost(
                 parameters, couplet::io::facts_of_file(scene.folder / parameters.mesh,
                                                        parameters.mesh_parameters, parameters.mesh_scale));

@@ -83,9 +83,9 @@ void Solid::collect_errors() {
   for (const auto& effect : body_.effects()) effect->collect_errors();
 }
 
-coupling::ErrorParts Solid::error_parts() const {
+diagnostics::ErrorParts Solid::error_parts() const {
   if (!errors_) return {};
-  const coupling::ErrorParts parts = parts_ ? *parts_ : errors_->parts();
+  const diagnostics::ErrorParts parts = parts_ ? *parts_ : errors_->parts();
   // Here, where the mesh's part has just been estimated, which costs more than the stresses do.
   if (stepper_.state().steps > 0) output_->tell_stresses(parts.mesh);
   return parts;

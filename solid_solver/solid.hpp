@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "common/coupling/error_parts.hpp"
 #include "common/coupling/participant.hpp"
+#include "common/diagnostics/error_parts.hpp"
 #include "solid_solver/body/solid_body.hpp"
 #include "solid_solver/body/solid_context.hpp"
 #include "solid_solver/body/solid_fields.hpp"
@@ -45,7 +45,7 @@ class Solid final : public coupling::Participant {
   /// Called before the first step if the run is to end with an estimate of its error.
   void collect_errors();
   /// Describes the accepted state, after the last step. Collective.
-  coupling::ErrorParts error_parts() const;
+  diagnostics::ErrorParts error_parts() const;
 
   const SolidBody& body() const { return body_; }
   const SolidStepper& stepper() const { return stepper_; }
@@ -64,8 +64,8 @@ class Solid final : public coupling::Participant {
   SolidJudge judge_;
   std::optional<SolidErrorEstimate> errors_;  // none: not wanted
   std::unique_ptr<SolidOutput> output_;
-  std::vector<QuantityEstimate> quantities_;   // of the state at the end of the run
-  std::optional<coupling::ErrorParts> parts_;  // found by finish(), for the quantities; none: not yet
+  std::vector<QuantityEstimate> quantities_;      // of the state at the end of the run
+  std::optional<diagnostics::ErrorParts> parts_;  // found by finish(), for the quantities; none: not yet
 };
 
 }  // namespace couplet::solid

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "common/coupling/error_parts.hpp"
 #include "common/coupling/participant.hpp"
+#include "common/diagnostics/error_parts.hpp"
 #include "common/io/fields/field_writer.hpp"
 #include "common/io/fields/surface_series.hpp"
 #include "common/io/probes/probe.hpp"
@@ -42,8 +42,8 @@ class ThermalSolid final : public coupling::Participant {
   /// Called before the first step if the run is to end with an estimate of its error.
   void collect_errors() { errors_.emplace(mesh_, geometry_, parameters_.heat.value()); }
   /// Describes the accepted state, after the last step. Collective.
-  coupling::ErrorParts error_parts() const {
-    return errors_ ? errors_->parts(*heat_) : coupling::ErrorParts{};
+  diagnostics::ErrorParts error_parts() const {
+    return errors_ ? errors_->parts(*heat_) : diagnostics::ErrorParts{};
   }
   void write_output(double time, int number) override;
   void write_monitors(double time) override;

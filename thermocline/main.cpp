@@ -18,9 +18,9 @@ int main(int argc, char** argv) {
           },
       .diagnose = couplet::thermocline::add_diagnostics,
       .effects =
-          [&](const couplet::effects::EffectScene&) {
-            return couplet::effects::effects_of("thermocline", couplet::thermocline::effect_cards(),
-                                                parameters);
+          [&](const couplet::diagnostics::CaseScene&) {
+            return couplet::diagnostics::effects_of("thermocline", couplet::thermocline::effect_cards(),
+                                                    parameters);
           },
       .problems_of_files =
           [&](const std::filesystem::path& folder) {

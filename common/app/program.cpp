@@ -61,11 +61,12 @@ int run(const Job& job, const Program& program) {
   write_effective(job, program);
   log::info("{} runs '{}' with {} rank{}", program.name, job.name, parallel::comm_size(job.comm),
             parallel::comm_size(job.comm) == 1 ? "" : "s");
-  for (const effects::EffectChoice& choice : job.choices) log::info("{}", effects::text(choice));
+  for (const diagnostics::EffectChoice& choice : job.choices) log::info("{}", diagnostics::text(choice));
   if (program.effects) {
     const bool has_mover = config::text_of(*job.document, "coupling.mesh.participant").has_value();
-    log::info("{}", effects::summary(
-                        program.effects({!job.alone, !job.alone && has_mover, job.simulation.time_step})));
+    log::info("{}", diagnostics::summary(program.effects({.time_step = job.simulation.time_step,
+                                                          .coupled = !job.alone,
+                                                          .has_mover = !job.alone && has_mover})));
   }
   const std::unique_ptr<coupling::Participant> participant = program.make(context);
   return job.alone ? run_alone(job, *participant, program.diagnose)
@@ -75,10 +76,7 @@ int run(const Job& job, const Program& program) {
 }  // namespace
 
 int run_program(int argc, char** argv, const Program& program) {
-  const ProgramKind kind{program.name,     program.description,      false,
-                         program.declare,  program.effects,          program.choose,
-                         program.expected, program.problems_of_files};
-  return run_job(argc, argv, kind, [&](const Job& job) { return run(job, program); });
+  return run_job(argc, argv, program, [&](const Job& job) { return run(job, program); });
 }
 
 }  // namespace couplet::app

@@ -10,11 +10,11 @@
 #include "common/app/loop/step_loop.hpp"
 #include "common/app/run_report.hpp"
 #include "common/base/error.hpp"
-#include "common/coupling/error_parts.hpp"
 #include "common/coupling/serve.hpp"
 #include "common/diagnostics/diagnostics.hpp"
+#include "common/diagnostics/error_parts.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/io/archive.hpp"
-#include "common/log/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/log/progress.hpp"
 #include "common/parallel/collective.hpp"
@@ -139,15 +139,15 @@ void closing_words(const Job& job, coupling::Participant& participant, diagnosti
   if (closing.has_failed)
     sentences.push_back(
         "the run failed: its error and neglected effects are not judged, except as reported above.");
-  const std::vector<coupling::NamedErrors> errors{{job.name, diagnostics.errors()}};
-  for (std::string& line : coupling::error_sentences(errors)) {
+  const std::vector<diagnostics::NamedErrors> errors{{job.name, diagnostics.errors()}};
+  for (std::string& line : diagnostics::error_sentences(errors)) {
     sentences.push_back(std::move(line));
     if (!closing.is_alone) break;
   }
-  if (std::string where = effects::position_sentence(diagnostics.position()); !where.empty())
+  if (std::string where = diagnostics::position_sentence(diagnostics.position()); !where.empty())
     sentences.push_back(std::move(where));
   if (closing.is_alone)
-    if (const auto finding = coupling::worthless(errors)) log::finding(job.rank, *finding);
+    if (const auto finding = diagnostics::worthless(errors)) diagnostics::finding(job.rank, *finding);
   const double mine = RunReport::peak_memory();
   const double most = parallel::max(job.comm, mine), all = parallel::sum(job.comm, mine);
   if (job.rank != 0) return;

@@ -11,7 +11,7 @@
 #include "common/app/job.hpp"
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/log/progress.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -40,7 +40,7 @@ std::string phases() {
   return "{" + out + (out.empty() ? "}" : "\n  }");
 }
 
-std::string json(const coupling::ErrorParts& e) {
+std::string json(const diagnostics::ErrorParts& e) {
   const auto number = [](double value) {
     return std::isfinite(value) ? fmt::format("{:.6g}", value) : "null";
   };
@@ -51,9 +51,9 @@ std::string json(const coupling::ErrorParts& e) {
       words(e.model_by), words(e.omittable));
 }
 
-std::string json(const std::vector<effects::Coordinate>& position) {
+std::string json(const std::vector<diagnostics::Coordinate>& position) {
   std::string out;
-  for (const effects::Coordinate& c : position)
+  for (const diagnostics::Coordinate& c : position)
     out += fmt::format(
         "{}\n    {{\"quantity\": {}, \"value\": {:.6g}, \"limit\": {:.6g}, \"floor\": {}, \"map\": {}}}",
         out.empty() ? "" : ",", quoted(c.quantity), c.value, c.limit, c.floor, quoted(c.map));
@@ -97,8 +97,8 @@ void RunReport::accepted(double time, coupling::StepReport report) {
       std::array{time, report.dt, double(report.iterations), report.error, report.energy, report.seconds});
 }
 
-void RunReport::finish(double wall, const std::string& problem, const coupling::ErrorParts& errors,
-                       const std::vector<effects::Coordinate>& position) {
+void RunReport::finish(double wall, const std::string& problem, const diagnostics::ErrorParts& errors,
+                       const std::vector<diagnostics::Coordinate>& position) {
   const double cpu = parallel::sum(job_.comm, processor_seconds()),
                working = parallel::sum(job_.comm, working_);
   const double most = parallel::max(job_.comm, peak_memory()), all = parallel::sum(job_.comm, peak_memory());
@@ -112,7 +112,7 @@ void RunReport::finish(double wall, const std::string& problem, const coupling::
       "  \"memory-all\": {:.6g},\n  \"errors\": {},\n  \"atlas\": {},\n  \"findings\": {},\n  \"phases\": {}\n}}\n",
       quoted(job_.name), quoted(version_text()), parallel::comm_size(job_.comm),
       problem.empty() ? "ended" : "failed", quoted(problem), time_, count_, iterations_, wall, cpu, working,
-      most, all, json(errors), json(position), log::findings_as_json(), phases());
+      most, all, json(errors), json(position), diagnostics::findings_as_json(), phases());
 }
 
 }  // namespace couplet::app

@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 
-#include "common/coupling/error_parts.hpp"
 #include "common/coupling/participant.hpp"
-#include "common/effects/effects.hpp"
+#include "common/diagnostics/diagnostics.hpp"
+#include "common/diagnostics/error_parts.hpp"
 #include "common/io/series.hpp"
 
 namespace couplet::app {
@@ -40,8 +40,8 @@ class RunReport {
     time_ = time, count_ = steps, iterations_ = iterations;
   }
   /// Collective over job.comm. `wall` [s]; `problem`: why the run ended early, empty if it did not.
-  void finish(double wall, const std::string& problem, const coupling::ErrorParts& errors,
-              const std::vector<effects::Coordinate>& position);
+  void finish(double wall, const std::string& problem, const diagnostics::ErrorParts& errors,
+              const std::vector<diagnostics::Coordinate>& position);
 
   /// User and system seconds of this process since it began.
   static double processor_seconds();

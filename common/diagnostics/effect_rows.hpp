@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/diagnostics/diagnostics.hpp"
-#include "common/effects/effects.hpp"
+#include "common/diagnostics/effects.hpp"
 
 namespace couplet::diagnostics {
 
@@ -22,10 +22,10 @@ struct EffectRow {
 
 /// The findings that the evidence allows.
 template <class Scene, class Evidence>
-std::vector<log::Finding> effect_findings(std::span<const EffectRow<Scene, Evidence>> rows,
-                                          std::span<const effects::EffectCard<Scene>> cards,
-                                          const Scene& scene, const Evidence& evidence) {
-  std::vector<log::Finding> findings;
+std::vector<Finding> effect_findings(std::span<const EffectRow<Scene, Evidence>> rows,
+                                     std::span<const EffectCard<Scene>> cards, const Scene& scene,
+                                     const Evidence& evidence) {
+  std::vector<Finding> findings;
   for (const auto& row : rows)
     for (const auto& card : cards) {
       if (std::string_view(card.name) != row.effect || card.asked_by(scene).empty() == row.when_on) continue;

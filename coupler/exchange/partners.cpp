@@ -53,14 +53,14 @@ std::vector<coupling::Interface> initialise_all(const std::vector<Partner*>& par
   return interfaces;
 }
 
-std::vector<coupling::NamedErrors> finalise_all(const std::vector<Partner*>& partners,
-                                                const std::string& problem) {
-  std::vector<coupling::NamedErrors> errors;
+std::vector<diagnostics::NamedErrors> finalise_all(const std::vector<Partner*>& partners,
+                                                   const std::string& problem) {
+  std::vector<diagnostics::NamedErrors> errors;
   for (Partner* p : partners) {
     p->send({coupling::Op::finalise, {}, {}, 0, -1, problem});
     const std::string text = p->receive().text;
     try {
-      errors.push_back({p->name(), coupling::ErrorParts::of(text)});
+      errors.push_back({p->name(), diagnostics::ErrorParts::of(text)});
     } catch (const Error& error) {  // of a guest: no reason to lose a run that has ended
       log::warn("Ignoring the malformed closing message of '{}': {}", p->name(), error.what());
     }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/coupling/channel.hpp"
-#include "common/coupling/error_parts.hpp"
+#include "common/diagnostics/error_parts.hpp"
 
 namespace couplet::coupler {
 
@@ -41,8 +41,8 @@ void ask_all(const std::vector<Partner*>& partners, const coupling::Command& com
 std::vector<coupling::Interface> initialise_all(const std::vector<Partner*>& partners);
 /// Last words, one after the other, so that they do not mix; what each knows of its error. `problem`: why the run stopped before its
 /// end; empty: it did not.
-std::vector<coupling::NamedErrors> finalise_all(const std::vector<Partner*>& partners,
-                                                const std::string& problem);
+std::vector<diagnostics::NamedErrors> finalise_all(const std::vector<Partner*>& partners,
+                                                   const std::string& problem);
 /// The smallest step that somebody advises [s].
 double advised_dt(const std::vector<Partner*>& partners);
 

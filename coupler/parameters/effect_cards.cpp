@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "coupler/parameters/effect_cards.hpp"
+#include "coupler/parameters/schedule.hpp"
 
 namespace couplet::coupler {
 namespace {

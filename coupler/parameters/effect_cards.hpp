@@ -3,12 +3,12 @@
 
 #include <span>
 
-#include "common/effects/effects.hpp"
+#include "common/diagnostics/effects.hpp"
 #include "coupler/parameters/parameters.hpp"
 
 namespace couplet::coupler {
 
-using CouplingCard = effects::EffectCard<CouplingParameters>;
+using CouplingCard = diagnostics::EffectCard<CouplingParameters>;
 /// All that a coupling can have beside one pass a step over matching surfaces, in the order in which it is told.
 std::span<const CouplingCard> coupling_effect_cards();
 

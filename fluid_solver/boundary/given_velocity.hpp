@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "common/app/case/check_files.hpp"
+#include "common/app/program.hpp"
 #include "common/fv/expression.hpp"
 #include "fluid_solver/boundary/face_rows.hpp"
 #include "fluid_solver/parameters/parameters.hpp"

@@ -189,14 +189,14 @@ diagnostics::EffectFinding wave_time(double rate, double size, const Sound& soun
 }
 
 template <int D>
-std::optional<log::Finding> compressibility(const FluidView<D>& view) {
+std::optional<diagnostics::Finding> compressibility(const FluidView<D>& view) {
   const auto sound = sound_in(view);
   if (!sound) return {};
   return diagnostics::finding_of(mach_number(largest_speed(view), *sound));
 }
 
 template <int D>
-std::optional<log::Finding> changes_of_density(const FluidView<D>& view) {
+std::optional<diagnostics::Finding> changes_of_density(const FluidView<D>& view) {
   const auto sound = sound_in(view);
   const auto range = view.parameters().is_compressible() && sound ? pressure_range(view) : std::nullopt;
   if (!range) return {};
@@ -210,10 +210,10 @@ std::shared_ptr<diagnostics::Diagnostic> waves_of_pressure(const FluidView<D>& v
   return sound ? std::make_shared<WavesOfPressure<D>>(view, *sound) : nullptr;
 }
 
-template std::optional<log::Finding> compressibility(const FluidView<2>&);
-template std::optional<log::Finding> compressibility(const FluidView<3>&);
-template std::optional<log::Finding> changes_of_density(const FluidView<2>&);
-template std::optional<log::Finding> changes_of_density(const FluidView<3>&);
+template std::optional<diagnostics::Finding> compressibility(const FluidView<2>&);
+template std::optional<diagnostics::Finding> compressibility(const FluidView<3>&);
+template std::optional<diagnostics::Finding> changes_of_density(const FluidView<2>&);
+template std::optional<diagnostics::Finding> changes_of_density(const FluidView<3>&);
 template std::shared_ptr<diagnostics::Diagnostic> waves_of_pressure(const FluidView<2>&);
 template std::shared_ptr<diagnostics::Diagnostic> waves_of_pressure(const FluidView<3>&);
 

@@ -228,8 +228,8 @@ double FluidErrorEstimate<D>::step_part() const {
 }
 
 template <int D>
-coupling::ErrorParts FluidErrorEstimate<D>::parts() const {
-  coupling::ErrorParts parts;
+diagnostics::ErrorParts FluidErrorEstimate<D>::parts() const {
+  diagnostics::ErrorParts parts;
   parts.dimension = D;
   const double speed = size(fluid_.state().u);
   if (!(speed > 0) || seen_ == 0) return parts;

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "common/coupling/error_parts.hpp"
+#include "common/diagnostics/error_parts.hpp"
 #include "common/io/archive.hpp"
 #include "common/time/step_errors.hpp"
 #include "fluid_solver/diagnostics/driving.hpp"
@@ -39,7 +39,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
 
  private:
   void accepted(double dt);
-  coupling::ErrorParts parts() const;
+  diagnostics::ErrorParts parts() const;
   double size(const Vectors<D>& values) const;
   /// Of differences of the change of the rate, and of the change itself: local errors of a step, and of one that a clock drives.
   struct Weights {

@@ -11,7 +11,7 @@ namespace couplet::fluid {
 
 // Findings of the accepted state, each in the file of its subject; nothing where they do not apply.
 template <int D>
-using Look = std::optional<log::Finding>(const FluidView<D>&);
+using Look = std::optional<diagnostics::Finding>(const FluidView<D>&);
 template <int D>
 Look<D> turbulence_model;
 template <int D>

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/effects/prices.hpp"
+#include "common/diagnostics/prices.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/diagnostics/effects.hpp"
 #include "fluid_solver/diagnostics/view.hpp"
@@ -74,7 +74,7 @@ diagnostics::EffectFinding eddies(int dimension, double eddy_viscosity) {
       .what = fmt::format("max eddy viscosity = {:.2g} of the molecular", eddy_viscosity),
       .left_out = false};
   if (dimension == 3 || eddy_viscosity <= e.limit) {
-    e.saves = effects::saved_share("fluid_solver", "turbulence model");
+    e.saves = diagnostics::saved_share("fluid_solver", "turbulence model");
     return e;
   }
   e.advice =
@@ -94,7 +94,7 @@ diagnostics::EffectFinding unresolved_walls(double yplus, double peclet) {
 
 // In two dimensions a model does not resolve what is left out without it.
 template <int D>
-std::optional<log::Finding> turbulence_model(const FluidView<D>& view) {
+std::optional<diagnostics::Finding> turbulence_model(const FluidView<D>& view) {
   const FluidParameters& p = view.parameters();
   if (p.turbulence && D == 3) return diagnostics::finding_of(eddies(3, eddy_viscosity(view)));
   const double reynolds = p.density * largest_speed(view) * hydraulic_diameter(view.fluid) / p.viscosity;
@@ -103,23 +103,23 @@ std::optional<log::Finding> turbulence_model(const FluidView<D>& view) {
 }
 
 template <int D>
-std::optional<log::Finding> eddies_in_two_dimensions(const FluidView<D>& view) {
+std::optional<diagnostics::Finding> eddies_in_two_dimensions(const FluidView<D>& view) {
   if (!view.parameters().turbulence || D != 2) return {};
   return diagnostics::finding_of(eddies(2, eddy_viscosity(view)));
 }
 
 template <int D>
-std::optional<log::Finding> resolved_walls(const FluidView<D>& view) {
+std::optional<diagnostics::Finding> resolved_walls(const FluidView<D>& view) {
   if (!view.parameters().turbulence) return {};
   return diagnostics::finding_of(
       unresolved_walls(largest_yplus(view), view.sizes.largest_peclet(view.fluid.state())));
 }
 
-template std::optional<log::Finding> turbulence_model(const FluidView<2>&);
-template std::optional<log::Finding> turbulence_model(const FluidView<3>&);
-template std::optional<log::Finding> eddies_in_two_dimensions(const FluidView<2>&);
-template std::optional<log::Finding> eddies_in_two_dimensions(const FluidView<3>&);
-template std::optional<log::Finding> resolved_walls(const FluidView<2>&);
-template std::optional<log::Finding> resolved_walls(const FluidView<3>&);
+template std::optional<diagnostics::Finding> turbulence_model(const FluidView<2>&);
+template std::optional<diagnostics::Finding> turbulence_model(const FluidView<3>&);
+template std::optional<diagnostics::Finding> eddies_in_two_dimensions(const FluidView<2>&);
+template std::optional<diagnostics::Finding> eddies_in_two_dimensions(const FluidView<3>&);
+template std::optional<diagnostics::Finding> resolved_walls(const FluidView<2>&);
+template std::optional<diagnostics::Finding> resolved_walls(const FluidView<3>&);
 
 }  // namespace couplet::fluid

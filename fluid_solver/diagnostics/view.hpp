@@ -52,7 +52,7 @@ void add_diagnostics(const FluidView<D>& view, diagnostics::Diagnostics& all);
 template <int D>
 class Finds final : public diagnostics::Diagnostic {
  public:
-  using Function = std::optional<log::Finding>(const FluidView<D>&);
+  using Function = std::optional<diagnostics::Finding>(const FluidView<D>&);
   Finds(const FluidView<D>& view, Function* function) : view_(view), function_(function) {}
   void look(diagnostics::Report& report) override {
     if (auto finding = function_(view_)) report.findings.push_back(std::move(*finding));

@@ -9,7 +9,7 @@
 namespace couplet::fluid {
 
 template <int D>
-std::optional<log::Finding> mesh_at_rest(const FluidView<D>& view) {
+std::optional<diagnostics::Finding> mesh_at_rest(const FluidView<D>& view) {
   if (view.fluid.moving() || !view.stands_still()) return {};
   return diagnostics::finding_of(
       {.effect = "mesh motion",
@@ -22,7 +22,7 @@ std::optional<log::Finding> mesh_at_rest(const FluidView<D>& view) {
 
 // A wall that moves across itself on a mesh at rest is an inlet.
 template <int D>
-std::optional<log::Finding> walls_along_themselves(const FluidView<D>& view) {
+std::optional<diagnostics::Finding> walls_along_themselves(const FluidView<D>& view) {
   bool has_moving_wall = false;
   for (const auto& [name, b] : view.parameters().boundaries) has_moving_wall |= is_moving_wall(b);
   if (view.fluid.moving() || !has_moving_wall) return {};
@@ -39,7 +39,7 @@ std::optional<log::Finding> walls_along_themselves(const FluidView<D>& view) {
 }
 
 template <int D>
-std::optional<log::Finding> blocked_cells(const FluidView<D>& view) {
+std::optional<diagnostics::Finding> blocked_cells(const FluidView<D>& view) {
   if (!view.fluid.gaps()) return {};
   double blocked = 0;
   for (const auto& gap : view.fluid.gaps()->facts()) blocked += gap.cells;
@@ -54,7 +54,7 @@ std::optional<log::Finding> blocked_cells(const FluidView<D>& view) {
 
 // The guard ends a run that grows at once; what grows slowly is said.
 template <int D>
-std::optional<log::Finding> kinetic_energy(const FluidView<D>& view) {
+std::optional<diagnostics::Finding> kinetic_energy(const FluidView<D>& view) {
   const EnergyLedger& ledger = view.fluid.state().ledger;
   if (!ledger.is_judged()) return {};
   const double excess = ledger.excess / ledger.reference;
@@ -69,13 +69,13 @@ std::optional<log::Finding> kinetic_energy(const FluidView<D>& view) {
        .wrong_from = 0.5});
 }
 
-template std::optional<log::Finding> mesh_at_rest(const FluidView<2>&);
-template std::optional<log::Finding> mesh_at_rest(const FluidView<3>&);
-template std::optional<log::Finding> walls_along_themselves(const FluidView<2>&);
-template std::optional<log::Finding> walls_along_themselves(const FluidView<3>&);
-template std::optional<log::Finding> blocked_cells(const FluidView<2>&);
-template std::optional<log::Finding> blocked_cells(const FluidView<3>&);
-template std::optional<log::Finding> kinetic_energy(const FluidView<2>&);
-template std::optional<log::Finding> kinetic_energy(const FluidView<3>&);
+template std::optional<diagnostics::Finding> mesh_at_rest(const FluidView<2>&);
+template std::optional<diagnostics::Finding> mesh_at_rest(const FluidView<3>&);
+template std::optional<diagnostics::Finding> walls_along_themselves(const FluidView<2>&);
+template std::optional<diagnostics::Finding> walls_along_themselves(const FluidView<3>&);
+template std::optional<diagnostics::Finding> blocked_cells(const FluidView<2>&);
+template std::optional<diagnostics::Finding> blocked_cells(const FluidView<3>&);
+template std::optional<diagnostics::Finding> kinetic_energy(const FluidView<2>&);
+template std::optional<diagnostics::Finding> kinetic_energy(const FluidView<3>&);
 
 }  // namespace couplet::fluid

@@ -17,7 +17,7 @@ constexpr double slow = 0.3;  // of the audit: travel time of sound over 1/omega
 constexpr int most_samples = 2000, places = 4;
 
 /// Root mean square rate of what is prescribed over its root mean square about the mean [1/s]; 0: it does not change.
-double rate_of(const config::ExpressionText& text, const Vec3& at, const effects::ChoiceScene& scene) {
+double rate_of(const config::ExpressionText& text, const Vec3& at, const diagnostics::CaseScene& scene) {
   const fv::Expression value(text, "what is prescribed");
   const int n = std::clamp(int(scene.end_time / std::max(scene.time_step, 1e-300)), 2, most_samples);
   const double dt = std::min(scene.time_step, scene.end_time / n);
@@ -34,7 +34,7 @@ double rate_of(const config::ExpressionText& text, const Vec3& at, const effects
 
 /// The fastest of all that is prescribed.
 double largest_rate(const FluidParameters& p, const mesh::MeshFacts& mesh,
-                    const effects::ChoiceScene& scene) {
+                    const diagnostics::CaseScene& scene) {
   std::vector<config::ExpressionText> texts;
   const auto add = [&texts](const auto& more) { texts.insert(texts.end(), more.begin(), more.end()); };
   for (const auto& [name, b] : p.boundaries) {
@@ -57,14 +57,14 @@ double largest_rate(const FluidParameters& p, const mesh::MeshFacts& mesh,
 
 }  // namespace
 
-effects::EffectChoice choose_waves(const FluidParameters& p, const mesh::MeshFacts& mesh,
-                                   const effects::ChoiceScene& scene) {
+diagnostics::EffectChoice choose_waves(const FluidParameters& p, const mesh::MeshFacts& mesh,
+                                       const diagnostics::CaseScene& scene) {
   const auto without = [](std::string reason) {
-    return effects::EffectChoice{"compressibility", "", "none, incompressible", std::move(reason), false};
+    return diagnostics::EffectChoice{"compressibility", "", "none, incompressible", std::move(reason), false};
   };
   const auto with = [](std::string reason) {
-    return effects::EffectChoice{"compressibility", "{scheme: three-level}", "three-level", std::move(reason),
-                                 false};
+    return diagnostics::EffectChoice{"compressibility", "{scheme: three-level}", "three-level",
+                                     std::move(reason), false};
   };
   const auto has = [&p](const auto& fact) {
     return std::ranges::any_of(p.boundaries, [&](const auto& b) { return fact(b.second); });
@@ -124,9 +124,9 @@ double speed_of(const FluidParameters& p, const mesh::MeshFacts& mesh, double en
   return speed;
 }
 
-effects::EffectChoice turbulence(const FluidParameters& p, const mesh::MeshFacts& mesh, double speed) {
+diagnostics::EffectChoice turbulence(const FluidParameters& p, const mesh::MeshFacts& mesh, double speed) {
   const auto without = [](std::string reason) {
-    return effects::EffectChoice{"turbulence", "", "none, laminar", std::move(reason), false};
+    return diagnostics::EffectChoice{"turbulence", "", "none, laminar", std::move(reason), false};
   };
   if (mesh.dim == 2) return without("eddies are three-dimensional");
   if (!(speed > 0)) return without("no boundary or initial condition sets a speed");
@@ -146,7 +146,7 @@ effects::EffectChoice turbulence(const FluidParameters& p, const mesh::MeshFacts
 
 /// Explicit diffusion holds to nu dt (sum of 4/h^2) <= 1, convection to about half a cell a step: the implicit term costs about
 /// as much as two explicit steps.
-effects::EffectChoice viscous(const FluidParameters& p, const mesh::MeshFacts& mesh, double speed) {
+diagnostics::EffectChoice viscous(const FluidParameters& p, const mesh::MeshFacts& mesh, double speed) {
   const double nu = p.kinematic_viscosity(), h = mesh.shortest_edge;
   const double diffusion = nu > 0 ? h * h / (4 * mesh.dim * nu) : std::numeric_limits<double>::infinity();
   const double convection = speed > 0 ? 0.5 * h / speed : std::numeric_limits<double>::infinity();
@@ -160,7 +160,7 @@ effects::EffectChoice viscous(const FluidParameters& p, const mesh::MeshFacts& m
           false};
 }
 
-effects::EffectChoice mesh_motion(const FluidParameters& p, const effects::ChoiceScene& scene) {
+diagnostics::EffectChoice mesh_motion(const FluidParameters& p, const diagnostics::CaseScene& scene) {
   if (scene.has_mover) return {"", "", "moving mesh", "'coupling.mesh' names a mesh mover", false};
   if (p.motion) return {"", "", "moving mesh", "'motion' prescribes it", false};
   const bool interface = std::ranges::any_of(
@@ -173,8 +173,8 @@ effects::EffectChoice mesh_motion(const FluidParameters& p, const effects::Choic
 
 }  // namespace
 
-std::vector<effects::EffectChoice> choose_effects(const FluidParameters& p, const mesh::MeshFacts& mesh,
-                                                  const effects::ChoiceScene& scene) {
+std::vector<diagnostics::EffectChoice> choose_effects(const FluidParameters& p, const mesh::MeshFacts& mesh,
+                                                      const diagnostics::CaseScene& scene) {
   const double speed = speed_of(p, mesh, scene.end_time);
   return {{"dimension", std::to_string(mesh.dim), std::to_string(mesh.dim),
            mesh.dim == 2 ? "the mesh has two-dimensional cells only" : "the mesh has volumes", false},
@@ -184,7 +184,7 @@ std::vector<effects::EffectChoice> choose_effects(const FluidParameters& p, cons
           mesh_motion(p, scene)};
 }
 
-effects::ExpectedCost expected_cost(const FluidParameters& p, const mesh::MeshFacts& mesh) {
+diagnostics::ExpectedCost expected_cost(const FluidParameters& p, const mesh::MeshFacts& mesh) {
   // Measured: 56 MB with 4096 cells in 2-D, of which PETSc with its libraries takes 21.
   const double cells = double(mesh.cells), eddies = p.turbulence ? 8 : 0;
   return {mesh.cells, 49e6 + (1800 + eddies) * cells, 2e-6 * cells};

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "common/effects/effects.hpp"
+#include "common/diagnostics/effects.hpp"
 #include "fluid_solver/parameters/parameters.hpp"
 
 namespace couplet::fluid {
@@ -15,7 +15,7 @@ struct FluidScene {
   bool coupled = false;
 };
 
-using FluidCard = effects::EffectCard<FluidScene>;
+using FluidCard = diagnostics::EffectCard<FluidScene>;
 std::span<const FluidCard> fluid_effect_cards();
 
 }  // namespace couplet::fluid

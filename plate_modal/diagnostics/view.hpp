@@ -48,7 +48,7 @@ std::optional<double> time_to_look(const PlateView& view);
 void add_diagnostics(const PlateView& view, diagnostics::Diagnostics& all);
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-/// Reports what is neglected, unless its number is unknown. `share` of the answer that this changes, see log::Finding.
+/// Reports what is neglected, unless its number is unknown. `share` of the answer that this changes, see diagnostics::Finding.
 void report_neglected(diagnostics::Report& report, const char* effect, double number, double limit,
                       std::string what, std::string advice, double share = unknown);
 /// Reports on an effect that the scene has, unless its number is unknown.

@@ -144,7 +144,7 @@ V judge_thermoelastic(const P&, const E& e) {
 V spare_thermoelastic(const P&, const E& e) {
   return in_vain(e.coupling_number, 0.005,
                  fmt::format("heat of deformation / stiffness = {:.1e}", e.coupling_number),
-                 effects::saved_share("solid_solver", "thermoelastic coupling"));
+                 diagnostics::saved_share("solid_solver", "thermoelastic coupling"));
 }
 
 using Row = diagnostics::EffectRow<P, E>;
@@ -159,7 +159,8 @@ constexpr std::array rows{Row{"inertia", judge_inertia},
 
 }  // namespace
 
-std::vector<log::Finding> effect_findings(const SolidParameters& parameters, const SolidEvidence& evidence) {
+std::vector<diagnostics::Finding> effect_findings(const SolidParameters& parameters,
+                                                  const SolidEvidence& evidence) {
   return diagnostics::effect_findings(std::span<const Row>(rows), solid_effect_cards(), parameters, evidence);
 }
 

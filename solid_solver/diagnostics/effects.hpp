@@ -3,13 +3,14 @@
 
 #include <vector>
 
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "solid_solver/effects/evidence.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
 namespace couplet::solid {
 
 /// Judges by the evidence of a run the effects that its scene leaves out, or has in vain.
-std::vector<log::Finding> effect_findings(const SolidParameters& parameters, const SolidEvidence& evidence);
+std::vector<diagnostics::Finding> effect_findings(const SolidParameters& parameters,
+                                                  const SolidEvidence& evidence);
 
 }  // namespace couplet::solid

@@ -63,7 +63,7 @@ double SolidErrorEstimate::missed_work() const {
 }
 
 /// What effects load the solid with errs, too: the displacement that follows from it by as much, |u . b_effect| / u . K u of the whole.
-void SolidErrorEstimate::add_loads(coupling::ErrorParts& parts) const {
+void SolidErrorEstimate::add_loads(diagnostics::ErrorParts& parts) const {
   const MPI_Comm comm = body_.mesh().comm;
   const SolidState& state = stepper_.state();
   const std::vector<double> u = body_.unknowns_of(state.cell_u, state.face_u);
@@ -71,13 +71,13 @@ void SolidErrorEstimate::add_loads(coupling::ErrorParts& parts) const {
   body_.kernel().apply(u, {}, force);
   const double energy = parallel::sum(comm, std::inner_product(u.begin(), u.end(), force.begin(), 0.0));
   for (const auto& effect : body_.effects()) {
-    const coupling::ErrorParts load = effect->error_parts();
+    const diagnostics::ErrorParts load = effect->error_parts();
     if (!load.known()) continue;
     std::vector<double> forces(u.size(), 0.0);
     effect->add_loads(state.time, body_.kernel(), forces);
     const double work = parallel::sum(comm, std::inner_product(u.begin(), u.end(), forces.begin(), 0.0));
     const double share = energy > 0 ? std::min(1.0, std::abs(work) / energy) : 1;
-    for (const auto part : {&coupling::ErrorParts::mesh, &coupling::ErrorParts::step})
+    for (const auto part : {&diagnostics::ErrorParts::mesh, &diagnostics::ErrorParts::step})
       parts.*part = std::fmax(parts.*part, share * load.*part);  // fmax: a number beats NaN
   }
 }
@@ -133,13 +133,13 @@ double SolidErrorEstimate::finite_mesh_error() const {
     return std::max(energy * body_.equilibrium().softness(unknowns, state.known),
                     soft_mesh_error(body_, unknowns, known, judge_.softest()));
   } catch (const SolveFailure&) {
-    return coupling::ErrorParts::unknown;
+    return diagnostics::ErrorParts::unknown;
   }
 }
 
 /// At least `known`. Energies are no measure of it where heat strains the body; one in motion need not be held, so that nothing is known.
 double SolidErrorEstimate::thermal_mesh_error(double known) const {
-  if (body_.is_dynamic() || is_axisymmetric(body_.elastic())) return coupling::ErrorParts::unknown;
+  if (body_.is_dynamic() || is_axisymmetric(body_.elastic())) return diagnostics::ErrorParts::unknown;
   const SolidState& state = stepper_.state();
   std::vector<double> pressure(std::size_t(body_.mesh().n_faces()), 0);
   for (const auto& effect : body_.effects()) {
@@ -175,8 +175,8 @@ void SolidErrorEstimate::see_swing(const SolidState& now, const time::StepErrors
   drift_.add(now.dt, step.rate, step.size, parallel::sum(comm, stepper_.ledger().kinetic(now)), strain);
 }
 
-coupling::ErrorParts SolidErrorEstimate::parts() const {
-  coupling::ErrorParts parts;
+diagnostics::ErrorParts SolidErrorEstimate::parts() const {
+  diagnostics::ErrorParts parts;
   parts.dimension = body_.mesh().dim;
   if (stepper_.state().steps == 0) return parts;
   const bool compares = body_.equilibrium().means().compares_gradients;
@@ -192,7 +192,7 @@ coupling::ErrorParts SolidErrorEstimate::parts() const {
   }
   const StrainAudit audit = judge_.compared();
   parts.mesh = std::max(audit.mismatch(), audit.missed_by_mesh(body_.mesh().dim));
-  if (!(audit.strain_energy > 0)) parts.mesh = coupling::ErrorParts::unknown;
+  if (!(audit.strain_energy > 0)) parts.mesh = diagnostics::ErrorParts::unknown;
   if (body_.is_dynamic()) parts.mesh += drift_.over_size(parts.mesh);
   add_loads(parts);
   if (body_.parameters().expansion) parts.mesh = thermal_mesh_error(parts.mesh);

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "common/coupling/error_parts.hpp"
+#include "common/diagnostics/error_parts.hpp"
 #include "common/time/step_errors.hpp"
 #include "solid_solver/body/solid_body.hpp"
 #include "solid_solver/body/solid_fields.hpp"
@@ -36,7 +36,7 @@ class SolidErrorEstimate {
   /// Between solve and acceptance.
   void see_step();
   /// After the last step.
-  coupling::ErrorParts parts() const;
+  diagnostics::ErrorParts parts() const;
   /// For checkpoints, on the body's mesh. Collective.
   void save(io::CheckpointWriter& file) const;
   void load(io::CheckpointReader& file);
@@ -45,7 +45,7 @@ class SolidErrorEstimate {
   void see_swing(const SolidState& now, const time::StepErrors::Seen& step);
   double left_by_solver() const;
   double missed_work() const;
-  void add_loads(coupling::ErrorParts& parts) const;
+  void add_loads(diagnostics::ErrorParts& parts) const;
   double missed_of_large_strain(const SolidState& state, std::span<const double> unknowns) const;
   double thermal_mesh_error(double known) const;
   double finite_mesh_error() const;

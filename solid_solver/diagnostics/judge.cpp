@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "common/base/error.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/io/archive.hpp"
-#include "common/log/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -27,7 +27,7 @@ void SolidJudge::look() {
   if (!audit_ || strain.is_doubtful() || !audit_->is_doubtful()) audit_ = strain;
   if (strain.is_doubtful() && strain.severity() > strain_told_) {
     strain_told_ = strain.severity();
-    log::finding(
+    diagnostics::finding(
         parallel::comm_rank(mesh_.comm),
         {.id = "strain-energy",
          .severity = strain.severity(),
@@ -84,7 +84,7 @@ void SolidJudge::judge_energy(double strain, const char* cure) {
                 energy_audit_.text(), cure);
   if (!energy_audit_.is_doubtful() || energy_audit_.severity() <= energy_told_) return;
   energy_told_ = energy_audit_.severity();
-  log::finding(
+  diagnostics::finding(
       parallel::comm_rank(mesh_.comm),
       {.id = "energy-growth",
        .severity = energy_told_,

@@ -13,7 +13,7 @@ class Effects final : public diagnostics::Diagnostic {
  public:
   explicit Effects(const Solid& solid) : solid_(solid) {}
   void look(diagnostics::Report& report) override {
-    for (log::Finding& f : effect_findings(solid_.body().parameters(), solid_.judge().evidence())) {
+    for (diagnostics::Finding& f : effect_findings(solid_.body().parameters(), solid_.judge().evidence())) {
       if (f.id == "near-incompressibility")
         report.position.push_back({"Poisson's ratio", f.number, f.limit, "solid-nu"});
       report.findings.push_back(std::move(f));

@@ -62,11 +62,11 @@ double lowest_period(const SolidParameters& p, const mesh::MeshFacts& mesh) {
   return 2 * std::numbers::pi * length * length / (3.516 * height) * std::sqrt(12.0) * slowest;
 }
 
-effects::EffectChoice inertia(const SolidParameters& p, const mesh::MeshFacts& mesh,
-                              const effects::ChoiceScene& scene) {
+diagnostics::EffectChoice inertia(const SolidParameters& p, const mesh::MeshFacts& mesh,
+                                  const diagnostics::CaseScene& scene) {
   const auto choose = [](bool dynamic, std::string reason) {
     const char* word = dynamic ? "dynamic" : "static";
-    return effects::EffectChoice{"analysis", word, word, std::move(reason), false};
+    return diagnostics::EffectChoice{"analysis", word, word, std::move(reason), false};
   };
   const bool takes_forces = !(p.interface_data && p.interface_data->temperature);
   const bool has_interface =
@@ -86,16 +86,16 @@ effects::EffectChoice inertia(const SolidParameters& p, const mesh::MeshFacts& m
 
 }  // namespace
 
-std::vector<effects::EffectChoice> choose_effects(const SolidParameters& p, const mesh::MeshFacts& mesh,
-                                                  const effects::ChoiceScene& scene) {
-  std::vector<effects::EffectChoice> choices{
+std::vector<diagnostics::EffectChoice> choose_effects(const SolidParameters& p, const mesh::MeshFacts& mesh,
+                                                      const diagnostics::CaseScene& scene) {
+  std::vector<diagnostics::EffectChoice> choices{
       {"dimension", std::to_string(mesh.dim), std::to_string(mesh.dim),
        mesh.dim == 2 ? "the mesh has two-dimensional cells only" : "the mesh has volumes", false}};
   if (p.analysis != SolidParameters::Analysis::thermal) choices.push_back(inertia(p, mesh, scene));
   return choices;
 }
 
-effects::ExpectedCost expected_cost(const SolidParameters& p, const mesh::MeshFacts& mesh) {
+diagnostics::ExpectedCost expected_cost(const SolidParameters& p, const mesh::MeshFacts& mesh) {
   // Measured in 3-D: 83 MB with 640 cells (factors, which grow as cells^(4/3)), 61 and 143 MB with 5120 and 40960
   // (multigrid); in 2-D 54 and 156 MB with 1024 and 16384.
   const double cells = double(mesh.cells);

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "common/base/error.hpp"
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/modes/modes_file.hpp"
 #include "common/parallel/collective.hpp"

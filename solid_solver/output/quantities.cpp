@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "common/base/error.hpp"
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/diagnostics/dual_problem.hpp"
 #include "solid_solver/diagnostics/local_quadratic.hpp"
@@ -162,11 +162,12 @@ void tell_quantities(MPI_Comm comm, const SolidContext& context, const std::vect
     const std::string where = q.patch.empty()
                                   ? fmt::format("at ({:g}, {:g}, {:g}) m", q.place[0], q.place[1], q.place[2])
                                   : q.patch;
-    log::finding(rank, {.id = "quantity-error",
-                        .severity = base::Severity::note,
-                        .number = share,
-                        .sentence = fmt::format("{}: {} {}: {:.6g} {}, estimated error {}, {}", q.name,
-                                                q.what, where, q.value, q.unit, error, method_of(q))});
+    diagnostics::finding(
+        rank, {.id = "quantity-error",
+               .severity = base::Severity::note,
+               .number = share,
+               .sentence = fmt::format("{}: {} {}: {:.6g} {}, estimated error {}, {}", q.name, q.what, where,
+                                       q.value, q.unit, error, method_of(q))});
   }
   if (rank != 0 || context.output_folder.empty()) return;
   std::ofstream file(context.output_folder / "quantities.csv");

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/material/stress.hpp"
 
@@ -93,16 +93,17 @@ void tell_stresses(MPI_Comm comm, const std::vector<ReportedStress>& stresses) {
     const std::string error = std::isnan(s.error) ? "unknown"
                               : s.error < 0.995   ? fmt::format("{:.2g} %", 100 * s.error)
                                                   : fmt::format("{:.0f} %", 100 * s.error);
-    log::finding(parallel::comm_rank(comm),
-                 {.id = "stress-error",
-                  .severity = is_doubtful ? base::Severity::warning : base::Severity::note,
-                  .number = s.error,
-                  .limit = doubtful,
-                  .sentence = fmt::format(
-                      "equivalent stress, {}: {:.4g} Pa at ({:g}, {:g}, {:g}) m, estimated error {}{}",
-                      s.where, s.value, s.place[0], s.place[1], s.place[2], error,
-                      is_doubtful ? fmt::format(" (limit {:.2g} %): not reliable", 100 * doubtful) : ""),
-                  .advice = is_doubtful ? "refine the mesh there" : ""});
+    diagnostics::finding(
+        parallel::comm_rank(comm),
+        {.id = "stress-error",
+         .severity = is_doubtful ? base::Severity::warning : base::Severity::note,
+         .number = s.error,
+         .limit = doubtful,
+         .sentence =
+             fmt::format("equivalent stress, {}: {:.4g} Pa at ({:g}, {:g}, {:g}) m, estimated error {}{}",
+                         s.where, s.value, s.place[0], s.place[1], s.place[2], error,
+                         is_doubtful ? fmt::format(" (limit {:.2g} %): not reliable", 100 * doubtful) : ""),
+         .advice = is_doubtful ? "refine the mesh there" : ""});
   }
 }
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/modes/pencil.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
@@ -63,23 +63,24 @@ double growth_of(const SolidBody& body, const std::vector<double>& u, const std:
 
 void tell_dynamic_buckling(MPI_Comm comm, const BucklingEstimate& found) {
   if (!found.matters()) return;
-  log::finding(parallel::comm_rank(comm),
-               {.id = "buckling",
-                .number = found.factor,
-                .limit = limit_of(found),
-                .sentence = fmt::format(
-                    "buckling: load factor at most {:.3g} (limit {:g}) of the last state: {}", found.factor,
-                    limit_of(found),
-                    found.factor < 1 ? "if these loads last, the body buckles; linear theory does not show it"
-                                     : neglected(found)),
-                .advice = "use 'kinematics: finite-strain'"});
+  diagnostics::finding(
+      parallel::comm_rank(comm),
+      {.id = "buckling",
+       .number = found.factor,
+       .limit = limit_of(found),
+       .sentence = fmt::format("buckling: load factor at most {:.3g} (limit {:g}) of the last state: {}",
+                               found.factor, limit_of(found),
+                               found.factor < 1
+                                   ? "if these loads last, the body buckles; linear theory does not show it"
+                                   : neglected(found)),
+       .advice = "use 'kinematics: finite-strain'"});
 }
 
 void tell_buckling(MPI_Comm comm, const BucklingEstimate& found, const char* how) {
   if (!found.matters()) return;
   const bool holds = found.factor >= 1;
   const double limit = holds ? limit_of(found) : 1;
-  log::finding(
+  diagnostics::finding(
       parallel::comm_rank(comm),
       {.id = "buckling",
        .severity = holds ? base::Severity::warning : base::Severity::wrong,

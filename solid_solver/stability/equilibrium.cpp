@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/large_strain/load_path.hpp"
 #include "solid_solver/stability/prestress.hpp"
@@ -35,7 +35,7 @@ void EquilibriumWatch::see(const SolidBody& body, const SolidStepper& stepper, c
   if (load.norm() > 0)
     where += fmt::format(", at a total load of about {:.4g} N, {:.3g} of that of this step", then.norm(),
                          then.norm() / load.norm());
-  log::finding(
+  diagnostics::finding(
       parallel::comm_rank(body.mesh().comm),
       {.id = "unstable-equilibrium",
        .severity = base::Severity::wrong,
@@ -59,7 +59,7 @@ void EquilibriumWatch::follow(const SolidBody& body, const SolidFields& fields) 
   std::string force;
   if (load > 0 && path->factor() != 0)
     force = fmt::format(", a total load of about {:.4g} N", load * std::abs(limit.factor / path->factor()));
-  log::finding(
+  diagnostics::finding(
       parallel::comm_rank(body.mesh().comm),
       {.id = "limit-load",
        .severity = base::Severity::note,
@@ -78,7 +78,7 @@ void EquilibriumWatch::finish(const SolidBody& body, std::vector<std::string>& s
   sentences.push_back(fmt::format("load path: load factor {:.5g} at the end; limit points: {}.",
                                   path->factor(), found.empty() ? "none" : found));
   if (path->stiffness() > 0) return;  // 0: not surely negative of a slender body
-  log::finding(
+  diagnostics::finding(
       parallel::comm_rank(body.mesh().comm),
       {.id = "unstable-equilibrium",
        .severity = base::Severity::warning,

@@ -102,9 +102,9 @@ std::vector<double> HeatErrors::gaps(const Heat& heat) const {
   return gap;
 }
 
-coupling::ErrorParts HeatErrors::parts(const Heat& heat, std::optional<double> reference) const {
+diagnostics::ErrorParts HeatErrors::parts(const Heat& heat, std::optional<double> reference) const {
   const HeatState& now = heat.accepted();
-  coupling::ErrorParts parts;
+  diagnostics::ErrorParts parts;
   if (now.steps == 0) return parts;
   const double level = steady_ || !begun_ ? mean(now.cells) : level_;
   const double varies = size(now.cells, level);

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "common/coupling/error_parts.hpp"
+#include "common/diagnostics/error_parts.hpp"
 #include "common/mesh/mesh.hpp"
 #include "common/time/step_errors.hpp"
 #include "solid_solver/thermal/heat.hpp"
@@ -24,7 +24,7 @@ class HeatErrors {
   /// Between solve and acceptance of a transient.
   void see_step(const HeatState& before, const HeatState& now);
   /// Of what was accepted; with `reference` [K] over the distance from that.
-  coupling::ErrorParts parts(const Heat& heat, std::optional<double> reference = {}) const;
+  diagnostics::ErrorParts parts(const Heat& heat, std::optional<double> reference = {}) const;
   /// For checkpoints, on the solid's mesh. Collective.
   void save(io::CheckpointWriter& file) const;
   void load(io::CheckpointReader& file);

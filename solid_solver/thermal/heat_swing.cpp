@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::solid {
@@ -46,7 +46,7 @@ void HeatSwing::accepted(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
   turns_ = turns ? turns_ + 1 : 0;
   if (turns_ < patience) return;
   told_ = true;
-  log::finding(
+  diagnostics::finding(
       parallel::comm_rank(mesh.comm),
       {.id = "heat-swing",
        .number = size / (highest_ - lowest_),

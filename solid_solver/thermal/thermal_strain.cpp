@@ -281,8 +281,8 @@ void ThermalStrain::collect_errors() {
   if (heat_ && !expansion_.empty()) errors_.emplace(*mesh_, *geometry_, parameters_.heat.value());
 }
 
-coupling::ErrorParts ThermalStrain::error_parts() const {
-  return errors_ ? errors_->parts(*heat_, reference_) : coupling::ErrorParts{};
+diagnostics::ErrorParts ThermalStrain::error_parts() const {
+  return errors_ ? errors_->parts(*heat_, reference_) : diagnostics::ErrorParts{};
 }
 
 void ThermalStrain::judge(std::vector<std::string>& sentences) const {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "common/coupling/error_parts.hpp"
 #include "common/coupling/participant.hpp"
+#include "common/diagnostics/error_parts.hpp"
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/elasticity/elasticity.hpp"
 #include "common/fv/expression.hpp"
@@ -84,7 +84,7 @@ class ThermalStrain {
   /// Before the first step, if the run is to end with an estimate of its error; else nothing is collected.
   void collect_errors();
   /// Error of the temperature that is solved for, over its distance from the reference: the strain errs by as much. Collective.
-  coupling::ErrorParts error_parts() const;
+  diagnostics::ErrorParts error_parts() const;
 
   /// None: the temperature is prescribed.
   const Heat* heat() const { return heat_.get(); }

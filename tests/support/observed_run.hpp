@@ -49,8 +49,8 @@ class ObservedRun {
     number_ = earlier.number_;
   }
   /// The worst finding of this id, sound or not; a test fails where there is none.
-  log::Finding finding(const std::string& id) const {
-    for (const log::Finding& f : diagnostics_.findings())
+  diagnostics::Finding finding(const std::string& id) const {
+    for (const diagnostics::Finding& f : diagnostics_.findings())
       if (f.id == id) return f;
     ADD_FAILURE() << "no finding '" << id << "'";
     return {};
@@ -58,7 +58,7 @@ class ObservedRun {
   /// Ids of the findings that are no notes.
   std::vector<std::string> doubts() const {
     std::vector<std::string> ids;
-    for (const log::Finding& f : diagnostics_.findings())
+    for (const diagnostics::Finding& f : diagnostics_.findings())
       if (f.severity > base::Severity::note) ids.push_back(f.id);
     return ids;
   }

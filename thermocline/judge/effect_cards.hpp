@@ -3,12 +3,12 @@
 
 #include <span>
 
-#include "common/effects/effects.hpp"
+#include "common/diagnostics/effects.hpp"
 #include "thermocline/judge/elsewhere.hpp"
 
 namespace couplet::thermocline {
 
-using Card = effects::EffectCard<ElementParameters>;
+using Card = diagnostics::EffectCard<ElementParameters>;
 std::span<const Card> effect_cards();
 
 }  // namespace couplet::thermocline

@@ -126,7 +126,7 @@ constexpr std::array rows{Row{"resolved grains", judge_grains},
 
 }  // namespace
 
-std::vector<log::Finding> effect_findings(const ElementParameters& scene, const Evidence& evidence) {
+std::vector<diagnostics::Finding> effect_findings(const ElementParameters& scene, const Evidence& evidence) {
   return diagnostics::effect_findings(std::span<const Row>(rows), effect_cards(), scene, evidence);
 }
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "thermocline/judge/elsewhere.hpp"
 
 namespace couplet::thermocline {
@@ -32,6 +32,6 @@ struct Evidence {
 };
 
 /// Judges the effects of a scene by the evidence of a run.
-std::vector<log::Finding> effect_findings(const ElementParameters& scene, const Evidence& evidence);
+std::vector<diagnostics::Finding> effect_findings(const ElementParameters& scene, const Evidence& evidence);
 
 }  // namespace couplet::thermocline

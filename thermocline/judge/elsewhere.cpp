@@ -8,8 +8,8 @@
 
 #include "common/base/error.hpp"
 #include "common/base/numbers.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/io/checkpoint.hpp"
-#include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
 #include "thermocline/judge/files.hpp"
 #include "thermocline/model/questions.hpp"
@@ -179,8 +179,8 @@ class ElementParticipant final : public coupling::Participant {
           "coupler and a thermocline that has 'elsewhere'.",
           context.name);
     for (const std::string& sentence : weather_->doubts())
-      log::finding(parallel::comm_rank(comm_),
-                   {.id = "weather-data", .sentence = fmt::format("{}: {}", context.name, sentence)});
+      diagnostics::finding(parallel::comm_rank(comm_),
+                           {.id = "weather-data", .sentence = fmt::format("{}: {}", context.name, sentence)});
   }
   coupling::Interface initialise() override {
     return parallel::comm_rank(comm_) == 0 ? accepted_.describe() : coupling::Interface{};

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "common/app/case/check_files.hpp"
+#include "common/app/program.hpp"
 #include "thermocline/judge/elsewhere.hpp"
 
 /// Files that the parameters of a tank or of an element name: read before a run, looked at by --check.

@@ -11,7 +11,7 @@ class TankFindings final : public diagnostics::Diagnostic {
  public:
   explicit TankFindings(const Tank& tank) : tank_(tank) {}
   void look(diagnostics::Report& report) override {
-    for (log::Finding& f : tank_.effects()) {
+    for (diagnostics::Finding& f : tank_.effects()) {
       if (f.id == "resolved-grains")
         report.position.push_back({"Biot number of the grains", f.number, f.limit, "tank-biot"});
       report.findings.push_back(std::move(f));

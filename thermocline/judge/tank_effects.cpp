@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "thermocline/model/questions.hpp"
@@ -162,17 +162,17 @@ std::vector<std::string> Tank::finish() {
   for (const auto& observer : observers_) {
     observer->finish();
     for (const std::string& doubt : observer->doubts())
-      log::finding(parallel::comm_rank(comm_),
-                   {.id = "day-report", .sentence = fmt::format("{}: {}", name_, doubt)});
+      diagnostics::finding(parallel::comm_rank(comm_),
+                           {.id = "day-report", .sentence = fmt::format("{}: {}", name_, doubt)});
   }
   Lines lines;
   const TankModel& m = accepted_;
   for (const std::string& sentence : control_->doubts())
-    log::finding(parallel::comm_rank(comm_),
-                 {.id = "flow-schedule", .sentence = fmt::format("{}: {}", name_, sentence)});
+    diagnostics::finding(parallel::comm_rank(comm_),
+                         {.id = "flow-schedule", .sentence = fmt::format("{}: {}", name_, sentence)});
   for (const std::string& sentence : never_melted(m))
-    log::finding(parallel::comm_rank(comm_),
-                 {.id = "never-melted", .sentence = fmt::format("{}: {}", name_, sentence)});
+    diagnostics::finding(parallel::comm_rank(comm_),
+                         {.id = "never-melted", .sentence = fmt::format("{}: {}", name_, sentence)});
   const double t = step_.time + step_.dt;
   energy(m, t, lines);
   fluid(m, peak_flow_, lines);

@@ -146,8 +146,8 @@ double Tank::unused_by_spreading(double finer) const {
   return 2 * deviations(flow.plant.cut_off / (flow.plant.hot - flow.plant.cold)) * added;
 }
 
-coupling::ErrorParts Tank::error_parts() const {
-  coupling::ErrorParts parts = spread_profile();
+diagnostics::ErrorParts Tank::error_parts() const {
+  diagnostics::ErrorParts parts = spread_profile();
   if (const double unused = unused_by_spreading(); unused > 0 && !(parts.mesh > unused)) {
     parts.mesh = unused;
     parts.mesh_order = std::log2(
@@ -157,7 +157,7 @@ coupling::ErrorParts Tank::error_parts() const {
   return parts;
 }
 
-coupling::ErrorParts Tank::spread_profile() const {
+diagnostics::ErrorParts Tank::spread_profile() const {
   std::vector<double> t;
   accepted_.bed().filler_temperature(t);
   const std::size_t n = t.size();
@@ -173,14 +173,14 @@ coupling::ErrorParts Tank::spread_profile() const {
   const Advection scheme = accepted_.setup().parameters.bed.advection;
   const double crossing = crossing_mass(accepted_);
   const double way = double(n) * std::min(1., peak_flow_ * (step_.time + step_.dt) / crossing);  // in cells
-  coupling::ErrorParts parts{.mesh = scheme == Advection::tvd ? one_cell : std::max(1., way) * one_cell};
+  diagnostics::ErrorParts parts{.mesh = scheme == Advection::tvd ? one_cell : std::max(1., way) * one_cell};
   if (scheme != Advection::tvd) parts.mesh_order = 1;
   parts.step_order = 1;
   if (scheme == Advection::implicit) parts.step = peak_advance_ / crossing * double(n) * way * one_cell;
   return parts;
 }
 
-std::vector<log::Finding> Tank::effects() const {
+std::vector<diagnostics::Finding> Tank::effects() const {
   const TankModel& m = accepted_;
   Evidence evidence;
   if (m.setup().fluid.is_gas() && peak_flow_ > 0) evidence.largest_mach = largest_mach(m, peak_flow_);

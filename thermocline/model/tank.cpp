@@ -8,9 +8,9 @@
 #include <numeric>
 
 #include "common/base/error.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/io/archive.hpp"
 #include "common/io/checkpoint.hpp"
-#include "common/log/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "thermocline/model/questions.hpp"
@@ -95,7 +95,8 @@ Tank::Tank(const TankParameters& p, const app::ParticipantContext& context)
 
 void Tank::report(const char* id, const std::vector<std::string>& sentences) const {
   for (const std::string& sentence : sentences)
-    log::finding(parallel::comm_rank(comm_), {.id = id, .sentence = fmt::format("{}: {}", name_, sentence)});
+    diagnostics::finding(parallel::comm_rank(comm_),
+                         {.id = id, .sentence = fmt::format("{}: {}", name_, sentence)});
 }
 
 coupling::Interface Tank::initialise() {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "common/app/program.hpp"
-#include "common/coupling/error_parts.hpp"
 #include "common/coupling/participant.hpp"
+#include "common/diagnostics/error_parts.hpp"
 #include "thermocline/model/model.hpp"
 #include "thermocline/model/output.hpp"
 #include "thermocline/wall/mechanics.hpp"
@@ -46,13 +46,13 @@ class Tank final : public coupling::Participant {
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
   /// Judges effects of the scene by the run so far.
-  std::vector<log::Finding> effects() const;
+  std::vector<diagnostics::Finding> effects() const;
   std::vector<std::string> finish() override;
   /// Upwind advection spreads a front as a diffusion v dz / 2 does, implicit steps as v^2 dt / 2: over the way w by
   /// s^2 = dz w and v dt w, which changes the profile by s^2 / 2 of its second derivative; w is what the largest flow
   /// can have gone since time 0, at most the height. The limited scheme is taken to spread by a cell. Over the
   /// profile's distance from its mean, sums over the height. Of a plant at least what of the storage the spreading leaves unused.
-  coupling::ErrorParts error_parts() const;
+  diagnostics::ErrorParts error_parts() const;
 
   const TankModel& model() const { return accepted_; }
   const Speed& speed() const { return speed_; }
@@ -64,7 +64,7 @@ class Tank final : public coupling::Participant {
   void report(const char* id, const std::vector<std::string>& sentences) const;
   void look_at_bending();
   void visit_seen(io::Archive& archive);
-  coupling::ErrorParts spread_profile() const;
+  diagnostics::ErrorParts spread_profile() const;
   double unused_by_spreading(double finer = 1) const;  // with so many times the cells
   coupling::Exchange given() const;
   std::vector<double> received(const coupling::Exchange& in, const char* name) const;

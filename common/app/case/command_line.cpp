@@ -9,7 +9,7 @@
 
 #include "common/base/text.hpp"
 #include "common/config/description.hpp"
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 
 namespace couplet::app {
 namespace {
@@ -150,7 +150,7 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv, const Pr
     if (flags.verbose && flags.quiet)
       throw CLI::ExcludesError("Use either --verbose or --quiet, not both.", CLI::ExitCodes::ExcludesError);
     line.strict = strictness(flags.strict);
-    if (const std::string problem = log::unknown_ids(line.accept); !problem.empty())
+    if (const std::string problem = diagnostics::unknown_ids(line.accept); !problem.empty())
       throw CLI::ValidationError("--accept: " + problem);
     if (line.case_file.empty() && !flags.docs && !flags.schema && !flags.effects)
       throw CLI::ValidationError("Give the YAML file of the case, for example: " + program.name +

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "common/coupling/step_plan.hpp"
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 
 namespace couplet::app {
 
@@ -91,7 +91,7 @@ void declare(config::Section& section, SimulationParameters& p) {
       .doc(
           "ids of findings (docs/findings.md) to accept: they are logged, but neither end the run with exit "
           "code 4 nor make it fail with --strict");
-  section.check([&]() -> std::string { return log::unknown_ids(p.accept); }, "accept");
+  section.check([&]() -> std::string { return diagnostics::unknown_ids(p.accept); }, "accept");
   section.choice("effects", p.choose_effects, {{"as-given", false}, {"auto", true}})
       .doc(
           "auto: dimension, inertia, turbulence model and viscous treatment that the case does not set are "

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "common/base/error.hpp"
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
 #include "tests/coupling/support/passing.hpp"
@@ -361,7 +361,8 @@ TEST(CoupledToy, what_was_learnt_before_a_participant_answers_anew_is_forgotten)
 
 TEST(CoupledToy, a_velocity_that_is_not_the_rate_of_the_displacement_is_found_and_one_that_is_not) {
   const auto found = [] {
-    return std::ranges::count(log::findings(), std::string("velocity-and-displacement"), &log::Finding::id);
+    return std::ranges::count(diagnostics::findings(), std::string("velocity-and-displacement"),
+                              &diagnostics::Finding::id);
   };
   for (const double times : {1., 3., 0.2}) {
     ToyRun run;
@@ -372,7 +373,7 @@ TEST(CoupledToy, a_velocity_that_is_not_the_rate_of_the_displacement_is_found_an
     EXPECT_EQ(run.problem, "");
     ASSERT_EQ(found() - before, times == 1 ? 0 : 1) << times;
     if (times == 1) continue;
-    const log::Finding& last = log::findings().back();
+    const diagnostics::Finding& last = diagnostics::findings().back();
     EXPECT_EQ(last.severity, base::Severity::wrong);
     EXPECT_NEAR(last.number, times, 0.1 * times);
     EXPECT_THAT(last.sentence, testing::HasSubstr("velocity of 'solid'"));
@@ -395,7 +396,8 @@ TEST(CoupledToy, a_step_that_fails_names_the_participant_that_did_not_answer) {
 
 TEST(CoupledToy, a_step_that_is_accepted_unconverged_is_a_finding_and_a_useless_one_is_wrong) {
   const auto found = [] {
-    return std::ranges::count(log::findings(), std::string("unconverged-step"), &log::Finding::id);
+    return std::ranges::count(diagnostics::findings(), std::string("unconverged-step"),
+                              &diagnostics::Finding::id);
   };
   const auto accepted = [&](int iterations, double relaxation) {
     ToyRun run;
@@ -411,9 +413,9 @@ TEST(CoupledToy, a_step_that_is_accepted_unconverged_is_a_finding_and_a_useless_
   };
   EXPECT_EQ(accepted(100, 0.5), 0);  // 1 - 0.5 (1 + 0.9) = 0.05 a pass
   EXPECT_GT(accepted(4, 0.5), 0);
-  EXPECT_EQ(log::findings().back().severity, base::Severity::warning);
+  EXPECT_EQ(diagnostics::findings().back().severity, base::Severity::warning);
   EXPECT_GT(accepted(1, 0.05), 0);
-  EXPECT_TRUE(std::ranges::any_of(log::findings(), [](const log::Finding& f) {
+  EXPECT_TRUE(std::ranges::any_of(diagnostics::findings(), [](const diagnostics::Finding& f) {
     return f.id == "unconverged-step" && f.severity == base::Severity::wrong && f.number >= 0.5;
   }));
 }

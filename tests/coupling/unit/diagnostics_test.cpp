@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
 #include "tests/coupling/support/surfaces.hpp"
@@ -45,7 +45,7 @@ struct Scene {
   int from = 1000, steps = 25;
 
   /// Findings of this id.
-  std::vector<log::Finding> findings(const std::string& id) const {
+  std::vector<diagnostics::Finding> findings(const std::string& id) const {
     const fs::path folder = fs::temp_directory_path() / ("couplet-diagnostics-" + std::to_string(::getpid()));
     fs::create_directories(folder);
     const std::vector<Interface::Datum> motion{{"displacement", "m", Place::vertices},
@@ -69,13 +69,13 @@ struct Scene {
     coupler::CouplerChannels channels{std::make_unique<LocalChannel>("fluid", fluid),
                                       std::make_unique<LocalChannel>("solid", solid), nullptr};
     spdlog::set_level(spdlog::level::off);
-    const std::size_t before = log::findings().size();
+    const std::size_t before = diagnostics::findings().size();
     coupler::Coupler coupler(coupling, simulation, std::move(channels), {folder, folder / "checkpoints", {}});
     EXPECT_EQ(coupler.run(), "");
     fs::remove_all(folder);
-    std::vector<log::Finding> found;
-    for (std::size_t i = before; i < log::findings().size(); ++i)
-      if (log::findings()[i].id == id) found.push_back(log::findings()[i]);
+    std::vector<diagnostics::Finding> found;
+    for (std::size_t i = before; i < diagnostics::findings().size(); ++i)
+      if (diagnostics::findings()[i].id == id) found.push_back(diagnostics::findings()[i]);
     return found;
   }
 };

@@ -7,7 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/coupling/roles.hpp"
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "coupler/mapping/surface_checks.hpp"
 #include "tests/coupling/support/surfaces.hpp"
 
@@ -122,9 +122,9 @@ TEST(Surfaces, doubts_are_counted_and_a_mover_that_holds_a_wall_is_refused) {
     const std::vector<Side> sides{side("mover", mover, {motion[0]}, {}),
                                   side("fluid", tests::flap(20, 2, -1), motion, loads),
                                   side("solid", solid, loads, motion)};
-    const int before = log::doubts();
+    const int before = diagnostics::doubts();
     compare_surfaces(MPI_COMM_SELF, sides, Links(MPI_COMM_SELF, sides, nearest), schedule);
-    return log::doubts() - before;
+    return diagnostics::doubts() - before;
   };
   const Interface all = tests::flap(20, 2, -1);
   EXPECT_EQ(doubts(tests::flap(40, 4, 1), all), 0);
@@ -153,9 +153,9 @@ TEST(Surfaces, who_follows_the_motion_and_gives_no_load_may_cover_a_part) {
     const std::vector<Side> sides{side("fluid", tests::flap(20, 2, -1), motion, loads),
                                   side("solid", tests::flap(40, 4, 1), loads, motion),
                                   side("heater", one_side, {motion[0]}, gives)};
-    const int before = log::doubts();
+    const int before = diagnostics::doubts();
     compare_surfaces(MPI_COMM_SELF, sides, Links(MPI_COMM_SELF, sides, nearest), Schedule());
-    return log::doubts() - before;
+    return diagnostics::doubts() - before;
   };
   EXPECT_EQ(doubts({{"temperature", "K", Place::faces, 1}}), 0);
   EXPECT_EQ(doubts({{"magnetic-force", "N", Place::faces}}), 1);

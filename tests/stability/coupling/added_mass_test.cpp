@@ -7,7 +7,7 @@
 
 #include <filesystem>
 
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
 #include "tests/coupling/support/residuals.hpp"
@@ -78,10 +78,10 @@ TEST(AddedMass, explicit_coupling_measures_the_mass_ratio_and_doubts_itself_beyo
     run.p.pulse_duration = 0.02;
     run.p.stiffness = run.p.tension = 0;  // the mass alone
     run.p.vertices = 3;                   // one mode
-    const int before = log::doubts();
+    const int before = diagnostics::doubts();
     run();
     EXPECT_EQ(run.problem, "");
-    EXPECT_EQ(log::doubts() - before, good ? 0 : 1) << "order " << order << ", r = " << r;
+    EXPECT_EQ(diagnostics::doubts() - before, good ? 0 : 1) << "order " << order << ", r = " << r;
   }
 }
 

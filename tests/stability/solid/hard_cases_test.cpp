@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "swing.hpp"
 
 namespace couplet::testing::hard_cases_test {
@@ -79,11 +79,11 @@ TEST(CellsOfAspectAThousand, are_pulled_right_by_all_gradients_and_bent_the_righ
 
 TEST(CellsOfAspectAThousand, bend_wrongly_with_the_other_gradients_and_that_is_told) {
   for (const FaceGradient gradient : {FaceGradient::thesis, FaceGradient::corrected}) {
-    const int before = log::doubts();
+    const int before = diagnostics::doubts();
     const Plate bent = plate(gradient, 1000, false);
     EXPECT_LT(bent.over_beam, 0.1);
     EXPECT_TRUE(bent.doubted);
-    EXPECT_EQ(log::doubts(), before + 1);
+    EXPECT_EQ(diagnostics::doubts(), before + 1);
   }
 }
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "tests/verification/heat/support.hpp"
 
 namespace couplet::testing::thermal_shock_test {
@@ -26,7 +26,7 @@ Shock shock(HeatScheme scheme, double fourier) {
       mesh::make_box(mesh::BoxCells::quadrilaterals, {int(n), 1, 1}, Vec3::Zero(), Vec3(1, 0.1, 0)),
       {{1, 1.0, 1.0}}, p);
   Shock result;
-  const int before_it = log::doubts();
+  const int before_it = diagnostics::doubts();
   for (int i = 0; i < 60; ++i) {
     std::vector<double> before;
     for (Index c = 0; c < n; ++c) before.push_back(scene.temperature(c));
@@ -37,7 +37,7 @@ Shock shock(HeatScheme scheme, double fourier) {
       result.back = std::max(result.back, before[std::size_t(c)] - t);
     }
   }
-  result.told = log::doubts() - before_it;
+  result.told = diagnostics::doubts() - before_it;
   return result;
 }
 

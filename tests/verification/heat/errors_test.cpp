@@ -6,8 +6,8 @@
 
 #include <cmath>
 
+#include "common/diagnostics/finding.hpp"
 #include "common/io/checkpoint.hpp"
-#include "common/log/finding.hpp"
 #include "tests/verification/heat/support.hpp"
 
 namespace couplet::testing::errors_test {
@@ -20,7 +20,7 @@ double cooled(double x, double fo) { return std::exp(-z * z * fo) * std::cos(z *
 const double mean_before = std::sin(z) / z;
 
 struct Outcome {
-  coupling::ErrorParts parts;
+  diagnostics::ErrorParts parts;
   double wrong = 0;  ///< true error over the size of the variation
 };
 
@@ -80,8 +80,8 @@ TEST(HeatErrors, long_steps_dominate_where_they_do) {
 }
 
 TEST(HeatErrors, a_run_that_goes_on_says_the_same) {
-  const coupling::ErrorParts whole = slab(8, 12, HeatScheme::three_point).parts,
-                             stopped = slab(8, 12, HeatScheme::three_point, true).parts;
+  const diagnostics::ErrorParts whole = slab(8, 12, HeatScheme::three_point).parts,
+                                stopped = slab(8, 12, HeatScheme::three_point, true).parts;
   EXPECT_EQ(whole.step, stopped.step);
   EXPECT_EQ(whole.mesh, stopped.mesh);
 }
@@ -94,9 +94,9 @@ TEST(HeatSwing, is_told_once_on_any_number_of_ranks) {
   p.boundaries["xmin"] = heat_boundary(HeatType::temperature, "1");
   HeatCase scene(make_box(BoxCells::quadrilaterals, {4, 1, 1}, Vec3::Zero(), Vec3(1, 0.25, 0)),
                  {{1, 1.0, 1.0}}, p);
-  const int before = log::doubts();
+  const int before = diagnostics::doubts();
   for (int i = 0; i < 40; ++i) scene.step(1000);
-  EXPECT_EQ(log::doubts() - before, 1);
+  EXPECT_EQ(diagnostics::doubts() - before, 1);
 }
 
 TEST(HeatErrors, a_linear_field_errs_nowhere_and_one_temperature_says_nothing) {
@@ -109,7 +109,7 @@ TEST(HeatErrors, a_linear_field_errs_nowhere_and_one_temperature_says_nothing) {
                    {{1, 1.0, 1.0}}, p);
     const HeatErrors errors(scene.mesh(), scene.geometry(), p);
     scene.step(1);
-    const coupling::ErrorParts parts = errors.parts(*scene.heat);
+    const diagnostics::ErrorParts parts = errors.parts(*scene.heat);
     if (level) {
       EXPECT_FALSE(parts.known());
     } else {

@@ -17,7 +17,7 @@ constexpr double modulus = 200e9, nu = 0.3, alpha = 1.2e-5;
 /// A slab that cools by its slowest mode (Bi = 1), free to shrink along x: what the steps of the conduction leave in its displacement.
 struct Shrunk {
   double end = 0;  ///< displacement of x = 1 [m]
-  coupling::ErrorParts parts;
+  diagnostics::ErrorParts parts;
 };
 
 Shrunk shrunk(int cells, int steps, const char* pull, bool again = false) {
@@ -65,8 +65,8 @@ TEST(HeatInASolid, the_step_of_the_conduction_is_told_within_a_factor_of_two) {
 }
 
 TEST(HeatInASolid, counts_by_the_share_of_what_it_moves_and_over_a_restart) {
-  const coupling::ErrorParts free = shrunk(8, 8, "0").parts, again = shrunk(8, 8, "0", true).parts,
-                             pulled = shrunk(8, 8, "1e10").parts;
+  const diagnostics::ErrorParts free = shrunk(8, 8, "0").parts, again = shrunk(8, 8, "0", true).parts,
+                                pulled = shrunk(8, 8, "1e10").parts;
   EXPECT_EQ(free.step, again.step);
   EXPECT_EQ(free.mesh, again.mesh);
   EXPECT_LT(pulled.step, 0.1 * free.step) << "nearly all of the displacement is that of the load";

@@ -31,7 +31,7 @@ Parameters plate_held(const std::map<std::string, Support>& held = {}) {
   return p;
 }
 
-struct Found : log::Finding {
+struct Found : diagnostics::Finding {
   bool sound() const { return severity == base::Severity::note; }
 };
 

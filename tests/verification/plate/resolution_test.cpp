@@ -162,7 +162,7 @@ TEST(PlateResolution, what_a_step_misses_of_a_load_is_its_mean_less_its_middle) 
   const mesh::RawMesh raw = square(4);
   Parameters p = clamped("3 * t^2");
   Structure plate(p, PlateContext{}, &raw);
-  const log::Finding found = support::observe(plate, 1, 1).finding("step-that-resolves-the-load");
+  const diagnostics::Finding found = support::observe(plate, 1, 1).finding("step-that-resolves-the-load");
   EXPECT_NEAR(found.number, (1 - 1. / 196 - 0.75) / std::sqrt(9. / 5), 0.002);
 }
 
@@ -188,7 +188,7 @@ TEST(PlateResolution, what_was_seen_goes_on_after_a_restart) {
 }
 
 /// Finding about the impacts of a body that falls on a seat, with `steps` in a contact.
-std::optional<log::Finding> bounce(double steps, double weight, int n, double speed) {
+std::optional<diagnostics::Finding> bounce(double steps, double weight, int n, double speed) {
   const double kappa = 1e4, dt = pi / 100 / steps;
   Bounce one(kappa, speed == 0 ? -weight / kappa : 0.7 * dt, -speed, ContactRule::conserving, -weight);
   Parameters p;
@@ -208,7 +208,7 @@ std::optional<log::Finding> bounce(double steps, double weight, int n, double sp
     all.accepted(dt * (i + 1));
   }
   all.look();
-  for (const log::Finding& f : all.findings())
+  for (const diagnostics::Finding& f : all.findings())
     if (f.id == "step-that-resolves-the-contact") return f;
   return {};
 }
@@ -240,7 +240,7 @@ TEST(PlateResolution, a_run_says_so) {
   // The first mode has 16.5 Hz.
   EXPECT_EQ(doubts("10 * sin(2 * pi * 5 * t)", 0.002), Names{});
   EXPECT_EQ(doubts("10 * min(t, 1)", 0.2), Names{});
-  const log::Finding coarse = run("t < 1 ? 10 : 0", 0.04).finding("step-that-resolves-the-modes");
+  const diagnostics::Finding coarse = run("t < 1 ? 10 : 0", 0.04).finding("step-that-resolves-the-modes");
   EXPECT_GT(coarse.severity, base::Severity::note);
   EXPECT_NE(coarse.advice.find("simulation.time-step: 0.003 s"), std::string::npos) << coarse.advice;
   // 40 Hz in steps of 40 ms look like 10 Hz.

@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "common/base/error.hpp"
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/large_strain/load_path.hpp"
 #include "tests/support/saved_state.hpp"
@@ -87,7 +87,7 @@ double follow(Solid& solid, bool knows_stability) {
 }
 
 TEST(ArcLength, follows_a_shallow_arch_through_both_limit_loads_of_the_closed_form) {
-  const std::size_t before = log::findings().size();
+  const std::size_t before = diagnostics::findings().size();
   const auto solid = make_solid(arch(50), hinged());
   const double gap = follow(*solid, true);
   RecordProperty("gap", fmt::format("{:.4f}", gap));
@@ -97,10 +97,10 @@ TEST(ArcLength, follows_a_shallow_arch_through_both_limit_loads_of_the_closed_fo
   EXPECT_NEAR(limits[0].factor, 1, 0.02);
   EXPECT_TRUE(limits[0].is_maximum);
   EXPECT_NEAR(limits[1].factor, lower_limit / limit, 0.02);
-  ASSERT_EQ(log::findings().size(), before + 2);  // and nothing is said of equilibria on the way
+  ASSERT_EQ(diagnostics::findings().size(), before + 2);  // and nothing is said of equilibria on the way
   for (std::size_t i = before; i < before + 2; ++i) {
-    EXPECT_EQ(log::findings()[i].id, "limit-load");
-    EXPECT_EQ(log::findings()[i].severity, base::Severity::note);
+    EXPECT_EQ(diagnostics::findings()[i].id, "limit-load");
+    EXPECT_EQ(diagnostics::findings()[i].severity, base::Severity::note);
   }
   EXPECT_GT(path_of(*solid).stiffness(), 0);
   const auto reactions = solid->fields().reactions(solid->fields().point_displacement());
@@ -114,12 +114,12 @@ TEST(ArcLength, follows_a_shallow_arch_through_both_limit_loads_of_the_closed_fo
 TEST(ArcLength, warns_of_a_last_equilibrium_that_is_unstable_and_only_then) {
   const auto solid = make_solid(arch(30), hinged());
   const auto warnings = [&] {
-    const std::size_t before = log::findings().size();
+    const std::size_t before = diagnostics::findings().size();
     solid->finish();
     int n = 0;
-    for (std::size_t i = before; i < log::findings().size(); ++i)
-      n += log::findings()[i].id == "unstable-equilibrium" &&
-           log::findings()[i].severity == base::Severity::warning;
+    for (std::size_t i = before; i < diagnostics::findings().size(); ++i)
+      n += diagnostics::findings()[i].id == "unstable-equilibrium" &&
+           diagnostics::findings()[i].severity == base::Severity::warning;
     return n;
   };
   step(*solid, 1);

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::audit_test {
@@ -41,15 +41,15 @@ std::unique_ptr<Solid> beam(BoxCells cells, const std::array<int, 3>& n, double 
 void report(const char* what, const StrainAudit& audit) { fmt::print("{}: {}\n", what, audit.text()); }
 
 TEST(Audit, fires_on_cook_at_nu_0_49_with_the_corrected_gradient) {
-  const int before = log::doubts();
+  const int before = diagnostics::doubts();
   const auto wrong = cook(16, 0.49, FaceGradient::corrected);
   report("Cook, nu 0.49, corrected", *wrong->judge().last_audit());
   EXPECT_TRUE(wrong->judge().last_audit()->is_doubtful());
-  EXPECT_EQ(log::doubts(), before + 1);
+  EXPECT_EQ(diagnostics::doubts(), before + 1);
 }
 
 TEST(Audit, is_silent_on_cook_with_the_symmetric_gradient_and_at_nu_one_third) {
-  const int before = log::doubts();
+  const int before = diagnostics::doubts();
   for (const double nu : {1. / 3, 0.49, 0.4999}) {
     const auto sound = cook(16, nu, FaceGradient::symmetric);
     report("Cook, symmetric", *sound->judge().last_audit());
@@ -59,7 +59,7 @@ TEST(Audit, is_silent_on_cook_with_the_symmetric_gradient_and_at_nu_one_third) {
   const auto sound = cook(16, 1. / 3, FaceGradient::corrected);
   report("Cook, nu 1/3, corrected", *sound->judge().last_audit());
   EXPECT_FALSE(sound->judge().last_audit()->is_doubtful());
-  EXPECT_EQ(log::doubts(), before);
+  EXPECT_EQ(diagnostics::doubts(), before);
 }
 
 TEST(Audit, fires_on_two_long_tetrahedra_across_a_slender_beam) {
@@ -158,13 +158,13 @@ Swing swing(FaceGradient gradient, double until, bool outputs = true) {
   perturb_interior(raw, 0.3, 3);
   auto solid = make_solid(raw, p);
   Swing result;
-  const int before = log::doubts();
+  const int before = diagnostics::doubts();
   try {
     for (int i = 1; solid->stepper().state().time < until; ++i) {
       step(*solid, 0.01);
       solid->write_monitors(solid->stepper().state().time);
       if (outputs && i % 20 == 0) solid->write_output(solid->stepper().state().time, 0);
-      if (log::doubts() > before && result.first_told == 0)
+      if (diagnostics::doubts() > before && result.first_told == 0)
         result.first_told = solid->judge().energy_audit().created();
     }
   } catch (const Error& error) {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "common/base/error.hpp"
-#include "common/log/finding.hpp"
+#include "common/diagnostics/finding.hpp"
 #include "solid_solver/stability/buckling.hpp"
 #include "solid_solver/stability/buckling_estimate.hpp"
 #include "tests/verification/solid/support.hpp"
@@ -45,8 +45,9 @@ std::vector<double> factors(const Solid& solid, int n, double time = 1) {
 /// Of the findings from number `from` on; -1: none has this id.
 int severity_of(const char* id, std::size_t from) {
   int worst = -1;
-  for (std::size_t i = from; i < log::findings().size(); ++i)
-    if (log::findings()[i].id == id) worst = std::max(worst, int(log::findings()[i].severity));
+  for (std::size_t i = from; i < diagnostics::findings().size(); ++i)
+    if (diagnostics::findings()[i].id == id)
+      worst = std::max(worst, int(diagnostics::findings()[i].severity));
   return worst;
 }
 
@@ -156,7 +157,7 @@ TEST(BucklingFinding, is_told_of_linear_runs_near_and_above_the_load) {
   };
   for (const auto& [part, severity] :
        {std::pair(0.1, -1), {0.5, int(base::Severity::warning)}, {1.2, int(base::Severity::wrong)}}) {
-    const std::size_t before = log::findings().size();
+    const std::size_t before = diagnostics::findings().size();
     run(part);
     EXPECT_EQ(severity_of("buckling", before), severity) << part;
   }
@@ -166,7 +167,7 @@ TEST(BucklingFinding, above_a_factor_of_three_is_told_of_what_bends_and_not_of_w
   // Under a load across of any size the deflection grows by 1/(f - 1): of f = 4 a third, of f = 8 a seventh.
   const double critical = euler(0.05);
   const auto told = [&](double part, const char* lateral) {
-    const std::size_t before = log::findings().size();
+    const std::size_t before = diagnostics::findings().size();
     SolidParameters p = column(2, part * critical);
     p.boundaries["xmax"].value[1] = {lateral};
     const auto solid = make_solid(bar(BoxCells::quadrilaterals, 40, 4, 0.05), p);
@@ -174,7 +175,7 @@ TEST(BucklingFinding, above_a_factor_of_three_is_told_of_what_bends_and_not_of_w
     return severity_of("buckling", before);
   };
   EXPECT_EQ(told(0.25, "1e6"), int(base::Severity::warning));
-  const log::Finding& last = log::findings().back();
+  const diagnostics::Finding& last = diagnostics::findings().back();
   EXPECT_NE(last.sentence.find("adds 0.3"), std::string::npos) << last.sentence;
   EXPECT_EQ(told(0.25, "0"), -1);
   EXPECT_EQ(told(0.125, "1e6"), -1);
@@ -194,7 +195,7 @@ void compress(double part, double lateral, BoxCells cells) {
 }
 
 TEST(Equilibrium, that_does_not_hold_is_told_with_the_load_where_it_was_lost) {
-  const std::size_t before = log::findings().size();
+  const std::size_t before = diagnostics::findings().size();
   compress(0.85, 0, BoxCells::quadrilaterals);
   compress(0.85, 0, BoxCells::tetrahedra);
   compress(-3, 0, BoxCells::quadrilaterals);
@@ -202,7 +203,7 @@ TEST(Equilibrium, that_does_not_hold_is_told_with_the_load_where_it_was_lost) {
   EXPECT_EQ(severity_of("unstable-equilibrium", before), -1);
   compress(2.6, 0, BoxCells::quadrilaterals);
   ASSERT_EQ(severity_of("unstable-equilibrium", before), int(base::Severity::wrong));
-  const log::Finding& last = log::findings().back();
+  const diagnostics::Finding& last = diagnostics::findings().back();
   EXPECT_LT(last.number, 0);
   EXPECT_NE(last.sentence.find("lost near t = 0.3"), std::string::npos) << last.sentence;  // 1 / 2.6
 }
@@ -234,7 +235,7 @@ TEST(Equilibrium, of_a_slender_column_is_told_apart_within_a_ten_thousandth_of_i
     high = next, at_high = stiffness_under(high);
   }
   const double critical = low - at_low * (high - low) / (at_high - at_low);
-  const std::size_t before = log::findings().size();
+  const std::size_t before = diagnostics::findings().size();
   EXPECT_GT(stiffness_under(critical * (1 - 5e-5)), 0);
   EXPECT_EQ(severity_of("unstable-equilibrium", before), -1);
   const double beyond = stiffness_under(critical * (1 + 5e-5));

@@ -84,7 +84,7 @@ TEST(FiniteStrain, the_estimate_of_the_mesh_is_within_a_factor_of_two) {
     coarse->collect_errors();
     step(*coarse, 1), step(*fine, 1);
     const double wrong = (tip(*coarse) - tip(*fine)).norm() / tip(*fine).norm();
-    const coupling::ErrorParts parts = coarse->error_parts();
+    const diagnostics::ErrorParts parts = coarse->error_parts();
     fmt::print("K {}: estimated {:.3g}, true {:.3g}\n", K, parts.mesh, wrong);
     EXPECT_GT(parts.mesh, wrong / 2) << K;
     EXPECT_LT(parts.mesh, wrong * 2) << K;

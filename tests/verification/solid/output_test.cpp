@@ -189,7 +189,7 @@ TEST(SolidOutput, left_out_effects_are_judged_by_numbers) {
   }
   const auto lines = [](const Solid& solid) {
     std::vector<std::string> texts;
-    for (const log::Finding& f : effect_findings(solid.body().parameters(), solid.judge().evidence()))
+    for (const diagnostics::Finding& f : effect_findings(solid.body().parameters(), solid.judge().evidence()))
       texts.push_back(f.sentence + "; " + f.advice);
     return texts;
   };

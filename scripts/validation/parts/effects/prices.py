@@ -9,7 +9,7 @@ import re
 
 from validation.parts.effects.scenes import EFFECTS, SHELL, Own, Scene, watched
 
-LIST = "common/effects/price_list.cpp"
+LIST = "common/diagnostics/prices.cpp"
 BOX = (Scene(2, 32), Scene(2, 16, True), Scene(3, 8), Scene(3, 5, True))
 SCENES = {"fluid_solver": BOX, "solid_solver": BOX, "mesh_mover": BOX, "plate_modal": BOX[:2], "thermocline": (Scene(1, 100), Scene(1, 400))}
 STEPS = {"fluid_solver": (10, 150), "solid_solver": (10, 60), "mesh_mover": (10, 150), "plate_modal": (50, 400), "thermocline": (100, 1000)}

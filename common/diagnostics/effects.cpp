@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/diagnostics/effects.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace couplet::diagnostics {
+
+std::string text(const EffectChoice& c) {
+  if (c.given)
+    return fmt::format("auto: {}: set by the case; auto would choose {} ({})", c.key, c.what, c.reason);
+  return fmt::format("auto: {}{}{} ({})", c.key, c.key.empty() ? "" : ": ", c.what, c.reason);
+}
+
+std::string text(const ExpectedCost& c) {
+  const bool long_step = c.seconds_a_step >= 1;
+  return fmt::format(
+      "{} cells: about {:.0f} MB, {:.2g} {} per step on one rank (time within a factor of "
+      "three)",
+      c.cells, 1e-6 * c.bytes, long_step ? c.seconds_a_step : 1e3 * c.seconds_a_step, long_step ? "s" : "ms");
+}
+
+namespace {
+
+/// What it adds in words, then by the list of prices.
+std::string cost_text(const Effect& effect) {
+  std::string text(effect.adds);
+  for (const Price& p : effect.prices)
+    if (const std::string price = price_text(p); !price.empty())
+      text += fmt::format("{}{}", text.empty() ? "" : "; ", price);
+  return text.empty() ? "negligible" : text;
+}
+
+}  // namespace
+
+std::string summary(const std::vector<Effect>& effects) {
+  std::string on, off;
+  for (const Effect& e : effects) {
+    std::string& list = e.on() ? on : off;
+    list += list.empty() ? "" : ", ";
+    list += e.on() ? fmt::format("{} ({})", e.name, e.asked_by) : e.name;
+  }
+  return fmt::format("effects: {}{}{}", on.empty() ? "none" : on, off.empty() ? "" : "; neglected: ", off);
+}
+
+std::string explanation(const std::vector<Effect>& effects) {
+  std::string lines;
+  for (const bool on : {true, false})
+    for (const Effect& e : effects)
+      if (e.on() == on)
+        lines +=
+            on ? fmt::format("  on   {}: enabled by {}; adds {}\n", e.name, e.asked_by, cost_text(e))
+               : fmt::format(
+                     "  off  {}: {}{}\n", e.name, e.keys,
+                     e.judged_when_on || e.judged_by.empty() ? "" : "; judged by the run: " + e.judged_by);
+  const bool has_prices = std::ranges::any_of(effects, [](const Effect& e) {
+    return e.on() && std::ranges::any_of(e.prices, [](const Price& p) { return !price_text(p).empty(); });
+  });
+  if (has_prices)
+    lines +=
+        "  (prices: from the least to the most in small scenes on one rank; share of a step without the "
+        "effect; docs/effects.md)\n";
+  return lines;
+}
+
+std::string markdown(const std::string& program, const std::vector<Effect>& effects) {
+  std::string lines = fmt::format(
+      "## {}\n\n| effect | enabled by | adds | memory per cell | time of a step | judged when neglected "
+      "|\n|---|---|---|---|---|---|\n",
+      program);
+  for (const Effect& e : effects)
+    lines += fmt::format("| {} | {} | {} | {} | {} | {} |\n", e.name, e.keys, e.adds,
+                         column(e.prices, memory_text, "B"), column(e.prices, time_text, "%"), e.judged_by);
+  return lines;
+}
+
+}  // namespace couplet::diagnostics

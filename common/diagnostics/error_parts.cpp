@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/diagnostics/error_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+
+#include "common/base/error.hpp"
+
+namespace couplet::diagnostics {
+namespace {
+
+// Of the largest part: less buys nothing.
+constexpr double nothing = 0.1;
+// From here on the answer is questionable: estimates are good to a factor, and this one may stand for a fifth, beyond which the
+// atlas calls an answer wrong.
+constexpr double questionable_error = 0.15;
+
+struct Kind {
+  const char* name;
+  double ErrorParts::*value;
+  const char* words;
+};
+
+constexpr std::array<Kind, 5> kinds{{{"mesh", &ErrorParts::mesh, "mesh"},
+                                     {"step", &ErrorParts::step, "step"},
+                                     {"linear", &ErrorParts::linear, "linear tolerance"},
+                                     {"coupling", &ErrorParts::coupling, "coupling tolerance"},
+                                     {"model", &ErrorParts::model, "model"}}};
+
+struct Part {
+  const Kind* kind;
+  double value;
+  const NamedErrors* of;
+  bool is(double ErrorParts::*which) const { return kind->value == which; }
+};
+
+/// The cheapest change that lowers a part, what it leaves of it, and its price.
+std::string cure(const Part& part) {
+  if (part.is(&ErrorParts::mesh)) {
+    constexpr std::array cells{"4 to 8 times", "twice", "4 times", "8 times"};
+    return fmt::format("half the cell size would leave about {:.2g}, for {} the cells",
+                       part.value / std::exp2(part.of->parts.mesh_order),
+                       cells.at(std::size_t(std::clamp(part.of->parts.dimension, 0, 3))));
+  }
+  if (part.is(&ErrorParts::step))
+    return fmt::format("half the time step would leave about {:.2g}, for twice the steps",
+                       part.value / std::exp2(part.of->parts.step_order));
+  if (part.is(&ErrorParts::linear))
+    return fmt::format("a tenth of the solver tolerance would leave about {:.2g}, for some more iterations",
+                       part.value / 10);
+  if (part.is(&ErrorParts::coupling))
+    return fmt::format(
+        "a tenth of 'convergence' of the coupling would leave about {:.2g}, for a pass or two more per step",
+        part.value / 10);
+  return part.of->parts.model_by;
+}
+
+/// What would buy nothing, as words: "halving the step", ...
+std::string idle_words(const std::vector<Part>& parts, double most) {
+  std::string words;
+  for (const Part& p : parts) {
+    if (!(p.value < nothing * most)) continue;
+    if (p.is(&ErrorParts::model)) continue;
+    words += words.empty() ? "" : " or ";
+    words += p.is(&ErrorParts::step)   ? "halving the step"
+             : p.is(&ErrorParts::mesh) ? "refining the mesh"
+                                       : fmt::format("tightening the {}", p.kind->words);
+  }
+  return words;
+}
+
+/// Of each kind the participant's that has most.
+std::vector<Part> largest_parts(const std::vector<NamedErrors>& participants) {
+  std::vector<Part> parts;
+  for (const Kind& k : kinds) {
+    const NamedErrors* largest = nullptr;
+    for (const NamedErrors& n : participants)
+      if (!std::isnan(n.parts.*k.value) && (!largest || n.parts.*k.value > largest->parts.*k.value))
+        largest = &n;
+    if (largest) parts.push_back({&k, largest->parts.*k.value, largest});
+  }
+  return parts;
+}
+
+}  // namespace
+
+bool ErrorParts::known() const {
+  return std::ranges::any_of(kinds, [this](const Kind& k) { return !std::isnan(this->*k.value); });
+}
+
+std::string ErrorParts::text() const {
+  std::string text;
+  for (const Kind& k : kinds)
+    if (!std::isnan(this->*k.value))
+      text += fmt::format("{}{} {:.6g}", text.empty() ? "" : " ", k.name, this->*k.value);
+  if (!text.empty() && dimension > 0) text += fmt::format(" dimension {}", dimension);
+  if (!text.empty() && mesh_order != 2) text += fmt::format(" mesh-order {:.6g}", mesh_order);
+  if (!text.empty() && step_order != 2) text += fmt::format(" step-order {:.6g}", step_order);
+  if (!model_by.empty() || !omittable.empty()) text += fmt::format(" | {} | {}", model_by, omittable);
+  return text;
+}
+
+ErrorParts ErrorParts::of(const std::string& text) {
+  ErrorParts parts;
+  const std::size_t words_at = text.find(" | ");
+  if (words_at != text.npos) {
+    const std::size_t last = text.rfind(" | ");
+    if (last > words_at) parts.model_by = text.substr(words_at + 3, last - words_at - 3);
+    parts.omittable = text.substr(last + 3);
+  }
+  std::istringstream words(text.substr(0, words_at));
+  for (std::string name; words >> name;) {
+    const auto kind = std::ranges::find_if(kinds, [&](const Kind& k) { return k.name == name; });
+    double value = 0;
+    const bool is_about = name == "dimension" || name == "mesh-order" || name == "step-order";
+    if ((kind == kinds.end() && !is_about) || !(words >> value))
+      throw Error(
+          "'{}' is not a valid list of error parts: expected names (mesh, step, linear, coupling, model), "
+          "each with a number.",
+          text);
+    if (name == "dimension")
+      parts.dimension = int(std::clamp(value, 0.0, 3.0));
+    else if (is_about)
+      (name == "mesh-order" ? parts.mesh_order : parts.step_order) = value;
+    else
+      parts.*(kind->value) = value;
+  }
+  return parts;
+}
+
+ErrorParts largest(const std::vector<NamedErrors>& participants) {
+  ErrorParts parts;
+  for (const Part& p : largest_parts(participants)) {
+    parts.*(p.kind->value) = p.value;
+    if (p.is(&ErrorParts::model)) parts.model_by = p.of->parts.model_by;
+  }
+  for (const NamedErrors& n : participants)
+    if (!n.parts.omittable.empty())
+      parts.omittable +=
+          fmt::format("{}{}: {}", parts.omittable.empty() ? "" : "; ", n.name, n.parts.omittable);
+  return parts;
+}
+
+double total_error(const std::vector<NamedErrors>& participants) {
+  double total = 0;
+  for (const Part& p : largest_parts(participants))
+    if (!p.is(&ErrorParts::model)) total += p.value;
+  return total;
+}
+
+std::optional<Finding> worthless(const std::vector<NamedErrors>& participants) {
+  const double total = total_error(participants);
+  if (!(total >= questionable_error)) return {};
+  double largest = 0;
+  for (const Part& p : largest_parts(participants))
+    if (!p.is(&ErrorParts::model)) largest = std::max(largest, p.value);
+  if (total < as_large_as_the_solution)
+    return Finding{
+        .id = "error-estimate",
+        .severity = base::Severity::warning,
+        .number = total,
+        .limit = questionable_error,
+        .sentence = fmt::format("estimated error: {:.2g} of the solution (limit {:g}): result questionable",
+                                total, questionable_error),
+        .advice = "refine the dominant part"};
+  return Finding{
+      .id = "error-estimate",
+      .severity = largest >= as_large_as_the_solution ? base::Severity::wrong : base::Severity::warning,
+      .number = total,
+      .limit = as_large_as_the_solution,
+      .sentence = fmt::format("estimated error: {:.2g} of the solution (limit {:g}): result not reliable",
+                              total, as_large_as_the_solution),
+      .advice = "refine the dominant part"};
+}
+
+std::vector<std::string> error_sentences(const std::vector<NamedErrors>& participants) {
+  std::vector<Part> parts = largest_parts(participants);
+  const bool several = participants.size() > 1;
+  std::vector<std::string> sentences;
+  if (!parts.empty()) {
+    std::ranges::stable_sort(parts, std::greater<>{}, &Part::value);
+    std::string list;
+    double total = 0;
+    for (const Part& p : parts) {
+      list += fmt::format("{}{} {:.2g}{}", list.empty() ? "" : ", ", p.kind->words, p.value,
+                          several ? " (" + p.of->name + ")" : "");
+      total += p.value;
+    }
+    // The largest part of many a run: a number without it must not pass for the whole.
+    const bool knows_mesh = std::ranges::any_of(parts, [](const Part& p) { return p.is(&ErrorParts::mesh); });
+    sentences.push_back(fmt::format(
+        "estimated error {:.2g} of the solution: {}{}.", total, list,
+        knows_mesh ? "" : "; the error due to the mesh (or truncated modes) is unknown and not included"));
+  }
+  if (parts.size() > 1 && parts.front().value > 0) {
+    const Part& worst = parts.front();
+    const std::string idle = idle_words(parts, worst.value);
+    sentences.push_back(fmt::format("the {}{} dominates: {}{}.", worst.kind->words,
+                                    several ? " (" + worst.of->name + ")" : "", cure(worst),
+                                    idle.empty() ? "" : "; " + idle + " would not help"));
+  }
+  for (const NamedErrors& n : participants)
+    if (!n.parts.omittable.empty())
+      sentences.push_back(
+          fmt::format("could be omitted{}: {}.", several ? " of '" + n.name + "'" : "", n.parts.omittable));
+  return sentences;
+}
+
+}  // namespace couplet::diagnostics

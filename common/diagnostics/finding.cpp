@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/diagnostics/finding.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/text.hpp"
+#include "common/log/log.hpp"
+
+namespace couplet::diagnostics {
+namespace {
+
+std::vector<Finding>& kept() {
+  static std::vector<Finding> all;
+  return all;
+}
+
+std::vector<std::string>& accepted_ids() {
+  static std::vector<std::string> ids;
+  return ids;
+}
+
+constexpr auto answer = FindingId::About::answer, neglected = FindingId::About::neglected;
+// Every program must know the ids of all: those that a case accepts are for the whole job. Each program lists its own in
+// its table.def, a text without code, so that this list needs no second place.
+#define DIAGNOSTIC(name, make)
+#define ESTIMATE(name, make)
+#define FINDING(about, id, meaning) FindingId{about, id, meaning},
+constexpr FindingId ids[] = {
+#include "common/diagnostics/table.def"
+#include "coupler/diagnostics/table.def"
+#include "fluid_solver/diagnostics/table.def"
+#include "plate_modal/diagnostics/table.def"
+#include "solid_solver/diagnostics/table.def"
+#include "thermocline/judge/table.def"
+};
+#undef DIAGNOSTIC
+#undef ESTIMATE
+#undef FINDING
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return out + '"';
+}
+
+std::string number_text(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "null"; }
+
+std::string line(const Finding& f) {
+  return fmt::format("{}{}{} [{}{}]", f.severity == base::Severity::wrong ? "WRONG: " : "", f.sentence,
+                     f.advice.empty() ? "" : "; " + f.advice, f.id, is_accepted(f.id) ? ", accepted" : "");
+}
+
+}  // namespace
+
+void finding(int rank, Finding f) {
+  finding_id(f.id);
+  if (rank == 0) {
+    if (f.severity == base::Severity::note)
+      log::info("{}", line(f));
+    else
+      log::warn("{}", line(f));
+  }
+  kept().push_back(std::move(f));
+}
+
+const std::vector<Finding>& findings() { return kept(); }
+
+void resume_findings(int rank, const std::vector<Finding>& earlier) {
+  std::vector<Finding> again = std::move(kept());
+  kept() = earlier;
+  for (const Finding& f : earlier)
+    if (rank == 0) log::info("found before the restart: {}", line(f));
+  for (Finding& f : again)
+    if (std::ranges::none_of(earlier,
+                             [&](const Finding& e) { return e.id == f.id && e.sentence == f.sentence; }))
+      kept().push_back(std::move(f));
+}
+
+void accept(std::span<const std::string> ids) {
+  accepted_ids().insert(accepted_ids().end(), ids.begin(), ids.end());
+}
+
+bool is_accepted(const std::string& id) { return std::ranges::count(accepted_ids(), id) > 0; }
+
+int count(base::Severity least, bool with_neglected) {
+  return int(std::ranges::count_if(kept(), [&](const Finding& f) {
+    const bool counts = with_neglected || finding_id(f.id).about == FindingId::About::answer;
+    return f.severity >= least && counts && !is_accepted(f.id);
+  }));
+}
+
+int doubts() { return count(base::Severity::warning, true); }
+
+std::string findings_as_json() {
+  std::string out;
+  for (const Finding& f : kept())
+    out += fmt::format(
+        "{}\n    {{\"id\": {}, \"severity\": \"{}\", \"number\": {}, \"limit\": {}, \"sentence\": {}, \"advice\": {}, "
+        "\"neglected-effect\": {}, \"accepted\": {}}}",
+        out.empty() ? "" : ",", quoted(f.id), base::name(f.severity), number_text(f.number),
+        number_text(f.limit), quoted(f.sentence), quoted(f.advice),
+        finding_id(f.id).about == FindingId::About::neglected, is_accepted(f.id));
+  return "[" + out + (out.empty() ? "]" : "\n  ]");
+}
+
+std::span<const FindingId> finding_ids() { return ids; }
+
+const FindingId& finding_id(const std::string& id) {
+  for (const FindingId& known : finding_ids())
+    if (id == known.id) return known;
+  throw std::logic_error("no program declares the finding '" + id + "' in its table.def");
+}
+
+std::string unknown_ids(std::span<const std::string> ids) {
+  std::vector<std::string> known;
+  for (const FindingId& f : finding_ids()) known.push_back(f.id);
+  std::string text;
+  for (const std::string& id : ids) {
+    if (std::ranges::count(known, id) > 0) continue;
+    const auto meant = base::closest(id, known);
+    text += fmt::format("{}unknown finding '{}'{}", text.empty() ? "" : "; ", id,
+                        meant ? fmt::format(", did you mean '{}'?", *meant) : "");
+  }
+  return text.empty() ? text : fmt::format("{}. Findings: {}", text, base::join(known));
+}
+
+}  // namespace couplet::diagnostics
