@@ -163,7 +163,8 @@ void Coupler::finalise(const std::string& problem) {
       parts.push_back({"coupling", mine});
     errors_ = diagnostics::largest(parts);
     for (const std::string& sentence : diagnostics::error_sentences(parts)) log::info("{}", sentence);
-    if (const auto finding = diagnostics::worthless(parts)) diagnostics::finding(parallel::comm_rank(comm_), *finding);
+    if (const auto finding = diagnostics::worthless(parts))
+      diagnostics::finding(parallel::comm_rank(comm_), *finding);
   }
   if (const std::string where = diagnostics::position_sentence(position()); !where.empty())
     log::info("{}", where);

@@ -19,8 +19,8 @@
 #include "coupler/diagnostics/view.hpp"
 #include "coupler/output/record.hpp"
 #include "coupler/parameters/parameters.hpp"
+#include "coupler/parameters/schedule.hpp"
 #include "coupler/pass.hpp"
-#include "coupler/scheme_choice.hpp"
 
 namespace couplet::coupler {
 

@@ -18,7 +18,7 @@
 #include "common/app/case/command_line.hpp"
 #include "common/app/case/questions.hpp"
 #include "common/app/loop/step_loop.hpp"
-#include "common/app/watch/start_guard.hpp"
+#include "common/app/watch/watch.hpp"
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/coupling/wait.hpp"
@@ -40,9 +40,9 @@ int application_number() {
   return found ? *number : 0;
 }
 
-Attendant introduce(const CommandLine& command_line, const ProgramKind& kind, const CaseFile& file) {
+Attendant introduce(const CommandLine& command_line, const Program& program, const CaseFile& file) {
   Attendant self;
-  self.program = kind.name;
+  self.program = program.name;
   self.participant = file.participant;
   self.case_file = command_line.case_file.string();
   self.case_hash = file.hash;
@@ -189,13 +189,14 @@ int leave_together(MPI_Comm programs, int code) {
   return agreed(worst, code);
 }
 
-int attend(const CommandLine& command_line, const ProgramKind& kind, const CaseFile& file,
+int attend(const CommandLine& command_line, const Program& program, const CaseFile& file,
            const std::string& label, MPI_Comm programs, std::optional<StartGuard>& start_guard,
            const std::function<int(const Job&)>& run) {
   Watch watch(programs, label);
   log::setup(label, 0, command_line.verbosity);
   try {
-    const std::vector<Attendant> attendants = roll_call(MPI_COMM_WORLD, introduce(command_line, kind, file));
+    const std::vector<Attendant> attendants =
+        roll_call(MPI_COMM_WORLD, introduce(command_line, program, file));
     Job job;
     job.members = members(attendants);
     const int world_rank = parallel::comm_rank(MPI_COMM_WORLD);
@@ -229,7 +230,7 @@ int attend(const CommandLine& command_line, const ProgramKind& kind, const CaseF
     job.choices = file.choices;
     diagnostics::accept(job.simulation.accept);
     diagnostics::accept(command_line.accept);
-    prepare(job, command_line, kind.is_coupler);
+    prepare(job, command_line, program.is_coupler);
     job.enter(Phase::initialise);
     watch.limit_silence(job.simulation.hang_timeout);
     start_guard.reset();
@@ -263,21 +264,21 @@ MPI_Comm Job::connect(const std::string& participant) const {
   return peers;
 }
 
-int run_job(int argc, char** argv, const ProgramKind& kind, const std::function<int(const Job&)>& run) {
+int run_job(int argc, char** argv, const Program& program, const std::function<int(const Job&)>& run) {
   const ParsedCommandLine parsed =
-      parse_command_line(argc, argv, {kind.name, kind.description, section_of(kind)});
+      parse_command_line(argc, argv, {program.name, program.description, section_of(program)});
   if (parsed.exit_code) {
     fmt::print(*parsed.exit_code == 0 ? stdout : stderr, "{}", parsed.output);
     return *parsed.exit_code;
   }
   const CommandLine& command_line = parsed.command_line;
-  if (command_line.task != CommandLine::Task::run) return answer(command_line, kind);
+  if (command_line.task != CommandLine::Task::run) return answer(command_line, program);
 
   // Read where the geometry is meshed, far from here.
   if (command_line.allow_commands) ::setenv("COUPLET_ALLOW_COMMANDS", "1", 1);
   parallel::prepare_mpi_start();
-  const CaseFile file = read_case(command_line, kind);
-  const std::string label = file.participant.empty() ? kind.name : file.participant;
+  const CaseFile file = read_case(command_line, program);
+  const std::string label = file.participant.empty() ? program.name : file.participant;
   // MPI's own start takes seconds on a busy machine.
   const double patience = file.simulation.hang_timeout > 0 ? std::max(file.simulation.hang_timeout, 4.0) : 0;
   std::optional<StartGuard> start_guard(std::in_place, patience, label);
@@ -285,7 +286,7 @@ int run_job(int argc, char** argv, const ProgramKind& kind, const std::function<
   // Short sleeps while waiting for other programs shall be short (Linux adds 50 us to each by default).
   prctl(PR_SET_TIMERSLACK, 2000UL);
   const MPI_Comm programs = join_the_job();
-  const int code = attend(command_line, kind, file, label, programs, start_guard, run);
+  const int code = attend(command_line, program, file, label, programs, start_guard, run);
   start_guard.reset();
   std::fflush(nullptr);
   const int agreed_code = leave_together(programs, code);

@@ -11,7 +11,6 @@
 #include "common/app/case/case_file.hpp"
 #include "common/app/case/roll_call.hpp"
 #include "common/app/loop/simulation.hpp"
-#include "common/app/watch/start_guard.hpp"
 #include "common/app/watch/watch.hpp"
 
 namespace couplet::app {
@@ -25,11 +24,11 @@ struct Job {
   std::vector<Member> members;
   const config::Document* document = nullptr;
   SimulationParameters simulation;
-  std::filesystem::path case_folder;           ///< folder of the YAML
-  std::filesystem::path output_folder;         ///< <output>/<name>, made already
-  std::filesystem::path checkpoints;           ///< <output>/checkpoints
-  std::filesystem::path restart_folder;        ///< the checkpoint to continue from; empty: fresh start
-  double restart_time;                         ///< its time [s]; NaN: fresh start
+  std::filesystem::path case_folder;               ///< folder of the YAML
+  std::filesystem::path output_folder;             ///< <output>/<name>, made already
+  std::filesystem::path checkpoints;               ///< <output>/checkpoints
+  std::filesystem::path restart_folder;            ///< the checkpoint to continue from; empty: fresh start
+  double restart_time;                             ///< its time [s]; NaN: fresh start
   std::vector<diagnostics::EffectChoice> choices;  ///< of `effects: auto`
   Watch* watch = nullptr;
   FaultInjection* faults = nullptr;
@@ -49,6 +48,6 @@ struct Job {
 /// up, the roll is called, and `run` runs. One guard around it all reports what was thrown, once, and ends
 /// the whole job. Returns the exit code: 0; 1 the run failed; 2 the configuration or the launch is wrong; 3 stopped by a
 /// signal, saved; 4 done, but a finding of severity `wrong` was not accepted.
-int run_job(int argc, char** argv, const ProgramKind& kind, const std::function<int(const Job&)>& run);
+int run_job(int argc, char** argv, const Program& program, const std::function<int(const Job&)>& run);
 
 }  // namespace couplet::app

@@ -64,8 +64,9 @@ int run(const Job& job, const Program& program) {
   for (const diagnostics::EffectChoice& choice : job.choices) log::info("{}", diagnostics::text(choice));
   if (program.effects) {
     const bool has_mover = config::text_of(*job.document, "coupling.mesh.participant").has_value();
-    log::info("{}", diagnostics::summary(
-                        program.effects({!job.alone, !job.alone && has_mover, job.simulation.time_step})));
+    log::info("{}", diagnostics::summary(program.effects({.time_step = job.simulation.time_step,
+                                                          .coupled = !job.alone,
+                                                          .has_mover = !job.alone && has_mover})));
   }
   const std::unique_ptr<coupling::Participant> participant = program.make(context);
   return job.alone ? run_alone(job, *participant, program.diagnose)
@@ -75,10 +76,7 @@ int run(const Job& job, const Program& program) {
 }  // namespace
 
 int run_program(int argc, char** argv, const Program& program) {
-  const ProgramKind kind{program.name,     program.description,      false,
-                         program.declare,  program.effects,          program.choose,
-                         program.expected, program.problems_of_files};
-  return run_job(argc, argv, kind, [&](const Job& job) { return run(job, program); });
+  return run_job(argc, argv, program, [&](const Job& job) { return run(job, program); });
 }
 
 }  // namespace couplet::app

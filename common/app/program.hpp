@@ -9,7 +9,6 @@
 #include <memory>
 #include <string>
 
-#include "common/app/case/check_files.hpp"
 #include "common/app/loop/simulation.hpp"
 #include "common/config/section.hpp"
 #include "common/coupling/mesh_motion.hpp"
@@ -34,6 +33,12 @@ struct ParticipantContext {
   double restart_time = std::numeric_limits<double>::quiet_NaN();  ///< NaN: fresh start
 };
 
+/// A fault of the file that a key of a participant names.
+struct ProblemOfKey {
+  std::string key;   ///< path below the participant: "ambient.file"
+  std::string what;  ///< a sentence, with file:line where it can be said
+};
+
 /// One program = its name, the declaration of its parameters, and how to make its participant from them.
 struct Program {
   std::string name;         ///< "solid_solver"
@@ -41,7 +46,7 @@ struct Program {
   /// Declares the parameters of `participants.<name>`; called for checking, documentation and reading.
   config::Section::Declare declare;
   /// Called once after reading; the parameters are those that `declare` filled.
-  std::function<std::unique_ptr<coupling::Participant>(const ParticipantContext&)> make;
+  std::function<std::unique_ptr<coupling::Participant>(const ParticipantContext&)> make = {};
   /// Adds the diagnostics of the participant, once that is initialised; empty: it has none.
   std::function<void(coupling::Participant&, diagnostics::Diagnostics&)> diagnose = {};
   /// What the program's libraries need from before the participant is made until after it is gone (petsc_environment());
@@ -56,6 +61,8 @@ struct Program {
   /// For --check: what is wrong with the files that the parameters name; empty: nothing but what every program's
   /// --check sees.
   std::function<std::vector<ProblemOfKey>(const std::filesystem::path& case_folder)> problems_of_files = {};
+  /// Reads `coupling` instead of a participant's section, and makes no participant.
+  bool is_coupler = false;
 };
 
 /// main() of a physics program:

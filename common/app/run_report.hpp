@@ -8,6 +8,7 @@
 #include <string>
 
 #include "common/coupling/participant.hpp"
+#include "common/diagnostics/diagnostics.hpp"
 #include "common/diagnostics/effects.hpp"
 #include "common/diagnostics/error_parts.hpp"
 #include "common/io/series.hpp"

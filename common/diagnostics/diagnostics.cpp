@@ -18,9 +18,7 @@ namespace {
 using base::Severity;
 
 /// Tells whether a is further beyond its limit than b; NaN is worse than any number.
-bool exceeds(const diagnostics::Finding& a, const diagnostics::Finding& b) {
-  return !(a.number / a.limit <= b.number / b.limit);
-}
+bool exceeds(const Finding& a, const Finding& b) { return !(a.number / a.limit <= b.number / b.limit); }
 
 /// Adds the time of what follows to the timers of the run.
 class Timed {
@@ -37,21 +35,21 @@ class Timed {
 }  // namespace
 
 void Diagnostics::take(Report& report) {
-  for (diagnostics::Finding& f : report.findings) {
-    const auto same = [&](const diagnostics::Finding& w) { return w.id == f.id && w.subject == f.subject; };
+  for (Finding& f : report.findings) {
+    const auto same = [&](const Finding& w) { return w.id == f.id && w.subject == f.subject; };
     const auto worst = std::ranges::find_if(worst_, same);
     const bool is_news = f.severity > (worst == worst_.end() ? Severity::note : worst->severity);
     if (is_news) {
-      diagnostics::Finding told = f;
+      Finding told = f;
       if (!concluding_ || !f.effect.empty()) told.sentence = fmt::format("t = {:g} s: {}", time_, f.sentence);
-      diagnostics::finding(rank_, std::move(told));
+      finding(rank_, std::move(told));
     }
     if (worst == worst_.end())
       worst_.push_back(std::move(f));
     else if (is_news || (f.severity >= worst->severity && exceeds(f, *worst)))
       *worst = std::move(f);
   }
-  diagnostics::keep_nearest(position_, report.position);
+  keep_nearest(position_, report.position);
 }
 
 void Diagnostics::accepted(double time) {
@@ -84,7 +82,7 @@ std::vector<std::string> Diagnostics::conclude(bool failed) {
       add_model(worst_, errors_);
     }
   }
-  for (const diagnostics::Finding& f : worst_)
+  for (const Finding& f : worst_)
     if (!(f.saves > 0) && !f.effect.empty() && (!failed || f.severity > Severity::note))
       report.sentences.push_back(fmt::format("{}{}{}", f.sentence,
                                              f.severity > Severity::note && !f.advice.empty() ? "; " : "",
@@ -92,9 +90,9 @@ std::vector<std::string> Diagnostics::conclude(bool failed) {
   return report.sentences;
 }
 
-void add_model(const std::vector<diagnostics::Finding>& findings, diagnostics::ErrorParts& errors) {
+void add_model(const std::vector<Finding>& findings, ErrorParts& errors) {
   double largest = 0;
-  for (const diagnostics::Finding& f : findings) {
+  for (const Finding& f : findings) {
     if (f.saves > 0)
       errors.omittable += fmt::format("{}{} saves about {:.0f} % of the time",
                                       errors.omittable.empty() ? "" : ", ", f.sentence, 100 * f.saves);
@@ -109,23 +107,9 @@ void add_model(const std::vector<diagnostics::Finding>& findings, diagnostics::E
   }
 }
 
-void Diagnostics::visit(io::Archive& archive) {
-  std::vector<diagnostics::Finding> found = diagnostics::findings();
-  std::vector<std::string> names;
-  for (const Named& one : all_) names.push_back(one.name);
-  archive.common("findings", found, worst_, position_, steps_, time_, names);
-  if (archive.reads()) diagnostics::resume_findings(rank_, found);
-  for (const Named& one : all_) {
-    if (std::ranges::count(names, one.name) == 0) continue;  // new in this run
-    archive.set_prefix("diagnostic-" + one.name + "-");
-    one.diagnostic->visit(archive);
-  }
-  archive.set_prefix("");
-}
-
-std::optional<diagnostics::Finding> finding_of(const EffectFinding& e) {
+std::optional<Finding> finding_of(const EffectFinding& e) {
   if (std::isnan(e.number)) return {};
-  diagnostics::Finding f{.number = e.number, .limit = e.limit, .sentence = {}, .advice = e.advice};
+  Finding f{.number = e.number, .limit = e.limit, .sentence = {}, .advice = e.advice};
   for (const char* c = e.effect; *c != '\0'; ++c) {
     if (std::isalnum(static_cast<unsigned char>(*c)))
       f.id += char(std::tolower(static_cast<unsigned char>(*c)));
@@ -148,6 +132,29 @@ std::optional<diagnostics::Finding> finding_of(const EffectFinding& e) {
                                                      : "questionable";
   f.sentence = fmt::format("{}: {} (limit {:.2g}): {}", f.effect, e.what, e.limit, word);
   return f;
+}
+
+void keep_nearest(std::vector<Coordinate>& kept, const std::vector<Coordinate>& seen) {
+  for (const Coordinate& c : seen) {
+    const auto before = std::ranges::find(kept, c.quantity, &Coordinate::quantity);
+    if (before == kept.end())
+      kept.push_back(c);
+    else if (c.used() > before->used())
+      *before = c;
+  }
+}
+
+std::string position_sentence(const std::vector<Coordinate>& position) {
+  if (position.empty()) return {};
+  std::string list;
+  for (const Coordinate& c : position)
+    list += fmt::format("{}{} {:.3g} of {}{:.3g}", list.empty() ? "" : ", ", c.quantity, c.value,
+                        c.floor ? "at least " : "", c.limit);
+  const Coordinate& nearest = *std::ranges::max_element(position, {}, &Coordinate::used);
+  const double used = nearest.used();
+  return fmt::format("on the map: {}; {}: {} (docs/stability.md, map {}).", list,
+                     used > 1 ? "beyond the limit" : "nearest limit",
+                     fmt::format("{}, {:.0f} % of the way", nearest.quantity, 100 * used), nearest.map);
 }
 
 }  // namespace couplet::diagnostics

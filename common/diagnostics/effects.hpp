@@ -11,7 +11,7 @@
 
 #include "common/diagnostics/prices.hpp"
 
-namespace couplet::effects {
+namespace couplet::diagnostics {
 
 /// One effect of a program as data. `asked_by` names what in the scene asks for it (a key with its value), or
 /// is empty where it is off.
@@ -37,11 +37,13 @@ struct Effect {
   bool on() const { return !asked_by.empty(); }
 };
 
-/// What the job around a participant decides about its effects.
+/// What the case says to a participant beside the participant's own parameters.
 struct CaseScene {
-  bool coupled = false;
-  bool has_mover = false;                                       ///< `coupling.mesh` names one
+  std::filesystem::path folder{};                               ///< of the YAML
+  double end_time = 0;                                          ///< [s]
   double time_step = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN: not known
+  bool coupled = false;
+  bool has_mover = false;  ///< `coupling.mesh` names one
 };
 
 template <class Parameters>
@@ -62,14 +64,6 @@ std::string explanation(const std::vector<Effect>& effects);
 
 /// The cards as a Markdown table, for docs/effects.md.
 std::string markdown(const std::string& program, const std::vector<Effect>& effects);
-
-/// What `simulation.effects: auto` knows of a scene beside the participant's own parameters.
-struct CaseScene {
-  std::filesystem::path folder{};  ///< of the YAML
-  double end_time = 0, time_step = 0;
-  bool coupled = false;
-  bool has_mover = false;  ///< `coupling.mesh` names one
-};
 
 /// One decision of `effects: auto`. A key that the YAML has is never replaced.
 struct EffectChoice {
@@ -93,26 +87,4 @@ struct ExpectedCost {
 /// "4096 cells: about 54 MB, 20 ms a step on one rank (time to a factor of three)"
 std::string text(const ExpectedCost& cost);
 
-/// Where a run stands on a map of the atlas (docs/stability.md), in the terms of its axis.
-struct Coordinate {
-  std::string quantity;  ///< "Courant number"
-  double value = 0;
-  double limit = 0;    ///< up to here the map is green
-  std::string map{};   ///< "fluid-convection"
-  bool floor = false;  ///< true: from here up
-  /// Of the way to the limit [1]: beyond it above 1. With a floor the way begins at 1, the best value.
-  double used() const { return floor ? (1 - value) / (1 - limit) : value / limit; }
-  /// For checkpoints.
-  template <class Numbers>
-  void visit(Numbers& numbers) {
-    numbers(quantity, value, limit, map, floor);
-  }
-};
-
-/// The one of each quantity that is nearer to its limit.
-void keep_nearest(std::vector<Coordinate>& kept, const std::vector<Coordinate>& seen);
-
-/// "on the map: Courant number 0.8 of 1, ...; nearest limit: ..."; empty without coordinates.
-std::string position_sentence(const std::vector<Coordinate>& position);
-
-}  // namespace couplet::effects
+}  // namespace couplet::diagnostics

@@ -10,7 +10,7 @@
 
 #include "common/base/error.hpp"
 
-namespace couplet::coupling {
+namespace couplet::diagnostics {
 namespace {
 
 // Of the largest part: less buys nothing.
@@ -152,14 +152,14 @@ double total_error(const std::vector<NamedErrors>& participants) {
   return total;
 }
 
-std::optional<diagnostics::Finding> worthless(const std::vector<NamedErrors>& participants) {
+std::optional<Finding> worthless(const std::vector<NamedErrors>& participants) {
   const double total = total_error(participants);
   if (!(total >= questionable_error)) return {};
   double largest = 0;
   for (const Part& p : largest_parts(participants))
     if (!p.is(&ErrorParts::model)) largest = std::max(largest, p.value);
   if (total < as_large_as_the_solution)
-    return diagnostics::Finding{
+    return Finding{
         .id = "error-estimate",
         .severity = base::Severity::warning,
         .number = total,
@@ -167,7 +167,7 @@ std::optional<diagnostics::Finding> worthless(const std::vector<NamedErrors>& pa
         .sentence = fmt::format("estimated error: {:.2g} of the solution (limit {:g}): result questionable",
                                 total, questionable_error),
         .advice = "refine the dominant part"};
-  return diagnostics::Finding{
+  return Finding{
       .id = "error-estimate",
       .severity = largest >= as_large_as_the_solution ? base::Severity::wrong : base::Severity::warning,
       .number = total,
@@ -210,4 +210,4 @@ std::vector<std::string> error_sentences(const std::vector<NamedErrors>& partici
   return sentences;
 }
 
-}  // namespace couplet::coupling
+}  // namespace couplet::diagnostics

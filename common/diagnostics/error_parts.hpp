@@ -8,7 +8,7 @@
 
 #include "common/diagnostics/finding.hpp"
 
-namespace couplet::coupling {
+namespace couplet::diagnostics {
 
 /// What a run's error is made of, as the run itself can know it cheaply, each over the size of the solution [1].
 /// Good to a factor of a few; NaN: not known.
@@ -51,6 +51,6 @@ double total_error(const std::vector<NamedErrors>& participants);
 /// From an error as large as the solution on the answer is useless. `wrong` where one part alone is so large: parts are good to
 /// a factor of a few, and a sum of several that just reaches it proves nothing; it is a warning. Nothing below.
 constexpr double as_large_as_the_solution = 1;
-std::optional<diagnostics::Finding> worthless(const std::vector<NamedErrors>& participants);
+std::optional<Finding> worthless(const std::vector<NamedErrors>& participants);
 
-}  // namespace couplet::coupling
+}  // namespace couplet::diagnostics

@@ -7,7 +7,7 @@
 #include "common/base/text.hpp"
 #include "common/log/log.hpp"
 
-namespace couplet::log {
+namespace couplet::diagnostics {
 namespace {
 
 std::vector<Finding>& kept() {
@@ -19,6 +19,24 @@ std::vector<std::string>& accepted_ids() {
   static std::vector<std::string> ids;
   return ids;
 }
+
+constexpr auto answer = FindingId::About::answer, neglected = FindingId::About::neglected;
+// Every program must know the ids of all: those that a case accepts are for the whole job. Each program lists its own in
+// its table.def, a text without code, so that this list needs no second place.
+#define DIAGNOSTIC(name, make)
+#define ESTIMATE(name, make)
+#define FINDING(about, id, meaning) FindingId{about, id, meaning},
+constexpr FindingId ids[] = {
+#include "common/diagnostics/table.def"
+#include "coupler/diagnostics/table.def"
+#include "fluid_solver/diagnostics/table.def"
+#include "plate_modal/diagnostics/table.def"
+#include "solid_solver/diagnostics/table.def"
+#include "thermocline/diagnostics/table.def"
+};
+#undef DIAGNOSTIC
+#undef ESTIMATE
+#undef FINDING
 
 std::string quoted(const std::string& text) {
   std::string out = "\"";
@@ -42,9 +60,9 @@ void finding(int rank, Finding f) {
   finding_id(f.id);
   if (rank == 0) {
     if (f.severity == base::Severity::note)
-      info("{}", line(f));
+      log::info("{}", line(f));
     else
-      warn("{}", line(f));
+      log::warn("{}", line(f));
   }
   kept().push_back(std::move(f));
 }
@@ -55,7 +73,7 @@ void resume_findings(int rank, const std::vector<Finding>& earlier) {
   std::vector<Finding> again = std::move(kept());
   kept() = earlier;
   for (const Finding& f : earlier)
-    if (rank == 0) info("found before the restart: {}", line(f));
+    if (rank == 0) log::info("found before the restart: {}", line(f));
   for (Finding& f : again)
     if (std::ranges::none_of(earlier,
                              [&](const Finding& e) { return e.id == f.id && e.sentence == f.sentence; }))
@@ -89,10 +107,12 @@ std::string findings_as_json() {
   return "[" + out + (out.empty() ? "]" : "\n  ]");
 }
 
+std::span<const FindingId> finding_ids() { return ids; }
+
 const FindingId& finding_id(const std::string& id) {
   for (const FindingId& known : finding_ids())
     if (id == known.id) return known;
-  throw std::logic_error("common/log/finding_ids.cpp lacks the finding '" + id + "'");
+  throw std::logic_error("no program declares the finding '" + id + "' in its table.def");
 }
 
 std::string unknown_ids(std::span<const std::string> ids) {
@@ -108,4 +128,4 @@ std::string unknown_ids(std::span<const std::string> ids) {
   return text.empty() ? text : fmt::format("{}. Findings: {}", text, base::join(known));
 }
 
-}  // namespace couplet::log
+}  // namespace couplet::diagnostics

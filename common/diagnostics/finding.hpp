@@ -8,7 +8,7 @@
 
 #include "common/base/severity.hpp"
 
-namespace couplet::log {
+namespace couplet::diagnostics {
 
 /// What a run found out about its own answer. Printed as "<sentence>; <advice> [<id>]", where the sentence has the form
 /// "effect: number (limit): verdict".
@@ -66,4 +66,4 @@ const FindingId& finding_id(const std::string& id);
 /// Why `ids` cannot be accepted: those that do not exist, with the nearest and all allowed ones; empty if all exist.
 std::string unknown_ids(std::span<const std::string> ids);
 
-}  // namespace couplet::log
+}  // namespace couplet::diagnostics

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-namespace couplet::effects {
+namespace couplet::diagnostics {
 namespace {
 
 const char* scenes_of(int dimension) { return dimension == 2 ? "2-D: " : dimension == 3 ? "3-D: " : ""; }
@@ -129,4 +129,4 @@ constexpr auto prices = std::to_array<Price>({
 
 std::span<const Price> price_list() { return prices; }
 
-}  // namespace couplet::effects
+}  // namespace couplet::diagnostics

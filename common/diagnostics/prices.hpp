@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace couplet::effects {
+namespace couplet::diagnostics {
 
 /// From the least to the most over the scenes that were measured.
 struct Spread {
@@ -42,4 +42,4 @@ std::string column(const std::vector<Price>& prices, std::string (*text)(const P
 /// What leaving an effect out saves at least, as a share of a step with it; 0: not measured.
 double saved_share(std::string_view program, std::string_view effect);
 
-}  // namespace couplet::effects
+}  // namespace couplet::diagnostics

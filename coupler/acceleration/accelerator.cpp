@@ -2,11 +2,14 @@
 #include "coupler/acceleration/accelerator.hpp"
 
 #include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
 #include <cassert>
+#include <cmath>
 
 #include "common/io/checkpoint.hpp"
 #include "coupler/acceleration/quasi_newton.hpp"
-#include "coupler/acceleration/relaxation.hpp"
 
 namespace couplet::coupler {
 
@@ -78,6 +81,90 @@ std::vector<std::vector<double>> read_columns(io::CheckpointReader& file, const 
   for (std::size_t j = 0; j < m; ++j)
     for (std::size_t i = 0; i < n; ++i) columns[j][i] = rows[i * m + j];
   return columns;
+}
+
+double aitken_factor(double omega, std::span<const double> residual, std::span<const double> next_residual,
+                     MPI_Comm comm) {
+  assert(residual.size() == next_residual.size());
+  using Vector = Eigen::Map<const Eigen::VectorXd>;
+  std::array<double, 2> sums{};  // r . change, |change|^2
+  for_blocks(residual.size(), [&](std::size_t first, std::size_t count) {
+    const Vector r(residual.data() + first, Eigen::Index(count)),
+        next(next_residual.data() + first, r.size());
+    sums[0] += r.dot(next - r);
+    sums[1] += (next - r).squaredNorm();
+  });
+  sum_over(comm, sums);
+  return sums[1] > 0 ? -omega * sums[0] / sums[1] : omega;
+}
+
+Iterate ConstantRelaxation::next(Iterate x, const Iterate& image) {
+  relax(x, omega_, image);
+  return x;
+}
+
+AitkenRelaxation::AitkenRelaxation(const AccelerationParameters& parameters, MPI_Comm comm)
+    : parameters_(parameters),
+      comm_(comm),
+      omega_(parameters.initial_relaxation),
+      first_(parameters.initial_relaxation) {}
+
+void AitkenRelaxation::start_step() {
+  forget_pass();
+  omega_ = first_;
+  second_pass_ = false;
+}
+
+void AitkenRelaxation::take_residual(const Iterate& x, const Iterate& image) {
+  const std::size_t n = x.unknown.size(), m = x.rider.size();
+  residual_.resize(n + m);  // of its size already but in the first pass
+  double* r = residual_.data();
+  for (std::size_t i = 0; i < n; ++i) r[i] = image.unknown[i] - x.unknown[i];
+  for (std::size_t i = 0; i < m; ++i) r[n + i] = image.rider[i] - x.rider[i];
+  if (m == 0) return;
+  if (!knows_pass_) {
+    const std::span<const double> own(r, n), riders(r + n, m);
+    std::array<double, 2> squares{dot(own, own), dot(riders, riders)};
+    sum_over(comm_, squares);
+    rider_weight_ = squares[1] > 0 ? std::sqrt(squares[0] / squares[1]) : 0;
+  }
+  for (std::size_t i = n; i < n + m; ++i) r[i] *= rider_weight_;
+}
+
+void AitkenRelaxation::learn() {
+  if (!knows_pass_) return;
+  const double most = 10 * parameters_.maximum_relaxation;
+  omega_ = std::clamp(aitken_factor(omega_, last_residual_, residual_, comm_), -most, most);
+  if (second_pass_)
+    first_ = std::clamp(std::abs(omega_), std::min(1e-3, parameters_.maximum_relaxation),
+                        parameters_.maximum_relaxation);
+}
+
+Iterate AitkenRelaxation::next(Iterate x, const Iterate& image) {
+  take_residual(x, image);
+  learn();
+  second_pass_ = !knows_pass_;
+  knows_pass_ = true;
+  std::swap(residual_, last_residual_);
+  relax(x, omega_, image);
+  return x;
+}
+
+void AitkenRelaxation::accept(const Iterate& x, const Iterate& image) {
+  // A step of two passes has its second factor only now.
+  if (second_pass_) {
+    take_residual(x, image);
+    learn();
+  }
+  forget_pass();
+}
+
+void AitkenRelaxation::save(io::CheckpointWriter& file, const IterateOrder&) const {
+  file.write_scalar("omega", first_);
+}
+
+void AitkenRelaxation::load(io::CheckpointReader& file, const IterateOrder&) {
+  first_ = file.read_scalar("omega");
 }
 
 }  // namespace couplet::coupler

@@ -1,78 +1,166 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/acceleration/quasi_newton.hpp"
-#include "common/base/error.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 
 namespace couplet::coupler {
 
-// -- least squares
-// --------------------------------------------------------------------------------------------
+namespace {
 
-LeastSquaresNewton::LeastSquaresNewton(const AccelerationParameters& parameters, MPI_Comm comm)
-    : parameters_(parameters), secants_(comm), pairs_(comm), share_(parameters.initial_relaxation) {}
-
-void LeastSquaresNewton::clear() {
-  while (pairs_.columns() > 0) pairs_.erase(pairs_.columns() - 1);
-  step_of_.clear();
+std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> result(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) result[i] = a[i] - b[i];
+  return result;
 }
 
-void LeastSquaresNewton::give_up_earlier_steps() {
-  while (!step_of_.empty() && step_of_.back() != step_) {
-    pairs_.erase(pairs_.columns() - 1);
-    step_of_.pop_back();
-  }
+/// y += sum of c_j x_j, by rows that stay in the cache.
+template <class Column>
+void add_to(std::vector<double>& y, const Eigen::VectorXd& c, Column column) {
+  constexpr std::size_t block = 1024;
+  for (std::size_t first = 0; first < y.size(); first += block)
+    for (int j = 0; j < c.size(); ++j) {
+      const std::vector<double>& x = column(j);
+      for (std::size_t i = first; i < std::min(first + block, y.size()); ++i) y[i] += c[j] * x[i];
+    }
 }
 
-void LeastSquaresNewton::start_step() {
+}  // namespace
+
+void SecantPairs::push_front(std::vector<double> residual, Iterate image) {
+  qr_.push_front(std::move(residual));
+  images_.push_front(std::move(image));
+}
+
+void SecantPairs::erase(int column) {
+  qr_.erase(column);
+  images_.erase(images_.begin() + column);
+}
+
+std::vector<int> SecantPairs::drop(double limit) {
+  std::vector<int> dropped = qr_.drop(limit);
+  for (const int j : dropped) images_.erase(images_.begin() + j);
+  return dropped;
+}
+
+void SecantPairs::add(const Eigen::VectorXd& c, Iterate& to) const {
+  add_to(to.unknown, c, [&](int j) -> const std::vector<double>& { return images_[std::size_t(j)].unknown; });
+  add_to(to.rider, c, [&](int j) -> const std::vector<double>& { return images_[std::size_t(j)].rider; });
+}
+
+void SecantPairs::save(io::CheckpointWriter& file, const std::string& name, const IterateOrder& order) const {
+  qr_.save(file, name, order.unknown);
+  Columns unknown, rider;
+  for (const Iterate& image : images_) unknown.emplace_back(image.unknown), rider.emplace_back(image.rider);
+  write_columns(file, order.unknown, name + ".images", unknown);
+  write_columns(file, order.rider, name + ".riders", rider);
+}
+
+void SecantPairs::load(io::CheckpointReader& file, const std::string& name, const IterateOrder& order) {
+  qr_.load(file, name, order.unknown);
+  const auto m = std::size_t(qr_.columns());
+  std::vector<std::vector<double>> unknown = read_columns(file, order.unknown, name + ".images", m),
+                                   rider = read_columns(file, order.rider, name + ".riders", m);
+  images_.clear();
+  for (std::size_t j = 0; j < m; ++j) images_.push_back({std::move(unknown[j]), std::move(rider[j])});
+}
+
+QuasiNewton::QuasiNewton(const AccelerationParameters& parameters, MPI_Comm comm)
+    : parameters_(parameters), comm_(comm), share_(parameters.initial_relaxation) {}
+
+void QuasiNewton::start_step() {
   // A step that was given up may have been led astray by its history, and its own pairs belong to another dt.
-  if (open_) clear();
+  if (open_) forget_all();
   open_ = true;
-  used_earlier_ = false;
   share_ = parameters_.initial_relaxation;
-  secants_.forget_pass();
-  step_ += 1;
-  // The columns of the step under way do not count.
-  while (!step_of_.empty() && step_ - step_of_.back() > parameters_.reused_steps) {
-    pairs_.erase(pairs_.columns() - 1);
-    step_of_.pop_back();
+  last_.reset();
+  begin_step();
+}
+
+void QuasiNewton::learn(const Iterate& x, const Iterate& image) {
+  constexpr double bad_growth = 10;
+  const std::optional<Pair> before = std::exchange(last_, Pair{difference(image.unknown, x.unknown), image});
+  if (before) {
+    const Pair& now = *last_;
+    Pair pair{
+        difference(now.residual, before->residual),
+        {difference(image.unknown, before->image.unknown), difference(image.rider, before->image.rider)}};
+    std::array<double, 3> squares{dot(now.residual, now.residual), dot(before->residual, before->residual),
+                                  dot(pair.residual, pair.residual)};
+    sum_over(comm_, squares);
+    if (uses_earlier_steps() && squares[1] > 0 && std::sqrt(squares[0] / squares[1]) > bad_growth) {
+      forget_earlier_steps();
+      ++resets_;
+    }
+    if (squares[2] > 0) add(std::move(pair));
   }
 }
 
-void LeastSquaresNewton::learn(const Iterate& x, const Iterate& image) {
-  std::optional<Secants::Pair> pair = secants_.pair(x, image);
-  if (used_earlier_ && secants_.growth() > Secants::bad_growth) {
-    give_up_earlier_steps();
-    ++resets_;
-  }
-  if (!pair) return;
-  pairs_.push_front(std::move(pair->residual), std::move(pair->image));
-  step_of_.push_front(step_);
-  for (const int j : pairs_.drop(parameters_.filter)) step_of_.erase(step_of_.begin() + j);
-  while (pairs_.columns() > parameters_.maximum_columns) {
-    pairs_.erase(pairs_.columns() - 1);
-    step_of_.pop_back();
-  }
-}
-
-Iterate LeastSquaresNewton::next(Iterate x, const Iterate& image) {
+Iterate QuasiNewton::next(Iterate x, const Iterate& image) {
   learn(x, image);
-  used_earlier_ = !step_of_.empty() && step_of_.back() != step_;
   Iterate next = image;
-  if (pairs_.columns() > 0) pairs_.add(pairs_.qr().minimise(secants_.residual()), next);
-  if (pairs_.columns() == 0 || !secants_.finite(next)) {
-    if (pairs_.columns() > 0) ++resets_;
-    clear();
+  const bool has_pairs = columns() > 0;
+  if (has_pairs) correct(next);
+  if (!has_pairs || !is_finite(next)) {
+    if (has_pairs) ++resets_;
+    forget_all();
     next = x;
     relax(next, parameters_.initial_relaxation, image);
   }
-  share_ = secants_.share(x, next);
+  using Vector = Eigen::Map<const Eigen::VectorXd>;
+  const auto n = Eigen::Index(x.unknown.size());
+  const Vector r(residual().data(), n), from(x.unknown.data(), n), to(next.unknown.data(), n);
+  std::array<double, 2> sums{(to - from).dot(r), r.squaredNorm()};
+  sum_over(comm_, sums);
+  share_ = sums[1] > 0 ? sums[0] / sums[1] : 0;
   return next;
 }
 
-void LeastSquaresNewton::accept(const Iterate& x, const Iterate& image) {
+void QuasiNewton::accept(const Iterate& x, const Iterate& image) {
   learn(x, image);
   open_ = false;
+}
+
+bool QuasiNewton::is_finite(const Iterate& x) const {
+  // Zero times what is not finite is not a number, and so is its sum with anything. Four sums side by side.
+  double sums[4] = {}, wrong = 0;
+  for (std::size_t i = 0; i + 4 <= x.unknown.size(); i += 4)
+    for (std::size_t k = 0; k < 4; ++k) sums[k] += 0 * x.unknown[i + k];
+  for (std::size_t i = x.unknown.size() / 4 * 4; i < x.unknown.size(); ++i) sums[0] += 0 * x.unknown[i];
+  wrong = sums[0] + sums[1] + sums[2] + sums[3] == 0 ? 0 : 1;
+  sum_over(comm_, {&wrong, 1});
+  return wrong == 0;
+}
+
+void LeastSquaresNewton::drop_oldest() {
+  pairs_.erase(pairs_.columns() - 1);
+  step_of_.pop_back();
+}
+
+void LeastSquaresNewton::forget_all() {
+  while (!step_of_.empty()) drop_oldest();
+}
+
+void LeastSquaresNewton::forget_earlier_steps() {
+  while (uses_earlier_steps()) drop_oldest();
+}
+
+void LeastSquaresNewton::begin_step() {
+  step_ += 1;
+  // The columns of the step under way do not count.
+  while (!step_of_.empty() && step_ - step_of_.back() > parameters().reused_steps) drop_oldest();
+}
+
+void LeastSquaresNewton::add(Pair pair) {
+  pairs_.push_front(std::move(pair.residual), std::move(pair.image));
+  step_of_.push_front(step_);
+  for (const int j : pairs_.drop(parameters().filter)) step_of_.erase(step_of_.begin() + j);
+  while (pairs_.columns() > parameters().maximum_columns) drop_oldest();
 }
 
 void LeastSquaresNewton::save(io::CheckpointWriter& file, const IterateOrder& order) const {
@@ -90,65 +178,33 @@ void LeastSquaresNewton::load(io::CheckpointReader& file, const IterateOrder& or
   step_ = file.read_scalar("iqn.step");
 }
 
-// -- multi-vector
-// ---------------------------------------------------------------------------------------------
-
-MultiVectorNewton::MultiVectorNewton(const AccelerationParameters& parameters, MPI_Comm comm)
-    : parameters_(parameters), comm_(comm), secants_(comm), share_(parameters.initial_relaxation) {}
-
 int MultiVectorNewton::columns() const {
   int sum = 0;
   for (const SecantPairs& step : steps_) sum += step.columns();
   return sum;
 }
 
-void MultiVectorNewton::start_step() {
-  if (open_) steps_.clear();
-  open_ = true;
-  share_ = parameters_.initial_relaxation;
-  secants_.forget_pass();
+void MultiVectorNewton::begin_step() {
   if (!steps_.empty() && steps_.front().columns() == 0) steps_.pop_front();
-  steps_.emplace_front(comm_);
-  while (steps_.size() > std::size_t(parameters_.reused_steps) + 1 ||
-         (columns() > parameters_.maximum_columns && steps_.size() > 1))
+  steps_.emplace_front(comm());
+  while (steps_.size() > std::size_t(parameters().reused_steps) + 1 ||
+         (columns() > parameters().maximum_columns && steps_.size() > 1))
     steps_.pop_back();
 }
 
-void MultiVectorNewton::learn(const Iterate& x, const Iterate& image) {
-  std::optional<Secants::Pair> pair = secants_.pair(x, image);
-  if (steps_.size() > 1 && secants_.growth() > Secants::bad_growth) {
-    steps_.resize(1, SecantPairs(comm_));
-    ++resets_;
-  }
-  if (!pair) return;
-  steps_.front().push_front(std::move(pair->residual), std::move(pair->image));
-  steps_.front().drop(parameters_.filter);
+void MultiVectorNewton::add(Pair pair) {
+  steps_.front().push_front(std::move(pair.residual), std::move(pair.image));
+  steps_.front().drop(parameters().filter);
 }
 
-Iterate MultiVectorNewton::next(Iterate x, const Iterate& image) {
-  learn(x, image);
-  Iterate next = image;
+void MultiVectorNewton::correct(Iterate& next) const {
   // What the columns of one step leave of the residual goes on to the step before.
-  std::vector<double> rest = secants_.residual();
+  std::vector<double> rest = residual();
   for (const SecantPairs& step : steps_) {
     const Eigen::VectorXd t = step.qr().along(rest);
     step.qr().subtract(t, rest);
     step.add(-step.qr().back_substitute(t), next);
   }
-  const bool empty = columns() == 0;
-  if (empty || !secants_.finite(next)) {
-    if (!empty) ++resets_;
-    steps_.assign(1, SecantPairs(comm_));
-    next = x;
-    relax(next, parameters_.initial_relaxation, image);
-  }
-  share_ = secants_.share(x, next);
-  return next;
-}
-
-void MultiVectorNewton::accept(const Iterate& x, const Iterate& image) {
-  learn(x, image);
-  open_ = false;
 }
 
 void MultiVectorNewton::save(io::CheckpointWriter& file, const IterateOrder& order) const {
@@ -160,7 +216,7 @@ void MultiVectorNewton::load(io::CheckpointReader& file, const IterateOrder& ord
   steps_.clear();
   const std::size_t n = file.read_count("iqn.steps", most_columns);
   for (std::size_t s = 0; s < n; ++s)
-    steps_.emplace_back(comm_).load(file, "iqn." + std::to_string(s), order);
+    steps_.emplace_back(comm()).load(file, "iqn." + std::to_string(s), order);
 }
 
 }  // namespace couplet::coupler

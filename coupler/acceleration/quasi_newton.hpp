@@ -29,35 +29,52 @@ class SecantPairs {
   std::deque<Iterate> images_;
 };
 
-/// What both quasi-Newton methods do alike: differences between one pass and the next, the first update of a
-/// run, and the guard against a bad update.
+/// What both quasi-Newton methods do alike: differences between one pass and the next, the first update of a run, and the
+/// guard against a bad update.
 ///
-/// The guard: an update that used earlier steps' pairs and made the residual ten times larger than at the
-/// pass before shows that these pairs describe another map; all of them are given up, those of this step
-/// stay. An update that is not finite is replaced by a relaxation and all pairs are given up.
-class Secants {
+/// The guard: an update that used earlier steps' pairs and made the residual ten times larger than at the pass before
+/// shows that these pairs describe another map; all of them are given up, those of this step stay. An update that is not
+/// finite is replaced by a relaxation and all pairs are given up.
+class QuasiNewton : public Accelerator {
  public:
-  explicit Secants(MPI_Comm comm) : comm_(comm) {}
+  QuasiNewton(const AccelerationParameters& parameters, MPI_Comm comm);
+  void start_step() final;
+  Iterate next(Iterate x, const Iterate& image) final;
+  void accept(const Iterate& x, const Iterate& image) final;
+  void map_changed() final { last_.reset(); }
+  double relaxation() const final { return share_; }
+  long resets() const final { return resets_; }
+
+ protected:
   struct Pair {
     std::vector<double> residual;
     Iterate image;
   };
-  void forget_pass() { last_.reset(); }
-  /// The difference to the pass before, if there was one in this step and the two differ; remembers this
-  /// pass.
-  std::optional<Pair> pair(const Iterate& x, const Iterate& image);
+  const AccelerationParameters& parameters() const { return parameters_; }
+  MPI_Comm comm() const { return comm_; }
+  /// Residual of the last pass.
   const std::vector<double>& residual() const { return last_->residual; }
-  /// Of this pass' residual to that of the pass before; 0 for a first pass.
-  double growth() const { return growth_; }
-  bool finite(const Iterate& x) const;
-  /// Share of the residual in the update from x: (next - x) . r / r . r.
-  double share(const Iterate& x, const Iterate& next) const;
-  static constexpr double bad_growth = 10;
+
+  /// A step begins: pairs that are too old leave.
+  virtual void begin_step() = 0;
+  virtual void add(Pair pair) = 0;
+  /// next -= J r, where next is H(x) and there are pairs.
+  virtual void correct(Iterate& next) const = 0;
+  virtual bool uses_earlier_steps() const = 0;
+  virtual void forget_earlier_steps() = 0;
+  virtual void forget_all() = 0;
 
  private:
+  /// Takes the difference to the pass before, if there was one in this step and the two differ.
+  void learn(const Iterate& x, const Iterate& image);
+  bool is_finite(const Iterate& x) const;
+
+  AccelerationParameters parameters_;
   MPI_Comm comm_;
-  std::optional<Pair> last_;
-  double growth_ = 0;
+  std::optional<Pair> last_;  // pass of this step
+  double share_;              // of the residual in the last update
+  bool open_ = false;         // the step has not been accepted
+  long resets_ = 0;
 };
 
 /// Quasi-Newton with the inverse Jacobian from a least-squares problem over this and earlier steps (IQN-ILS)
@@ -65,31 +82,26 @@ class Secants {
 ///   x^{k+1} = H(x^k) + W c,  c = argmin |r^k + V c|,
 /// the columns of V, W being the differences of r and of H(x) between two passes of one step. In the
 /// direction of r that no column spans it is the plain iteration. Without any column: x += omega r.
-class LeastSquaresNewton final : public Accelerator {
+class LeastSquaresNewton final : public QuasiNewton {
  public:
-  LeastSquaresNewton(const AccelerationParameters& parameters, MPI_Comm comm);
-  void start_step() override;
-  Iterate next(Iterate x, const Iterate& image) override;
-  void accept(const Iterate& x, const Iterate& image) override;
-  void map_changed() override { secants_.forget_pass(); }
-  double relaxation() const override { return share_; }
+  LeastSquaresNewton(const AccelerationParameters& parameters, MPI_Comm comm)
+      : QuasiNewton(parameters, comm), pairs_(comm) {}
   int columns() const override { return pairs_.columns(); }
-  long resets() const override { return resets_; }
   void save(io::CheckpointWriter& file, const IterateOrder& order) const override;
   void load(io::CheckpointReader& file, const IterateOrder& order) override;
 
  private:
-  void learn(const Iterate& x, const Iterate& image);
-  void give_up_earlier_steps();
-  void clear();
+  void begin_step() override;
+  void add(Pair pair) override;
+  void correct(Iterate& next) const override { pairs_.add(pairs_.qr().minimise(residual()), next); }
+  bool uses_earlier_steps() const override { return !step_of_.empty() && step_of_.back() != step_; }
+  void forget_earlier_steps() override;
+  void forget_all() override;
+  void drop_oldest();
 
-  AccelerationParameters parameters_;
-  Secants secants_;
   SecantPairs pairs_;
   std::deque<double> step_of_;  // of each column: number of its step
-  double step_ = 0, share_;
-  bool open_ = false, used_earlier_ = false;
-  long resets_ = 0;
+  double step_ = 0;
 };
 
 /// Multi-vector quasi-Newton (IQN-MVJ) [Bogaers et al. 2014], matrix-free: the inverse Jacobian of the last
@@ -97,29 +109,23 @@ class LeastSquaresNewton final : public Accelerator {
 ///   J = W V^+ + J_old (I - V V^+),  x^{k+1} = H(x^k) - J r^k,
 /// applied as a product over the kept steps, newest first. Each step's QR stays as it was made: an update
 /// costs 4 m flops a row for m columns where the least-squares method needs 14 m.
-class MultiVectorNewton final : public Accelerator {
+class MultiVectorNewton final : public QuasiNewton {
  public:
-  MultiVectorNewton(const AccelerationParameters& parameters, MPI_Comm comm);
-  void start_step() override;
-  Iterate next(Iterate x, const Iterate& image) override;
-  void accept(const Iterate& x, const Iterate& image) override;
-  void map_changed() override { secants_.forget_pass(); }
-  double relaxation() const override { return share_; }
+  MultiVectorNewton(const AccelerationParameters& parameters, MPI_Comm comm)
+      : QuasiNewton(parameters, comm) {}
   int columns() const override;
-  long resets() const override { return resets_; }
   void save(io::CheckpointWriter& file, const IterateOrder& order) const override;
   void load(io::CheckpointReader& file, const IterateOrder& order) override;
 
  private:
-  void learn(const Iterate& x, const Iterate& image);
+  void begin_step() override;
+  void add(Pair pair) override;
+  void correct(Iterate& next) const override;
+  bool uses_earlier_steps() const override { return steps_.size() > 1; }
+  void forget_earlier_steps() override { steps_.resize(1, SecantPairs(comm())); }
+  void forget_all() override { steps_.assign(1, SecantPairs(comm())); }
 
-  AccelerationParameters parameters_;
-  MPI_Comm comm_;
-  Secants secants_;
-  std::deque<SecantPairs> steps_;  // newest first; the step under way is the first while open_
-  double share_;
-  bool open_ = false;
-  long resets_ = 0;
+  std::deque<SecantPairs> steps_;  // newest first; the step under way is the first
 };
 
 }  // namespace couplet::coupler

@@ -27,16 +27,6 @@ constexpr double damping = 0.15, calm = 1e-5;
 // Of the largest flow that is left as a measure after each step: flows pass through zero.
 constexpr double fading = 0.98;
 
-bool has(const std::vector<coupling::Interface::Datum>& list, const std::string& name) {
-  return std::ranges::find(list, name, &coupling::Interface::Datum::name) != list.end();
-}
-
-const std::vector<double>& values_of(const coupling::Exchange& data, const std::string& name) {
-  static const std::vector<double> none;
-  const auto found = data.find(name);
-  return found == data.end() ? none : found->second;
-}
-
 }  // namespace
 
 VolumeLevel::VolumeLevel(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
@@ -44,12 +34,13 @@ VolumeLevel::VolumeLevel(MPI_Comm comm, const std::vector<Side>& sides, const Li
     : comm_(comm), links_(&links) {
   const auto takes_of_cavity = [&](std::size_t i) {
     return std::ranges::any_of(links.all(), [&](const Links::Link& l) {
-      return l.taker == i && l.datum.name == load_name && has(sides[l.giver].interface.gives, inflow_name);
+      return l.taker == i && l.datum.name == load_name &&
+             find_datum(sides[l.giver].interface.gives, inflow_name);
     });
   };
   for (const std::size_t i : group) {
     if (takes_of_cavity(i)) structures_.push_back(i);
-    if (!has(sides[i].interface.gives, inflow_name)) continue;
+    if (!find_datum(sides[i].interface.gives, inflow_name)) continue;
     if (!schedule.iterates || schedule.side_by_side)
       throw Error(
           "'{}' is a closed fluid whose pressure level the structure determines, in the serial iteration of "
@@ -267,7 +258,7 @@ void VolumeLevel::load(io::CheckpointReader& file, const std::vector<Side>& side
 }
 
 std::vector<std::string> VolumeLevel::columns() const {
-  std::vector<std::string> list{"time [s]"};
+  std::vector<std::string> list;
   for (const Cavity& c : cavities_)
     for (const char* what : {"level [Pa]", "volume change [m^3]", "inflow [m^3]", "volume error [m^3]"})
       list.push_back(c.name + " " + what);

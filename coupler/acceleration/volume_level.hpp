@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/io/checkpoint.hpp"
-#include "coupler/exchange/cavity_wall.hpp"
+#include "coupler/exchange/face_corners.hpp"
 #include "coupler/mapping/links.hpp"
 #include "coupler/parameters/schedule.hpp"
 

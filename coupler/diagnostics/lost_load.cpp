@@ -36,9 +36,8 @@ class LostLoad final : public CouplingDiagnostic {
   void observe(diagnostics::Report& report) override {
     std::array<double, 2> size{};  // of the forces that nobody takes, and of those that somebody does
     for (const Force& force : forces_) {
-      const coupling::Exchange& given = view_.pass.given()[force.giver];
-      if (const auto found = given.find(force.name); found != given.end())
-        for (const double value : found->second) size[force.taken] += value * value;
+      for (const double value : values_of(view_.pass.given()[force.giver], force.name))
+        size[force.taken] += value * value;
     }
     MPI_Allreduce(MPI_IN_PLACE, size.data(), 2, MPI_DOUBLE, MPI_SUM, view_.comm);
     for (std::size_t k = 0; k < size.size(); ++k) squares_[k] += size[k];

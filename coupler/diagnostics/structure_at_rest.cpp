@@ -11,11 +11,9 @@ namespace {
 
 constexpr int patience = 10;  // steps
 
-double largest(const coupling::Exchange& data, const std::string& name) {
-  const auto found = data.find(name);
+double largest(const std::vector<double>& values) {
   double most = 0;
-  if (found != data.end())
-    for (const double value : found->second) most = std::max(most, std::abs(value));
+  for (const double value : values) most = std::max(most, std::abs(value));
   return most;
 }
 
@@ -27,8 +25,7 @@ class StructureAtRest final : public CouplingDiagnostic {
     const std::vector<Side>& sides = view.pass.sides();
     for (std::size_t s = 0; s < sides.size(); ++s) {
       const coupling::Interface& i = sides[s].interface;
-      if (std::ranges::find(i.gives, "displacement", &coupling::Interface::Datum::name) == i.gives.end())
-        continue;
+      if (!find_datum(i.gives, "displacement")) continue;
       Structure one{.side = s, .loads = {}, .unit = {}};
       for (const auto& datum : i.takes)
         if (datum.unit == "N" || datum.unit == "Pa") one.loads.push_back(datum.name), one.unit = datum.unit;
@@ -41,9 +38,10 @@ class StructureAtRest final : public CouplingDiagnostic {
       const Structure& one = structures_[k];
       double load = 0;
       for (const std::string& name : one.loads)
-        load = std::max(load, largest(view_.pass.taken()[one.side], name));
+        load = std::max(load, largest(values_of(view_.pass.taken()[one.side], name)));
       load = parallel::max(view_.comm, load);
-      const double motion = parallel::max(view_.comm, largest(view_.pass.given()[one.side], "displacement"));
+      const double motion =
+          parallel::max(view_.comm, largest(values_of(view_.pass.given()[one.side], "displacement")));
       steps_[k] = load > 0 && motion == 0 ? steps_[k] + 1 : 0;
       if (steps_[k] < patience) continue;
       const std::string& name = view_.pass.sides()[one.side].name;

@@ -10,8 +10,8 @@
 #include "common/diagnostics/diagnostics.hpp"
 #include "coupler/acceleration/fixed_point.hpp"
 #include "coupler/output/record.hpp"
+#include "coupler/parameters/schedule.hpp"
 #include "coupler/pass.hpp"
-#include "coupler/scheme_choice.hpp"
 
 namespace couplet::coupler {
 

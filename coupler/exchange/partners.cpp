@@ -54,7 +54,7 @@ std::vector<coupling::Interface> initialise_all(const std::vector<Partner*>& par
 }
 
 std::vector<diagnostics::NamedErrors> finalise_all(const std::vector<Partner*>& partners,
-                                                const std::string& problem) {
+                                                   const std::string& problem) {
   std::vector<diagnostics::NamedErrors> errors;
   for (Partner* p : partners) {
     p->send({coupling::Op::finalise, {}, {}, 0, -1, problem});

@@ -3,13 +3,77 @@
 
 #include <mpi.h>
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include "common/coupling/messages.hpp"
+#include "common/coupling/participant.hpp"
+#include "common/parallel/collective.hpp"
 #include "common/parallel/index_map.hpp"
-#include "coupler/exchange/search.hpp"
 
 namespace couplet::coupler {
+
+/// The datum of this name; nullptr if the list has none.
+const coupling::Interface::Datum* find_datum(const std::vector<coupling::Interface::Datum>& list,
+                                             const std::string& name);
+/// Values by name; empty if there are none.
+const std::vector<double>& values_of(const coupling::Exchange& data, const std::string& name);
+
+/// The smallest box around some points.
+struct PointBox {
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+  bool empty = true;
+  PointBox() = default;
+  explicit PointBox(const std::vector<Vec3>& points);
+  /// Distance [m] of a point of the box to `p`, at least and at most.
+  double nearest(const Vec3& p) const { return (p - p.cwiseMax(low).cwiseMin(high)).norm(); }
+  double furthest(const Vec3& p) const { return (p - low).cwiseAbs().cwiseMax((p - high).cwiseAbs()).norm(); }
+};
+
+/// Some places of one side of the interface: this rank's part of a list that is cut over the coupler's ranks.
+struct PointSet {
+  std::string what;  ///< for messages: "vertices of 'fluid'"
+  std::vector<Vec3> points;
+  std::vector<double> sizes{};  ///< of faces [m^2] (2-D: [m]), for shares; empty: all alike
+  const coupling::Interface* surface =
+      nullptr;  ///< that these are vertices or faces of, this rank's part; for projection
+  std::vector<GlobalIndex> positions{};  ///< of these points in the whole list
+  std::vector<GlobalIndex> ids{};        ///< the same on any number of ranks: decide between equals
+  coupling::Starts starts{};             ///< of the whole list
+  coupling::Interface::Place place = coupling::Interface::Place::vertices;
+  bool own_surface =
+      false;  ///< a surface of their own among those of `surface`: what goes by faces does not see it
+};
+/// Fills in positions, ids and starts of a list that lives on one rank.
+PointSet whole_set(PointSet set);
+
+struct Neighbour {
+  double distance;       ///< [m]; infinity: there is none
+  GlobalIndex position;  ///< in the whole list
+  GlobalIndex id;
+  double size;  ///< of the neighbour, if its set has sizes
+  Vec3 point;
+};
+
+/// For each point of `points` on this rank the nearest of `among` on any rank; of equals the one of the
+/// smallest id. No rank sees more of `among` than its own part. Collective.
+std::vector<Neighbour> nearest(MPI_Comm comm, const std::vector<Vec3>& points, const PointSet& among);
+
+/// How many of `found` on all ranks have the same neighbour, at most. `starts`: of the list that was searched. Collective.
+int most_followers(MPI_Comm comm, const std::vector<Neighbour>& found, const coupling::Starts& starts);
+
+/// Every item on the rank that has it, owner(item); there those of rank 0 first, of each rank in the order in which it had
+/// them. Nothing is sent where all are there. Items are copied as bytes. Collective.
+template <class Item, class Owner>
+std::vector<Item> to_owners(MPI_Comm comm, std::vector<Item> items, const Owner& owner) {
+  const int rank = parallel::comm_rank(comm);
+  const bool stay = std::ranges::all_of(items, [&](const Item& item) { return int(owner(item)) == rank; });
+  if (!parallel::any(comm, !stay)) return items;
+  const parallel::Parcels<Item> out = parallel::sort_by_rank(comm, items, owner);
+  std::vector<Item>().swap(items);
+  return parallel::exchange(comm, out).items;
+}
 
 /// One participant as the coupler knows it after `initialise`: this rank's part of its places, and how they
 /// are cut over the coupler's ranks.

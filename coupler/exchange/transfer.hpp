@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "common/coupling/blocks.hpp"
+#include "common/coupling/messages.hpp"
 
 namespace couplet::coupler {
 
@@ -49,5 +49,13 @@ std::vector<Transfer::Entry> by_owner(MPI_Comm comm, const coupling::Starts& tar
                                       std::vector<Transfer::Entry> entries);
 /// The same weights from targets to sources.
 std::vector<Transfer::Entry> transposed(std::vector<Transfer::Entry> entries);
+
+/// Entries of the map that does `first` and then `second`, where the targets of the one are the sources of the
+/// other, cut over the ranks as `between` says. Entries may be on any rank; those of the product are on the rank that has
+/// those of `second`, each pair once there: row by row, so that no rank holds more than its rows of both maps and of the
+/// product. Collective.
+std::vector<Transfer::Entry> product(MPI_Comm comm, const coupling::Starts& between,
+                                     const std::vector<Transfer::Entry>& second,
+                                     const std::vector<Transfer::Entry>& first);
 
 }  // namespace couplet::coupler

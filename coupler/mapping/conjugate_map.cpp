@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "coupler/exchange/product.hpp"
+#include "coupler/exchange/transfer.hpp"
 #include "coupler/mapping/face_weights.hpp"
 #include "coupler/mapping/sparse_map.hpp"
 #include "coupler/mapping/surface_rows.hpp"

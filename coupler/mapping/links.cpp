@@ -24,11 +24,6 @@ struct Source {
   const Datum* datum;
 };
 
-const Datum* find(const std::vector<Datum>& list, const std::string& name) {
-  const auto found = std::ranges::find(list, name, &Datum::name);
-  return found == list.end() ? nullptr : &*found;
-}
-
 /// What a participant remembers of its last pass through the coupler's hands, as a part of the unknown.
 bool is_own(const Datum& datum) { return datum.name.starts_with("own-"); }
 
@@ -40,7 +35,7 @@ std::vector<Source> sources_of(const Datum& wanted, std::size_t taker, const std
     if ((g == taker) != is_own(wanted)) continue;
     for (const Datum& datum : sides[g].interface.gives)
       all.push_back("'" + datum.name + "' by '" + sides[g].name + "'");
-    if (const Datum* datum = find(sides[g].interface.gives, wanted.name)) found.push_back({g, datum});
+    if (const Datum* datum = find_datum(sides[g].interface.gives, wanted.name)) found.push_back({g, datum});
   }
   if (found.empty())
     throw Error("'{}' takes '{}', which no participant gives. Given are: {}.", sides[taker].name, wanted.name,
@@ -98,7 +93,7 @@ std::vector<std::size_t> nearest_of(MPI_Comm comm, const PointSet& set, const st
 std::vector<std::size_t> takers_of(const Datum& datum, const std::vector<Side>& sides) {
   std::vector<std::size_t> list;
   for (std::size_t t = 0; t < sides.size(); ++t)
-    if (find(sides[t].interface.takes, datum.name)) list.push_back(t);
+    if (find_datum(sides[t].interface.takes, datum.name)) list.push_back(t);
   return list;
 }
 
@@ -109,7 +104,7 @@ PointSet share_of(MPI_Comm comm, const PointSet& places, const Datum& given, std
   std::size_t here = 0;
   for (const std::size_t other : takers) {
     if (other == t) here = theirs.size();
-    theirs.push_back(sides[other].places_taken(*find(sides[other].interface.takes, given.name)));
+    theirs.push_back(sides[other].places_taken(*find_datum(sides[other].interface.takes, given.name)));
   }
   const auto taker_of =
       nearest_of(comm, places, theirs,

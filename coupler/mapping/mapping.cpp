@@ -7,7 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
-#include "coupler/exchange/product.hpp"
+#include "coupler/exchange/transfer.hpp"
 #include "coupler/mapping/sparse_map.hpp"
 #include "coupler/mapping/surface_rows.hpp"
 #include "coupler/mapping/surroundings.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "coupler/exchange/search.hpp"
+#include "coupler/exchange/side.hpp"
 #include "coupler/exchange/transfer.hpp"
 #include "coupler/parameters/parameters.hpp"
 

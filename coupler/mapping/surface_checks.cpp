@@ -10,7 +10,7 @@
 #include "common/diagnostics/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
-#include "coupler/exchange/transfer.hpp"
+#include "coupler/exchange/face_corners.hpp"
 
 namespace couplet::coupler {
 namespace {
@@ -37,23 +37,13 @@ struct Box {
 /// else the edge of a square of its area; in 2-D areas are lengths. Collective.
 std::vector<double> extents(MPI_Comm comm, const Side& side) {
   const coupling::Interface& i = side.interface;
-  const coupling::Starts corners = coupling::starts_of(
-      parallel::all_gather(comm, std::vector<GlobalIndex>{GlobalIndex(i.face_vertices.size())}));
-  std::vector<Transfer::Entry> entries;
-  for (std::size_t k = 0; k < i.face_vertices.size(); ++k)
-    entries.push_back(
-        {corners[std::size_t(parallel::comm_rank(comm))] + GlobalIndex(k), i.face_vertices[k], 1.});
-  std::vector<double> xyz, at_corners;
-  for (const Vec3& v : i.vertices) xyz.insert(xyz.end(), v.data(), v.data() + 3);
-  if (corners.back() > 0) at_corners = Transfer(comm, corners, side.vertices, entries).apply(xyz, 3);
+  const FaceCorners corners(comm, side);
   std::vector<double> result;
   for (std::size_t f = 0; f < i.face_centres.size(); ++f) {
     const double area = i.face_areas[f].norm();
     double extent = i.dim == 2 ? area : std::sqrt(area);
-    for (Index k = i.face_offset.empty() ? 0 : i.face_offset[f];
-         !i.face_offset.empty() && k < i.face_offset[f + 1]; ++k)
-      extent = std::max(
-          extent, 2 * (Eigen::Map<const Vec3>(&at_corners[3 * std::size_t(k)]) - i.face_centres[f]).norm());
+    for (Index k = corners.begin(f); k < corners.end(f); ++k)
+      extent = std::max(extent, 2 * (corners.points()[std::size_t(k)] - i.face_centres[f]).norm());
     result.push_back(extent);
   }
   return result;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/parallel/collective.hpp"
-#include "coupler/exchange/search.hpp"
+#include "coupler/exchange/side.hpp"
 #include "coupler/mapping/face_weights.hpp"
 #include "coupler/mapping/sparse_map.hpp"
 #include "coupler/mapping/surroundings.hpp"

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "coupler/exchange/search.hpp"
+#include "coupler/exchange/side.hpp"
 
 namespace couplet::coupler {
 

@@ -67,22 +67,9 @@ InterfaceOutput::InterfaceOutput(MPI_Comm comm, fs::path folder, const std::vect
   if (parallel::any(comm, bool(failed)))
     throw Error("Cannot create the folder {}: {}.", folder_.string(), failed.message());
   for (const Side& side : sides) {
-    const coupling::Interface& i = side.interface;
     if (side.faces.back() == 0) continue;
-    const std::size_t n = i.face_vertices.size();
-    const coupling::Starts corners =
-        coupling::starts_of(parallel::all_gather(comm, std::vector<GlobalIndex>{GlobalIndex(n)}));
-    const GlobalIndex first = corners[std::size_t(parallel::comm_rank(comm))];
-    std::vector<Transfer::Entry> entries;
-    for (std::size_t k = 0; k < n; ++k) entries.push_back({first + GlobalIndex(k), i.face_vertices[k], 1});
-    Surface& s = surfaces_.emplace_back();
-    s.side = &side;
-    s.index = std::size_t(&side - sides.data());
-    s.to_corners = Transfer(comm, corners, side.vertices, std::move(entries));
-    std::vector<double> xyz;
-    for (const Vec3& v : i.vertices) xyz.insert(xyz.end(), {v.x(), v.y(), v.z()});
-    s.corners = s.to_corners.apply(xyz, 3);
-    s.files = kept(folder_ / (side.name + ".pvd"), restart_time);
+    surfaces_.push_back({&side, std::size_t(&side - sides.data()), FaceCorners(comm, side),
+                         kept(folder_ / (side.name + ".pvd"), restart_time)});
   }
 }
 
@@ -104,10 +91,10 @@ void InterfaceOutput::write_piece(const Surface& surface, const fs::path& file,
   const std::size_t faces = i.face_centres.size();
   const bool has_corners = !i.face_vertices.empty();
   // Without known vertices a face is its centre.
-  std::vector<double> points = surface.corners;
+  std::vector<double> points;
   std::vector<GlobalIndex> connectivity, offsets;
-  if (!has_corners)
-    for (const Vec3& c : i.face_centres) points.insert(points.end(), {c.x(), c.y(), c.z()});
+  for (const Vec3& x : has_corners ? surface.corners.points() : i.face_centres)
+    points.insert(points.end(), {x.x(), x.y(), x.z()});
   for (std::size_t k = 0; k < points.size() / 3; ++k) connectivity.push_back(GlobalIndex(k));
   for (std::size_t f = 0; f < faces; ++f)
     offsets.push_back(has_corners ? i.face_offset[f + 1] : GlobalIndex(f) + 1);
@@ -130,7 +117,7 @@ void InterfaceOutput::write_piece(const Surface& surface, const fs::path& file,
   out << "<PointData>\n";
   for (const auto& [datum, values] : data)
     if (datum->place == coupling::Interface::Place::vertices && surface.side->faces.back() > 0)
-      if (const auto at_corners = surface.to_corners.apply(*values, datum->size(i.dim)); has_corners)
+      if (const auto at_corners = surface.corners.values(*values, datum->size(i.dim)); has_corners)
         array(out, datum->name, at_corners, datum->size(i.dim));
   out << "</PointData>\n<CellData>\n";
   for (const auto& [datum, values] : data)

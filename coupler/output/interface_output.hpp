@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "coupler/exchange/side.hpp"
-#include "coupler/exchange/transfer.hpp"
+#include "coupler/exchange/face_corners.hpp"
 
 namespace couplet::coupler {
 
@@ -34,8 +33,7 @@ class InterfaceOutput {
   struct Surface {
     const Side* side;
     std::size_t index;  // among all sides
-    Transfer to_corners;
-    std::vector<double> corners;  // 3 coordinates each
+    FaceCorners corners;
     std::vector<InterfaceFiles> files;
   };
   void write_piece(const Surface& surface, const std::filesystem::path& file, const coupling::Exchange& given,

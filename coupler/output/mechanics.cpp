@@ -59,10 +59,6 @@ Balance Balancing::operator()(const coupling::Exchange& data,
 Mechanics::Mechanics(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
                      std::vector<std::string> labels)
     : labels_(std::move(labels)) {
-  const auto has = [](const std::vector<coupling::Interface::Datum>& list) {
-    return std::ranges::find(list, std::string("displacement"), &coupling::Interface::Datum::name) !=
-           list.end();
-  };
   for (std::size_t s = 0; s < sides.size(); ++s) {
     std::vector<coupling::Interface::Datum> loads;
     bool gives = false;
@@ -73,11 +69,12 @@ Mechanics::Mechanics(MPI_Comm comm, const std::vector<Side>& sides, const Links&
         continue;
       gives = link.giver == s;
       if (!gives) d.place = link.to;
-      if (std::ranges::find(loads, d.name, &coupling::Interface::Datum::name) == loads.end())
-        loads.push_back(d);
+      if (!find_datum(loads, d.name)) loads.push_back(d);
     }
     const coupling::Interface& interface = sides[s].interface;
-    if (loads.empty() || !(has(interface.takes) || has(interface.gives))) continue;
+    if (loads.empty() ||
+        !(find_datum(interface.takes, "displacement") || find_datum(interface.gives, "displacement")))
+      continue;
     members_.push_back({s, gives, Balancing(comm, sides[s]), loads});
     walls_.emplace_back(interface.vertices.size() * std::size_t(interface.dim), 0.);
     dim_ = interface.dim;
@@ -85,12 +82,6 @@ Mechanics::Mechanics(MPI_Comm comm, const std::vector<Side>& sides, const Links&
         loads, [](const auto& d) { return d.place == coupling::Interface::Place::vertices; });
     knows_work_ = knows_work_ && (by_vertex || members_.back().balancing.knows_work());
   }
-}
-
-std::vector<std::string> Mechanics::labels() const {
-  std::vector<std::string> list;
-  for (const Member& m : members_) list.push_back(labels_[m.side]);
-  return list;
 }
 
 std::vector<SideBalance> Mechanics::accepted(const std::vector<coupling::Exchange>& given,

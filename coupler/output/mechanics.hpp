@@ -58,7 +58,6 @@ class Mechanics {
   /// Whether all sides tell the vertices of their faces, so that there is work to compare.
   bool knows_work() const { return knows_work_; }
   int dim() const { return dim_; }
-  std::vector<std::string> labels() const;
   /// Balances of the accepted step from what each has given and taken; moves the walls. Collective.
   std::vector<SideBalance> accepted(const std::vector<coupling::Exchange>& given,
                                     const std::vector<coupling::Exchange>& taken);

@@ -16,19 +16,6 @@
 namespace couplet::coupler {
 namespace {
 
-// Forces and work as ever, moments after them.
-std::vector<std::string> balance_columns(const std::vector<std::string>& sides, int dim) {
-  std::vector<std::string> columns{"time [s]"};
-  for (const std::string& side : sides) {
-    for (int c = 0; c < dim; ++c) columns.push_back(fmt::format("{} force {} [N]", side, "xyz"[c]));
-    columns.push_back(fmt::format("{} work of the step [J]", side));
-  }
-  for (const std::string& side : sides)
-    for (int c = dim == 2 ? 2 : 0; c < 3; ++c)
-      columns.push_back(fmt::format("{} moment {} [N m]", side, "xyz"[c]));
-  return columns;
-}
-
 std::vector<std::string> participant_columns(const std::vector<std::string>& names) {
   std::vector<std::string> columns{"time [s]", "step", "coupling iterations", "wall clock [s]"};
   for (const std::string& name : names)
@@ -40,12 +27,11 @@ std::vector<std::string> participant_columns(const std::vector<std::string>& nam
 
 }  // namespace
 
-Monitor::Monitor(MPI_Comm comm, std::filesystem::path folder, std::vector<std::string> names,
-                 const std::vector<std::string>& balanced, int dim, double end_time, double restart_time)
+Monitor::Monitor(MPI_Comm comm, std::filesystem::path folder, std::vector<std::string> names, double end_time,
+                 double restart_time)
     : folder_(std::move(folder)),
       writes_(parallel::comm_rank(comm) == 0),
       names_(std::move(names)),
-      dim_(dim),
       end_time_(end_time),
       restart_time_(restart_time),
       start_time_(std::isnan(restart_time) ? 0. : restart_time),
@@ -60,8 +46,6 @@ Monitor::Monitor(MPI_Comm comm, std::filesystem::path folder, std::vector<std::s
                                               "absolute residual [m]", "relaxation"},
                      restart_time);
   participants_.emplace(folder_ / "participants.csv", participant_columns(names_), restart_time);
-  if (!balanced.empty())
-    balance_.emplace(folder_ / "balance.csv", balance_columns(balanced, dim), restart_time);
 }
 
 void Monitor::iteration(const coupling::Step& step, int number, const Residual& residual, double omega) {
@@ -70,49 +54,18 @@ void Monitor::iteration(const coupling::Step& step, int number, const Residual& 
                                         residual.relative, residual.absolute, omega});
 }
 
-void Monitor::balance(double time, const std::vector<SideBalance>& sides) {
-  if (!balance_) return;
-  std::vector<double> row{time};
-  for (const SideBalance& side : sides) {
-    for (int c = 0; c < dim_; ++c) row.push_back(side.balance.force[c]);
-    row.push_back(side.balance.work);
-  }
-  for (const SideBalance& side : sides)
-    for (int c = dim_ == 2 ? 2 : 0; c < 3; ++c) row.push_back(side.balance.moment[c]);
-  balance_->row(row);
-}
-
-void Monitor::amounts(double time, const std::vector<Links::Amount>& amounts) {
-  if (!writes_ || amounts.empty()) return;
-  if (!amounts_) {
-    std::vector<std::string> columns{"time [s]"};
-    for (const auto& amount : amounts) columns.push_back(amount.column);
-    amounts_.emplace(folder_ / "amounts.csv", columns, restart_time_);
-  }
-  std::vector<double> row{time};
-  for (const auto& amount : amounts) row.push_back(amount.value);
-  amounts_->row(row);
-}
-
-void Monitor::volume(double time, const VolumeLevel& level) {
-  if (!writes_) return;
-  if (!volume_) volume_.emplace(folder_ / "volume.csv", level.columns(), restart_time_);
-  std::vector<double> row{time};
-  for (const double value : level.row()) row.push_back(value);
-  volume_->row(row);
-}
-
-void Monitor::watched(double time, const std::vector<std::string>& columns,
-                      const std::vector<double>& values) {
-  if (!writes_) return;
-  if (!watched_) {
+void Monitor::row(const char* file, double time, const std::vector<std::string>& columns,
+                  const std::vector<double>& values) {
+  if (!writes_ || columns.empty()) return;
+  auto table = tables_.find(file);
+  if (table == tables_.end()) {
     std::vector<std::string> all{"time [s]"};
     all.insert(all.end(), columns.begin(), columns.end());
-    watched_.emplace(folder_ / "watch.csv", all, restart_time_);
+    table = tables_.try_emplace(file, folder_ / file, all, restart_time_).first;
   }
   std::vector<double> row{time};
   row.insert(row.end(), values.begin(), values.end());
-  watched_->row(row);
+  table->second.row(row);
 }
 
 namespace {

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,10 +13,7 @@
 #include "common/coupling/participant.hpp"
 #include "common/io/series.hpp"
 #include "coupler/acceleration/fixed_point.hpp"
-#include "coupler/acceleration/volume_level.hpp"
 #include "coupler/exchange/partners.hpp"
-#include "coupler/mapping/links.hpp"
-#include "coupler/output/mechanics.hpp"
 #include "coupler/parameters/schedule.hpp"
 
 namespace couplet::coupler {
@@ -26,17 +24,15 @@ namespace couplet::coupler {
 /// each step and the closing summary.
 class Monitor {
  public:
-  /// `names`: of everyone; `balanced`: of those in balance.csv. restart_time: NaN for a fresh start.
-  Monitor(MPI_Comm comm, std::filesystem::path folder, std::vector<std::string> names,
-          const std::vector<std::string>& balanced, int dim, double end_time, double restart_time);
-
+  /// `names`: of everyone. `restart_time`: NaN for a fresh start.
+  Monitor(MPI_Comm comm, std::filesystem::path folder, std::vector<std::string> names, double end_time,
+          double restart_time);
   /// The first step begins now: what went before is not its work.
   void start(const std::vector<Partner>& partners);
   void iteration(const coupling::Step& step, int number, const Residual& residual, double omega);
-  void balance(double time, const std::vector<SideBalance>& sides);
-  void amounts(double time, const std::vector<Links::Amount>& amounts);
-  void volume(double time, const VolumeLevel& level);
-  void watched(double time, const std::vector<std::string>& columns, const std::vector<double>& values);
+  /// One row of a table that is begun with its first row; nothing without columns.
+  void row(const char* file, double time, const std::vector<std::string>& columns,
+           const std::vector<double>& values);
   void step(const coupling::Step& step, double time, const FixedPointResult& result,
             const std::vector<Partner>& partners);
   /// Mean and largest number of iterations, time by participant.
@@ -49,8 +45,8 @@ class Monitor {
   std::filesystem::path folder_;
   bool writes_;
   std::vector<std::string> names_;
-  std::optional<io::Series> residuals_, participants_, balance_, amounts_, volume_, watched_;
-  int dim_;
+  std::optional<io::Series> residuals_, participants_;
+  std::map<std::string, io::Series> tables_;  // begun so far
   double end_time_, restart_time_, start_time_;
   Clock::time_point start_ = Clock::now(), step_start_ = Clock::now(), last_line_{};
   long steps_ = 0, iterations_ = 0, most_iterations_ = 0;

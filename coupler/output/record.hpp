@@ -30,6 +30,7 @@ class Record {
 
  private:
   parallel::GlobalOrder order_of_wall(std::size_t i) const;
+  void write_balance(double time);
 
   MPI_Comm comm_;
   const CouplingParameters& parameters_;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/output/watch_integrals.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -17,10 +16,8 @@ using Datum = coupling::Interface::Datum;
 using Place = coupling::Interface::Place;
 
 const Datum* find(const coupling::Interface& interface, const std::string& name) {
-  for (const auto* list : {&interface.gives, &interface.takes})
-    for (const Datum& datum : *list)
-      if (datum.name == name) return &datum;
-  return nullptr;
+  const Datum* given = find_datum(interface.gives, name);
+  return given ? given : find_datum(interface.takes, name);
 }
 
 std::string names_of(const coupling::Interface& interface) {
@@ -32,30 +29,16 @@ std::string names_of(const coupling::Interface& interface) {
 }
 
 /// What it gives itself, else what it takes.
-const std::vector<double>* values_of(const std::string& name, const coupling::Exchange& given,
-                                     const coupling::Exchange& taken) {
+const std::vector<double>* either(const std::string& name, const coupling::Exchange& given,
+                                  const coupling::Exchange& taken) {
   for (const coupling::Exchange* data : {&given, &taken})
     if (const auto found = data->find(name); found != data->end()) return &found->second;
   return nullptr;
 }
 
-Vec3 corner(const std::vector<double>& xyz, std::size_t k, int dim) {
-  Vec3 x = Vec3::Zero();
-  for (int c = 0; c < dim; ++c) x[c] = xyz[k * std::size_t(dim) + std::size_t(c)];
-  return x;
-}
-
-/// Of the polygon (2-D: the edge, 1 m deep) with corners `from` to `to`, by their order: half the sum of x_i x x_{i+1}.
-Vec3 area_of(const std::vector<double>& xyz, std::size_t from, std::size_t to, int dim) {
-  if (dim == 2) {
-    const Vec3 edge = corner(xyz, from + 1, 2) - corner(xyz, from, 2);
-    return {edge.y(), -edge.x(), 0};
-  }
-  const Vec3 first = corner(xyz, from, 3);
-  Vec3 area = Vec3::Zero();
-  for (std::size_t k = from + 1; k + 1 < to; ++k)
-    area += (corner(xyz, k, 3) - first).cross(corner(xyz, k + 1, 3) - first) / 2;
-  return area;
+bool moves(const coupling::Interface& interface) {
+  const Datum* motion = find(interface, "displacement");
+  return motion && motion->place == Place::vertices && motion->size(interface.dim) == interface.dim;
 }
 
 std::vector<bool> faces_of_part(MPI_Comm comm, const std::string& name, const WatchParameters& p,
@@ -74,31 +57,6 @@ std::vector<bool> faces_of_part(MPI_Comm comm, const std::string& name, const Wa
 }
 
 }  // namespace
-
-WatchIntegrals::Surface WatchIntegrals::surface_of(const Side& side, std::size_t index) const {
-  const coupling::Interface& i = side.interface;
-  Surface s{index, i.dim, false, false, {}, {}, i.face_offset, i.face_areas, {}};
-  const std::size_t n = i.face_vertices.size();
-  s.knows_corners = parallel::sum(comm_, GlobalIndex(n)) > 0;
-  if (!s.knows_corners) return s;
-  const coupling::Starts corners =
-      coupling::starts_of(parallel::all_gather(comm_, std::vector<GlobalIndex>{GlobalIndex(n)}));
-  const GlobalIndex first = corners[std::size_t(parallel::comm_rank(comm_))];
-  std::vector<Transfer::Entry> entries;
-  for (std::size_t k = 0; k < n; ++k) entries.push_back({first + GlobalIndex(k), i.face_vertices[k], 1});
-  s.to_corners = Transfer(comm_, corners, side.vertices, std::move(entries));
-  std::vector<double> x;
-  for (const Vec3& v : i.vertices) x.insert(x.end(), v.data(), v.data() + i.dim);
-  s.corners = s.to_corners.apply(x, i.dim);
-  const Datum* motion = find(i, "displacement");
-  s.moves = motion && motion->place == Place::vertices && motion->size(i.dim) == i.dim;
-  for (std::size_t f = 0; f + 1 < s.offset.size(); ++f)
-    s.sign.push_back(area_of(s.corners, std::size_t(s.offset[f]), std::size_t(s.offset[f + 1]), i.dim)
-                                 .dot(s.reference_area[f]) < 0
-                         ? -1
-                         : 1);
-  return s;
-}
 
 WatchIntegrals::Integral WatchIntegrals::integral_of(const std::string& name, const WatchParameters& p,
                                                      const Side& side, const Surface& surface) const {
@@ -123,7 +81,7 @@ WatchIntegrals::Integral WatchIntegrals::integral_of(const std::string& name, co
         "coupling.watch.{}.data: '{}' has {} components; only data with 1 or {} can be integrated over the "
         "surface.",
         name, p.data, n, side.interface.dim);
-  if (datum->place == Place::vertices && !surface.knows_corners)
+  if (datum->place == Place::vertices && !surface.corners.known())
     throw Error(
         "coupling.watch.{}.data: '{}' does not provide the corners of its faces, which the integral of '{}' "
         "needs. Watch the participant on the other side.",
@@ -143,7 +101,9 @@ WatchIntegrals::WatchIntegrals(MPI_Comm comm, const std::vector<Side>& sides,
                   p.participant);
     const auto index = std::size_t(side - sides.begin());
     auto surface = std::ranges::find(surfaces_, index, &Surface::side);
-    if (surface == surfaces_.end()) surface = surfaces_.insert(surface, surface_of(*side, index));
+    if (surface == surfaces_.end())
+      surface = surfaces_.insert(
+          surface, Surface{index, side->interface.dim, FaceCorners(comm, *side), moves(side->interface)});
     integrals_.push_back(integral_of(name, p, *side, *surface));
     integrals_.back().surface = std::size_t(surface - surfaces_.begin());
     const Integral& i = integrals_.back();
@@ -167,27 +127,22 @@ WatchIntegrals::WatchIntegrals(MPI_Comm comm, const std::vector<Side>& sides,
 
 std::vector<Vec3> WatchIntegrals::areas(const Surface& s, const coupling::Exchange& given,
                                         const coupling::Exchange& taken) const {
-  const std::vector<double>* moved = s.moves ? values_of("displacement", given, taken) : nullptr;
+  const std::vector<double>* moved = s.moves ? either("displacement", given, taken) : nullptr;
   // A rank without vertices has no such name: all ranks together must know.
-  if (!parallel::any(comm_, moved != nullptr)) return s.reference_area;
-  std::vector<double> at = s.to_corners.apply(moved ? *moved : std::vector<double>{}, s.dim);
-  for (std::size_t k = 0; k < at.size(); ++k) at[k] += s.corners[k];
-  std::vector<Vec3> areas;
-  for (std::size_t f = 0; f + 1 < s.offset.size(); ++f)
-    areas.push_back(s.sign[f] * area_of(at, std::size_t(s.offset[f]), std::size_t(s.offset[f + 1]), s.dim));
-  return areas;
+  if (!s.corners.known() || !parallel::any(comm_, moved != nullptr)) return s.corners.reference_areas();
+  return s.corners.areas(moved ? *moved : std::vector<double>{});
 }
 
 void WatchIntegrals::add_up(const Integral& i, const std::vector<double>& values,
                             const std::vector<Vec3>& areas, double* sums) const {
-  const Surface& s = surfaces_[i.surface];
-  const auto n = std::size_t(i.datum.size(s.dim));
+  const FaceCorners& corners = surfaces_[i.surface].corners;
+  const auto n = std::size_t(i.datum.size(surfaces_[i.surface].dim));
   const bool at_corners = i.kind != Kind::amount && i.datum.place == Place::vertices;
   for (std::size_t f = 0; f < i.counts.size(); ++f) {
     if (!i.counts[f]) continue;
     Vec3 q = Vec3::Zero();
-    const std::size_t from = at_corners ? std::size_t(s.offset[f]) : f,
-                      to = at_corners ? std::size_t(s.offset[f + 1]) : f + 1;
+    const std::size_t from = at_corners ? std::size_t(corners.begin(f)) : f,
+                      to = at_corners ? std::size_t(corners.end(f)) : f + 1;
     for (std::size_t k = from; k < to; ++k)
       for (std::size_t c = 0; c < std::min<std::size_t>(n, 3); ++c)
         q[Index(c)] += values[k * n + c] / double(to - from);
@@ -206,12 +161,12 @@ std::vector<double> WatchIntegrals::row(const std::vector<coupling::Exchange>& g
   std::size_t column = 0;
   for (const Integral& i : integrals_) {
     const Surface& s = surfaces_[i.surface];
-    const std::vector<double>* values = values_of(i.datum.name, given[s.side], taken[s.side]);
+    const std::vector<double>* values = either(i.datum.name, given[s.side], taken[s.side]);
     const bool known = parallel::any(comm_, values != nullptr);
     if (known) {
       std::vector<double> here = values ? *values : std::vector<double>{};
       if (i.kind != Kind::amount && i.datum.place == Place::vertices)
-        here = s.to_corners.apply(here, i.datum.size(s.dim));
+        here = s.corners.values(here, i.datum.size(s.dim));
       const std::vector<Vec3> moved =
           i.kind == Kind::amount ? std::vector<Vec3>{} : areas(s, given[s.side], taken[s.side]);
       add_up(i, here, moved, row.data() + column);

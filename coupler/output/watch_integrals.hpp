@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "coupler/exchange/side.hpp"
-#include "coupler/exchange/transfer.hpp"
+#include "coupler/exchange/face_corners.hpp"
 #include "coupler/parameters/parameters.hpp"
 
 namespace couplet::coupler {
@@ -35,13 +34,8 @@ class WatchIntegrals {
   struct Surface {
     std::size_t side;
     int dim;
-    bool moves;          // areas follow the displacement
-    bool knows_corners;  // else vertices have no place on the faces
-    Transfer to_corners;
-    std::vector<double> corners;       // dim coordinates each, reference configuration
-    std::vector<Index> offset;         // of each face's corners
-    std::vector<Vec3> reference_area;  // out of the participant [m^2]
-    std::vector<double> sign;          // of the area that the order of the corners makes
+    FaceCorners corners;
+    bool moves;  // areas follow the displacement
   };
   struct Integral {
     std::size_t surface;
@@ -50,7 +44,6 @@ class WatchIntegrals {
     std::vector<bool> counts;  // by face (vertex for amounts there) of this rank
     std::size_t columns;
   };
-  Surface surface_of(const Side& side, std::size_t index) const;
   Integral integral_of(const std::string& name, const WatchParameters& p, const Side& side,
                        const Surface& surface) const;
   std::vector<Vec3> areas(const Surface& s, const coupling::Exchange& given,

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "coupler/parameters/schedule.hpp"
 namespace couplet::coupler {
 namespace {
 

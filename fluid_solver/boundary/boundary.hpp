@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/app/case/check_files.hpp"
+#include "common/app/program.hpp"
 #include "common/fv/expression.hpp"
 #include "fluid_solver/parameters/parameters.hpp"
 #include "fluid_solver/state/placement.hpp"

@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "common/app/case/check_files.hpp"
+#include "common/app/program.hpp"
 #include "common/modes/modal_model.hpp"
 #include "plate_modal/model/parameters.hpp"
 

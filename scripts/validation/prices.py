@@ -12,7 +12,7 @@ import subprocess
 
 from couplet.runs import environment
 
-LIST = "common/effects/prices.cpp"
+LIST = "common/diagnostics/prices.cpp"
 BASES = {  # program: words of the participant; a bar stands for a third component, 0
     "fluid_solver": "density: 1, viscosity: 0.01, boundaries: {left: {type: inlet, velocity: [1, 0|]}, "
                     "right: {type: outlet}, bottom: {type: no-slip}, top: {type: no-slip}SIDES}",

@@ -13,7 +13,7 @@ class ProgramUnderTest {
  public:
   std::string name() const;
   /// Bound to parameters that nothing has been read into yet.
-  app::ProgramKind fresh() const;
+  app::Program fresh() const;
 };
 
 /// The declaration for parameters of its own, which live as long as it.

@@ -6,10 +6,12 @@ namespace couplet::fuzz {
 
 std::string ProgramUnderTest::name() const { return "coupler"; }
 
-app::ProgramKind ProgramUnderTest::fresh() const {
-  return {name(), "", true,
-          with_fresh<coupler::CouplingParameters>(
-              [](config::Section& s, coupler::CouplingParameters& p) { coupler::declare(s, p); })};
+app::Program ProgramUnderTest::fresh() const {
+  return {.name = name(),
+          .description = "",
+          .declare = with_fresh<coupler::CouplingParameters>(
+              [](config::Section& s, coupler::CouplingParameters& p) { coupler::declare(s, p); }),
+          .is_coupler = true};
 }
 
 }  // namespace couplet::fuzz

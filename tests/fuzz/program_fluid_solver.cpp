@@ -6,9 +6,10 @@ namespace couplet::fuzz {
 
 std::string ProgramUnderTest::name() const { return "fluid_solver"; }
 
-app::ProgramKind ProgramUnderTest::fresh() const {
-  return {name(), "", false,
-          with_fresh<fluid::FluidParameters>(
+app::Program ProgramUnderTest::fresh() const {
+  return {.name = name(),
+          .description = "",
+          .declare = with_fresh<fluid::FluidParameters>(
               [](config::Section& s, fluid::FluidParameters& p) { declare(s, p); })};
 }
 

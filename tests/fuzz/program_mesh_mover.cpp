@@ -6,9 +6,10 @@ namespace couplet::fuzz {
 
 std::string ProgramUnderTest::name() const { return "mesh_mover"; }
 
-app::ProgramKind ProgramUnderTest::fresh() const {
-  return {name(), "", false,
-          with_fresh<mesh_mover::Parameters>(
+app::Program ProgramUnderTest::fresh() const {
+  return {.name = name(),
+          .description = "",
+          .declare = with_fresh<mesh_mover::Parameters>(
               [](config::Section& s, mesh_mover::Parameters& p) { declare(s, p); })};
 }
 

@@ -6,9 +6,11 @@ namespace couplet::fuzz {
 
 std::string ProgramUnderTest::name() const { return "plate_modal"; }
 
-app::ProgramKind ProgramUnderTest::fresh() const {
-  return {name(), "", false,
-          with_fresh<plate::Parameters>([](config::Section& s, plate::Parameters& p) { declare(s, p); })};
+app::Program ProgramUnderTest::fresh() const {
+  return {.name = name(),
+          .description = "",
+          .declare =
+              with_fresh<plate::Parameters>([](config::Section& s, plate::Parameters& p) { declare(s, p); })};
 }
 
 }  // namespace couplet::fuzz

@@ -8,9 +8,11 @@ using namespace solid;
 
 std::string ProgramUnderTest::name() const { return "solid_solver"; }
 
-app::ProgramKind ProgramUnderTest::fresh() const {
-  return {name(), "", false,
-          with_fresh<SolidParameters>([](config::Section& s, SolidParameters& p) { declare(s, p); })};
+app::Program ProgramUnderTest::fresh() const {
+  return {
+      .name = name(),
+      .description = "",
+      .declare = with_fresh<SolidParameters>([](config::Section& s, SolidParameters& p) { declare(s, p); })};
 }
 
 }  // namespace couplet::fuzz

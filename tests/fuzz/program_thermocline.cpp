@@ -6,9 +6,10 @@ namespace couplet::fuzz {
 
 std::string ProgramUnderTest::name() const { return "thermocline"; }
 
-app::ProgramKind ProgramUnderTest::fresh() const {
-  return {name(), "", false,
-          with_fresh<thermocline::ElementParameters>(
+app::Program ProgramUnderTest::fresh() const {
+  return {.name = name(),
+          .description = "",
+          .declare = with_fresh<thermocline::ElementParameters>(
               [](config::Section& s, thermocline::ElementParameters& p) { declare(s, p); })};
 }
 

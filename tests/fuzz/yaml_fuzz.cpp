@@ -5,7 +5,6 @@
 #include <chrono>
 #include <regex>
 
-#include "common/app/case/check_files.hpp"
 #include "common/app/case/questions.hpp"
 #include "common/base/error.hpp"
 #include "tests/fuzz/mutate.hpp"
@@ -173,7 +172,7 @@ TEST(Yaml, broken_cases_are_refused_with_a_place_in_time_and_memory) {
   const auto attempt = [&](const std::string& text) {
     write_file(command_line.case_file, text);
     const auto start = std::chrono::steady_clock::now();
-    const app::ProgramKind kind = program.fresh();
+    const app::Program kind = program.fresh();
     app::CaseFile file = app::read_case(command_line, kind);
     if (file.errors.empty() && !kind.is_coupler)
       file.errors = app::problems_of_files(*file.document, file.participant, folder);

@@ -25,7 +25,7 @@ FILES = {
         *_of("thermocline", "bed_step packed_bed numerics grains layers shell surroundings"),
     ],
     "maps": [
-        *_of("coupler", "mapping sparse_map transfer search cavity_wall links conjugate_map "
+        *_of("coupler", "mapping sparse_map transfer side face_corners links conjugate_map "
                         "face_weights slopes surface_rows"),
         *_of("common/modes", "modal_model surface_parts modal_checks"),
         *_of("plate_modal", "skin midsurface surface"),
@@ -45,7 +45,7 @@ FILES = {
         *_of("common/time", "time_scheme step_errors"),
         *_of("fluid_solver", "step_size"), *_of("solid_solver", "stage"),
         *_of("plate_modal", "oscillators kirchhoff plate_model"),
-        *_of("coupler", "relaxation accelerator quasi_newton secants growing_qr explicit_coupling"),
+        *_of("coupler", "accelerator quasi_newton growing_qr explicit_coupling"),
         *_of("thermocline", "closures flow properties"),
     ],
 }

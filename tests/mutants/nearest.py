@@ -45,7 +45,7 @@ FILE = {
     "common/modes/surface_parts": "verification_plate_modes_file",
     "common/modes/facing": "verification_plate_modes_file",
     "coupler/acceleration/volume_level": "coupling_volume_level coupling_cavity",
-    "coupler/exchange/cavity_wall": "coupling_volume_level coupling_cavity",
+    "coupler/exchange/face_corners": "coupling_volume_level coupling_cavity",
     "coupler/diagnostics/explicit_coupling": "coupled_toy",
     "coupler/exchange/transfer": "unit_maps unit_interface_map",
     "coupler/mapping/mapping": "unit_coupler unit_maps unit_coupler_maps_3",

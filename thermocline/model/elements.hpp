@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "common/app/case/check_files.hpp"
 #include "common/app/program.hpp"
 #include "common/coupling/participant.hpp"
 #include "common/diagnostics/effects.hpp"

@@ -63,9 +63,9 @@ void list_expected(const config::Document& document, CaseFile& result) {
 }
 
 /// The participant that this program is to run; throws Error.
-std::string find_participant(const CommandLine& command_line, const ProgramKind& kind, const CaseFile& file) {
+std::string find_participant(const CommandLine& command_line, const Program& program, const CaseFile& file) {
   const std::string& source = file.document->name();
-  if (kind.is_coupler) {
+  if (program.is_coupler) {
     if (!command_line.participant.empty() && command_line.participant != coupler_name)
       throw Error("The coupler takes no --participant: it couples the participants named in {}.", source);
     if (!file.coupled)
@@ -76,11 +76,11 @@ std::string find_participant(const CommandLine& command_line, const ProgramKind&
   for (const Expected& e : file.expected) {
     if (e.participant == coupler_name) continue;
     names.push_back(e.participant);
-    if (e.program == kind.name) mine.push_back(e.participant);
+    if (e.program == program.name) mine.push_back(e.participant);
   }
   if (names.empty())
     throw Error("{}:1:1: the `participants` section, which defines what {} runs, is missing.", source,
-                kind.name);
+                program.name);
   const std::string& wanted = command_line.participant;
   if (!wanted.empty()) {
     if (std::find(names.begin(), names.end(), wanted) == names.end())
@@ -91,7 +91,7 @@ std::string find_participant(const CommandLine& command_line, const ProgramKind&
           "--participant {}: this participant is run by the program '{}', but '{}' was started for "
           "it.",
           wanted, config::text_of(*file.document, "participants." + wanted + ".program").value_or("?"),
-          kind.name);
+          program.name);
     return wanted;
   }
   if (mine.empty()) {
@@ -99,11 +99,11 @@ std::string find_participant(const CommandLine& command_line, const ProgramKind&
     for (const Expected& e : file.expected)
       if (e.participant != coupler_name) pairs.push_back(fmt::format("'{}' ({})", e.participant, e.program));
     throw Error("{}: no participant is run by the program '{}': {}.",
-                config::where(*file.document, "participants"), kind.name, base::join(pairs));
+                config::where(*file.document, "participants"), program.name, base::join(pairs));
   }
   if (mine.size() > 1)
     throw Error("{}: {} participants are run by the program '{}' ({}): select one with --participant.",
-                config::where(*file.document, "participants"), mine.size(), kind.name, base::join(mine));
+                config::where(*file.document, "participants"), mine.size(), program.name, base::join(mine));
   return mine.front();
 }
 
@@ -116,15 +116,8 @@ std::string problem_of_expression(const config::ExpressionText& text) {
 }
 
 /// `effects: auto`: what the case leaves open is set in the document as if it stood there; what stands there wins.
-void choose(const CommandLine& command_line, const ProgramKind& kind, CaseFile& result) {
-  diagnostics::CaseScene scene;
-  scene.folder = command_line.case_file.parent_path();
-  scene.end_time = result.simulation.end_time;
-  scene.time_step = result.simulation.time_step;
-  scene.coupled = result.coupled;
-  scene.has_mover =
-      result.coupled && config::text_of(*result.document, "coupling.mesh.participant").has_value();
-  result.choices = kind.choose(scene);
+void choose(const CommandLine& command_line, const Program& program, CaseFile& result) {
+  result.choices = program.choose(scene_of(command_line, result));
   const std::string section = "participants." + result.participant;
   const std::vector<std::string> there = config::keys_of(*result.document, section);
   for (diagnostics::EffectChoice& choice : result.choices) {
@@ -140,16 +133,25 @@ void append(std::vector<std::string>& to, const std::vector<std::string>& more) 
 
 }  // namespace
 
-config::Section::Declare section_of(const ProgramKind& kind) {
-  if (kind.is_coupler) return kind.declare;
-  const auto program = std::make_shared<std::string>(kind.name);
-  return [kind, program](config::Section& section) {
-    section.value("program", *program).required().doc("the program that runs this participant");
-    kind.declare(section);
+diagnostics::CaseScene scene_of(const CommandLine& command_line, const CaseFile& file) {
+  return {
+      .folder = command_line.case_file.parent_path(),
+      .end_time = file.simulation.end_time,
+      .time_step = file.simulation.time_step,
+      .coupled = file.coupled,
+      .has_mover = file.coupled && config::text_of(*file.document, "coupling.mesh.participant").has_value()};
+}
+
+config::Section::Declare section_of(const Program& program) {
+  if (program.is_coupler) return program.declare;
+  const auto name = std::make_shared<std::string>(program.name);
+  return [declare = program.declare, name](config::Section& section) {
+    section.value("program", *name).required().doc("the program that runs this participant");
+    declare(section);
   };
 }
 
-CaseFile read_case(const CommandLine& command_line, const ProgramKind& kind) {
+CaseFile read_case(const CommandLine& command_line, const Program& program) {
   CaseFile result;
   try {
     result.document.emplace(config::Document::read(command_line.case_file));
@@ -164,15 +166,15 @@ CaseFile read_case(const CommandLine& command_line, const ProgramKind& kind) {
            config::load(
                *result.document, "simulation", [&](config::Section& s) { declare(s, result.simulation); }, {},
                &result.doubts));
-    result.participant = find_participant(command_line, kind, result);
+    result.participant = find_participant(command_line, program, result);
     const auto load = [&] {
       return config::load(*result.document,
-                          kind.is_coupler ? "coupling" : "participants." + result.participant,
-                          section_of(kind), problem_of_expression, &doubts);
+                          program.is_coupler ? "coupling" : "participants." + result.participant,
+                          section_of(program), problem_of_expression, &doubts);
     };
     std::vector<std::string> problems = load();
-    if (result.simulation.choose_effects && kind.choose && result.errors.empty()) {
-      choose(command_line, kind, result);  // a first look may miss keys that are chosen now
+    if (result.simulation.choose_effects && program.choose && result.errors.empty()) {
+      choose(command_line, program, result);  // a first look may miss keys that are chosen now
       problems = load();
     }
     append(result.errors, problems);

@@ -3,33 +3,176 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <sstream>
 
-#include "common/app/case/check_files.hpp"
+#include "common/app/case/case_file.hpp"
+#include "common/app/case/case_keys.hpp"
+#include "common/app/case/roll_call.hpp"
+#include "common/app/loop/step_loop.hpp"
 #include "common/base/error.hpp"
+#include "common/base/text.hpp"
+#include "common/config/document.hpp"
+#include "common/io/checkpoint.hpp"
+#include "common/io/checkpoint_set.hpp"
+#include "common/io/cut_mesh.hpp"
+#include "common/mesh/gmsh/geo_script.hpp"
+#include "common/mesh/gmsh/gmsh.hpp"
+#include "common/mesh/load.hpp"
 
 namespace couplet::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::vector<std::string>;
+
+class FileCheck {
+ public:
+  FileCheck(const config::Document& document, std::string section, fs::path folder)
+      : document_(document), section_(std::move(section)), folder_(std::move(folder)) {}
+
+  Names run() {
+    if (const auto name = config::text_of(document_, section_ + ".mesh")) check_mesh(*name);
+    check_other_files();
+    return std::move(problems_);
+  }
+
+ private:
+  void report(const std::string& key, const std::string& text) {
+    problems_.push_back(fmt::format("{}: {}", config::where(document_, section_ + "." + key), text));
+  }
+
+  void check_mesh(const std::string& name) {
+    const fs::path file = folder_ / name;
+    std::error_code ignored;
+    // Caches are made when they are needed, some by a script of the case.
+    if (name.ends_with(".cache.msh") && !fs::exists(file, ignored)) return;
+    if (!fs::is_regular_file(file, ignored)) {
+      report("mesh", fmt::format("the file '{}' does not exist.", file.string()));
+      return;
+    }
+    try {
+      if (file.extension() == ".msh") {
+        check_patches(mesh::read_msh(file).patches);
+      } else if (file.extension() == ".inp") {
+        check_patches(mesh::read_inp(file).patches);
+      } else if (file.extension() == ".geo") {
+        check_geo(mesh::read_geo(file));
+      } else if (io::is_cut_mesh(file)) {
+        check_patches(io::read_cut_mesh_facts(file).patches);
+      } else if (const std::string kind = file.extension().string();
+                 kind != ".unv" && kind != ".cgns" && !mesh::is_read_by_meshio(kind)) {
+        report("mesh",
+               fmt::format("'{}' is not a .msh, .geo, .inp, .unv, .med, .exo, .cgns or .h5 file.", name));
+      }
+    } catch (const Error& error) {
+      report("mesh", error.what());
+    }
+  }
+
+  void check_geo(const mesh::GeoScript& script) {
+    for (const std::string& name : config::keys_of(document_, section_ + ".mesh-parameters"))
+      if (std::find(script.constants.begin(), script.constants.end(), name) == script.constants.end())
+        report("mesh-parameters." + name, fmt::format("the .geo defines no such name with DefineConstant. {}",
+                                                      base::did_you_mean(name, script.constants, "names")));
+    const auto dimension = config::text_of(document_, section_ + ".dimension");
+    if (dimension != "2" && dimension != "3") return;
+    if (const auto& patches = script.groups[*dimension == "2" ? 1 : 2]) check_patches(*patches);
+  }
+
+  void check_patches(const Names& patches) {
+    if (patches.empty()) return;
+    const Names entries = config::keys_of(document_, section_ + ".boundaries");
+    const auto has = [](const Names& names, const std::string& name) {
+      return std::find(names.begin(), names.end(), name) != names.end();
+    };
+    for (const char* key : {"boundaries", "heat.boundaries"})
+      for (const std::string& entry : config::keys_of(document_, section_ + "." + key))
+        if (!has(patches, entry))
+          report(fmt::format("{}.{}", key, entry),
+                 fmt::format("the mesh has no patch with this name. {}",
+                             base::did_you_mean(entry, patches, "patches")));
+    // Of conduction alone: a patch without an entry is adiabatic.
+    if (config::text_of(document_, section_ + ".analysis") == "thermal") return;
+    for (const std::string& patch : patches)
+      if (!has(entries, patch))
+        report("boundaries", fmt::format("the patch '{}' of the mesh has no entry here.", patch));
+  }
+
+  void check_other_files() {
+    for (const auto& [path, value] : config::leaves(document_)) {
+      if (!path.starts_with(section_ + ".") || !path.ends_with(".file")) continue;
+      std::error_code ignored;
+      if (!fs::is_regular_file(folder_ / value, ignored))
+        report(path.substr(section_.size() + 1),
+               fmt::format("the file '{}' does not exist.", (folder_ / value).string()));
+    }
+  }
+
+  const config::Document& document_;
+  std::string section_;
+  fs::path folder_;
+  Names problems_;
+};
+
+}  // namespace
+
+std::vector<std::string> problems_of_files(const config::Document& document, const std::string& participant,
+                                           const fs::path& case_folder) {
+  return FileCheck(document, "participants." + participant, case_folder).run();
+}
+
+std::string problem_of_restart(const CommandLine& command_line, const CaseFile& file, bool is_coupler) {
+  if (command_line.restart_folder.empty()) return "";
+  const std::string own = (is_coupler ? std::string(coupler_name) : file.participant) + ".h5";
+  try {
+    const std::filesystem::path folder = find_checkpoint(command_line.restart_folder);
+    const auto set = io::read_checkpoint_set(folder);
+    bool has_own = false;
+    for (const io::CheckpointSet::File& part : set->files) {
+      if (const std::string problem = io::problem_in_set(folder / part.name); !problem.empty())
+        return fmt::format("--restart {}: {}", folder.string(), problem);
+      has_own = has_own || part.name == own;
+      if (part.name == own || part.name == run_file)
+        if (const std::string problem = io::problem_of_checkpoint(folder / part.name); !problem.empty())
+          return fmt::format("--restart {}: {}", folder.string(), problem);
+    }
+    if (!has_own)
+      return fmt::format(
+          "--restart {}: the checkpoint has no file {}: the run that wrote it did not include this program.",
+          folder.string(), own);
+    if (is_coupler || !file.coupled)
+      judge_changes(folder, case_keys(*file.document, command_line.case_file.parent_path()),
+                    command_line.restart_with_changes);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
 namespace {
 
 /// What is missing or broken among the files of a participant: what every program's --check sees, then its own.
-std::vector<std::string> problems(const CaseFile& file, const ProgramKind& kind,
+std::vector<std::string> problems(const CaseFile& file, const Program& program,
                                   const std::filesystem::path& case_folder) {
   std::vector<std::string> all = problems_of_files(*file.document, file.participant, case_folder);
-  if (!all.empty() || !kind.problems_of_files) return all;
-  for (const ProblemOfKey& problem : kind.problems_of_files(case_folder))
+  if (!all.empty() || !program.problems_of_files) return all;
+  for (const ProblemOfKey& problem : program.problems_of_files(case_folder))
     all.push_back(fmt::format(
         "{}: {}", config::where(*file.document, "participants." + file.participant + "." + problem.key),
         problem.what));
   return all;
 }
 
-int check(const CommandLine& command_line, const ProgramKind& kind, bool print) {
-  CaseFile file = read_case(command_line, kind);
-  if (!print && file.errors.empty() && !kind.is_coupler)
-    file.errors = problems(file, kind, command_line.case_file.parent_path());
+int check(const CommandLine& command_line, const Program& program, bool print) {
+  CaseFile file = read_case(command_line, program);
+  if (!print && file.errors.empty() && !program.is_coupler)
+    file.errors = problems(file, program, command_line.case_file.parent_path());
   if (!print && file.errors.empty())
-    if (std::string problem = problem_of_restart(command_line, file, kind.is_coupler); !problem.empty())
+    if (std::string problem = problem_of_restart(command_line, file, program.is_coupler); !problem.empty())
       file.errors.push_back(std::move(problem));
   if (!file.errors.empty()) {
     for (const std::string& error : file.errors) fmt::print(stderr, "{}\n", error);
@@ -46,8 +189,8 @@ int check(const CommandLine& command_line, const ProgramKind& kind, bool print) 
     for (std::string line; std::getline(in, line);) fmt::print("{:{}}{}\n", "", 2 * depth, line);
   };
   section("simulation", config::effective([&](config::Section& s) { declare(s, file.simulation); }), 1);
-  const std::string own = config::effective(section_of(kind));
-  if (kind.is_coupler) {
+  const std::string own = config::effective(section_of(program));
+  if (program.is_coupler) {
     section("coupling", own, 1);
   } else {
     fmt::print("participants:\n");
@@ -61,31 +204,28 @@ int check(const CommandLine& command_line, const ProgramKind& kind, bool print) 
 namespace {
 
 /// Without its mesh nothing can be expected; what is wrong with it a run will say.
-void print_expected(const CommandLine& command_line, const ProgramKind& kind) {
-  diagnostics::CaseScene scene;
-  scene.folder = command_line.case_file.parent_path();
+void print_expected(const diagnostics::CaseScene& scene, const Program& program) {
   try {
-    fmt::print("expected:         {}\n", diagnostics::text(kind.expected(scene)));
+    fmt::print("expected:         {}\n", diagnostics::text(program.expected(scene)));
   } catch (const Error& error) {
     fmt::print("expected:         unknown: {}\n", error.what());
   }
 }
 
 /// The effects of the scene and the launch line, without running anything.
-int explain(const CommandLine& command_line, const ProgramKind& kind) {
-  const CaseFile file = read_case(command_line, kind);
+int explain(const CommandLine& command_line, const Program& program) {
+  const CaseFile file = read_case(command_line, program);
   if (!file.errors.empty()) {
     for (const std::string& error : file.errors) fmt::print(stderr, "{}\n", error);
     return 2;
   }
-  const bool has_mover = config::text_of(*file.document, "coupling.mesh.participant").has_value();
-  fmt::print("{} as '{}' of {}:\n", kind.name, kind.is_coupler ? "coupler" : file.participant,
+  const diagnostics::CaseScene scene = scene_of(command_line, file);
+  fmt::print("{} as '{}' of {}:\n", program.name, program.is_coupler ? "coupler" : file.participant,
              command_line.case_file.string());
-  for (const diagnostics::EffectChoice& choice : file.choices) fmt::print("  {}\n", diagnostics::text(choice));
-  if (kind.effects)
-    fmt::print("{}", diagnostics::explanation(
-                         kind.effects({file.coupled, file.coupled && has_mover, file.simulation.time_step})));
-  if (kind.expected) print_expected(command_line, kind);
+  for (const diagnostics::EffectChoice& choice : file.choices)
+    fmt::print("  {}\n", diagnostics::text(choice));
+  if (program.effects) fmt::print("{}", diagnostics::explanation(program.effects(scene)));
+  if (program.expected) print_expected(scene, program);
   std::string job;
   for (const Expected& e : file.expected)
     job += fmt::format("{} -n 1 {} {}", job.empty() ? "mpirun" : " :", e.program,
@@ -93,32 +233,32 @@ int explain(const CommandLine& command_line, const ProgramKind& kind) {
   if (file.coupled)
     fmt::print("whole case:       {}\n", job);
   else
-    fmt::print("launch:           {} {}\n", kind.name, command_line.case_file.string());
+    fmt::print("launch:           {} {}\n", program.name, command_line.case_file.string());
   return 0;
 }
 
 }  // namespace
 
-int answer(const CommandLine& command_line, const ProgramKind& kind) {
+int answer(const CommandLine& command_line, const Program& program) {
   using Task = CommandLine::Task;
   SimulationParameters simulation;
   switch (command_line.task) {
     case Task::check:
     case Task::print_config:
-      return check(command_line, kind, command_line.task == Task::print_config);
+      return check(command_line, program, command_line.task == Task::print_config);
     case Task::docs:
-      fmt::print("{}", config::markdown(kind.name, section_of(kind)));
-      if (kind.is_coupler)
+      fmt::print("{}", config::markdown(program.name, section_of(program)));
+      if (program.is_coupler)
         fmt::print("\n{}",
                    config::markdown("simulation", [&](config::Section& s) { declare(s, simulation); }));
       return 0;
     case Task::schema:
-      fmt::print("{}\n", config::json_schema(kind.name, section_of(kind)));
+      fmt::print("{}\n", config::json_schema(program.name, section_of(program)));
       return 0;
     case Task::explain:
-      return explain(command_line, kind);
+      return explain(command_line, program);
     case Task::effects:
-      if (kind.effects) fmt::print("{}", diagnostics::markdown(kind.name, kind.effects({})));
+      if (program.effects) fmt::print("{}", diagnostics::markdown(program.name, program.effects({})));
       return 0;
     case Task::run:
       break;

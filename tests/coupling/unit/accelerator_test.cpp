@@ -11,7 +11,6 @@
 #include "common/io/checkpoint.hpp"
 #include "coupler/acceleration/fixed_point.hpp"
 #include "coupler/acceleration/growing_qr.hpp"
-#include "coupler/acceleration/relaxation.hpp"
 
 namespace couplet::accelerator_test {
 using namespace coupler;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/scheme_choice.hpp"
+#include "coupler/parameters/schedule.hpp"
 
 #include <gtest/gtest.h>
 

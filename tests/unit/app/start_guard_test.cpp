@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/app/watch/start_guard.hpp"
+#include "common/app/watch/watch.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include "common/base/error.hpp"
 
 namespace couplet::error_parts_test {
-using namespace coupling;
+using namespace diagnostics;
 namespace {
 
 TEST(ErrorPartsTest, its_text_is_read_again) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/diagnostics/effects.hpp"
+#include "common/diagnostics/diagnostics.hpp"
 
 #include <gtest/gtest.h>
 
