@@ -68,7 +68,7 @@ COUPLET_PROCESSOR_CLONES std::array<double, 5> renew(const Differences<D>& d) {
   return sums;
 }
 
-/// What a run leaves in the velocity, over its size, as norms over the volume:
+/// Shares of the error that a run leaves in the velocity, over its size, as norms over the volume:
 ///   mesh    difference of u from the value that a linear fit through the neighbours of each cell has in it, h^2/4
 ///           times the Laplacian of u on equal cells: recovery of the values
 ///   step    sum of the local errors 5/12 dt^3 d3u/dt3 of Adams and Bashforth's second order, see StepErrors; of
@@ -173,7 +173,8 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     squares = parallel::sum(fluid_.mesh().comm, squares), whole = parallel::sum(fluid_.mesh().comm, whole);
     return whole > 0 ? std::sqrt(squares / whole) : 0;
   }
-  /// Of differences of the change of the rate, and of the change itself: local errors of a step, and of one that a clock drives.
+  /// Weights of the differences of the change of the rate, and of the change itself: local errors of a step, and of one that
+  /// a clock drives.
   struct Weights {
     double local = 0, of_third = 0, of_second = 0;
   };
@@ -230,7 +231,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
   }
   /// Rate at which it takes what work brings in [1/s]. The flow's own decay is not in it: it takes the errors along with the solution.
   double friction() const {
-    // What a flow gains takes no error away; of one that decays the work alone is more than the solution's own way.
+    // A flow that gains energy loses no error by it. In one that decays, the work alone is more than the solution's own way.
     const double taken = std::max(0., std::min(power_, power_ - gain_));
     return energy_ > 0 ? taken / (2 * energy_) : 0;
   }
@@ -280,7 +281,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     left = parallel::sum(mesh.comm, left), all = parallel::sum(mesh.comm, all);
     return all > 0 ? std::sqrt(left / all) : 0;
   }
-  /// What a compressible fluid takes up is no outflow.
+  /// Mass that a compressible fluid takes up by compression is no outflow.
   void add_compression(std::vector<double>& net) const {
     const State<D>& s = fluid_.state();
     if (!s.pressure[1]) return;

@@ -28,7 +28,10 @@ class UnusedInput final : public TankDiagnostic {
     const std::vector<std::string> doubts = view_.report->doubts();
     for (std::size_t i = 0; i < doubts.size(); ++i) tell(report, "day-report", std::to_string(i), doubts[i]);
   }
-  void visit(io::Archive& archive) override { archive.common("rows", reached_, flowed_); }
+  void visit(io::Archive& archive) override {
+    archive.common("rows", reached_, flowed_);
+    flowed_.resize(view_.parameters().flow.rows.size());  // a run may go on with other rows
+  }
 
  private:
   bool has_schedule() const { return view_.parameters().flow.type == FlowParameters::Type::schedule; }

@@ -144,9 +144,11 @@ void TankModel::update_stress() {
 void TankModel::record_fluid(double t, TankStep& step) const {
   if (const Inversion now = inversion_of(bed_); now.depth > step.inversion.depth)
     step.inversion = {now.depth, now.z, t};
-  const auto [low, high] = std::minmax_element(bed_.fluid().begin(), bed_.fluid().end());
-  step.coldest = std::min(step.coldest, *low);
-  step.hottest = std::max(step.hottest, *high);
+  const std::vector<double>& fluid = bed_.fluid();
+  const auto [low, high] = std::ranges::minmax_element(fluid);
+  const auto height = [&](auto cell) { return bed_.grid().z[std::size_t(cell - fluid.begin())]; };
+  if (*low < step.coldest) step.coldest = *low, step.coldest_z = height(low);
+  if (*high > step.hottest) step.hottest = *high, step.hottest_z = height(high);
   if (!std::isfinite(*high) || !std::isfinite(*low) || *low < 0)
     throw SolveFailure("A temperature of the bed is not finite or below absolute zero.");
 }

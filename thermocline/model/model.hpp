@@ -44,8 +44,9 @@ struct Ledger {
 /// Steps of the bed and extremes of the fluid in a step of the simulation.
 struct TankStep {
   std::vector<BedStep> bed;  ///< steps of the bed
-  /// Coldest and hottest fluid after any exchange of the elements [K], and the largest inversion.
+  /// Coldest and hottest fluid after any exchange of the elements [K] and where [m], and the largest inversion.
   double coldest = std::numeric_limits<double>::infinity(), hottest = 0;
+  double coldest_z = 0, hottest_z = 0;
   Inversion inversion;
 };
 

@@ -95,6 +95,7 @@ TEST(Elements, shorter_exchange_steps_change_little) {
   EXPECT_LT(stress, 3e6);
 }
 
+<<<<<<< HEAD
 /// A bed of 1 m through which salt flows from 290 to 390 degC.
 TankParameters small_tank(double mass_flow) {
   TankParameters p;
@@ -202,6 +203,8 @@ TEST(Diagnostics, capsules_that_did_not_melt_are_said) {
   EXPECT_TRUE(said(290).empty());
 }
 
+=======
+>>>>>>> b912fa1e95ed4cd9529dcd5aef070adcce7ebaa6
 /// A plate under thin cells holds more heat than the lowest of them, and the ground takes long steps of its
 /// own.
 TEST(Elements, thin_cells_on_a_heavy_plate_cool_without_swings) {
@@ -342,43 +345,6 @@ TEST(Monitor, a_run_that_goes_on_writes_the_rows_of_one_that_was_not_stopped) {
   const std::string text = text_of(folder / "a" / "tank.csv");
   EXPECT_NE(text.find("\n600,5,20,20,"), std::string::npos) << text;
   EXPECT_NE(text.find("\n1200,0,nan,nan,"), std::string::npos) << "nothing comes in at rest";
-}
-
-TEST(Warnings, a_fluid_outside_the_range_of_its_own_tables_is_named_once) {
-  TankParameters p = solar_one_parameters();
-  p.bed.cells = 20;
-  p.fluid.type = FluidParameters::Type::custom;
-  p.fluid.density = 700, p.fluid.specific_heat = 2700;
-  p.fluid.temperature = {200, 300};  // degC were meant
-  p.fluid.conductivity = {0.1, 0.1}, p.fluid.viscosity = {1e-3, 5e-4};
-  TankRun run(p);
-  run.until(1800, 900);
-  const auto said = run.found("tank-state");
-  ASSERT_EQ(said.size(), 1u);
-  EXPECT_NE(said[0].sentence.find("conductivity and viscosity are given from -73.1 to 26.9 degC"),
-            std::string::npos)
-      << said[0].sentence;
-  p.fluid.temperature = {kelvin(200), kelvin(300)};
-  TankRun inside(p);
-  inside.until(1800, 900);
-  EXPECT_TRUE(inside.found("tank-state").empty());
-}
-
-TEST(Warnings, a_wall_outside_the_range_of_its_table_is_named_once_with_time_and_place) {
-  TankParameters p = solar_one_parameters();
-  p.bed.cells = 50;
-  p.bed.initial_temperature = 373.15;
-  TankRun run(p);
-  run.until(1800, 900);
-  const auto said = run.found("tank-state");
-  ASSERT_EQ(said.size(), 1u);
-  EXPECT_NE(said[0].sentence.find("A537"), std::string::npos) << said[0].sentence;
-  EXPECT_NE(said[0].sentence.find("from 204 to 304 degC"), std::string::npos) << said[0].sentence;
-  run.until(3600, 900);
-  EXPECT_EQ(run.found("tank-state").size(), 1u);
-  TankRun inside(solar_one_parameters());
-  inside.until(86400, 900);
-  EXPECT_TRUE(inside.found("tank-state").empty());
 }
 
 class Participation : public ::testing::Test {
