@@ -38,7 +38,7 @@ TEST(Diagnostics, findings_turn_at_their_limits_and_belong_to_what_is_left_out) 
     run.until(600, step);
     const auto all = run.found(id);
     EXPECT_LE(all.size(), 1u) << id;
-    return all.empty() ? std::optional<log::Finding>() : std::optional(all.front());
+    return all.empty() ? std::optional<diagnostics::Finding>() : std::optional(all.front());
   };
   const auto expect = [&](const TankParameters& p, const char* id, double limit, bool sound) {
     const auto found = finding(p, id);
