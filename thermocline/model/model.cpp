@@ -144,7 +144,7 @@ void TankModel::update_stress() {
 void TankModel::record_fluid(double t, TankStep& step) const {
   if (const Inversion now = inversion_of(bed_); now.depth > step.inversion.depth)
     step.inversion = {now.depth, now.z, t};
-  const std::vector<double>& fluid = bed_.fluid();
+  const std::span<const double> fluid = bed_.fluid();
   const auto [low, high] = std::ranges::minmax_element(fluid);
   const auto height = [&](auto cell) { return bed_.grid().z[std::size_t(cell - fluid.begin())]; };
   if (*low < step.coldest) step.coldest = *low, step.coldest_z = height(low);
