@@ -130,7 +130,7 @@ def refined_period(job):
 
 
 def step_control(job):
-    tests, _ = job.gtest("verification_solid_step_control")
+    tests, _ = job.gtest("verification_solid_time_schemes", "StepControl.*")
     test = next(iter(tests.values()))
     return "; ".join(f"{s}: {test[s + '_steps']} steps, {test[s + '_fixed_steps']} of the shortest"
                      for s in SCHEMES[1:]), test["passed"]

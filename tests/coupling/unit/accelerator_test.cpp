@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/acceleration/accelerator.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <filesystem>
-#include <random>
-
-#include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "coupler/acceleration/fixed_point.hpp"
 #include "coupler/acceleration/growing_qr.hpp"
 #include "coupler/acceleration/relaxation.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::accelerator_test {
 using namespace coupler;
-namespace {
 
 using Vector = std::vector<double>;
 
@@ -183,5 +176,4 @@ TEST(Residual, both_criteria_are_needed_where_both_are_asked_for) {
   EXPECT_EQ(absolute_too({1, 2e-5}, p), "");
 }
 
-}  // namespace
 }  // namespace couplet::accelerator_test

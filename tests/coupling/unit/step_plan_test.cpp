@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/coupling/step_plan.hpp"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <set>
-#include <vector>
-
-#include "common/base/error.hpp"
+#include "common/coupling/error_parts.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::step_plan_test {
 using namespace coupling;
-namespace {
 
 TEST(StepPlan, nominal_steps_end_at_the_end) {
   StepPlan plan(1, 0.1, 6);
@@ -175,5 +167,103 @@ TEST(StepPlan, continues_with_another_nominal_step_that_divides_the_time) {
   EXPECT_THROW(wrong.restore(plan.state(), plan.time()), Error);
 }
 
-}  // namespace
+TEST(ErrorPartsTest, its_text_is_read_again) {
+  const ErrorParts parts{.mesh = 0.0125, .linear = 3e-9};
+  EXPECT_EQ(parts.text(), "mesh 0.0125 linear 3e-09");
+  const ErrorParts again = ErrorParts::of(parts.text());
+  EXPECT_EQ(again.mesh, 0.0125);
+  EXPECT_EQ(again.linear, 3e-9);
+  EXPECT_TRUE(std::isnan(again.step) && std::isnan(again.coupling));
+  EXPECT_FALSE(ErrorParts::of("").known());
+  EXPECT_THROW(ErrorParts::of("done"), Error);
+  EXPECT_THROW(ErrorParts::of("mesh much"), Error);
+}
+
+TEST(ErrorPartsTest, one_part_as_large_as_the_solution_proves_an_answer_useless_less_warns) {
+  EXPECT_FALSE(worthless({{"solid", {.mesh = 0.1, .step = 0.04}}}).has_value());
+  const auto some = worthless({{"solid", {.mesh = 0.1, .step = 0.06}}});
+  ASSERT_TRUE(some.has_value());
+  EXPECT_EQ(some->severity, base::Severity::warning);
+  EXPECT_DOUBLE_EQ(some->limit, 0.15);
+  const auto sum = worthless({{"solid", {.mesh = 0.6, .step = 0.5}}});
+  ASSERT_TRUE(sum.has_value());
+  EXPECT_EQ(sum->severity, base::Severity::warning);
+  EXPECT_EQ(worthless({{"fluid", {.mesh = 0.1}}, {"solid", {.mesh = 1.1, .step = 0.1}}})->severity,
+            base::Severity::wrong);
+}
+
+TEST(ErrorPartsTest, the_largest_part_dominates_and_what_is_a_tenth_of_it_buys_nothing) {
+  const auto said = [](ErrorParts parts) {
+    const auto sentences = error_sentences({{"solid", parts}});
+    return sentences.size() > 1 ? sentences[1] : "";
+  };
+  EXPECT_EQ(
+      said({.mesh = 1e-2, .step = 5e-4, .linear = 5e-3}),
+      "the mesh dominates: half the cell size would leave about 0.0025, for 4 to 8 times the cells; halving the step "
+      "would not help.");
+  EXPECT_NE(said({.mesh = 1e-2, .step = 5e-4, .dimension = 2}).find("for 4 times the cells"),
+            std::string::npos);
+  EXPECT_EQ(
+      said({.mesh = 1e-3, .step = 5e-2}),
+      "the step dominates: half the time step would leave about 0.013, for twice the steps; refining the mesh would "
+      "not help.");
+  EXPECT_EQ(said({.mesh = 1e-3, .step = 2e-3}),
+            "the step dominates: half the time step would leave about 0.0005, for twice the steps.");
+  // What halving gains is a matter of the order.
+  EXPECT_EQ(said({.mesh = 1e-2, .step = 5e-3, .dimension = 1, .mesh_order = 0.5}),
+            "the mesh dominates: half the cell size would leave about 0.0071, for twice the cells.");
+  EXPECT_EQ(said({.mesh = 1e-3, .step = 2e-3, .step_order = 1}),
+            "the step dominates: half the time step would leave about 0.001, for twice the steps.");
+  EXPECT_EQ(said({.mesh = 1e-2}), "");  // one part alone says nothing of the others
+  EXPECT_TRUE(error_sentences({{"solid", {}}}).empty());
+}
+
+// A run that leaves something out must not pass its discretisation's error for that of its answer; yet what the guards of
+// the discretisation judge stays without it: neglected effects have findings of their own.
+TEST(ErrorPartsTest, the_model_is_a_part_of_the_budget_and_proves_no_answer_useless) {
+  const NamedErrors hot{
+      "solid",
+      {.mesh = 0.018, .model = 750, .model_by = "thermal strain neglected: use 'thermal-expansion'"}};
+  const auto sentences = error_sentences({hot});
+  ASSERT_EQ(sentences.size(), 2u);
+  EXPECT_EQ(sentences[0], "estimated error 7.5e+02 of the solution: model 7.5e+02, mesh 0.018.");
+  EXPECT_EQ(
+      sentences[1],
+      "the model dominates: thermal strain neglected: use 'thermal-expansion'; refining the mesh would not help.");
+  EXPECT_DOUBLE_EQ(total_error({hot}), 0.018);
+  EXPECT_FALSE(worthless({hot}).has_value());
+  const NamedErrors small{
+      "solid", {.mesh = 0.018, .model = 1e-4, .omittable = "inertia (...) saves about 97 % of the time"}};
+  const auto other = error_sentences({small});
+  ASSERT_EQ(other.size(), 3u);
+  EXPECT_EQ(other[1].rfind("the mesh dominates", 0), 0u) << other[1];
+  EXPECT_EQ(other[2], "could be omitted: inertia (...) saves about 97 % of the time.");
+}
+
+TEST(ErrorPartsTest, words_and_dimension_are_read_again) {
+  const ErrorParts parts{.mesh = 0.5, .model = 0.25, .model_by = "a | b", .omittable = "c", .dimension = 3};
+  const ErrorParts again = ErrorParts::of(parts.text());
+  EXPECT_EQ(again.mesh, 0.5);
+  EXPECT_EQ(again.model, 0.25);
+  EXPECT_EQ(again.model_by, "a | b");
+  EXPECT_EQ(again.omittable, "c");
+  EXPECT_EQ(again.dimension, 3);
+}
+
+TEST(ErrorPartsTest, of_a_job_the_largest_of_each_kind_counts_and_is_named) {
+  const auto sentences = error_sentences({{"fluid", {.mesh = 1e-2, .step = 1e-3}},
+                                          {"solid", {.mesh = 3e-3, .step = 4e-3}},
+                                          {"coupling", {.coupling = 0.2}}});
+  ASSERT_EQ(sentences.size(), 2u);
+  EXPECT_EQ(
+      sentences[0],
+      "estimated error 0.21 of the solution: coupling tolerance 0.2 (coupling), mesh 0.01 (fluid), step 0.004 (solid).");
+  const auto without = error_sentences({{"plate", {.step = 2e-9}}});
+  EXPECT_EQ(
+      without.at(0),
+      "estimated error 2e-09 of the solution: step 2e-09; the error due to the mesh (or truncated modes) is "
+      "unknown and not included.");
+  EXPECT_EQ(sentences[1].rfind("the coupling tolerance (coupling) dominates", 0), 0u) << sentences[1];
+}
+
 }  // namespace couplet::step_plan_test

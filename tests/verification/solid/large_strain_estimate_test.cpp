@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a linear run says large strain would change, held against what it changes.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "common/base/error.hpp"
-#include "common/parallel/collective.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::large_strain_estimate_test {
 using namespace mesh;
-namespace {
 
 struct Pair {
   const char* name;
@@ -86,7 +78,7 @@ const std::vector<Pair> pairs{
 SolidParameters parameters(const Pair& pair) {
   SolidParameters p = box_parameters(2);
   p.material = {1000, 1e6, pair.nu};
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmin"] = clamped(2);
   p.boundaries["xmax"] =
       pair.clamped_ends ? p.boundaries["xmin"] : boundary(Type::traction, {pair.along, pair.across});
   p.body_force = {{"0"}, {pair.body}};
@@ -118,8 +110,7 @@ TEST_P(LargeStrainPair, is_estimated_within_a_factor_of_1_5_of_the_true_differen
   if (parallel::comm_size(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "one rank; ranks_agree holds the others to it";
   SolidParameters p = parameters(GetParam());
   p.output.large_strain_estimate = true;
-  const auto linear = make_solid(mesh_of(GetParam()), p);
-  step(*linear, 1);
+  const auto linear = stepped(mesh_of(GetParam()), p);
   p.output.large_strain_estimate = false;
   p.kinematics = SolidParameters::Kinematics::finite_strain;
   p.method.face_gradient = FaceGradient::automatic;
@@ -143,8 +134,7 @@ TEST(LargeStrainEstimate, vanishes_with_the_load) {
   pair.across = "0.9*t";
   SolidParameters p = parameters(pair);
   p.output.large_strain_estimate = true;
-  const auto solid = make_solid(mesh_of(pair), p);
-  step(*solid, 1);
+  const auto solid = stepped(mesh_of(pair), p);
   EXPECT_LT(solid->judge().large_strain()->change, 1e-3);
 }
 
@@ -168,17 +158,14 @@ TEST(LargeStrainEstimate, does_not_call_a_column_beyond_its_load_harmless) {
   pair.along = "-9000*t";
   SolidParameters p = parameters(pair);
   p.output.large_strain_estimate = true;
-  const auto solid = make_solid(mesh_of(pair), p);
-  step(*solid, 1);
+  const auto solid = stepped(mesh_of(pair), p);
   const LargeStrainEstimate& told = *solid->judge().large_strain();
   EXPECT_TRUE(!told.is_known() || told.change > 1) << told.text();
 }
 
 TEST(LargeStrainEstimate, is_not_made_unless_asked_for) {
-  const auto solid = make_solid(mesh_of(pairs[0]), parameters(pairs[0]));
-  step(*solid, 1);
+  const auto solid = stepped(mesh_of(pairs[0]), parameters(pairs[0]));
   EXPECT_FALSE(solid->judge().large_strain().has_value());
 }
 
-}  // namespace
 }  // namespace couplet::testing::large_strain_estimate_test

@@ -1,21 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-
-#include "common/parallel/collective.hpp"
 #include "solid_solver/diagnostics/effects.hpp"
 #include "tests/support/shared_folder.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::output_test {
 using namespace mesh;
-namespace {
 
 std::vector<std::string> lines_of(const std::filesystem::path& file) {
   std::ifstream in(file);
@@ -44,7 +33,7 @@ SolidParameters pulled_sheet() {
 }
 
 TEST(SolidOutput, probes_and_reactions_hold_the_displacement_and_the_balance_of_each_step) {
-  const SharedFolder folder;
+  const support::SharedFolder folder;
   RawMesh raw = make_box(BoxCells::triangles, {6, 4, 1}, Vec3::Zero(), Vec3(2, 1, 0));
   perturb_interior(raw, 0.2, 2);
   Solid solid(distribute(MPI_COMM_WORLD, raw), pulled_sheet(), SolidContext{"solid", folder.path()});
@@ -89,7 +78,7 @@ double last_of(const std::vector<std::string>& lines, const std::string& head) {
 }
 
 TEST(SolidOutput, probes_watch_velocity_stress_strain_and_what_follows_from_them) {
-  const SharedFolder folder;
+  const support::SharedFolder folder;
   SolidParameters p = pulled_sheet();
   for (auto& [name, probe] : p.probes)
     probe.fields = {"velocity", "stress", "strain", "equivalent-stress", "principal-stress"};
@@ -119,7 +108,7 @@ TEST(SolidOutput, probes_watch_velocity_stress_strain_and_what_follows_from_them
 }
 
 TEST(SolidOutput, acceleration_of_a_driven_block_is_that_of_its_support) {
-  const SharedFolder folder;
+  const support::SharedFolder folder;
   SolidParameters p = box_parameters(2);
   p.analysis = SolidParameters::Analysis::dynamic;
   // So stiff and small that it moves as a whole.
@@ -202,5 +191,4 @@ TEST(SolidOutput, left_out_effects_are_judged_by_numbers) {
   EXPECT_THAT(lines(*fast), ::testing::Contains(::testing::HasSubstr("use 'analysis: dynamic'")));
 }
 
-}  // namespace
 }  // namespace couplet::testing::output_test

@@ -2,7 +2,7 @@
 """Measures of the thermocline's elements: closed forms, energy balances, Solar One, Pacheco's tank, hard cases, cost."""
 import re
 
-MECHANICS, EXPERIMENTS = (f"verification_thermocline_{name}" for name in ("mechanics", "solar_one"))
+MECHANICS, EXPERIMENTS = (f"verification_thermocline_{name}" for name in ("mechanics", "grains"))
 
 
 def factors(job):
