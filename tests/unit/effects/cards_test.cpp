@@ -1,8 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "common/base/error.hpp"
 #include "common/diagnostics/diagnostics.hpp"
 #include "common/effects/effects.hpp"
 #include "coupler/parameters/effect_cards.hpp"
@@ -12,13 +8,13 @@
 #include "plate_modal/effect_cards.hpp"
 #include "solid_solver/diagnostics/effects.hpp"
 #include "solid_solver/effects/effect_cards.hpp"
+#include "tests/support/test.hpp"
 #include "thermocline/judge/effects.hpp"
 
 namespace couplet::testing::cards_test {
 using namespace effects;
 using namespace coupler;
 using namespace solid;
-namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -244,5 +240,4 @@ TEST(EffectCards, tank_verdicts_turn_at_their_thresholds) {
                        thermocline::effect_findings(tank, thermocline::Evidence{.largest_biot = 1e3})));
 }
 
-}  // namespace
 }  // namespace couplet::testing::cards_test

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `effects: auto` chooses, scene by scene, beside what somebody who knows the field would.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "fluid_solver/parameters/auto_effects.hpp"
 #include "solid_solver/effects/auto_effects.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::testing::choices_test {
 using namespace mesh;
 
 using namespace solid;
-namespace {
 
 using config::ExpressionText;
 using ::testing::HasSubstr;
@@ -179,5 +176,4 @@ TEST(MeshFacts, are_those_of_a_box) {
   EXPECT_EQ(facts_of(make_box(BoxCells::triangles, {4, 2, 1}, Vec3::Zero(), Vec3(2, 1, 0))).dim, 2);
 }
 
-}  // namespace
 }  // namespace couplet::testing::choices_test

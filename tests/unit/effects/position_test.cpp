@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/effects/effects.hpp"
-
-#include <gtest/gtest.h>
+#include "tests/support/test.hpp"
 
 namespace couplet::effects::position_test {
 

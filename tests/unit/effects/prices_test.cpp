@@ -1,22 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/effects/prices.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <map>
-#include <set>
-
 #include "common/effects/effects.hpp"
 #include "fluid_solver/parameters/effect_cards.hpp"
 #include "mesh_mover/effect_cards.hpp"
 #include "plate_modal/effect_cards.hpp"
 #include "solid_solver/effects/effect_cards.hpp"
+#include "tests/support/test.hpp"
 #include "thermocline/judge/effect_cards.hpp"
 
 namespace couplet::testing::prices_test {
 using namespace effects;
-namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -98,5 +92,4 @@ TEST(PriceList, what_is_saved_is_the_least_of_the_scenes) {
   EXPECT_EQ(saved_share("fluid_solver", "nothing"), 0);
 }
 
-}  // namespace
 }  // namespace couplet::testing::prices_test

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/log/finding.hpp"
 
-#include <gmock/gmock.h>
-
-#include <set>
-#include <stdexcept>
-
 #include "common/base/text.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::finding_test {
 using namespace base;
-namespace {
 
 using log::FindingId;
 using ::testing::HasSubstr;
@@ -54,5 +49,4 @@ TEST(Findings, an_unknown_id_is_refused_with_the_one_meant_and_all_allowed) {
   EXPECT_THAT(refusal, HasSubstr("Findings: error-estimate, "));
 }
 
-}  // namespace
 }  // namespace couplet::finding_test
