@@ -20,14 +20,14 @@ FILES = {
         *_of("common/elasticity", "face_terms symmetric_faces symmetric_kernel symmetric_space elasticity least_squares_kernel "
                                   "shared_edges finite_edges finite_kernel anisotropic joined_vertices "
                                   "elastic_corrections vertex_constraints"),
-        *_of("common/fv", "conduction face_gradient point_gradient vertex_interpolation vertex_weights prescribed_motion"),
+        *_of("common/fv", "conduction gradients vertex_interpolation prescribed_motion"),
         *_of("mesh_mover", "laplacian pseudo_solid rotations moving_patches curved_slide mover"),
         *_of("thermocline", "bed_step packed_bed numerics grains layers shell surroundings"),
     ],
     "maps": [
         *_of("coupler", "mapping sparse_map transfer search cavity_wall links conjugate_map "
                         "face_weights slopes surface_rows"),
-        *_of("common/modes", "facing rigid_motion surface_parts modal_checks"),
+        *_of("common/modes", "modal_model surface_parts modal_checks"),
         *_of("plate_modal", "skin midsurface share"),
     ],
     "ledgers": [
@@ -42,7 +42,7 @@ FILES = {
         *_of("coupler", "volume_level"), *_of("thermocline", "mechanics"),
     ],
     "scheme constants": [
-        *_of("common/time", "time_scheme step_errors amplification"),
+        *_of("common/time", "time_scheme step_errors"),
         *_of("fluid_solver", "step_size"), *_of("solid_solver", "stage"),
         *_of("plate_modal", "oscillators kirchhoff plate_model"),
         *_of("coupler", "relaxation accelerator quasi_newton secants growing_qr explicit_coupling"),
