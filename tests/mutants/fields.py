@@ -16,7 +16,7 @@ FILES = {
     "face loops": [
         *_of("fluid_solver", "rates face_flux predictor projection pressure boundary turbulence viscous_solver placement immersed "
                              "yielding_walls absorbing compression"),
-        *_of("solid_solver", "heat heat_boundaries solid_fields stress finite_strain updated_lagrangian orthotropic mixed_form"),
+        *_of("solid_solver", "heat heat_boundaries solid_fields stress finite_strain updated_lagrangian material_parameters mixed_form"),
         *_of("common/elasticity", "symmetric_faces symmetric_kernel symmetric_space elasticity least_squares_kernel "
                                   "shared_edges finite_edges finite_kernel anisotropic joined_vertices "
                                   "elastic_corrections vertex_constraints"),
@@ -26,7 +26,7 @@ FILES = {
     ],
     "maps": [
         *_of("coupler", "mapping sparse_map transfer side face_corners links conjugate_map "
-                        "face_weights slopes surface_rows"),
+                        "face_weights surface_rows"),
         *_of("common/modes", "modal_model surface_parts modal_checks"),
         *_of("plate_modal", "skin midsurface surface"),
     ],
