@@ -64,6 +64,9 @@ class Diagnostic {
   virtual void visit(io::Archive&) {}
 };
 
+/// A new diagnostic; nullptr where it does not apply to a run.
+using Made = std::shared_ptr<Diagnostic>;
+
 /// All diagnostics of one program in a run: calls them, tells their findings, and keeps the worst of each. What they
 /// have found is part of the checkpoint. All calls are collective.
 class Diagnostics {
@@ -71,9 +74,9 @@ class Diagnostics {
   /// `with_errors`: the parts of the error are wanted.
   Diagnostics(int rank, bool with_errors) : rank_(rank), with_errors_(with_errors) {}
   bool with_errors() const { return with_errors_; }
-  /// `name`: of its memory in checkpoints, different for each.
+  /// `name`: of its memory in checkpoints, different for each. nullptr: it does not apply to this run.
   void add(std::string name, std::shared_ptr<Diagnostic> diagnostic) {
-    all_.push_back({std::move(name), std::move(diagnostic)});
+    if (diagnostic) all_.push_back({std::move(name), std::move(diagnostic)});
   }
 
   /// After an accepted step that ended at `time` [s].

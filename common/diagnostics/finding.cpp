@@ -23,6 +23,7 @@ std::vector<std::string>& accepted_ids() {
 constexpr auto answer = FindingId::About::answer, neglected = FindingId::About::neglected;
 // Every program must know the ids of all: those that a case accepts are for the whole job. Each program lists its own in
 // its table.def, a text without code, so that this list needs no second place.
+#define LOOK(name, function)
 #define DIAGNOSTIC(name, make)
 #define ESTIMATE(name, make)
 #define FINDING(about, id, meaning) FindingId{about, id, meaning},
@@ -34,6 +35,7 @@ constexpr FindingId ids[] = {
 #include "solid_solver/diagnostics/table.def"
 #include "thermocline/diagnostics/table.def"
 };
+#undef LOOK
 #undef DIAGNOSTIC
 #undef ESTIMATE
 #undef FINDING

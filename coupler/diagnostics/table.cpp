@@ -21,6 +21,7 @@ CouplingDiagnostics coupling_diagnostics(const CouplingView& view, diagnostics::
 #define DIAGNOSTIC(name, make) add(name, make(view));
 #define ESTIMATE(name, make) \
   if (all.with_errors()) add(name, make(view));
+#include "coupler/diagnostics/table.def"
 #undef DIAGNOSTIC
 #undef ESTIMATE
 #undef FINDING

@@ -245,7 +245,7 @@ std::optional<diagnostics::Finding> changes_of_density(const FluidView<D>& view)
 }
 
 template <int D>
-std::shared_ptr<diagnostics::Diagnostic> waves_of_pressure(const FluidView<D>& view) {
+diagnostics::Made waves_of_pressure(const FluidView<D>& view) {
   const auto sound = sound_in(view);
   return sound ? std::make_shared<WavesOfPressure<D>>(view, *sound) : nullptr;
 }
@@ -254,7 +254,7 @@ template std::optional<diagnostics::Finding> compressibility(const FluidView<2>&
 template std::optional<diagnostics::Finding> compressibility(const FluidView<3>&);
 template std::optional<diagnostics::Finding> changes_of_density(const FluidView<2>&);
 template std::optional<diagnostics::Finding> changes_of_density(const FluidView<3>&);
-template std::shared_ptr<diagnostics::Diagnostic> waves_of_pressure(const FluidView<2>&);
-template std::shared_ptr<diagnostics::Diagnostic> waves_of_pressure(const FluidView<3>&);
+template diagnostics::Made waves_of_pressure(const FluidView<2>&);
+template diagnostics::Made waves_of_pressure(const FluidView<3>&);
 
 }  // namespace couplet::fluid

@@ -318,11 +318,11 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
 }  // namespace
 
 template <int D>
-std::shared_ptr<diagnostics::Diagnostic> flow_error(const FluidView<D>& view) {
+diagnostics::Made flow_error(const FluidView<D>& view) {
   return std::make_shared<FluidErrorEstimate<D>>(view);
 }
 
-template std::shared_ptr<diagnostics::Diagnostic> flow_error(const FluidView<2>&);
-template std::shared_ptr<diagnostics::Diagnostic> flow_error(const FluidView<3>&);
+template diagnostics::Made flow_error(const FluidView<2>&);
+template diagnostics::Made flow_error(const FluidView<3>&);
 
 }  // namespace couplet::fluid

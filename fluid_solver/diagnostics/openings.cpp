@@ -81,11 +81,11 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
 }  // namespace
 
 template <int D>
-std::shared_ptr<diagnostics::Diagnostic> flow_through_openings(const FluidView<D>& view) {
+diagnostics::Made flow_through_openings(const FluidView<D>& view) {
   return std::make_shared<FlowThroughOpenings<D>>(view);
 }
 
-template std::shared_ptr<diagnostics::Diagnostic> flow_through_openings(const FluidView<2>&);
-template std::shared_ptr<diagnostics::Diagnostic> flow_through_openings(const FluidView<3>&);
+template diagnostics::Made flow_through_openings(const FluidView<2>&);
+template diagnostics::Made flow_through_openings(const FluidView<3>&);
 
 }  // namespace couplet::fluid

@@ -53,7 +53,7 @@ double ringing_share(const mesh::Mesh& mesh, const State<D>& s) {
 }
 
 template <int D>
-std::shared_ptr<diagnostics::Diagnostic> ringing_pressure(const FluidView<D>& view) {
+diagnostics::Made ringing_pressure(const FluidView<D>& view) {
   const auto& known = view.parameters().compressibility;
   if (!known || known->scheme != WaveScheme::trapezoidal) return nullptr;
   return std::make_shared<RingingPressure<D>>(view);
@@ -61,7 +61,7 @@ std::shared_ptr<diagnostics::Diagnostic> ringing_pressure(const FluidView<D>& vi
 
 template double ringing_share(const mesh::Mesh&, const State<2>&);
 template double ringing_share(const mesh::Mesh&, const State<3>&);
-template std::shared_ptr<diagnostics::Diagnostic> ringing_pressure(const FluidView<2>&);
-template std::shared_ptr<diagnostics::Diagnostic> ringing_pressure(const FluidView<3>&);
+template diagnostics::Made ringing_pressure(const FluidView<2>&);
+template diagnostics::Made ringing_pressure(const FluidView<3>&);
 
 }  // namespace couplet::fluid

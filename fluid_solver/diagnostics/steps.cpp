@@ -131,23 +131,23 @@ class PlaceOnTheMap final : public diagnostics::Diagnostic {
 }  // namespace
 
 template <int D>
-std::shared_ptr<diagnostics::Diagnostic> given_step(const FluidView<D>& view) {
+diagnostics::Made given_step(const FluidView<D>& view) {
   return view.parameters().time_step ? std::make_shared<GivenStep<D>>(view) : nullptr;
 }
 template <int D>
-std::shared_ptr<diagnostics::Diagnostic> friction_of_the_guess(const FluidView<D>& view) {
+diagnostics::Made friction_of_the_guess(const FluidView<D>& view) {
   return std::make_shared<FrictionOfTheGuess<D>>(view);
 }
 template <int D>
-std::shared_ptr<diagnostics::Diagnostic> place_on_the_map(const FluidView<D>& view) {
+diagnostics::Made place_on_the_map(const FluidView<D>& view) {
   return std::make_shared<PlaceOnTheMap<D>>(view);
 }
 
-template std::shared_ptr<diagnostics::Diagnostic> given_step(const FluidView<2>&);
-template std::shared_ptr<diagnostics::Diagnostic> given_step(const FluidView<3>&);
-template std::shared_ptr<diagnostics::Diagnostic> friction_of_the_guess(const FluidView<2>&);
-template std::shared_ptr<diagnostics::Diagnostic> friction_of_the_guess(const FluidView<3>&);
-template std::shared_ptr<diagnostics::Diagnostic> place_on_the_map(const FluidView<2>&);
-template std::shared_ptr<diagnostics::Diagnostic> place_on_the_map(const FluidView<3>&);
+template diagnostics::Made given_step(const FluidView<2>&);
+template diagnostics::Made given_step(const FluidView<3>&);
+template diagnostics::Made friction_of_the_guess(const FluidView<2>&);
+template diagnostics::Made friction_of_the_guess(const FluidView<3>&);
+template diagnostics::Made place_on_the_map(const FluidView<2>&);
+template diagnostics::Made place_on_the_map(const FluidView<3>&);
 
 }  // namespace couplet::fluid

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -9,82 +8,45 @@
 
 namespace couplet::fluid {
 
-// Findings of the accepted state, each in the file of its subject; nothing where they do not apply.
-template <int D>
-using Look = std::optional<diagnostics::Finding>(const FluidView<D>&);
-template <int D>
-Look<D> turbulence_model;
-template <int D>
-Look<D> eddies_in_two_dimensions;
-template <int D>
-Look<D> resolved_walls;
-template <int D>
-Look<D> kinetic_energy;
-template <int D>
-Look<D> compressibility;
-template <int D>
-Look<D> changes_of_density;
-template <int D>
-Look<D> mesh_at_rest;
-template <int D>
-Look<D> blocked_cells;
-template <int D>
-Look<D> walls_along_themselves;
+#define FINDING(about, id, meaning)
+#define LOOK(name, function) \
+  template <int D>           \
+  std::optional<diagnostics::Finding> function(const FluidView<D>&);
+#define ESTIMATE(name, make) \
+  template <int D>           \
+  diagnostics::Made make(const FluidView<D>&);
+#define DIAGNOSTIC ESTIMATE
+#include "fluid_solver/diagnostics/table.def"
+#undef LOOK
+#undef DIAGNOSTIC
+#undef ESTIMATE
 
 /// A diagnostic without memory: what a function finds in the accepted state.
 template <int D>
 class Finds final : public diagnostics::Diagnostic {
  public:
-  Finds(const FluidView<D>& view, Look<D>* function) : view_(view), function_(function) {}
+  Finds(const FluidView<D>& view, std::optional<diagnostics::Finding> (*function)(const FluidView<D>&))
+      : view_(view), function_(function) {}
   void look(diagnostics::Report& report) override {
     if (auto finding = function_(view_)) report.findings.push_back(std::move(*finding));
   }
 
  private:
   FluidView<D> view_;
-  Look<D>* function_;
+  std::optional<diagnostics::Finding> (*function_)(const FluidView<D>&);
 };
-
-// Diagnostics with memory; nullptr where they do not apply.
-template <int D>
-using Make = std::shared_ptr<diagnostics::Diagnostic>(const FluidView<D>&);
-template <int D>
-Make<D> waves_of_pressure;
-template <int D>
-Make<D> ringing_pressure;
-template <int D>
-Make<D> given_step;
-template <int D>
-Make<D> flow_through_openings;
-template <int D>
-Make<D> friction_of_the_guess;
-template <int D>
-Make<D> place_on_the_map;
-template <int D>
-Make<D> flow_error;
 
 template <int D>
 void add_diagnostics(const FluidView<D>& view, diagnostics::Diagnostics& all) {
-  const std::pair<const char*, Look<D>*> looks[] = {{"turbulence-model", turbulence_model<D>},
-                                                    {"eddies-in-two-dimensions", eddies_in_two_dimensions<D>},
-                                                    {"resolved-walls", resolved_walls<D>},
-                                                    {"kinetic-energy", kinetic_energy<D>},
-                                                    {"compressibility", compressibility<D>},
-                                                    {"changes-of-density", changes_of_density<D>},
-                                                    {"mesh-at-rest", mesh_at_rest<D>},
-                                                    {"blocked-cells", blocked_cells<D>},
-                                                    {"walls-along-themselves", walls_along_themselves<D>}};
-  const std::pair<const char*, Make<D>*> makes[] = {
-      {"waves-of-pressure", waves_of_pressure<D>},
-      {"ringing-pressure", ringing_pressure<D>},
-      {"given-step", given_step<D>},
-      {"flow-through-openings", flow_through_openings<D>},
-      {"friction-of-the-guess", friction_of_the_guess<D>},
-      {"place-on-the-map", place_on_the_map<D>},
-      {"flow-error", all.with_errors() ? flow_error<D> : nullptr}};
-  for (const auto& [name, look] : looks) all.add(name, std::make_shared<Finds<D>>(view, look));
-  for (const auto& [name, make] : makes)
-    if (auto one = make ? make(view) : nullptr) all.add(name, std::move(one));
+#define LOOK(name, function) all.add(name, std::make_shared<Finds<D>>(view, function<D>));
+#define DIAGNOSTIC(name, make) all.add(name, make(view));
+#define ESTIMATE(name, make) \
+  if (all.with_errors()) all.add(name, make(view));
+#include "fluid_solver/diagnostics/table.def"
+#undef LOOK
+#undef DIAGNOSTIC
+#undef ESTIMATE
+#undef FINDING
 }
 
 template <int D>

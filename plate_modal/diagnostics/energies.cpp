@@ -43,8 +43,7 @@ class BalanceOfEnergies final : public diagnostics::Diagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> balance_of_energies(const PlateView& view,
-                                                             const std::shared_ptr<Motion>& motion) {
+diagnostics::Made balance_of_energies(const PlateView& view, const std::shared_ptr<Motion>& motion) {
   return motion ? std::make_shared<BalanceOfEnergies>(view) : nullptr;
 }
 

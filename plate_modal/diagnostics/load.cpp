@@ -163,8 +163,7 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> prescribed_pressures(const PlateView& view,
-                                                              const std::shared_ptr<Motion>&) {
+diagnostics::Made prescribed_pressures(const PlateView& view, const std::shared_ptr<Motion>&) {
   const bool is_modal = view.parameters.analysis == Parameters::Analysis::modal;
   return view.pressure && !is_modal ? std::make_shared<PrescribedPressures>(view) : nullptr;
 }

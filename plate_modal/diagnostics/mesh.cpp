@@ -80,8 +80,7 @@ class MeshOfModes final : public diagnostics::Diagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> mesh_of_modes(const PlateView& view,
-                                                       const std::shared_ptr<Motion>& motion) {
+diagnostics::Made mesh_of_modes(const PlateView& view, const std::shared_ptr<Motion>& motion) {
   return std::make_shared<MeshOfModes>(view, motion);
 }
 

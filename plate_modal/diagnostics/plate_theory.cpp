@@ -135,8 +135,7 @@ class PlateTheory final : public diagnostics::Diagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> plate_theory(const PlateView& view,
-                                                      const std::shared_ptr<Motion>& motion) {
+diagnostics::Made plate_theory(const PlateView& view, const std::shared_ptr<Motion>& motion) {
   return std::make_shared<PlateTheory>(view, motion);
 }
 

@@ -68,8 +68,7 @@ class ImpactOnSeat final : public diagnostics::Diagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> impact_on_seat(const PlateView& view,
-                                                        const std::shared_ptr<Motion>&) {
+diagnostics::Made impact_on_seat(const PlateView& view, const std::shared_ptr<Motion>&) {
   return view.contact ? std::make_shared<ImpactOnSeat>(view) : nullptr;
 }
 

@@ -86,13 +86,11 @@ class StepError final : public diagnostics::Diagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> step_size(const PlateView& view,
-                                                   const std::shared_ptr<Motion>& motion) {
+diagnostics::Made step_size(const PlateView& view, const std::shared_ptr<Motion>& motion) {
   return motion ? std::make_shared<StepSize>(view, motion) : nullptr;
 }
 
-std::shared_ptr<diagnostics::Diagnostic> step_error(const PlateView& view,
-                                                    const std::shared_ptr<Motion>& motion) {
+diagnostics::Made step_error(const PlateView& view, const std::shared_ptr<Motion>& motion) {
   return motion ? std::make_shared<StepError>(view) : nullptr;
 }
 

@@ -1,42 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
-
 #include "plate_modal/diagnostics/motion.hpp"
 #include "plate_modal/diagnostics/view.hpp"
 
 namespace couplet::plate {
 
-/// Makes a diagnostic; nullptr where it does not apply. `motion` is nullptr in a static or modal analysis.
-using Make = std::shared_ptr<diagnostics::Diagnostic>(const PlateView&,
-                                                      const std::shared_ptr<Motion>& motion);
-Make balance_of_energies, step_size, prescribed_pressures, impact_on_seat, plate_theory, truncated_modes,
-    mesh_of_modes, step_error;
-
-namespace {
-
-struct TableRow {
-  const char* name;
-  Make* make;
-  bool estimates = false;  ///< an error: not where estimates are switched off
-};
-
-// "step-size" adds each step to the motion, which others read; "prescribed-pressures" adds its part to the mesh error.
-constexpr std::array table_rows{TableRow{"balance-of-energies", balance_of_energies},
-                                TableRow{"step-size", step_size},
-                                TableRow{"impact-on-seat", impact_on_seat},
-                                TableRow{"plate-theory", plate_theory},
-                                TableRow{"truncated-modes", truncated_modes},
-                                TableRow{"mesh-of-modes", mesh_of_modes},
-                                TableRow{"prescribed-pressures", prescribed_pressures},
-                                TableRow{"step-error", step_error, true}};
-
-}  // namespace
+// `motion` is nullptr in a static or modal analysis.
+#define FINDING(about, id, meaning)
+#define ESTIMATE(name, make) diagnostics::Made make(const PlateView&, const std::shared_ptr<Motion>& motion);
+#define DIAGNOSTIC ESTIMATE
+#include "plate_modal/diagnostics/table.def"
+#undef DIAGNOSTIC
+#undef ESTIMATE
 
 void add_diagnostics(const PlateView& view, diagnostics::Diagnostics& all) {
   const auto motion = view.is_dynamic() ? std::make_shared<Motion>(view.surface.omega()) : nullptr;
-  for (const TableRow& row : table_rows)
-    if (auto one = row.estimates && !all.with_errors() ? nullptr : row.make(view, motion))
-      all.add(row.name, std::move(one));
+#define DIAGNOSTIC(name, make) all.add(name, make(view, motion));
+#define ESTIMATE(name, make) \
+  if (all.with_errors()) all.add(name, make(view, motion));
+#include "plate_modal/diagnostics/table.def"
+#undef DIAGNOSTIC
+#undef ESTIMATE
+#undef FINDING
 }
 
 double PlateView::first_elastic() const {

@@ -134,8 +134,7 @@ class TruncatedModes final : public diagnostics::Diagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> truncated_modes(const PlateView& view,
-                                                         const std::shared_ptr<Motion>& motion) {
+diagnostics::Made truncated_modes(const PlateView& view, const std::shared_ptr<Motion>& motion) {
   return std::make_shared<TruncatedModes>(view, motion);
 }
 

@@ -104,16 +104,16 @@ class NeglectedOfHeat final : public diagnostics::Diagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> neglected_inertia(const SolidView& view) {
+diagnostics::Made neglected_inertia(const SolidView& view) {
   if (view.body.is_dynamic()) return nullptr;
   return std::make_shared<NeglectedInertia>(view);
 }
 
-std::shared_ptr<diagnostics::Diagnostic> limits_of_material(const SolidView& view) {
+diagnostics::Made limits_of_material(const SolidView& view) {
   return std::make_shared<NeglectedOfMaterial>(view);
 }
 
-std::shared_ptr<diagnostics::Diagnostic> effects_of_heat(const SolidView& view) {
+diagnostics::Made effects_of_heat(const SolidView& view) {
   if (!view.body.thermal()) return nullptr;
   return std::make_shared<NeglectedOfHeat>(view);
 }

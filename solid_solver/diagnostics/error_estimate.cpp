@@ -252,9 +252,8 @@ void ErrorEstimate::visit(io::Archive& archive) {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> solid_error(const SolidView& view,
-                                                     std::shared_ptr<StrainEnergy> strain,
-                                                     std::shared_ptr<Stability> stability) {
+diagnostics::Made solid_error(const SolidView& view, std::shared_ptr<StrainEnergy> strain,
+                              std::shared_ptr<Stability> stability) {
   return std::make_shared<ErrorEstimate>(view, std::move(strain), std::move(stability));
 }
 

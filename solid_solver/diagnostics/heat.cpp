@@ -138,19 +138,17 @@ class HeatError final : public diagnostics::Diagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> heat_swing(const Heat& heat) {
+diagnostics::Made heat_swing(const Heat& heat) {
   // The one scheme that does not damp.
   if (heat.is_steady() || heat.parameters().scheme != HeatParameters::Scheme::trapezoidal) return nullptr;
   return std::make_shared<HeatSwing>(heat);
 }
 
-std::shared_ptr<diagnostics::Diagnostic> heat_storage(const Heat& heat) {
+diagnostics::Made heat_storage(const Heat& heat) {
   if (!heat.is_steady()) return nullptr;
   return std::make_shared<HeatStorage>(heat);
 }
 
-std::shared_ptr<diagnostics::Diagnostic> heat_error(const Heat& heat) {
-  return std::make_shared<HeatError>(heat);
-}
+diagnostics::Made heat_error(const Heat& heat) { return std::make_shared<HeatError>(heat); }
 
 }  // namespace couplet::solid

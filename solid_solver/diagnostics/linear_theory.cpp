@@ -76,7 +76,7 @@ class LinearTheory final : public diagnostics::Diagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> linear_theory(const SolidView& view) {
+diagnostics::Made linear_theory(const SolidView& view) {
   if (has_finite_strain(view.body.parameters())) return nullptr;
   return std::make_shared<LinearTheory>(view);
 }

@@ -64,11 +64,9 @@ class QuantitiesOfHeat final : public diagnostics::Diagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> quantities(const SolidView& view) {
-  return std::make_shared<Quantities>(view);
-}
+diagnostics::Made quantities(const SolidView& view) { return std::make_shared<Quantities>(view); }
 
-std::shared_ptr<diagnostics::Diagnostic> quantities(const HeatView& view) {
+diagnostics::Made quantities(const HeatView& view) {
   if (view.parameters.quantities.empty()) return nullptr;
   return std::make_shared<QuantitiesOfHeat>(view);
 }

@@ -31,16 +31,17 @@ class StressError final : public diagnostics::Diagnostic {
     const std::string error = std::isnan(s.error) ? "unknown"
                               : s.error < 0.995   ? fmt::format("{:.2g} %", 100 * s.error)
                                                   : fmt::format("{:.0f} %", 100 * s.error);
-    diagnostics::finding(parallel::comm_rank(view_.comm()),
-                 {.id = "stress-error",
-                  .severity = is_doubtful ? base::Severity::warning : base::Severity::note,
-                  .number = s.error,
-                  .limit = doubtful,
-                  .sentence = fmt::format(
-                      "equivalent stress, {}: {:.4g} Pa at ({:g}, {:g}, {:g}) m, estimated error {}{}",
-                      s.where, s.value, s.place[0], s.place[1], s.place[2], error,
-                      is_doubtful ? fmt::format(" (limit {:.2g} %): not reliable", 100 * doubtful) : ""),
-                  .advice = is_doubtful ? "refine the mesh there" : ""});
+    diagnostics::finding(
+        parallel::comm_rank(view_.comm()),
+        {.id = "stress-error",
+         .severity = is_doubtful ? base::Severity::warning : base::Severity::note,
+         .number = s.error,
+         .limit = doubtful,
+         .sentence =
+             fmt::format("equivalent stress, {}: {:.4g} Pa at ({:g}, {:g}, {:g}) m, estimated error {}{}",
+                         s.where, s.value, s.place[0], s.place[1], s.place[2], error,
+                         is_doubtful ? fmt::format(" (limit {:.2g} %): not reliable", 100 * doubtful) : ""),
+         .advice = is_doubtful ? "refine the mesh there" : ""});
   }
 
   SolidView view_;
@@ -48,8 +49,6 @@ class StressError final : public diagnostics::Diagnostic {
 
 }  // namespace
 
-std::shared_ptr<diagnostics::Diagnostic> stress_error(const SolidView& view) {
-  return std::make_shared<StressError>(view);
-}
+diagnostics::Made stress_error(const SolidView& view) { return std::make_shared<StressError>(view); }
 
 }  // namespace couplet::solid

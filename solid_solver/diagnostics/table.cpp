@@ -5,7 +5,7 @@
 
 namespace couplet::solid {
 
-using Made = std::shared_ptr<diagnostics::Diagnostic>;
+using diagnostics::Made;
 
 // Each in the file of its subject; nullptr where it does not apply.
 Made linear_theory(const SolidView& view);
@@ -21,40 +21,32 @@ Made heat_swing(const Heat& heat);
 Made heat_storage(const Heat& heat);
 Made heat_error(const Heat& heat);
 
-namespace {
-
-void add(diagnostics::Diagnostics& all, const char* name, Made diagnostic) {
-  if (diagnostic) all.add(name, std::move(diagnostic));
-}
-
-}  // namespace
-
-// Of two the later one reads the earlier: the energies the strains, stresses and quantities the error of the displacement.
+// Later ones read earlier ones: the energies the strains, stresses and quantities the error of the displacement.
 void add_diagnostics(const SolidView& view, diagnostics::Diagnostics& all) {
   const bool is_dynamic = view.body.is_dynamic(), is_small = view.compares_gradients();
   const auto strain = is_small ? std::make_shared<StrainEnergy>(view) : nullptr;
   const auto stability = !is_small && !is_dynamic ? std::make_shared<Stability>(view) : nullptr;
-  add(all, "strain-energy", strain);
-  add(all, "linear-theory", linear_theory(view));
-  add(all, "energy-balance", is_dynamic ? std::make_shared<EnergyBalance>(view, strain) : nullptr);
-  add(all, "stability", stability);
-  add(all, "inertia", neglected_inertia(view));
-  add(all, "limits-of-material", limits_of_material(view));
-  add(all, "effects-of-heat", effects_of_heat(view));
+  all.add("strain-energy", strain);
+  all.add("linear-theory", linear_theory(view));
+  all.add("energy-balance", is_dynamic ? std::make_shared<EnergyBalance>(view, strain) : nullptr);
+  all.add("stability", stability);
+  all.add("inertia", neglected_inertia(view));
+  all.add("limits-of-material", limits_of_material(view));
+  all.add("effects-of-heat", effects_of_heat(view));
   if (const Heat* heat = view.body.thermal() ? view.body.thermal()->heat() : nullptr) {
-    add(all, "heat-swing", heat_swing(*heat));
-    add(all, "heat-storage", heat_storage(*heat));
+    all.add("heat-swing", heat_swing(*heat));
+    all.add("heat-storage", heat_storage(*heat));
   }
-  if (all.with_errors()) add(all, "error", solid_error(view, strain, stability));
-  add(all, "quantities", quantities(view));
-  if (all.with_errors()) add(all, "stress-error", stress_error(view));
+  if (all.with_errors()) all.add("error", solid_error(view, strain, stability));
+  all.add("quantities", quantities(view));
+  if (all.with_errors()) all.add("stress-error", stress_error(view));
 }
 
 void add_diagnostics(const HeatView& view, diagnostics::Diagnostics& all) {
-  add(all, "heat-swing", heat_swing(view.heat));
-  add(all, "heat-storage", heat_storage(view.heat));
-  if (all.with_errors()) add(all, "error", heat_error(view.heat));
-  add(all, "quantities", quantities(view));
+  all.add("heat-swing", heat_swing(view.heat));
+  all.add("heat-storage", heat_storage(view.heat));
+  if (all.with_errors()) all.add("error", heat_error(view.heat));
+  all.add("quantities", quantities(view));
 }
 
 }  // namespace couplet::solid

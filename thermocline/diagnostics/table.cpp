@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "common/io/checkpoint.hpp"
@@ -8,9 +7,12 @@
 
 namespace couplet::thermocline {
 
-using Make = Made(const TankView&, const Seen&);
-Make energy_balance, fluid_range, inversions, gas, grains, advection, pumping, wall_strength, wall_mechanics,
-    surroundings, unused_input, front_error;
+#define FINDING(about, id, meaning)
+#define ESTIMATE(name, make) diagnostics::Made make(const TankView&, const Seen&);
+#define DIAGNOSTIC ESTIMATE
+#include "thermocline/diagnostics/table.def"
+#undef DIAGNOSTIC
+#undef ESTIMATE
 
 namespace {
 
@@ -29,36 +31,22 @@ class ExtremesOfRun final : public TankDiagnostic {
   void visit(io::Archive& archive) override { archive.common("extremes", *seen_); }
 };
 
-Made extremes(const TankView& view, const Seen& seen) { return std::make_shared<ExtremesOfRun>(view, seen); }
-
-struct TableRow {
-  const char* name;
-  Make* make;
-  bool estimates = false;  ///< an error: not where estimates are switched off
-};
-// "extremes" comes first: the others read what it keeps.
-constexpr std::array table_rows{TableRow{"extremes", extremes},
-                                TableRow{"energy-balance", energy_balance},
-                                TableRow{"fluid-range", fluid_range},
-                                TableRow{"grains", grains},
-                                TableRow{"advection", advection},
-                                TableRow{"inversions", inversions},
-                                TableRow{"pumping", pumping},
-                                TableRow{"gas", gas},
-                                TableRow{"wall-strength", wall_strength},
-                                TableRow{"wall-mechanics", wall_mechanics},
-                                TableRow{"surroundings", surroundings},
-                                TableRow{"unused-input", unused_input},
-                                TableRow{"front-error", front_error, true}};
-
 }  // namespace
+
+diagnostics::Made extremes(const TankView& view, const Seen& seen) {
+  return std::make_shared<ExtremesOfRun>(view, seen);
+}
 
 void add_diagnostics(const TankView& view, diagnostics::Diagnostics& all) {
   const auto [low, high] = std::ranges::minmax(view.model.bed().fluid());
   const auto seen = std::make_shared<Extremes>(Extremes{.coldest = low, .hottest = high});
-  for (const TableRow& row : table_rows)
-    if (!row.estimates || all.with_errors())
-      if (auto one = row.make(view, seen)) all.add(row.name, std::move(one));
+#define DIAGNOSTIC(name, make) all.add(name, make(view, seen));
+#define ESTIMATE(name, make) \
+  if (all.with_errors()) all.add(name, make(view, seen));
+#include "thermocline/diagnostics/table.def"
+#undef DIAGNOSTIC
+#undef ESTIMATE
+#undef FINDING
 }
 
 std::pair<double, double> TankDiagnostic::range_to_come() const {

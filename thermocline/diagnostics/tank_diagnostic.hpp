@@ -20,7 +20,7 @@ struct Extremes {
 };
 
 using Seen = std::shared_ptr<Extremes>;
-using Made = std::shared_ptr<diagnostics::Diagnostic>;
+using diagnostics::Made;
 
 /// Reads the tank and the extremes of its run.
 class TankDiagnostic : public diagnostics::Diagnostic {
