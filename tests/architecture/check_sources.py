@@ -49,7 +49,7 @@ DOORS = {
     "HDF5 is read and written by common/io/hdf5*, everything else asks hdf5::Reader":
         (r"\bH5[A-Z]{1,2}[a-z]\w*\s*\(|\b(?:hid|herr|hsize)_t\b",
          r"common/io/hdf5\w*\.[ch]pp"),
-    "messages between programs are unpacked by common/coupling/messages.cpp (and by the clients, which share nothing)":
+    "messages between programs are unpacked by common/coupling/messages (and by the clients, which share nothing)":
         (r"\bUnpacker\b|0x434f'?4d4d|0x5245'?504c", r"common/coupling/messages\.[ch]pp|client/(?:wire\.[ch]pp|python/couplet/participant\.py)"),
     "messages are received by common/coupling/wait.cpp (ghosts by common/parallel, a client's by its wire)":
         (r"\bMPI_(?:I|M|Im)?[Rr]ecv\b", r"common/coupling/wait\.cpp|common/parallel/\w+\.cpp|client/wire\.[ch]pp"),

@@ -5,15 +5,9 @@
 
 #include <hdf5.h>
 
-#include <cmath>
-#include <cstdint>
-#include <filesystem>
-#include <map>
-#include <string>
-#include <vector>
+#include "tests/support/test.hpp"
 
 namespace couplet::contract {
-
 using Contents = std::map<std::string, std::vector<double>>;
 
 inline Contents contents(const std::filesystem::path& file) {

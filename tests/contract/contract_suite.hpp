@@ -18,20 +18,9 @@
 //   INSTANTIATE_TYPED_TEST_SUITE_P(Mine, ParticipantContract, MyFactory);
 #pragma once
 
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <map>
-#include <memory>
-
-#include "common/base/error.hpp"
 #include "common/coupling/participant.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/mesh/load.hpp"
-#include "common/parallel/collective.hpp"
 #include "tests/contract/contents.hpp"
 
 namespace couplet::contract {

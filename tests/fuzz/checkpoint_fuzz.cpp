@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Damaged checkpoint sets: refused, or read as one of the sets that were written. See README.md.
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <functional>
-
 #include "common/app/loop/step_loop.hpp"
-#include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/checkpoint_set.hpp"
 #include "tests/fuzz/mutate.hpp"
 
 namespace couplet::fuzz::checkpoint_fuzz {
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -181,5 +174,4 @@ TEST(Checkpoints, damaged_sets_never_continue_with_another_result) {
   fs::remove_all(folder);
 }
 
-}  // namespace
 }  // namespace couplet::fuzz::checkpoint_fuzz

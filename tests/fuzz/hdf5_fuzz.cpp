@@ -1,16 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Crafted files of modes and checkpoints: refused with an Error, or read as something sound. See README.md.
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <chrono>
-#include <cmath>
-#include <cstring>
-#include <functional>
-#include <numbers>
-#include <set>
-
-#include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/checkpoint_format.hpp"
 #include "common/io/checkpoint_set.hpp"
@@ -22,7 +11,6 @@
 namespace couplet::fuzz::hdf5_fuzz {
 using namespace io;
 using namespace modes;
-namespace {
 
 namespace fs = std::filesystem;
 using Type = CraftedValue::Type;
@@ -312,5 +300,4 @@ TEST_F(CraftedFiles, each_fault_has_its_sentence) {
   expect("surface/face-vertex", "dimensions of integers", [](CraftedValue& v) { v.type = Type::f64; });
 }
 
-}  // namespace
 }  // namespace couplet::fuzz::hdf5_fuzz

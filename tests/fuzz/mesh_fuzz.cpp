@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Broken meshes through the readers and the set-up of a distributed mesh, in one process: see README.md.
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <chrono>
-#include <map>
-
-#include "common/base/error.hpp"
 #include "common/mesh/gmsh/geo_script.hpp"
 #include "common/mesh/load.hpp"
 #include "tests/fuzz/mutate.hpp"
 
 namespace couplet::fuzz::mesh_fuzz {
 using namespace mesh;
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -139,5 +131,4 @@ TEST(Meshes, broken_ones_are_read_or_refused) {
   fs::remove_all(folder);
 }
 
-}  // namespace
 }  // namespace couplet::fuzz::mesh_fuzz

@@ -1,23 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bytes of a guest: handshake, roll call, replies, places, and commands as a client gets them. Refused, or read as
 // something sound. See README.md.
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <cstring>
-#include <functional>
-#include <limits>
 #include <new>
 
 #include "client/wire.hpp"
 #include "common/app/case/roll_call.hpp"
-#include "common/base/error.hpp"
 #include "common/coupling/messages.hpp"
 #include "tests/fuzz/mutate.hpp"
 
 namespace couplet::fuzz::messages_fuzz {
 using namespace coupling;
-namespace {
 
 std::string text_of(const std::vector<char>& bytes) { return {bytes.begin(), bytes.end()}; }
 
@@ -215,5 +207,4 @@ TEST(GuestsBytes, another_version_names_both) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::fuzz::messages_fuzz

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-
-#include <cstdint>
-#include <filesystem>
-#include <random>
-#include <string>
-#include <vector>
+#include "tests/support/test.hpp"
 
 namespace couplet::fuzz {
 

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Broken cases through what --check does, in one process: see README.md.
-#include <gtest/gtest.h>
-
-#include <chrono>
 #include <regex>
 
 #include "common/app/case/questions.hpp"
-#include "common/base/error.hpp"
 #include "tests/fuzz/mutate.hpp"
 #include "tests/fuzz/program.hpp"
 
 namespace couplet::fuzz::yaml_fuzz {
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -203,5 +198,4 @@ TEST(Yaml, broken_cases_are_refused_with_a_place_in_time_and_memory) {
   fs::remove_all(folder);
 }
 
-}  // namespace
 }  // namespace couplet::fuzz::yaml_fuzz

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
 #include "common/coupling/participant.hpp"
 #include "common/diagnostics/diagnostics.hpp"
 #include "common/io/checkpoint.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::support {
 

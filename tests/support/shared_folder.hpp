@@ -9,7 +9,7 @@
 
 #include "common/parallel/collective.hpp"
 
-namespace couplet::testing {
+namespace couplet::support {
 
 /// An empty folder that all ranks share for one run; rank 0 removes it at the end. Collective over MPI_COMM_WORLD, one at a time.
 class SharedFolder {
@@ -29,9 +29,10 @@ class SharedFolder {
   SharedFolder(const SharedFolder&) = delete;
   SharedFolder& operator=(const SharedFolder&) = delete;
   const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
 
  private:
   std::filesystem::path path_;
 };
 
-}  // namespace couplet::testing
+}  // namespace couplet::support

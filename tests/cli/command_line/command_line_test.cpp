@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/case/command_line.hpp"
-
-#include <gmock/gmock.h>
+#include "tests/support/test.hpp"
 
 namespace couplet::command_line_test {
-namespace {
-
 using testing::ElementsAre;
 using testing::HasSubstr;
 using Task = app::CommandLine::Task;
@@ -81,5 +78,4 @@ TEST(CommandLine, a_wrong_command_line_leaves_with_code_2_and_says_why) {
             "Use only one of --check, --docs, --schema, --print-config, --explain and --effects.");
 }
 
-}  // namespace
 }  // namespace couplet::command_line_test

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Interpolation in time of programs on preCICE's interface.
 #include "client/precice/waveform.hpp"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
+#include "tests/support/test.hpp"
 
 namespace couplet::dropin::waveform_test {
-namespace {
 
 std::vector<double> times(int intervals, double power) {
   std::vector<double> list;
@@ -68,5 +62,4 @@ TEST(Waveform, degree_0_has_the_value_at_the_next_time) {
   EXPECT_EQ(w.weights(0.41), (std::vector<double>{0, 0, 1}));
 }
 
-}  // namespace
 }  // namespace couplet::dropin::waveform_test

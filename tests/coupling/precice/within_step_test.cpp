@@ -1,23 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Values within a step: two tanks whose levels follow each other, each subdivides the step as it likes and is told the
 // other's level at the ends of all its sub-steps. Against the monolithic scheme with the short steps.
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <cmath>
-#include <filesystem>
-
 #include "common/app/loop/step_loop.hpp"
-#include "common/base/error.hpp"
 #include "common/coupling/step_plan.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::within_step_test {
 using namespace coupling;
 using namespace coupler;
-namespace {
 
 namespace fs = std::filesystem;
 using Place = Interface::Place;
@@ -231,5 +224,4 @@ TEST(WithinStep, a_number_of_sub_steps_that_wavers_from_pass_to_pass_still_conve
   }
 }
 
-}  // namespace
 }  // namespace couplet::within_step_test

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <utility>
-
 #include "common/coupling/participant.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::tests {
 

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The coupler's residuals.csv, step by step.
 #pragma once
-
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
-#include <vector>
+#include "tests/support/test.hpp"
 
 namespace couplet::tests {
 

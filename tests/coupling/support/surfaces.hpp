@@ -2,12 +2,9 @@
 // Surfaces for tests of mappings, with the corners of their faces.
 #pragma once
 
-#include <cmath>
-#include <numbers>
-
 #include "common/coupling/participant.hpp"
-#include "common/parallel/collective.hpp"
 #include "coupler/mapping/mapping.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::tests {
 

@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/acceleration/accelerator.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <filesystem>
-#include <random>
-
-#include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "coupler/acceleration/fixed_point.hpp"
 #include "coupler/acceleration/growing_qr.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::accelerator_test {
 using namespace coupler;
-namespace {
 
 using Vector = std::vector<double>;
 
@@ -182,5 +175,4 @@ TEST(Residual, both_criteria_are_needed_where_both_are_asked_for) {
   EXPECT_EQ(absolute_too({1, 2e-5}, p), "");
 }
 
-}  // namespace
 }  // namespace couplet::accelerator_test

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Motion and load by one map and its transpose, between surfaces of any meshes, however they are cut over ranks.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
-#include <numeric>
-#include <random>
 
 #include "coupler/mapping/links.hpp"
 #include "coupler/output/mechanics.hpp"
@@ -15,7 +10,6 @@ namespace couplet::conjugate_test {
 using namespace coupling;
 using namespace parallel;
 using namespace coupler;
-namespace {
 
 using Place = Interface::Place;
 using Type = MappingParameters::Type;
@@ -341,5 +335,4 @@ TEST(ConjugateMaps, pressures_and_temperatures_go_consistently_and_heats_with_th
   }
 }
 
-}  // namespace
 }  // namespace couplet::conjugate_test

@@ -1,14 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The whole coupler in one process, over local channels: an added-mass fluid against masses on springs.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <cmath>
-#include <filesystem>
-#include <set>
-
-#include "common/base/error.hpp"
 #include "common/diagnostics/finding.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
@@ -19,7 +10,6 @@
 namespace couplet::coupled_toy_test {
 using namespace coupling;
 using namespace coupler;
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -443,5 +433,4 @@ TEST(CoupledToy, interrupted_run_equals_uninterrupted_run_bit_for_bit) {
   EXPECT_EQ(second.velocity, whole.velocity);
 }
 
-}  // namespace
 }  // namespace couplet::coupled_toy_test

@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Participants of any kind that exchange data once a step, in one process over local channels.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-
-#include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::exchange_test {
 using namespace coupling;
 using namespace coupler;
-namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
@@ -225,5 +216,4 @@ TEST(Links, what_does_not_fit_is_named) {
   EXPECT_THAT(message(wrong), HasSubstr("'wall' takes 'heat', which both 'bed' and 'ground' give"));
 }
 
-}  // namespace
 }  // namespace couplet::exchange_test

@@ -2,15 +2,10 @@
 // What the tests of participants with names of their own share.
 #pragma once
 
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
-
-#include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet {
 

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A structure with vertices alone, names of its own and no velocity, as a program on preCICE's interface.
-#include <gmock/gmock.h>
-
 #include "common/app/loop/step_loop.hpp"
 #include "coupler/output/mechanics.hpp"
 #include "tests/coupling/unit/foreign.hpp"
 
 namespace couplet::foreign_structure_test {
 using namespace coupling;
-namespace {
 
 using Place = Interface::Place;
 
@@ -72,12 +69,7 @@ struct Shaken : ForeignCase {
     return problem;
   }
   std::string error() {
-    try {
-      (*this)();
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
+    return support::error_of([&] { (*this)(); });
   }
 };
 
@@ -161,5 +153,4 @@ TEST(Balancing, forces_at_vertices_have_a_sum_a_moment_and_work) {
   EXPECT_DOUBLE_EQ(b.work, 0.2 + 0.2 + 1.5);
 }
 
-}  // namespace
 }  // namespace couplet::foreign_structure_test

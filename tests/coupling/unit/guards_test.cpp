@@ -2,20 +2,13 @@
 // Each guard fires on what it is for and keeps still beside it.
 #include "coupler/diagnostics/guards.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-
-#include "common/base/error.hpp"
 #include "common/base/numbers.hpp"
 #include "coupler/mapping/surface_checks.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::guards_test {
 using namespace coupling;
 using namespace coupler;
-namespace {
 
 using testing::HasSubstr;
 using Place = Interface::Place;
@@ -249,12 +242,9 @@ std::string said_of_nearest(int n, int m) {
   solid.gives = fluid.takes = motion, solid.takes = fluid.gives = load;
   const std::vector<Side> sides{{MPI_COMM_SELF, "solid", solid}, {MPI_COMM_SELF, "fluid", fluid}};
   const MappingParameters nearest{.type = MappingParameters::Type::nearest, .tolerance = {}};
-  try {
+  return support::error_of([&] {
     check_places(MPI_COMM_SELF, sides, {MPI_COMM_SELF, sides, nearest}, nearest);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  });
 }
 
 TEST(Places, nearest_is_refused_where_faces_do_not_nest_and_the_map_that_serves_is_named) {
@@ -300,5 +290,4 @@ TEST(Places, a_load_that_is_not_finite_is_named_with_its_place) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::guards_test

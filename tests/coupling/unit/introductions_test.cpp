@@ -21,12 +21,7 @@ std::string said(const CouplingParameters& coupling, const std::string& left, co
   std::vector<Partner> partners(2);
   partners[0].channel = std::make_unique<LocalChannel>("Left", nobody), partners[0].introduction = left;
   partners[1].channel = std::make_unique<LocalChannel>("Right", nobody), partners[1].introduction = right;
-  try {
-    check_introductions(coupling, partners);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
+  return support::error_of([&] { check_introductions(coupling, partners); });
 }
 
 CouplingParameters imported(Scheme scheme, ExchangeParameters::Order order) {

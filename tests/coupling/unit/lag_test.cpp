@@ -1,11 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // What explicit coupling is told to leave, against what it leaves: the same masses on springs coupled implicitly.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <cmath>
-#include <filesystem>
 #include <regex>
 
 #include "common/log/log.hpp"
@@ -16,7 +10,6 @@
 
 namespace couplet::lag_test {
 using namespace coupling;
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -165,5 +158,4 @@ TEST(ExplicitLag, changes_nothing_and_continues_over_a_restart_bit_for_bit) {
   EXPECT_FALSE(std::isnan(whole.told()));
 }
 
-}  // namespace
 }  // namespace couplet::lag_test

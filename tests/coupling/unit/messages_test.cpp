@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/coupling/messages.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "common/base/error.hpp"
 #include "common/coupling/wait.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::messages_test {
 using namespace coupling;
-namespace {
 
 /// A message of one process to itself.
 void carry(const std::vector<std::span<const double>>& values, const Stretches& to) {
@@ -196,5 +191,4 @@ TEST(Blocks, a_list_cut_in_two_ways_overlaps_where_it_should) {
   EXPECT_EQ(even_starts(10, 3), (Starts{0, 3, 6, 10}));
 }
 
-}  // namespace
 }  // namespace couplet::messages_test

@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/acceleration/quasi_newton.hpp"
 
-#include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <Eigen/Dense>
-#include <cmath>
-#include <filesystem>
-#include <random>
 
 #include "common/io/checkpoint.hpp"
 #include "coupler/acceleration/fixed_point.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::quasi_newton_test {
 using namespace coupler;
-namespace {
 
 using Vector = std::vector<double>;
 using Type = AccelerationParameters::Type;
@@ -305,5 +299,4 @@ TEST(Accelerators, continue_from_a_checkpoint_bit_for_bit) {
   std::filesystem::remove(file);
 }
 
-}  // namespace
 }  // namespace couplet::quasi_newton_test

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/case/roll_call.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "common/parallel/collective.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::roll_call_test {
 using namespace app;
-namespace {
 
 using testing::HasSubstr;
 
@@ -115,5 +110,4 @@ TEST(RollCall, all_processes_hear_all_answers) {
   EXPECT_EQ(members(all)[0].ranks, parallel::comm_size(MPI_COMM_WORLD));
 }
 
-}  // namespace
 }  // namespace couplet::roll_call_test

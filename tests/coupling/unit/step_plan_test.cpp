@@ -1,18 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/coupling/step_plan.hpp"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <set>
-#include <vector>
-
-#include "common/base/error.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::step_plan_test {
 using namespace coupling;
-namespace {
 
 TEST(StepPlan, nominal_steps_end_at_the_end) {
   StepPlan plan(1, 0.1, 6);
@@ -175,5 +166,4 @@ TEST(StepPlan, continues_with_another_nominal_step_that_divides_the_time) {
   EXPECT_THROW(wrong.restore(plan.state(), plan.time()), Error);
 }
 
-}  // namespace
 }  // namespace couplet::step_plan_test

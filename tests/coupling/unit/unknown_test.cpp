@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/acceleration/unknown.hpp"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
+#include "coupler/output/monitor.hpp"
+#include "coupler/parameters/schedule.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::unknown_test {
 using namespace coupling;
 using namespace coupler;
-namespace {
-
 using Place = Interface::Place;
+using coupling::Scheme;
+using testing::HasSubstr;
 
 Side point(const std::string& name, std::vector<Interface::Datum> takes,
            std::vector<Interface::Datum> gives) {
@@ -117,5 +116,116 @@ TEST(Predictor, data_without_velocity_follow_the_polynomial_through_their_last_v
   EXPECT_DOUBLE_EQ(predict(forces, history, 0.3, 0).unknown[0], f(0.7));
 }
 
-}  // namespace
+/// A step with so many renewals: whether the scheme has changed.
+bool step(SchemeChoice& choice, int renewals) {
+  choice.start_step();
+  for (int i = 0; i < renewals; ++i) choice.renewed();
+  return choice.accepted(1);
+}
+
+TEST(SchemeChoice, becomes_implicit_after_as_many_renewed_steps_in_a_row_as_it_says_and_once) {
+  SchemeChoice choice{{}};
+  for (int n = 1; n < SchemeChoice::most_in_a_row; ++n) EXPECT_FALSE(step(choice, SchemeChoice::too_many));
+  EXPECT_EQ(choice.now(), Scheme::semi_implicit);
+  EXPECT_TRUE(step(choice, SchemeChoice::too_many));
+  EXPECT_EQ(choice.now(), Scheme::implicit);
+  EXPECT_FALSE(step(choice, 0));
+  EXPECT_EQ(choice.now(), Scheme::implicit);
+}
+
+TEST(SchemeChoice, stays_where_steps_with_few_renewals_lie_between) {
+  SchemeChoice choice{{}};
+  for (int n = 0; n < 20; ++n)
+    EXPECT_FALSE(step(
+        choice, n % SchemeChoice::most_in_a_row == 0 ? SchemeChoice::too_many - 1 : SchemeChoice::too_many));
+  EXPECT_EQ(choice.now(), Scheme::semi_implicit);
+}
+
+TEST(SchemeChoice, becomes_implicit_where_half_of_the_steps_are_renewed_and_not_where_a_third_is) {
+  SchemeChoice often{{}}, seldom{{}};
+  int change = 0;
+  for (int n = 1; n <= 400; ++n) {
+    if (step(often, n % 2)) change = n;
+    EXPECT_FALSE(step(seldom, n % 3 == 0 ? 2 : 0));
+  }
+  EXPECT_GT(change, 60);
+  EXPECT_LT(change, 120);
+  EXPECT_EQ(often.now(), Scheme::implicit);
+}
+
+TEST(SchemeChoice, a_scheme_that_was_asked_for_stays) {
+  for (const Scheme asked : {Scheme::explicit_, Scheme::semi_implicit, Scheme::implicit}) {
+    SchemeChoice choice{asked};
+    for (int n = 0; n < 20; ++n) EXPECT_FALSE(step(choice, 9));
+    EXPECT_FALSE(choice.failed());
+    EXPECT_EQ(choice.now(), asked);
+  }
+}
+
+TEST(SchemeChoice, a_failed_step_is_tried_once_as_an_implicit_one_until_withdrawn) {
+  SchemeChoice choice{{}};
+  EXPECT_TRUE(choice.failed());
+  EXPECT_EQ(choice.now(), Scheme::implicit);
+  EXPECT_FALSE(choice.failed());
+  choice.withdraw();
+  EXPECT_EQ(choice.now(), Scheme::semi_implicit);
+  EXPECT_TRUE(choice.failed());
+}
+
+TEST(SchemeChoice, continues_from_a_checkpoint_with_its_count_or_its_change) {
+  SchemeChoice choice{{}};
+  step(choice, 4), step(choice, 4);
+  SchemeChoice again{{}};
+  again.restore(choice.state());
+  for (int n = 3; n < SchemeChoice::most_in_a_row; ++n) EXPECT_FALSE(step(again, 4));
+  EXPECT_TRUE(step(again, 4));
+  SchemeChoice after{{}};
+  after.restore(again.state());
+  EXPECT_EQ(after.now(), Scheme::implicit);
+  SchemeChoice fixed{Scheme::semi_implicit};
+  fixed.restore(again.state());
+  EXPECT_EQ(fixed.now(), Scheme::semi_implicit) << "the key of the run that continues decides";
+}
+
+std::vector<Worker> workers(double fluid, double solid, int fluid_ranks = 1, int solid_ranks = 1) {
+  return {{"fluid", fluid_ranks, fluid}, {"solid", solid_ranks, solid}};
+}
+
+TEST(DivideRanks, is_as_quick_as_the_best_of_all_divisions) {
+  const std::vector<Worker> three{{"fluid", 1, 90}, {"solid", 1, 9}, {"mover", 1, 20}};
+  for (const bool side_by_side : {false, true})
+    for (int total = 3; total <= 24; ++total) {
+      const auto time = [&](int a, int b, int c) {
+        const double t[] = {90. / a, 9. / b, 20. / c};
+        return side_by_side ? std::max({t[0], t[1], t[2]}) : t[0] + t[1] + t[2];
+      };
+      double best = std::numeric_limits<double>::infinity();
+      for (int a = 1; a <= total - 2; ++a)
+        for (int b = 1; a + b < total; ++b) best = std::min(best, time(a, b, total - a - b));
+      const std::vector<int> found = divide_ranks(three, total, side_by_side);
+      EXPECT_EQ(found[0] + found[1] + found[2], total);
+      EXPECT_NEAR(time(found[0], found[1], found[2]), best, 1e-12) << total << ' ' << side_by_side;
+    }
+}
+
+TEST(Waiting, names_who_is_waited_for_and_whose_the_next_rank_should_be) {
+  EXPECT_EQ(
+      waiting_sentence(workers(9, 1), false),
+      "waiting: one after another, the others wait for 'fluid' 90 % of the time at work; a further rank is best given to it "
+      "('-n fluid=2')");
+  EXPECT_THAT(waiting_sentence(workers(1, 9), true), HasSubstr("side by side, all wait for 'solid'"));
+}
+
+TEST(Waiting, proposes_a_division_only_where_it_gains_a_tenth) {
+  // 9 s on two ranks and 1 s on two: three and one take 18/3 + 2/1 = 8 s for 10 s.
+  EXPECT_THAT(waiting_sentence(workers(9, 1, 2, 2), false),
+              HasSubstr("'-n fluid=3,solid=1' in place of fluid=2,solid=2 would take 20 % less"));
+  EXPECT_THAT(waiting_sentence(workers(6, 2, 3, 1), false), HasSubstr("the ranks fit (fluid=3,solid=1)"));
+}
+
+TEST(Waiting, is_silent_about_one_participant_and_short_runs) {
+  EXPECT_EQ(waiting_sentence({{"fluid", 4, 100}}, false), "");
+  EXPECT_EQ(waiting_sentence(workers(0.5, 0.1), false), "");
+}
+
 }  // namespace couplet::unknown_test

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The level of a closed fluid acts on the areas half way through the step: then its work is that on the volume.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-
 #include "coupler/acceleration/volume_level.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::volume_area_test {
 using namespace coupling;
 using namespace coupler;
-namespace {
 
 using Place = Interface::Place;
 using Data = std::vector<Interface::Datum>;
@@ -170,5 +165,4 @@ TEST(CavityWall, sweeps_the_volume_between_two_places) {
   EXPECT_NEAR(wall.swept({}, grown), 0.5 * 7 / 3, 1e-12);
 }
 
-}  // namespace
 }  // namespace couplet::volume_area_test

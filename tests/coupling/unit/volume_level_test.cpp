@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Closed fluids under masses on springs, in one process: what is pumped in is what the wall gives way.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <cmath>
-#include <filesystem>
-#include <numbers>
-
-#include "common/base/error.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
 #include "tests/coupling/toy/spring.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::volume_level_test {
 using namespace coupling;
-namespace {
 
 namespace fs = std::filesystem;
 using Place = Interface::Place;
@@ -293,5 +284,4 @@ TEST(VolumeLevel, arrangements_that_cannot_hold_a_volume_are_refused) {
   EXPECT_THAT([&] { jacobi(); }, testing::ThrowsMessage<Error>(HasSubstr("order: serial")));
 }
 
-}  // namespace
 }  // namespace couplet::volume_level_test

@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The step on a moving mesh as it is timed beside other programs by benchmarks/fluid: a cylinder that swings
 // across a channel flow (Re = 100), the mesh follows by the Laplacian, solved in every step.
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <ctime>
-#include <numbers>
 
 #include "common/mesh/load.hpp"
 #include "fluid_solver/step/fluid.hpp"
 #include "mesh_mover/methods.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::fluid::moving_cylinder_test {
-namespace {
 
 constexpr double amplitude = 0.02, frequency = 2, dt = 5e-4;  // [m], [1/s], [s]
 constexpr double omega = 2 * std::numbers::pi * frequency;
@@ -111,5 +107,4 @@ TEST_P(MovingCylinder, keeps_its_mass_while_it_is_timed) {
 
 INSTANTIATE_TEST_SUITE_P(Tolerances, MovingCylinder, testing::Values(1e-6, 3e-6, 1e-5));
 
-}  // namespace
 }  // namespace couplet::fluid::moving_cylinder_test

@@ -2,10 +2,6 @@
 // Added-mass theory [causin2005] against the coupler itself: a potential flow and an elastic wall in 40
 // modes.
 #include <fmt/ranges.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
 
 #include "common/diagnostics/finding.hpp"
 #include "common/log/log.hpp"
@@ -16,7 +12,6 @@
 namespace couplet::added_mass_test {
 using namespace coupling;
 using namespace coupler;
-namespace {
 
 namespace fs = std::filesystem;
 using Type = AccelerationParameters::Type;
@@ -243,5 +238,4 @@ TEST(AddedMass, map_of_mass_ratio_and_scheme) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::added_mass_test

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A flow that gains energy from nowhere fails in solve, by name, and leaves level n; one that is driven does
 // not.
-#include <gmock/gmock.h>
-
 #include "../../verification/fluid/fluid_case.hpp"
-#include "common/base/error.hpp"
 
 namespace couplet::fluid::test::energy_guard_test {
-namespace {
-
 using testing::HasSubstr;
 
 /// Shear layers in a box of 1 m whose explicit viscous term is stable up to about 0.01 s.
@@ -167,5 +162,4 @@ INSTANTIATE_TEST_SUITE_P(viscous, Driven,
                            return info.param == ViscousTreatment::explicit_ ? "explicit" : "implicit";
                          });
 
-}  // namespace
 }  // namespace couplet::fluid::test::energy_guard_test

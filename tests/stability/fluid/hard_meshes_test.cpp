@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Meshes that nobody should make: the fluid solves them or refuses with the reason; it never gives NaN.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <numbers>
-
 #include "../../verification/fluid/fluid_case.hpp"
-#include "common/base/error.hpp"
 #include "common/mesh/quality.hpp"
 
 namespace couplet::fluid::test::hard_meshes_test {
 using namespace mesh;
-namespace {
 
 struct Outcome {
   bool solved = false;
@@ -163,5 +156,4 @@ INSTANTIATE_TEST_SUITE_P(viscous, HardMeshes,
                            return info.param == ViscousTreatment::explicit_ ? "explicit" : "implicit";
                          });
 
-}  // namespace
 }  // namespace couplet::fluid::test::hard_meshes_test

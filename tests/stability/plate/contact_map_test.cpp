@@ -3,17 +3,9 @@
 // met and left within a step, and a rule that does not know where adds or takes energy each time; criterion,
 // the energy over that of the start. The conserving rule holds everywhere; the midpoint rule beside it is the
 // failing neighbour.
-#include <gtest/gtest.h>
-
-#include <fmt/format.h>
-
-#include <cmath>
-#include <numbers>
-
-#include "tests/verification/plate/bounce.hpp"
+#include "tests/verification/plate/plates.hpp"
 
 namespace couplet::plate::contact_map_test {
-namespace {
 
 /// Largest and last energy over the first, minus 1, in `bounces` bounces (or as long as they would take).
 struct Drift {
@@ -56,5 +48,4 @@ TEST(PlateContactMap, conserving_holds_over_stiffness_and_step_and_midpoint_does
   RecordProperty("midpoint", fmt::format("{:.3e}", worst_midpoint));
 }
 
-}  // namespace
 }  // namespace couplet::plate::contact_map_test

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cases that break a careless bed: each stays within the temperatures that went in and keeps its heat.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "tests/verification/thermocline/support.hpp"
 
 namespace couplet::thermocline::hard_cases_test {
-namespace {
 
 /// Runs a bed and keeps its books, step by step.
 struct Audit {
@@ -212,5 +206,4 @@ TEST(Inversion, is_measured_against_the_hottest_fluid_below_however_fine_the_cel
   }
 }
 
-}  // namespace
 }  // namespace couplet::thermocline::hard_cases_test

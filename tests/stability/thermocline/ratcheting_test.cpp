@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ten years of daily cycles of a filler that slides between the active and the passive load: the wall's stress stays between
 // the two, for ever the same from the second cycle on.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
+#include "tests/support/test.hpp"
 #include "thermocline/wall/mechanics.hpp"
 
 namespace couplet::thermocline::ratcheting_test {
-namespace {
 
 struct Cycles {
   double highest = 0, lowest = 1e300;  ///< lateral over vertical pressure
@@ -82,5 +76,4 @@ TEST(Ratcheting, of_small_cycles_never_reaches_the_passive_load) {
   EXPECT_LT(held.drift, 1e-9);
 }
 
-}  // namespace
 }  // namespace couplet::thermocline::ratcheting_test

@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/case/case_keys.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <fstream>
-
-#include "common/base/error.hpp"
 #include "common/config/document.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::case_keys_test {
 using namespace app;
-namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
@@ -71,5 +64,4 @@ TEST(CaseKeys, values_are_compared_as_quantities) {
   EXPECT_FALSE(config::same_value("1.0000000001", "1"));
 }
 
-}  // namespace
 }  // namespace couplet::case_keys_test

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/loop/step_loop.hpp"
-
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <unistd.h>
-
-#include <filesystem>
+#include "tests/support/test.hpp"
 
 namespace couplet::halving_causes_test {
 using namespace app;
 using namespace coupling;
-namespace {
 
 using testing::HasSubstr;
 
@@ -82,5 +76,4 @@ TEST(HalvingCauses, a_run_whose_steps_never_grow_back_ends) {
   EXPECT_EQ(halvings, 10);
 }
 
-}  // namespace
 }  // namespace couplet::halving_causes_test

@@ -1,18 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/parallel/mpi_start.hpp"
-
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <cstdlib>
-#include <fstream>
-#include <map>
-#include <string>
-
-#include <filesystem>
+#include "tests/support/test.hpp"
 
 namespace couplet::mpi_start_test {
-namespace {
 
 /// What the variables are after prepare_mpi_start() in an environment of these and a HOME of its own; the test's own
 /// environment comes back.
@@ -87,5 +77,4 @@ TEST_F(MpiStart, what_the_user_has_chosen_stays) {
   EXPECT_EQ(value("OMPI_MCA_ess_singleton_isolated"), "-");
 }
 
-}  // namespace
 }  // namespace couplet::mpi_start_test

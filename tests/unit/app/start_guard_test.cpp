@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/watch/watch.hpp"
-
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <cstdlib>
-#include <optional>
+#include "tests/support/test.hpp"
 
 namespace couplet::start_guard_test {
-namespace {
-
 using namespace std::chrono_literals;
 
 TEST(StartGuardDeathTest, ends_a_start_that_takes_too_long) {
@@ -36,5 +29,4 @@ TEST(StartGuardDeathTest, is_silent_once_disarmed_and_where_no_timeout_is_asked_
       ::testing::ExitedWithCode(0), "^$");
 }
 
-}  // namespace
 }  // namespace couplet::start_guard_test

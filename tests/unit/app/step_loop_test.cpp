@@ -1,24 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/loop/step_loop.hpp"
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <fstream>
-#include <set>
-#include <sstream>
-
-#include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/checkpoint_set.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::step_loop_test {
 using namespace app;
 using namespace io;
-namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
@@ -61,12 +51,7 @@ class Checkpoints : public testing::Test {
     return CheckpointReader(MPI_COMM_SELF, place / "one.h5").read_scalar("time");
   }
   static std::string error_of(const std::function<void()>& action) {
-    try {
-      action();
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
+    return support::error_of([&] { action(); });
   }
   static std::string text_of(const fs::path& file) {
     std::ostringstream text;
@@ -237,5 +222,4 @@ TEST(StepLoop, names_the_first_failure_of_a_step_where_the_last_one_is_another) 
       "state was saved: nothing to save.");
 }
 
-}  // namespace
 }  // namespace couplet::step_loop_test

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/base/point_tree.hpp"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <limits>
-#include <random>
+#include "tests/support/test.hpp"
 
 namespace couplet::nearest_test {
 using namespace base;
-namespace {
 
 const Vec3 a(0, 0, 0), b(2, 0, 0), c(0, 1, 0);
 
@@ -64,5 +58,4 @@ TEST(Nearest, OfATriangleAgainstItsPlaces) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::nearest_test

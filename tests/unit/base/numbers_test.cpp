@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/base/numbers.hpp"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
+#include "tests/support/test.hpp"
 
 namespace couplet::numbers_test {
 using namespace base;
-namespace {
 
 TEST(Numbers, are_taken_in_order_and_none_is_left) {
   const std::vector<double> values{0.5, 2, 7, 8, 9};
@@ -41,5 +36,4 @@ TEST(Numbers, counts_that_are_none_or_more_than_follow_are_refused) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::numbers_test

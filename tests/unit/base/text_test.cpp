@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/base/text.hpp"
-
-#include <gmock/gmock.h>
+#include "tests/support/test.hpp"
 
 namespace couplet::text_test {
 using namespace base;
-namespace {
 
 TEST(Text, edit_distance_counts_insertions_deletions_replacements_and_swaps) {
   EXPECT_EQ(edit_distance("", "abc"), 3u);
@@ -50,5 +48,4 @@ TEST(Text, the_hash_is_that_of_the_published_algorithm) {
   EXPECT_EQ(stable_hash("foobar"), 0x85944171f73967e8u);
 }
 
-}  // namespace
 }  // namespace couplet::text_test

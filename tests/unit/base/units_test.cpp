@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/base/units.hpp"
-
-#include <gtest/gtest.h>
-
-#include <numbers>
-
-#include "common/base/error.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::units_test {
 using namespace base;
-namespace {
 
 struct Case {
   const char* text;
@@ -102,5 +96,4 @@ TEST(Units, a_formatted_quantity_reads_back_as_the_same_number) {
   EXPECT_EQ(format_quantity(5.6e6, "Pa"), "5600000 Pa");
 }
 
-}  // namespace
 }  // namespace couplet::units_test

@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
-
-#include <filesystem>
-#include <stdexcept>
-
-#include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "tests/unit/config/fixture.hpp"
 
 namespace couplet::errors_test {
-namespace {
 
 struct Case {
   std::string yaml;     ///< put behind the valid lines 1 and 2
@@ -188,5 +181,4 @@ TEST(WrongDeclaration, names_that_are_not_kebab_case_are_a_bug_at_once) {
                std::logic_error);
 }
 
-}  // namespace
 }  // namespace couplet::errors_test

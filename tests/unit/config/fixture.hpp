@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <map>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "common/config/load.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet {
 

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
 #include <yaml-cpp/yaml.h>
 
 #include "tests/unit/config/fixture.hpp"
 
 namespace couplet::generated_test {
-namespace {
-
 using testing::HasSubstr;
 using testing::Not;
 
@@ -91,5 +88,4 @@ TEST(Schema, says_what_the_reader_says) {
   EXPECT_FALSE(boundary[0]["additionalProperties"].as<bool>());
 }
 
-}  // namespace
 }  // namespace couplet::generated_test

@@ -1,24 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "common/base/error.hpp"
 #include "common/base/units.hpp"
 #include "common/config/load.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::limits_test {
-namespace {
-
 using testing::ElementsAre;
 using testing::HasSubstr;
 
 std::string error_of(const std::string& text) {
-  try {
-    config::Document::parse(text, "case.yaml");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return support::error_of([&] { config::Document::parse(text, "case.yaml"); });
 }
 
 TEST(Limits, anchors_that_multiply_are_refused_before_they_fill_the_memory) {
@@ -97,5 +87,4 @@ TEST(Limits, an_override_makes_the_section_that_is_not_there) {
   EXPECT_EQ(config::text_of(document, "flow.more.deep"), "1");
 }
 
-}  // namespace
 }  // namespace couplet::limits_test

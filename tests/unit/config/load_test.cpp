@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
-
-#include "common/base/error.hpp"
 #include "tests/unit/config/fixture.hpp"
 
 namespace couplet::load_test {
-namespace {
-
 using testing::ElementsAre;
 
 TEST(Load, keys_fill_the_members_in_si_units) {
@@ -129,5 +124,4 @@ TEST(Load, a_misspelt_required_key_is_one_mistake_not_two) {
               ElementsAre("case.yaml:1:1: mash: unknown key. Did you mean 'mesh'?"));
 }
 
-}  // namespace
 }  // namespace couplet::load_test

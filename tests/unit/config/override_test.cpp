@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
-
-#include "common/base/error.hpp"
 #include "tests/unit/config/fixture.hpp"
 
 namespace couplet::override_test {
-namespace {
 
 config::Document document() {
   return config::Document::parse(good + "probes:\n  - {name: tip}\n  - {name: root}\nboundaries: {}\n",
@@ -114,5 +110,4 @@ TEST(Override, the_hash_covers_the_text_and_the_overrides) {
   EXPECT_NE(document().hash(), config::Document::parse(good, "case.yaml").hash());
 }
 
-}  // namespace
 }  // namespace couplet::override_test

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Quantities as contracts: usual magnitudes, temperatures and their differences, numbers that need a unit.
-#include <gmock/gmock.h>
-
 #include "common/config/values.hpp"
 #include "tests/unit/config/fixture.hpp"
 
 namespace couplet::quantities_test {
-namespace {
-
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -160,5 +156,4 @@ TEST(Quantities, values_in_force_are_written_so_that_they_can_be_read_again) {
   EXPECT_EQ(again.values.hot.text, "310");
 }
 
-}  // namespace
 }  // namespace couplet::quantities_test

@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/coupling/interface_map.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-
-#include "common/base/error.hpp"
 #include "common/mesh/load.hpp"
-#include "common/parallel/collective.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::interface_map_test {
 using namespace coupling;
 using namespace mesh;
-namespace {
 
 class InterfaceMapOf : public ::testing::TestWithParam<BoxCells> {
  protected:
@@ -169,5 +161,4 @@ TEST(InterfaceMapErrors, unknown_patch_is_named_with_those_that_exist) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::interface_map_test

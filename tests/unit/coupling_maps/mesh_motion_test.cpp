@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/coupling/mesh_motion.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "common/base/error.hpp"
 #include "common/mesh/load.hpp"
-#include "common/parallel/collective.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::mesh_motion_test {
 using namespace coupling;
 using namespace mesh;
-namespace {
 
 /// The world as two programs: the mover on rank 0 (or on the last two of five), the fluid on the others.
 class TwoPrograms : public ::testing::Test {
@@ -30,15 +23,12 @@ class TwoPrograms : public ::testing::Test {
     MPI_Comm_free(&own);
   }
   std::string set_up_error(const Mesh& mesh, const Geometry& geometry) const {
-    try {
+    return support::error_of([&] {
       if (is_mover)
         make_mesh_motion_sink(peers, mesh, geometry.points);
       else
         make_mesh_motion_source(peers, mesh, geometry.points);
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
+    });
   }
   bool is_mover = false;
   MPI_Comm own = MPI_COMM_NULL, peers = MPI_COMM_NULL;
@@ -127,5 +117,4 @@ TEST_F(TwoPrograms, meshes_with_other_places_of_the_points_are_refused_on_both_s
               ::testing::HasSubstr("mesh mover differ: their points have different coordinates."));
 }
 
-}  // namespace
 }  // namespace couplet::mesh_motion_test

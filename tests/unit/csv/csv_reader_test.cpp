@@ -2,17 +2,10 @@
 // Rows of tables: what is read, and what could be meant otherwise and is refused.
 #include "common/csv/csv_reader.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <fstream>
-
-#include "common/base/error.hpp"
 #include "tests/support/own_folder.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::csv::csv_reader_test {
-namespace {
-
 using testing::ElementsAre;
 using testing::EndsWith;
 using testing::HasSubstr;
@@ -107,5 +100,4 @@ TEST(CsvReader, a_first_row_with_a_slip_is_not_taken_for_names) {
   EXPECT_THAT(said("1.2.3,0\n1,2\n"), HasSubstr("a.csv:1: '1.2.3' is not a number"));
 }
 
-}  // namespace
 }  // namespace couplet::csv::csv_reader_test

@@ -2,19 +2,13 @@
 // Bytes and lines: gzip and its limits, what is no text.
 #include "common/csv/csv_reader.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include <fstream>
-
-#include "common/base/error.hpp"
 #include "tests/support/gzip.hpp"
 #include "tests/support/own_folder.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::csv::line_reader_test {
-namespace {
-
 using support::gzip;
 using testing::ElementsAre;
 using testing::EndsWith;
@@ -139,5 +133,4 @@ TEST(Gzip, the_size_of_the_text_is_limited_whatever_the_ratio) {
   EXPECT_THAT(said_of_lines(gzip(text), {.bytes = 2 << 20}), HasSubstr("more than 2 MB when decompressed"));
 }
 
-}  // namespace
 }  // namespace couplet::csv::line_reader_test

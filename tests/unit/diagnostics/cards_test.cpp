@@ -1,8 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "common/base/error.hpp"
 #include "common/diagnostics/diagnostics.hpp"
 #include "common/diagnostics/effects.hpp"
 #include "coupler/parameters/effect_cards.hpp"
@@ -12,13 +8,13 @@
 #include "plate_modal/model/parameters.hpp"
 #include "solid_solver/diagnostics/neglected.hpp"
 #include "solid_solver/effects.hpp"
+#include "tests/support/test.hpp"
 #include "thermocline/diagnostics/tank_diagnostic.hpp"
 
 namespace couplet::testing::cards_test {
 using namespace diagnostics;
 using namespace coupler;
 using namespace solid;
-namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -211,5 +207,4 @@ TEST(EffectCards, coupling_cards_answer_without_participants) {
   EXPECT_THROW(schedule_of(CouplingParameters{}), std::bad_optional_access);
 }
 
-}  // namespace
 }  // namespace couplet::testing::cards_test

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `effects: auto` chooses, scene by scene, beside what somebody who knows the field would.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "fluid_solver/parameters/effects.hpp"
 #include "solid_solver/effects.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::testing::choices_test {
 using namespace mesh;
 
 using namespace solid;
-namespace {
 
 using config::ExpressionText;
 using ::testing::HasSubstr;
@@ -180,5 +177,4 @@ TEST(MeshFacts, are_those_of_a_box) {
   EXPECT_EQ(facts_of(MPI_COMM_SELF, block_of(MPI_COMM_SELF, flat)).dim, 2);
 }
 
-}  // namespace
 }  // namespace couplet::testing::choices_test

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/diagnostics/error_parts.hpp"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "common/base/error.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::error_parts_test {
 using namespace diagnostics;
-namespace {
 
 TEST(ErrorPartsTest, its_text_is_read_again) {
   const ErrorParts parts{.mesh = 0.0125, .linear = 3e-9};
@@ -110,5 +104,4 @@ TEST(ErrorPartsTest, of_a_job_the_largest_of_each_kind_counts_and_is_named) {
   EXPECT_EQ(sentences[1].rfind("the coupling tolerance (coupling) dominates", 0), 0u) << sentences[1];
 }
 
-}  // namespace
 }  // namespace couplet::error_parts_test

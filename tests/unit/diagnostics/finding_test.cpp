@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/diagnostics/finding.hpp"
 
-#include <gmock/gmock.h>
-
-#include <set>
-#include <stdexcept>
-
 #include "common/base/text.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::finding_test {
 using namespace base;
-namespace {
 
 using diagnostics::FindingId;
 using ::testing::HasSubstr;
@@ -56,5 +51,4 @@ TEST(Findings, an_unknown_id_is_refused_with_the_one_meant_and_all_allowed) {
   EXPECT_THAT(refusal, HasSubstr("Findings: error-estimate, "));
 }
 
-}  // namespace
 }  // namespace couplet::finding_test

@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests how findings change over a run, and the thresholds of the fluid's effects.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-
 #include "common/diagnostics/diagnostics.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "fluid_solver/diagnostics/effects.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::testing::findings_test {
 using namespace diagnostics;
-namespace {
 
 using base::Severity;
 using ::testing::HasSubstr;
@@ -192,5 +186,4 @@ TEST(FluidFindings, on_compressibility_judge_by_what_it_does) {
   EXPECT_FALSE(sound(fluid::wave_time(rate, 0.31 * 346.1 / rate, channel)));
 }
 
-}  // namespace
 }  // namespace couplet::testing::findings_test

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/diagnostics/effects.hpp"
 #include "common/diagnostics/diagnostics.hpp"
-
-#include <gtest/gtest.h>
+#include "common/diagnostics/effects.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::diagnostics::position_test {
 

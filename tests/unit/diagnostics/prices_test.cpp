@@ -1,22 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/diagnostics/prices.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <map>
-#include <set>
-
 #include "common/diagnostics/effects.hpp"
 #include "fluid_solver/parameters/effects.hpp"
 #include "mesh_mover/parameters.hpp"
 #include "plate_modal/model/parameters.hpp"
 #include "solid_solver/effects.hpp"
+#include "tests/support/test.hpp"
 #include "thermocline/model/elements.hpp"
 
 namespace couplet::testing::prices_test {
 using namespace diagnostics;
-namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -98,5 +92,4 @@ TEST(PriceList, what_is_saved_is_the_least_of_the_scenes) {
   EXPECT_EQ(saved_share("fluid_solver", "nothing"), 0);
 }
 
-}  // namespace
 }  // namespace couplet::testing::prices_test

@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/elasticity/elastic_kernel.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <random>
-
 #include "common/mesh/load.hpp"
-#include "common/parallel/collective.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::elastic_kernel_test {
 using namespace elastic;
 using namespace mesh;
-namespace {
 
 constexpr double mu = 1.1, lambda = 1.7;
 
@@ -273,5 +267,4 @@ TEST(ElasticKernel, corrected_gradients_are_exact_for_quadratic_fields_on_even_b
   }
 }
 
-}  // namespace
 }  // namespace couplet::elastic_kernel_test

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Laws of large strain: stress and tangent against differences of the energy, small strain, frame indifference.
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <cmath>
-#include <random>
 
 #include "common/elasticity/finite/finite_strain.hpp"
 #include "solid_solver/laws/laws.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::testing::finite_law_test {
 using namespace elastic;
-namespace {
 
 constexpr LameConstants lame{0.8e6, 1.3e6};
 const std::vector<double> coefficients{0.3, 0.02};
@@ -155,5 +151,4 @@ TEST(FiniteLaw, bulk_part_has_its_own_derivatives) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::testing::finite_law_test

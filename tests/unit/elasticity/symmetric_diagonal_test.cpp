@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/elasticity/symmetric/symmetric_diagonal.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <utility>
-
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
 #include "common/mesh/load.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::symmetric_diagonal_test {
 using namespace elastic;
 using namespace mesh;
-namespace {
 
 constexpr LameConstants lame{1.1, 1.7};
 
@@ -69,5 +64,4 @@ INSTANTIATE_TEST_SUITE_P(All, Diagonal,
                          ::testing::Values(BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
                                            BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed));
 
-}  // namespace
 }  // namespace couplet::symmetric_diagonal_test

@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loads of the symmetric operator are the transposes of what it measures.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
-
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/mesh/load.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::symmetric_loads_test {
 using namespace elastic;
 using namespace mesh;
-namespace {
 
 constexpr LameConstants lame{1.1, 1.7};
 
@@ -90,5 +84,4 @@ INSTANTIATE_TEST_SUITE_P(All, SymmetricLoads,
                          ::testing::Values(BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
                                            BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed));
 
-}  // namespace
 }  // namespace couplet::symmetric_loads_test

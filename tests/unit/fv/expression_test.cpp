@@ -1,24 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/fv/expression.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "common/base/error.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::expression_test {
 using namespace fv;
-namespace {
 
 std::string message_of(const std::string& text) {
-  try {
-    Expression expression(config::ExpressionText{text}, "traction.value[1]");
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
+  return support::error_of([&] { Expression expression(config::ExpressionText{text}, "traction.value[1]"); });
 }
 
 TEST(Expression, takes_space_and_time) {
@@ -83,5 +71,4 @@ TEST(Expression, needs_one_component_a_dimension) {
   EXPECT_THAT(problem_of({{"0"}, {"u"}}, 2), ::testing::HasSubstr("unknown name 'u'"));
 }
 
-}  // namespace
 }  // namespace couplet::expression_test

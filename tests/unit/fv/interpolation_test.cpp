@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "common/fv/gradients.hpp"
 #include "common/fv/vertex_interpolation.hpp"
 #include "common/mesh/load.hpp"
-#include "common/parallel/collective.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::interpolation_test {
 using namespace fv;
 using namespace mesh;
-namespace {
 
 /// Every boundary point stays, every inner point moves: skewed cells and warped faces.
 LoadedMesh distorted(BoxCells cells, const Vec3& upper = Vec3(1, 0.7, 0.4)) {
@@ -182,5 +177,4 @@ TEST(VertexInterpolation, follows_a_moved_mesh) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::interpolation_test

@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Conduction and prescribed motion by themselves, against what is known in closed form.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-
 #include "common/fv/conduction.hpp"
 #include "common/fv/prescribed_motion.hpp"
 #include "common/mesh/load.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::operators_test {
 using namespace fv;
 using namespace mesh;
-namespace {
 
 class Conduction : public ::testing::TestWithParam<BoxCells> {};
 INSTANTIATE_TEST_SUITE_P(Cells, Conduction,
@@ -88,5 +83,4 @@ TEST(PrescribedMotion, fades_between_its_radii) {
   EXPECT_NEAR(motion.largest_displacement(places, 0), 1, 1e-14);
 }
 
-}  // namespace
 }  // namespace couplet::operators_test

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
 #include "common/fv/gradients.hpp"
 #include "common/mesh/load.hpp"
-#include "common/parallel/collective.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::point_gradient_test {
 using namespace mesh;
-namespace {
 
 LoadedMesh box(BoxCells cells, double amount) {
   RawMesh raw = make_box(cells, {5, 4, 3}, Vec3::Zero(), Vec3(1, 0.7, 0.4));
@@ -73,5 +70,4 @@ TEST_P(PointGradient, quadratic_fields_are_exact_at_the_centres) {
     EXPECT_LT((gradients[c] - slope_at(geometry.cell_centre[c])).norm(), 1e-11);
 }
 
-}  // namespace
 }  // namespace couplet::point_gradient_test

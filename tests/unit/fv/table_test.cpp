@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/fv/table.hpp"
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include <filesystem>
-#include <fstream>
-
-#include "common/base/error.hpp"
 #include "common/config/load.hpp"
 #include "common/fv/expression.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::table_test {
 using namespace fv;
-namespace {
 
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
@@ -218,5 +211,4 @@ TEST(Property, is_a_number_or_a_table_of_the_temperature) {
         << wrong;
 }
 
-}  // namespace
 }  // namespace couplet::table_test

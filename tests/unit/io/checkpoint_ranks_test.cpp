@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fields of a mesh by the numbers of their entries: on any ranks the same file, and back from it on any other ones.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <fstream>
-
-#include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/mesh/load.hpp"
+#include "tests/support/shared_folder.hpp"
+#include "tests/support/test.hpp"
 #include "tests/support/world.hpp"
-#include "tests/unit/io/scratch.hpp"
 
 namespace couplet::checkpoint_ranks_test {
 using namespace io;
-namespace {
 
 using mesh::Entries;
 using ::testing::HasSubstr;
@@ -69,7 +62,7 @@ void expect_all(MPI_Comm comm, const mesh::LoadedMesh& loaded, const std::filesy
 
 // One rank alone reads what all have written, and all read what one has.
 TEST(CheckpointRanks, fields_of_every_kind_come_back_on_another_number_of_ranks) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   for (const auto cells :
        {mesh::BoxCells::hexahedra, mesh::BoxCells::tetrahedra, mesh::BoxCells::quadrilaterals}) {
     const auto all = box(world, cells);
@@ -86,7 +79,7 @@ TEST(CheckpointRanks, fields_of_every_kind_come_back_on_another_number_of_ranks)
 }
 
 TEST(CheckpointRanks, copies_that_differ_from_their_owners_come_back_bit_for_bit_on_equal_ranks) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   const auto loaded = box(world, mesh::BoxCells::hexahedra);
   std::vector<double> values = values_of(loaded, Entries::flux_faces);
   for (double& v : values) v += 1e-16 * parallel::comm_rank(world);
@@ -101,7 +94,7 @@ TEST(CheckpointRanks, copies_that_differ_from_their_owners_come_back_bit_for_bit
 }
 
 TEST(CheckpointRanks, sums_are_kept_by_each_rank_or_gathered_on_the_first) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   const auto loaded = box(world, mesh::BoxCells::hexahedra);
   write_all(world, loaded, scratch / "a.h5");
   const int size = parallel::comm_size(world), rank = parallel::comm_rank(world);
@@ -116,11 +109,11 @@ TEST(CheckpointRanks, sums_are_kept_by_each_rank_or_gathered_on_the_first) {
 }
 
 TEST(CheckpointRanks, another_mesh_is_refused_with_file_and_cause) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   const auto one = box(world, mesh::BoxCells::hexahedra),
              other = box(world, mesh::BoxCells::hexahedra, {4, 5, 3});
   write_all(world, one, scratch / "a.h5");
-  EXPECT_THAT(error_of([&] { CheckpointReader(world, scratch / "a.h5").on(other.mesh); }),
+  EXPECT_THAT(support::error_of([&] { CheckpointReader(world, scratch / "a.h5").on(other.mesh); }),
               ::testing::AllOf(HasSubstr("a.h5' is from another mesh, of 60 cells, 120 points"),
                                HasSubstr("in another order")));
 }
@@ -135,5 +128,4 @@ TEST(CheckpointRanks, numbers_that_are_not_unique_make_no_order) {
   EXPECT_EQ(order.from_block(order.to_block(values, 1), 1), values);
 }
 
-}  // namespace
 }  // namespace couplet::checkpoint_ranks_test

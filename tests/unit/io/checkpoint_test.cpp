@@ -1,25 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <bit>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <fstream>
-#include <limits>
-#include <random>
 
-#include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/hdf5.hpp"
+#include "tests/support/shared_folder.hpp"
+#include "tests/support/test.hpp"
 #include "tests/support/world.hpp"
-#include "tests/unit/io/scratch.hpp"
 
 namespace couplet::checkpoint_test {
 using namespace io;
-namespace {
 
 using ::testing::HasSubstr;
 
@@ -59,7 +48,7 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 TEST(Checkpoint, comes_back_bit_for_bit) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   const std::vector<double> values = awkward_values();
   write_one(scratch / "a.h5", values, 0.1 + 0.2);
   CheckpointReader reader(world, scratch / "a.h5");
@@ -73,14 +62,14 @@ TEST(Checkpoint, comes_back_bit_for_bit) {
 }
 
 TEST(Checkpoint, an_array_that_is_empty_everywhere_comes_back_empty) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   write_one(scratch / "a.h5", {});
   CheckpointReader reader(world, scratch / "a.h5");
   EXPECT_TRUE(reader.read("solid/displacement").empty());
 }
 
 TEST(Checkpoint, the_last_good_file_stays_until_the_new_one_is_closed) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   const auto file = scratch / "a.h5";
   write_one(file, {1.0}, 1);
   {
@@ -95,29 +84,30 @@ TEST(Checkpoint, the_last_good_file_stays_until_the_new_one_is_closed) {
 }
 
 TEST(Checkpoint, a_missing_file_is_named_on_every_rank) {
-  const Scratch scratch;
-  EXPECT_THAT(error_of([&] { CheckpointReader(world, scratch / "b.h5"); }), HasSubstr("does not exist."));
+  const support::SharedFolder scratch;
+  EXPECT_THAT(support::error_of([&] { CheckpointReader(world, scratch / "b.h5"); }),
+              HasSubstr("does not exist."));
 }
 
 TEST(Checkpoint, a_truncated_file_is_refused_on_every_rank) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   const auto file = scratch / "a.h5";
   write_one(file, awkward_values());
   const auto size = std::filesystem::file_size(file);
   for (const double part : {0.9, 0.5, 0.2}) {
     damage(file,
            [&](const auto& f) { std::filesystem::resize_file(f, std::uintmax_t(part * double(size))); });
-    EXPECT_THAT(error_of([&] { CheckpointReader(world, file); }),
+    EXPECT_THAT(support::error_of([&] { CheckpointReader(world, file); }),
                 ::testing::AllOf(HasSubstr(": it is not an HDF5 file, or its beginning is damaged"),
                                  HasSubstr("(truncated file:")))
         << part;
   }
   damage(file, [](const auto& f) { std::filesystem::resize_file(f, 0); });
-  EXPECT_THAT(error_of([&] { CheckpointReader(world, file); }), HasSubstr("it is not an HDF5 file"));
+  EXPECT_THAT(support::error_of([&] { CheckpointReader(world, file); }), HasSubstr("it is not an HDF5 file"));
 }
 
 TEST(Checkpoint, a_flipped_bit_in_the_values_is_noticed) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   const auto file = scratch / "a.h5";
   std::vector<double> values(500, 12345.678);
   write_one(file, values);
@@ -133,19 +123,19 @@ TEST(Checkpoint, a_flipped_bit_in_the_values_is_noticed) {
     std::ofstream(f, std::ios::binary) << bytes;
   });
   CheckpointReader reader(world, file);
-  EXPECT_THAT(error_of([&] { reader.read("solid/displacement", values); }),
+  EXPECT_THAT(support::error_of([&] { reader.read("solid/displacement", values); }),
               HasSubstr("wrong checksum of the array 'solid/displacement' on rank 0"));
 }
 
 TEST(Checkpoint, other_files_are_not_taken_for_checkpoints) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   const auto file = scratch / "a.h5";
   damage(file, [](const auto& f) { std::ofstream(f) << "hello"; });
-  EXPECT_THAT(error_of([&] { CheckpointReader(world, file); }), HasSubstr("it is not an HDF5 file"));
+  EXPECT_THAT(support::error_of([&] { CheckpointReader(world, file); }), HasSubstr("it is not an HDF5 file"));
 }
 
 TEST(Checkpoint, an_earlier_version_is_refused_with_file_and_both_versions) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   write_one(scratch / "old.h5", awkward_values());
   damage(scratch / "old.h5", [](const std::filesystem::path& path) {
     const hdf5::Handle file = hdf5::open_file_to_write(MPI_COMM_SELF, path);
@@ -153,45 +143,45 @@ TEST(Checkpoint, an_earlier_version_is_refused_with_file_and_both_versions) {
     const double before = 4;
     ASSERT_GE(H5Awrite(version, H5T_NATIVE_DOUBLE, &before), 0);
   });
-  EXPECT_THAT(error_of([&] { CheckpointReader(world, scratch / "old.h5"); }),
+  EXPECT_THAT(support::error_of([&] { CheckpointReader(world, scratch / "old.h5"); }),
               ::testing::AllOf(HasSubstr("old.h5' has format version 4; this program reads version 7"),
                                HasSubstr("with the release that wrote it")));
   EXPECT_THAT(problem_of_checkpoint(scratch / "old.h5"), HasSubstr("format version 4"));
 }
 
 TEST(Checkpoint, values_that_are_each_ranks_own_are_refused_on_another_number_of_ranks_with_both_numbers) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   const auto file = scratch / "a.h5";
   write_one(file, awkward_values());
   const int size = parallel::comm_size(world);
   if (parallel::comm_rank(world) == 0 && size > 1) {
     CheckpointReader reader(MPI_COMM_SELF, file);
     EXPECT_EQ(reader.read_scalar("time"), 1.25);
-    EXPECT_THAT(error_of([&] { reader.read("solid/displacement"); }),
+    EXPECT_THAT(support::error_of([&] { reader.read("solid/displacement"); }),
                 HasSubstr(fmt::format("was written on {} ranks, this run has 1", size)));
   }
   MPI_Barrier(world);
 }
 
 TEST(Checkpoint, a_missing_name_or_another_size_is_told_on_every_rank) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   write_one(scratch / "a.h5", awkward_values());
   CheckpointReader reader(world, scratch / "a.h5");
-  EXPECT_THAT(error_of([&] { reader.read("fluid/velocity"); }), HasSubstr("has no array 'fluid/velocity'"));
-  EXPECT_THAT(error_of([&] { reader.read_scalar("dt"); }), HasSubstr("has no value 'dt'"));
+  EXPECT_THAT(support::error_of([&] { reader.read("fluid/velocity"); }),
+              HasSubstr("has no array 'fluid/velocity'"));
+  EXPECT_THAT(support::error_of([&] { reader.read_scalar("dt"); }), HasSubstr("has no value 'dt'"));
   // Only rank 0 asks for a wrong size: all must hear of it.
   std::vector<double> values(awkward_values().size() + (parallel::comm_rank(world) == 0 ? 1 : 0));
-  EXPECT_THAT(error_of([&] { reader.read("solid/displacement", values); }),
+  EXPECT_THAT(support::error_of([&] { reader.read("solid/displacement", values); }),
               HasSubstr("has 1000 values of 'solid/displacement' on rank 0, but 1001 are expected"));
   EXPECT_EQ(reader.read_scalar("time"), 1.25);
 }
 
 TEST(Checkpoint, a_folder_that_cannot_be_made_is_named) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   damage(scratch / "file", [](const auto& f) { std::ofstream(f) << "in the way"; });
-  EXPECT_THAT(error_of([&] { CheckpointWriter(world, scratch / "file" / "a.h5"); }),
+  EXPECT_THAT(support::error_of([&] { CheckpointWriter(world, scratch / "file" / "a.h5"); }),
               HasSubstr("Cannot create"));
 }
 
-}  // namespace
 }  // namespace couplet::checkpoint_test

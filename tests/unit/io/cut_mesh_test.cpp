@@ -1,24 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <fstream>
-
-#include "common/base/error.hpp"
 #include "common/io/cut_mesh.hpp"
 #include "common/io/hdf5.hpp"
 #include "common/mesh/entries.hpp"
-#include "common/parallel/collective.hpp"
-#include "scratch.hpp"
+#include "tests/support/shared_folder.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::cut_mesh_test {
-namespace {
 
 namespace fs = std::filesystem;
 
 class CutMesh : public ::testing::Test {
  protected:
-  const Scratch folder;
+  const support::SharedFolder folder;
   const fs::path file = folder / "box.h5";
   mesh::RawMesh raw = [] {
     mesh::RawMesh box = mesh::make_box(mesh::BoxCells::mixed, {4, 5, 3}, Vec3::Zero(), Vec3(4, 5, 3));
@@ -32,12 +25,7 @@ class CutMesh : public ::testing::Test {
   }
   std::string error_of_opening() const {
     MPI_Barrier(MPI_COMM_WORLD);
-    try {
-      io::load_mesh(MPI_COMM_WORLD, file, 3);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
+    return support::error_of([&] { io::load_mesh(MPI_COMM_WORLD, file, 3); });
   }
   template <class Change>
   void on_first_rank(Change&& change) const {
@@ -98,5 +86,4 @@ TEST_F(CutMesh, with_one_coordinate_changed_is_refused) {
   EXPECT_THAT(error_of_opening(), ::testing::HasSubstr("the table 'points' is damaged: its digest differs"));
 }
 
-}  // namespace
 }  // namespace couplet::cut_mesh_test

@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "common/io/fields/field_writer.hpp"
 #include "common/io/hdf5.hpp"
 #include "common/mesh/load.hpp"
+#include "tests/support/shared_folder.hpp"
+#include "tests/support/test.hpp"
 #include "tests/support/world.hpp"
-#include "tests/unit/io/scratch.hpp"
 
 namespace couplet::field_choice_test {
 using namespace io;
 using namespace mesh;
-namespace {
 
 const double new_series = std::numeric_limits<double>::quiet_NaN();
 
@@ -42,7 +37,7 @@ void write_both(FieldWriter& writer, const LoadedMesh& m, double time, double sh
 
 TEST(FieldChoice, in_a_box_are_its_cells_alone_with_their_values_and_moved_points) {
   for (const BoxCells cells : {BoxCells::hexahedra, BoxCells::mixed}) {
-    const Scratch scratch;
+    const support::SharedFolder scratch;
     const LoadedMesh m = cube_of(cells, 4);
     FieldChoice choice;
     choice.box = {Vec3(0, 0, 0), Vec3(0.5, 0.5, 1)};
@@ -80,7 +75,7 @@ TEST(FieldChoice, in_a_box_are_its_cells_alone_with_their_values_and_moved_point
 }
 
 TEST(FieldChoice, without_a_cell_in_the_box_there_is_no_file) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   const LoadedMesh m = cube_of(BoxCells::hexahedra, 2);
   FieldChoice choice;
   choice.box = {Vec3(5, 5, 5), Vec3(6, 6, 6)};
@@ -90,7 +85,7 @@ TEST(FieldChoice, without_a_cell_in_the_box_there_is_no_file) {
 }
 
 TEST(FieldChoice, compressed_fields_are_the_same_and_smaller) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   const LoadedMesh m = cube_of(BoxCells::hexahedra, 24);
   std::vector<double> values[2];
   for (const int level : {0, 6}) {
@@ -121,5 +116,4 @@ TEST(FieldChoice, fields_are_due_at_each_nth_output_or_never) {
   EXPECT_FALSE(choice.due(0));
 }
 
-}  // namespace
 }  // namespace couplet::field_choice_test

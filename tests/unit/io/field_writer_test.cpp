@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <fstream>
-
-#include "common/base/error.hpp"
 #include "common/io/fields/field_writer.hpp"
 #include "common/io/hdf5.hpp"
 #include "common/mesh/load.hpp"
+#include "tests/support/shared_folder.hpp"
+#include "tests/support/test.hpp"
 #include "tests/support/world.hpp"
-#include "tests/unit/io/scratch.hpp"
 
 namespace couplet::field_writer_test {
 using namespace io;
 using namespace mesh;
-namespace {
 
 using ::testing::HasSubstr;
 
@@ -42,7 +36,7 @@ void write(FieldWriter& writer, const Mesh& mesh, const Geometry& geometry, doub
   MPI_Barrier(mesh.comm);  // rank 0 writes the index last; all may read it from here on
 }
 
-std::string index_of(const Scratch& scratch) {
+std::string index_of(const support::SharedFolder& scratch) {
   std::ifstream in(scratch / "fluid.xdmf");
   return {std::istreambuf_iterator<char>(in), {}};
 }
@@ -54,7 +48,7 @@ int count(const std::string& text, const std::string& word) {
 }
 
 TEST(FieldWriter, every_cell_and_point_is_written_once_with_its_own_values) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   for (const BoxCells cells : {BoxCells::quadrilaterals, BoxCells::mixed}) {
     const auto [mesh, geometry] = make_mesh(cells);
     FieldWriter writer(mesh, geometry.points, scratch / "", "fluid", true, nan_time);
@@ -82,7 +76,7 @@ TEST(FieldWriter, every_cell_and_point_is_written_once_with_its_own_values) {
 }
 
 TEST(FieldWriter, the_index_lists_each_time_after_it_was_written) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   const auto [mesh, geometry] = make_mesh(BoxCells::triangles);
   FieldWriter writer(mesh, geometry.points, scratch / "", "fluid", true, nan_time);
   for (int i = 0; i < 3; ++i) {
@@ -97,7 +91,7 @@ TEST(FieldWriter, the_index_lists_each_time_after_it_was_written) {
 }
 
 TEST(FieldWriter, a_fixed_mesh_writes_its_points_once) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   const auto [mesh, geometry] = make_mesh(BoxCells::quadrilaterals);
   FieldWriter writer(mesh, geometry.points, scratch / "", "fluid", false, nan_time);
   write(writer, mesh, geometry, 0);
@@ -107,7 +101,7 @@ TEST(FieldWriter, a_fixed_mesh_writes_its_points_once) {
 }
 
 TEST(FieldWriter, a_restart_drops_the_later_times_and_goes_on) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   const auto [mesh, geometry] = make_mesh(BoxCells::quadrilaterals);
   {
     FieldWriter writer(mesh, geometry.points, scratch / "", "fluid", true, nan_time);
@@ -127,7 +121,7 @@ TEST(FieldWriter, a_restart_drops_the_later_times_and_goes_on) {
 
 // What other ranks have begun goes on in their order: the reader sees one series on one mesh.
 TEST(FieldWriter, a_series_goes_on_on_another_number_of_ranks) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   const auto [mesh, geometry] = make_mesh(BoxCells::quadrilaterals);
   {
     FieldWriter writer(mesh, geometry.points, scratch / "", "fluid", true, nan_time);
@@ -163,25 +157,24 @@ TEST(FieldWriter, a_series_goes_on_on_another_number_of_ranks) {
 }
 
 TEST(FieldWriter, a_restart_on_another_mesh_is_refused_on_every_rank) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   const auto [mesh, geometry] = make_mesh(BoxCells::quadrilaterals);
   const LoadedMesh other = make_mesh(BoxCells::quadrilaterals, 5);
   { FieldWriter writer(mesh, geometry.points, scratch / "", "fluid", true, nan_time); }
-  EXPECT_THAT(
-      error_of([&] { FieldWriter(other.mesh, other.geometry.points, scratch / "", "fluid", true, 0.5); }),
-      HasSubstr("written on another mesh"));
+  EXPECT_THAT(support::error_of(
+                  [&] { FieldWriter(other.mesh, other.geometry.points, scratch / "", "fluid", true, 0.5); }),
+              HasSubstr("written on another mesh"));
 }
 
 TEST(FieldWriter, a_field_of_the_wrong_size_is_refused) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   const auto [mesh, geometry] = make_mesh(BoxCells::quadrilaterals);
   FieldWriter writer(mesh, geometry.points, scratch / "", "fluid", true, nan_time);
   const std::vector<double> values(1);
-  EXPECT_THAT(error_of([&] {
+  EXPECT_THAT(support::error_of([&] {
                 writer.write(0, geometry.points, {{"p", "Pa", OutputField::Place::points, 3, values}});
               }),
               HasSubstr("The output field 'p' has 1 values"));
 }
 
-}  // namespace
 }  // namespace couplet::field_writer_test

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "common/base/error.hpp"
 #include "common/io/probes/probe.hpp"
 #include "common/mesh/load.hpp"
+#include "tests/support/shared_folder.hpp"
+#include "tests/support/test.hpp"
 #include "tests/support/world.hpp"
-#include "tests/unit/io/scratch.hpp"
 
 namespace couplet::probe_test {
 using namespace io;
 using namespace mesh;
-namespace {
 
 using ::testing::HasSubstr;
 
@@ -99,7 +95,7 @@ TEST(Probe, just_outside_of_a_solid_body_goes_to_its_surface) {
 TEST(Probe, far_outside_is_an_error_with_the_distance_on_every_rank) {
   const auto [mesh, geometry] = make_stretched(BoxCells::quadrilaterals);
   EXPECT_EQ(
-      error_of([&] { Probe(mesh, geometry.points, "tip", Vec3(1.5, 1.25, 0)); }),
+      support::error_of([&] { Probe(mesh, geometry.points, "tip", Vec3(1.5, 1.25, 0)); }),
       "The probe 'tip' at (1.5, 1.25, 0) is outside the mesh: the nearest point of the mesh is (1.5, 1, 0), "
       "0.25 m away. Move the probe there or into the mesh.");
 }
@@ -113,5 +109,4 @@ TEST(Probe, lives_on_exactly_one_rank) {
   EXPECT_NEAR(parallel::sum(world, total), 1, 1e-14);
 }
 
-}  // namespace
 }  // namespace couplet::probe_test

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <fstream>
-
-#include "common/base/error.hpp"
 #include "common/io/series.hpp"
-#include "tests/unit/io/scratch.hpp"
+#include "tests/support/shared_folder.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::series_test {
 using namespace io;
-namespace {
 
 using ::testing::HasSubstr;
 
@@ -20,7 +14,7 @@ std::string text_of(const std::filesystem::path& file) {
 }
 
 // A series lives on one rank: each rank has its own file here.
-std::filesystem::path own_file(const Scratch& scratch) {
+std::filesystem::path own_file(const support::SharedFolder& scratch) {
   return scratch / fmt::format("tip{}.csv", parallel::comm_rank(MPI_COMM_WORLD));
 }
 
@@ -32,21 +26,21 @@ void write_three(const std::filesystem::path& file) {
 }
 
 TEST(Series, a_row_is_on_disk_at_once_with_all_its_digits) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   Series series(own_file(scratch), columns);
   series.row(std::vector<double>{0.1 + 0.2, 1.0 / 3});
   EXPECT_EQ(text_of(own_file(scratch)), "time [s],tip x [m]\n0.30000000000000004,0.3333333333333333\n");
 }
 
 TEST(Series, a_fresh_start_forgets_the_old_rows) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   write_three(own_file(scratch));
   Series series(own_file(scratch), columns);
   EXPECT_EQ(text_of(own_file(scratch)), "time [s],tip x [m]\n");
 }
 
 TEST(Series, a_restart_drops_the_later_rows_and_keeps_the_others) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   write_three(own_file(scratch));
   {
     Series series(own_file(scratch), columns, 0.2);
@@ -56,7 +50,7 @@ TEST(Series, a_restart_drops_the_later_rows_and_keeps_the_others) {
 }
 
 TEST(Series, a_row_cut_by_a_crash_is_dropped) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   write_three(own_file(scratch));
   std::ofstream(own_file(scratch), std::ios::app) << "0.4,0.2";
   Series(own_file(scratch), columns, 5.0);
@@ -65,26 +59,25 @@ TEST(Series, a_row_cut_by_a_crash_is_dropped) {
 }
 
 TEST(Series, a_restart_without_an_old_file_begins_one) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   Series(own_file(scratch), columns, 0.2);
   EXPECT_EQ(text_of(own_file(scratch)), "time [s],tip x [m]\n");
 }
 
 TEST(Series, other_columns_are_not_mixed_into_an_old_file) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   write_three(own_file(scratch));
-  EXPECT_THAT(error_of([&] {
+  EXPECT_THAT(support::error_of([&] {
                 Series(own_file(scratch), {"time [s]", "force [N]"}, 0.2);
               }),
               HasSubstr("its columns are 'time [s],tip x [m]', those of this run are"));
 }
 
 TEST(Series, a_row_of_another_length_is_refused) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   Series series(own_file(scratch), columns);
-  EXPECT_THAT(error_of([&] { series.row(std::vector<double>{1.0}); }),
+  EXPECT_THAT(support::error_of([&] { series.row(std::vector<double>{1.0}); }),
               HasSubstr("has 1 values, but its header has 2 columns"));
 }
 
-}  // namespace
 }  // namespace couplet::series_test

@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <fstream>
-#include <map>
-#include <set>
-
-#include "common/base/error.hpp"
 #include "common/io/fields/surface_series.hpp"
 #include "common/io/hdf5.hpp"
 #include "common/mesh/load.hpp"
+#include "tests/support/shared_folder.hpp"
+#include "tests/support/test.hpp"
 #include "tests/support/world.hpp"
-#include "tests/unit/io/scratch.hpp"
 
 namespace couplet::surface_series_test {
 using namespace io;
 using namespace mesh;
-namespace {
 
 using ::testing::HasSubstr;
 
@@ -66,7 +58,7 @@ struct Read {
 };
 
 TEST(SurfaceSeries, each_face_and_point_of_a_patch_is_written_once_where_it_is) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   const std::map<BoxCells, std::uint64_t> width{{BoxCells::quadrilaterals, 2},
                                                 {BoxCells::triangles, 2},
                                                 {BoxCells::hexahedra, 4},
@@ -98,7 +90,7 @@ TEST(SurfaceSeries, each_face_and_point_of_a_patch_is_written_once_where_it_is) 
 }
 
 TEST(SurfaceSeries, the_index_of_a_plane_scene_holds_edges) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   const auto [mesh, geometry] = box_of(BoxCells::triangles);
   SurfaceSeries series(mesh, geometry.points, {"ymin"}, "output.surfaces");
   series.open(scratch / "", false, from_start);
@@ -120,7 +112,7 @@ TEST(SurfaceSeries, all_stands_for_every_patch_and_points_are_flagged_on_all_ran
 }
 
 TEST(SurfaceSeries, a_restart_drops_the_later_times_and_goes_on) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   const auto [mesh, geometry] = box_of(BoxCells::hexahedra);
   {
     SurfaceSeries series(mesh, geometry.points, {"ymin"}, "output.surfaces");
@@ -139,7 +131,7 @@ TEST(SurfaceSeries, a_restart_drops_the_later_times_and_goes_on) {
 TEST(SurfaceSeries, a_name_that_is_no_patch_or_comes_twice_is_refused) {
   const auto [mesh, geometry] = box_of(BoxCells::quadrilaterals);
   const auto refused = [&](std::vector<std::string> names) {
-    return error_of([&] { SurfaceSeries(mesh, geometry.points, names, "output.surfaces"); });
+    return support::error_of([&] { SurfaceSeries(mesh, geometry.points, names, "output.surfaces"); });
   };
   EXPECT_THAT(refused({"ymin", "xmx"}),
               HasSubstr("output.surfaces: 'xmx' is not a patch of the boundary. Did you mean 'xmax'?"));
@@ -147,13 +139,12 @@ TEST(SurfaceSeries, a_name_that_is_no_patch_or_comes_twice_is_refused) {
 }
 
 TEST(SurfaceSeries, a_file_of_another_kind_is_not_continued) {
-  const Scratch scratch;
+  const support::SharedFolder scratch;
   const auto [mesh, geometry] = box_of(BoxCells::quadrilaterals);
   { FieldWriter writer(mesh, geometry.points, scratch / "", "surface-ymin", true, from_start); }
   SurfaceSeries series(mesh, geometry.points, {"ymin"}, "output.surfaces");
-  EXPECT_THAT(error_of([&] { series.open(scratch / "", true, 0.5); }),
+  EXPECT_THAT(support::error_of([&] { series.open(scratch / "", true, 0.5); }),
               HasSubstr("not a surface output file"));
 }
 
-}  // namespace
 }  // namespace couplet::surface_series_test

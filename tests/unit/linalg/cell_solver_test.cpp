@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
-#include "common/base/error.hpp"
 #include "common/linalg/cell_solver.hpp"
-#include "common/parallel/collective.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::cell_solver_test {
 using namespace linalg;
 using parallel::comm_rank;
 using parallel::comm_size;
 using Kind = CellSolver::Preconditioner;
-namespace {
 
 /// -div grad on n x n x depth cells, `aspect` times as long in x as in y and z, held at x = 0; this rank's layers of z, those
 /// beside them as ghosts. One cell of each rank, in the middle, is cut off.
@@ -217,5 +209,4 @@ TEST(CellSolver, a_matrix_that_is_not_positive_is_refused) {
   EXPECT_THROW(solve(solver, box, x), SolveFailure);
 }
 
-}  // namespace
 }  // namespace couplet::cell_solver_test

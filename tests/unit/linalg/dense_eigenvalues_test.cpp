@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/linalg/dense_eigenvalues.hpp"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
-#include "common/base/error.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::dense_eigenvalues_test {
 

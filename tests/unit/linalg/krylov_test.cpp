@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/linalg/krylov.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-
-#include "common/base/error.hpp"
 #include "common/linalg/acceleration.hpp"
 #include "common/linalg/component_multigrid.hpp"
 #include "common/linalg/residual_projection.hpp"
-#include "common/parallel/collective.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::krylov_test {
 using namespace linalg;
 using namespace parallel;
-namespace {
 
 /// Upwind convection and diffusion on a line of n cells a rank, uncoupled between ranks: not symmetric.
 void convect(std::span<const double> x, std::span<double> y) {
@@ -397,5 +388,4 @@ TEST(Acceleration, anderson_solves_as_many_unknowns_as_it_remembers) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(u[i], double(i) + 1, 1e-8);
 }
 
-}  // namespace
 }  // namespace couplet::krylov_test

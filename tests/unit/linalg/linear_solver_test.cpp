@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-
-#include "common/base/error.hpp"
 #include "common/linalg/linear_solver.hpp"
-#include "common/parallel/collective.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::linear_solver_test {
 using namespace linalg;
-namespace {
 
 /// The 5-point Laplacian on n x n cells, rows dealt out in blocks; `dirichlet`: unit diagonal share on the
 /// left side.
@@ -163,5 +155,4 @@ TEST(LinearSolver, a_failed_solve_says_what_and_why) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::linear_solver_test

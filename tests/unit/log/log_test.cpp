@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/log/log.hpp"
 
-#include <gmock/gmock.h>
-
-#include <chrono>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <thread>
 
-#include "common/base/error.hpp"
 #include "common/log/progress.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::log_test {
-namespace {
 
 /// What a logger set up like this writes to standard output and standard error.
 struct Written {
@@ -98,5 +91,4 @@ TEST(Progress, durations_have_two_digits_of_use) {
   EXPECT_EQ(log::format_duration(190800), "2 d 5 h");
 }
 
-}  // namespace
 }  // namespace couplet::log_test

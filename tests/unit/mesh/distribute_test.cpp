@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <set>
-
-#include "common/base/error.hpp"
 #include "common/mesh/load.hpp"
-#include "common/parallel/collective.hpp"
 #include "support.hpp"
 
 namespace couplet::distribute_test {
 using namespace mesh;
 using namespace parallel;
-namespace {
 
 class Distribute : public ::testing::TestWithParam<test::Box> {
  protected:
@@ -151,5 +143,4 @@ TEST(DistributeTiny, mesh_of_one_cell_a_rank_is_whole) {
   EXPECT_EQ(mesh.points.n_global(), 2 * (size + 1));
 }
 
-}  // namespace
 }  // namespace couplet::distribute_test

@@ -1,23 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/distributed/mesh_block.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <numeric>
-#include <tuple>
-
-#include "common/base/error.hpp"
 #include "common/mesh/entries.hpp"
 #include "common/mesh/load.hpp"
-#include "common/parallel/collective.hpp"
 #include "support.hpp"
 
 namespace couplet::distributed_test {
 using namespace mesh;
 using namespace parallel;
-namespace {
 
 /// An even share of a mesh that every rank has.
 MeshBlock even_block(const RawMesh& raw) { return block_of(MPI_COMM_WORLD, raw, comm_size(MPI_COMM_WORLD)); }
@@ -190,9 +180,9 @@ TEST(BlocksShared, alike_in_every_call) {
 
 /// The words about the same mistake, found on rank 0 alone and in even blocks.
 void expect_same_error(const RawMesh& raw, const std::string& words) {
-  const std::string whole = test::error_of([&] { distribute(MPI_COMM_WORLD, raw); });
+  const std::string whole = support::error_of([&] { distribute(MPI_COMM_WORLD, raw); });
   EXPECT_THAT(whole, ::testing::HasSubstr(words));
-  EXPECT_EQ(test::error_of([&] { distribute(MPI_COMM_WORLD, even_block(raw)); }), whole);
+  EXPECT_EQ(support::error_of([&] { distribute(MPI_COMM_WORLD, even_block(raw)); }), whole);
 }
 
 RawMesh box() { return make_box(BoxCells::hexahedra, {3, 3, 3}, Vec3::Zero(), Vec3(3, 3, 3)); }
@@ -257,7 +247,7 @@ TEST(BlocksOfWrongMeshes, of_a_face_that_three_cells_share_are_refused_wherever_
       raw.boundary_points.push_row(std::vector<Index>{cell[0], cell[1], cell[3]});
       raw.boundary_patch.push_back(0);
     }
-    EXPECT_THAT(test::error_of([&] { distribute(MPI_COMM_WORLD, even_block(raw)); }),
+    EXPECT_THAT(support::error_of([&] { distribute(MPI_COMM_WORLD, even_block(raw)); }),
                 is_in_a_patch ? wrong_in_a_patch : many_cells);
   }
 }
@@ -288,5 +278,4 @@ TEST(BlocksOfWrongMeshes, with_fewer_cells_than_ranks_are_refused) {
   expect_same_error(raw, "Start fewer processes");
 }
 
-}  // namespace
 }  // namespace couplet::distributed_test

@@ -1,20 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/gmsh/geo_script.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <fstream>
-#include <tuple>
-#include <vector>
-
-#include "common/base/error.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::geo_script_test {
 using namespace mesh;
-namespace {
 
 using testing::ElementsAre;
 
@@ -105,5 +96,4 @@ TEST_F(Geo, the_dimension_of_a_mesh_is_that_of_its_groups_however_they_are_writt
   EXPECT_EQ(facts.cells, 4u);
 }
 
-}  // namespace
 }  // namespace couplet::geo_script_test

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <random>
-
 #include "common/mesh/load.hpp"
-#include "common/parallel/collective.hpp"
 #include "support.hpp"
 
 namespace couplet::geometry_test {
 using namespace mesh;
-namespace {
 
 class GeometryOf : public ::testing::TestWithParam<test::Box> {
  protected:
@@ -115,5 +109,4 @@ TEST_P(GeometryOf, translation_sweeps_face_vector_times_distance) {
   for (Index f = 0; f < mesh.n_faces(); ++f) EXPECT_NEAR(swept[f], d.dot(geometry.face_area[f]), 1e-14);
 }
 
-}  // namespace
 }  // namespace couplet::geometry_test

@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-
 #include "common/mesh/load.hpp"
-#include "common/parallel/collective.hpp"
 #include "support.hpp"
 
 namespace couplet::load_test {
 using namespace mesh;
 using namespace parallel;
-namespace {
 
 using ::testing::HasSubstr;
 
@@ -36,7 +29,7 @@ class LoadMesh : public ::testing::Test {
     return names;
   }
   static std::string error(const std::filesystem::path& file, int dim) {
-    return test::error_of([&] { load_mesh(MPI_COMM_WORLD, file, dim); });
+    return support::error_of([&] { load_mesh(MPI_COMM_WORLD, file, dim); });
   }
 
   std::filesystem::path folder;
@@ -141,7 +134,7 @@ TEST_F(LoadMesh, a_parameter_replaces_the_constant_of_the_geo) {
 
 TEST_F(LoadMesh, a_parameter_that_nobody_takes_is_an_error) {
   const auto error = [](const std::filesystem::path& file, const MeshParameters& parameters) {
-    return test::error_of([&] { load_mesh(MPI_COMM_WORLD, file, 2, parameters); });
+    return support::error_of([&] { load_mesh(MPI_COMM_WORLD, file, 2, parameters); });
   };
   const auto geo = write("square.geo",
                          "/* DefineConstant [ no = 1 ]; */ DefineConstant [ size = 0.5, k = 1 ];\n"
@@ -170,7 +163,7 @@ TEST_F(LoadMesh, a_number_of_cells_that_is_none_is_refused) {
       "Physical Curve(\"floor\") = {1}; Physical Curve(\"rest\") = {out(0), out(2), out(3)};\n"
       "Physical Surface(\"body\") = {out(1)};\n");
   const auto error = [&](const MeshParameters& parameters) {
-    return test::error_of([&] { load_mesh(MPI_COMM_WORLD, geo, 2, parameters); });
+    return support::error_of([&] { load_mesh(MPI_COMM_WORLD, geo, 2, parameters); });
   };
   for (const double value : {-3.0, 0.0, 2.5, 1e9})
     EXPECT_THAT(error({{"n", value}}), HasSubstr("'n' is a number of cells in the geometry file")) << value;
@@ -205,7 +198,7 @@ TEST_F(LoadMesh, reads_unv_by_gmsh_with_its_groups_as_patches_and_scales_lengths
   double volume = 0;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += geometry.volume[c];
   EXPECT_NEAR(sum(MPI_COMM_WORLD, volume), 1, 1e-12);  // 1000 mm x 1000 mm x 1 m
-  EXPECT_THAT(test::error_of([&] {
+  EXPECT_THAT(support::error_of([&] {
                 load_mesh(MPI_COMM_WORLD, copy, 2, {{"h", 1}});
               }),
               HasSubstr("'mesh-parameters' cannot change it"));
@@ -241,7 +234,7 @@ TEST_F(LoadMesh, tells_how_to_install_gmsh_when_it_is_missing) {
 TEST_F(LoadMesh, more_ranks_than_cells_are_refused) {
   const RawMesh raw = make_box(BoxCells::quadrilaterals, {1, 1, 0}, Vec3::Zero(), Vec3::Ones());
   const int size = comm_size(MPI_COMM_WORLD);
-  const std::string text = test::error_of([&] { distribute(MPI_COMM_WORLD, raw); });
+  const std::string text = support::error_of([&] { distribute(MPI_COMM_WORLD, raw); });
   EXPECT_EQ(
       text,
       size == 1
@@ -250,5 +243,4 @@ TEST_F(LoadMesh, more_ranks_than_cells_are_refused) {
                         size));
 }
 
-}  // namespace
 }  // namespace couplet::load_test

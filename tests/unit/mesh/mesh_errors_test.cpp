@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "common/mesh/load.hpp"
 #include "support.hpp"
 
 namespace couplet::mesh_errors_test {
 using namespace mesh;
-namespace {
 
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
 
 RawMesh squares() { return make_box(BoxCells::quadrilaterals, {2, 1, 0}, {0, 0, 0}, {2, 1, 0}); }
 std::string error_of(const RawMesh& raw) {
-  return test::error_of([&] { distribute(MPI_COMM_SELF, raw); });
+  return support::error_of([&] { distribute(MPI_COMM_SELF, raw); });
 }
 
 TEST(MeshErrors, boundary_face_without_patch_is_named_by_its_centre) {
@@ -141,7 +137,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_P(MshErrors, say_what_is_wrong_and_in_which_line) {
   const test::TemporaryFolder folder;
   const auto file = folder.write("bad.msh", GetParam().text);
-  EXPECT_EQ(test::error_of([&] { read_msh(file); }), file.string() + GetParam().message);
+  EXPECT_EQ(support::error_of([&] { read_msh(file); }), file.string() + GetParam().message);
 }
 
 TEST(MshErrorsBinary, truncated_file_names_byte_and_section) {
@@ -150,10 +146,9 @@ TEST(MshErrorsBinary, truncated_file_names_byte_and_section) {
   std::string text(5000, '\0');
   in.read(text.data(), 5000);
   const auto file = folder.write("cut.msh", text);
-  const std::string error = test::error_of([&] { read_msh(file); });
+  const std::string error = support::error_of([&] { read_msh(file); });
   EXPECT_THAT(error, HasSubstr(file.string() + ", byte "));
   EXPECT_THAT(error, EndsWith("in $Nodes: The file ends here in the middle of its data. It is incomplete."));
 }
 
-}  // namespace
 }  // namespace couplet::mesh_errors_test

@@ -1,20 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // MED and Exodus by Python's meshio, where it is installed; else what to install is told. data/groups.med and .exo: two cubes, one
 // on the other, written by meshio 5.0.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <cstdlib>
-#include <fstream>
-
-#include "common/base/error.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
 #include "support.hpp"
 
 namespace couplet::meshio_test {
 using namespace mesh;
-namespace {
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
@@ -28,7 +19,7 @@ TEST(Meshio, med_groups_are_zones_and_patches) {
   if (gmsh_has("Med")) GTEST_SKIP() << "gmsh reads it itself";
   const auto file = test::data / "groups.med";
   if (!has_module("meshio, numpy, h5py")) {
-    EXPECT_THAT(test::error_of([&] { read_mesh(MPI_COMM_SELF, file, 3); }),
+    EXPECT_THAT(support::error_of([&] { read_mesh(MPI_COMM_SELF, file, 3); }),
                 AllOf(HasSubstr("groups.med"), HasSubstr("apt install python3-meshio python3-h5py")));
     return;
   }
@@ -42,7 +33,7 @@ TEST(Meshio, med_groups_are_zones_and_patches) {
 TEST(Meshio, exodus_sets_of_nodes_are_patches) {
   const auto file = test::data / "groups.exo";
   if (!has_module("meshio, numpy, netCDF4")) {
-    EXPECT_THAT(test::error_of([&] { read_mesh(MPI_COMM_SELF, file, 3); }),
+    EXPECT_THAT(support::error_of([&] { read_mesh(MPI_COMM_SELF, file, 3); }),
                 AllOf(HasSubstr("groups.exo"), HasSubstr("apt install python3-meshio python3-netcdf4")));
     return;
   }
@@ -55,9 +46,9 @@ TEST(Meshio, what_it_cannot_read_is_told_with_its_words) {
   if (!has_module("meshio, numpy, netCDF4")) GTEST_SKIP() << "meshio is not installed";
   const auto file = std::filesystem::temp_directory_path() / fmt::format("couplet-broken-{}.exo", ::getpid());
   std::ofstream(file) << "no mesh";
-  EXPECT_THAT(test::error_of([&] { read_mesh(MPI_COMM_SELF, file, 3); }), HasSubstr("meshio could not read"));
+  EXPECT_THAT(support::error_of([&] { read_mesh(MPI_COMM_SELF, file, 3); }),
+              HasSubstr("meshio could not read"));
   std::filesystem::remove(file);
 }
 
-}  // namespace
 }  // namespace couplet::meshio_test

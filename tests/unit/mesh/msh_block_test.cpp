@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/readers/read_msh.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <fstream>
 #include <iterator>
 
-#include "common/parallel/collective.hpp"
 #include "support.hpp"
 
 namespace couplet::msh_block_test {
 using namespace mesh;
 using namespace parallel;
-namespace {
 
 using ::testing::HasSubstr;
 
@@ -80,7 +74,7 @@ TEST_F(MshBlocks, with_scattered_numbers_and_points_that_nothing_has) { expect_a
 
 TEST_F(MshBlocks, of_a_damaged_file_are_refused_on_all_ranks_in_the_same_words) {
   const auto error = [](const std::filesystem::path& file) {
-    return test::error_of([&] { read_msh_block(MPI_COMM_WORLD, file, comm_size(MPI_COMM_WORLD)); });
+    return support::error_of([&] { read_msh_block(MPI_COMM_WORLD, file, comm_size(MPI_COMM_WORLD)); });
   };
   for (const char* name : {"solid_41_ascii.msh", "solid_41_binary.msh", "solid_22_binary.msh"}) {
     const std::string text = text_of(test::data / name);
@@ -95,5 +89,4 @@ TEST_F(MshBlocks, of_a_damaged_file_are_refused_on_all_ranks_in_the_same_words) 
   EXPECT_THAT(error(write(twice)), HasSubstr("Duplicate node 5."));
 }
 
-}  // namespace
 }  // namespace couplet::msh_block_test

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/partition.hpp"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <numeric>
-#include <random>
+#include "tests/support/test.hpp"
 
 namespace couplet::partition_test {
 using namespace mesh;
-namespace {
 
 /// Graph of an nx x ny grid whose nodes are numbered at random.
 Csr shuffled_grid(Index nx, Index ny) {
@@ -76,5 +70,4 @@ TEST(Partition, is_the_same_in_every_call) {
   EXPECT_EQ(partition_alone(graph, 3), first);
 }
 
-}  // namespace
 }  // namespace couplet::partition_test

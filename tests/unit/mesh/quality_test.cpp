@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/quality.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "support.hpp"
 
 namespace couplet::quality_test {
 using namespace mesh;
-namespace {
 
 LoadedMesh square_box() {
   return distribute(MPI_COMM_WORLD,
@@ -135,5 +129,4 @@ TEST(FindInverted, takes_a_volume_that_is_not_a_number_for_the_worst) {
   EXPECT_EQ(trouble->cell_id, 3);
 }
 
-}  // namespace
 }  // namespace couplet::quality_test

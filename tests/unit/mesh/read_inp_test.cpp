@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Input decks of CalculiX and Abaqus. data/groups.inp was made from data/groups.geo by gmsh 4.8.4.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <algorithm>
 #include <ctime>
-#include <fstream>
 
-#include "common/base/error.hpp"
 #include "common/mesh/load.hpp"
-#include "common/parallel/collective.hpp"
 #include "support.hpp"
 
 namespace couplet::read_inp_test {
 using namespace mesh;
-namespace {
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
@@ -34,7 +25,7 @@ class ReadInp : public ::testing::Test {
   }
   RawMesh read(const std::string& text) const { return read_inp(write("deck.inp", text)); }
   std::string error(const std::string& text) const {
-    return test::error_of([&] { read(text); });
+    return support::error_of([&] { read(text); });
   }
 };
 
@@ -186,5 +177,4 @@ TEST_F(ReadInp, crafted_sets_cost_neither_memory_nor_time) {
   EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, 20);
 }
 
-}  // namespace
 }  // namespace couplet::read_inp_test

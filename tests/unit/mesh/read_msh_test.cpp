@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The files in data/ were made from the .geo files beside them by gmsh 4.8.4.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "common/mesh/load.hpp"
-#include "common/parallel/collective.hpp"
 #include "support.hpp"
 
 namespace couplet::read_msh_test {
 using namespace mesh;
-namespace {
 
 class ReadMsh : public ::testing::TestWithParam<const char*> {};
 
@@ -115,5 +109,4 @@ $EndElements
   EXPECT_NEAR(geometry.volume[0], 0.5, 1e-15) << "the clockwise triangle is turned";
 }
 
-}  // namespace
 }  // namespace couplet::read_msh_test

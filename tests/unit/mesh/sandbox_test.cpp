@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/gmsh/sandbox.hpp"
 
-#include <gtest/gtest.h>
-
 #include <csignal>
-#include <cstdlib>
 
 #include "support.hpp"
 
 namespace couplet::sandbox_test {
 using namespace mesh;
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -41,8 +37,9 @@ TEST_F(Sandbox, the_end_of_a_program_is_reported) {
   EXPECT_EQ(run("ulimit -f 0; echo text > file").signal, SIGXFSZ);
   EXPECT_THROW(run_in_sandbox({"no-such-program"}, folder_.path(), folder_.path() / "out.log"), Error);
   fs::permissions(own_.write("program", "#!/no/such/shell\n"), fs::perms::owner_all);
-  EXPECT_NE(test::error_of([&] { run_in_sandbox({"program"}, folder_.path(), folder_.path() / "out.log"); }),
-            "");
+  EXPECT_NE(
+      support::error_of([&] { run_in_sandbox({"program"}, folder_.path(), folder_.path() / "out.log"); }),
+      "");
 }
 
 TEST_F(Sandbox, its_folder_is_its_home_and_goes_with_it) {
@@ -98,5 +95,4 @@ TEST_F(Sandbox, a_trusted_program_has_the_users_rights) {
   EXPECT_TRUE(fs::exists(own_.path / "outside"));
 }
 
-}  // namespace
 }  // namespace couplet::sandbox_test

@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
-#include <string>
-#include <vector>
-
-#include "common/base/error.hpp"
 #include "common/mesh/load.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::test {
 
@@ -43,17 +36,6 @@ inline double box_volume(int dim) {
 }
 
 inline const std::filesystem::path data = TEST_DATA;
-
-/// What `work` throws, as text; "" if nothing.
-template <class Work>
-std::string error_of(Work&& work) {
-  try {
-    work();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
-}
 
 /// A folder of this process that goes away at the end.
 class TemporaryFolder {

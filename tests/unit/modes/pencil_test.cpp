@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/modes/pencil.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "common/base/error.hpp"
-#include "common/parallel/collective.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::pencil_test {
 using namespace modes;
 using linalg::LinearMap;
-namespace {
 
 constexpr int n = 40;  // rows of a rank
 
@@ -93,5 +85,4 @@ TEST(NegativeCurvature, is_met_where_there_is_one_and_nowhere_else) {
   EXPECT_LT(parallel::sum(MPI_COMM_WORLD, along), 0);
 }
 
-}  // namespace
 }  // namespace couplet::pencil_test

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/parallel/collective.hpp"
-
-#include <gtest/gtest.h>
+#include "tests/support/test.hpp"
 
 namespace couplet::collective_test {
 using namespace parallel;
-namespace {
 
 class Collective : public ::testing::Test {
  protected:
@@ -48,5 +45,4 @@ TEST_F(Collective, broadcast_text_of_any_length) {
   EXPECT_EQ(text, "");
 }
 
-}  // namespace
 }  // namespace couplet::collective_test

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/parallel/index_map.hpp"
-
-#include <gtest/gtest.h>
-
-#include "common/parallel/collective.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::index_map_test {
-namespace {
 
 /// A ring: rank r owns 2 + r entries and holds as ghosts the last of the rank before, then the first of the
 /// rank after.
@@ -61,5 +57,4 @@ TEST_F(Ring, add_sums_the_ghosts_into_their_owners) {
   EXPECT_EQ(values[n_owned], 10 * (rank + 1)) << "ghosts stay";
 }
 
-}  // namespace
 }  // namespace couplet::index_map_test

@@ -2,15 +2,10 @@
 // Load and tariff by weekday and season.
 #include "thermocline/plant/plant.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "tests/unit/thermocline_plant/support.hpp"
 #include "thermocline/weather/weather_file.hpp"
 
 namespace couplet::thermocline::calendar_test {
-namespace {
-
 using testing::HasSubstr;
 
 /// Weekends ask for a fifth; summer evenings earn more, summer weekends less.
@@ -74,5 +69,4 @@ TEST(Calendar, without_rules_the_plant_is_as_before) {
   EXPECT_EQ(Calendar({}, {}).load(1e6), nullptr);
 }
 
-}  // namespace
 }  // namespace couplet::thermocline::calendar_test

@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "thermocline/weather/made_days.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-
+#include "tests/support/test.hpp"
 #include "thermocline/weather/weather_file.hpp"
 
 namespace couplet::thermocline::clear_sky_test {
-namespace {
 
 // Duffie and Beckman, Solar Engineering of Thermal Processes, example 2.8.1: Madison (43 N, 270 m), 22
 // August, 11:30 solar time: transmittance 0.62, beam normal irradiance 830 W/m^2.
@@ -65,5 +60,4 @@ TEST(ClearSky, a_year_holds_what_it_was_told) {
   EXPECT_NEAR(year.pressure[0], 88800, 200);  // US standard atmosphere at 1100 m: 88.75 kPa
 }
 
-}  // namespace
 }  // namespace couplet::thermocline::clear_sky_test

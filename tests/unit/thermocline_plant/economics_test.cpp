@@ -2,17 +2,11 @@
 // Load and tariff by the hour, levelised cost by hand.
 #include "thermocline/plant/report.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-
+#include "tests/support/test.hpp"
 #include "thermocline/plant/flow.hpp"
 #include "thermocline/weather/weather.hpp"
 
 namespace couplet::thermocline::economics_test {
-namespace {
 
 TEST(Economics, levelised_cost_is_that_by_hand) {
   EconomicsParameters p;
@@ -167,5 +161,4 @@ TEST(Economics, what_is_no_year_is_not_called_one) {
   EXPECT_EQ(std::count(units.begin(), units.end(), "MWh/year"), 0);
 }
 
-}  // namespace
 }  // namespace couplet::thermocline::economics_test

@@ -2,20 +2,11 @@
 // Schedules: from a file, and found as fast as they are long.
 #include "thermocline/plant/flow.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <fstream>
-#include <random>
-
-#include "common/base/error.hpp"
 #include "tests/support/own_folder.hpp"
+#include "tests/support/test.hpp"
 #include "thermocline/material/numerics.hpp"
 
 namespace couplet::thermocline::flow_file_test {
-namespace {
-
 using testing::HasSubstr;
 
 std::vector<ScheduleRow> read(const std::string& text) {
@@ -25,12 +16,7 @@ std::vector<ScheduleRow> read(const std::string& text) {
 }
 
 std::string said(const std::string& text) {
-  try {
-    read(text);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return support::error_of([&] { read(text); });
 }
 
 constexpr const char* head = "time [h],mass-flow [kg/s],inlet-temperature [degC]\n";
@@ -129,5 +115,4 @@ TEST(Schedule, finds_the_row_that_looking_at_all_finds) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::thermocline::flow_file_test

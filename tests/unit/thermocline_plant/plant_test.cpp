@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "thermocline/plant/plant.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "tests/unit/thermocline_plant/support.hpp"
 #include "thermocline/plant/flow.hpp"
 
 namespace couplet::thermocline::plant_test {
-namespace {
 
 constexpr double zero = 273.15;  // degC in K
 const PlantParameters andasol{50e6, 0.38, 510120, 0.70, zero + 390, zero + 290, 15, 10};
@@ -164,5 +159,4 @@ TEST(PlantControl, remembers_its_mode_through_a_checkpoint) {
   EXPECT_EQ(discharge.inlet_temperature, 563.15);
 }
 
-}  // namespace
 }  // namespace couplet::thermocline::plant_test

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ergun's equation: a liquid by hand, a gas whose density changes along the bed against quadrature.
+#include "tests/support/test.hpp"
 #include "thermocline/bed/packed_bed.hpp"
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 namespace couplet::thermocline::pressure_loss_test {
-namespace {
 
 Fluid water() { return {"water", 1000, 4180, Table(0.6), Table(1e-3), 1, 1e4}; }
 
@@ -65,5 +60,4 @@ TEST(Ergun, fan_work_is_that_of_an_isentropic_compression) {
   EXPECT_NEAR(pump_power({100010, 1e5}, air, 300, 5, 1), 5 * 10 / (1e5 / 287.05 / 300), 1e-3 * 43);
 }
 
-}  // namespace
 }  // namespace couplet::thermocline::pressure_loss_test

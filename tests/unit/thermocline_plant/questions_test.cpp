@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is asked about before a run: each sentence where it belongs, and none where all is well.
 #include "thermocline/model/questions.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "common/base/error.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::thermocline::questions_test {
-namespace {
-
 using testing::HasSubstr;
 
 /// A plant's tank about which there is nothing to ask.
@@ -229,5 +223,4 @@ TEST(Questions, the_sun_on_the_cover_needs_to_know_where_it_stands) {
   EXPECT_GT(roof_film(sunny, 300, 20, air).reference, roof_film(dark, 300, 20, air).reference + 1);
 }
 
-}  // namespace
 }  // namespace couplet::thermocline::questions_test

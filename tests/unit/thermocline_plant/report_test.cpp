@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <map>
-
-#include "common/base/error.hpp"
+#include "thermocline/plant/report.hpp"
 #include "common/base/numbers.hpp"
 #include "common/io/series.hpp"
 #include "tests/unit/thermocline_plant/support.hpp"
-#include "thermocline/plant/report.hpp"
 #include "thermocline/weather/weather.hpp"
 
 namespace couplet::thermocline::report_test {
-namespace {
 
 constexpr double megawatt_hour = 3.6e9;
 
@@ -292,5 +285,4 @@ TEST(DayReport, a_profile_day_beyond_the_run_is_said) {
   EXPECT_TRUE(report.doubts().empty());
 }
 
-}  // namespace
 }  // namespace couplet::thermocline::report_test

@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "thermocline/weather/made_days.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numeric>
-
-#include "common/base/error.hpp"
+#include "tests/support/test.hpp"
 #include "thermocline/weather/weather_file.hpp"
 
 namespace couplet::thermocline::smooth_days_test {
-namespace {
 
 constexpr double kwh = 3.6e6;  // [J]
 
@@ -105,5 +98,4 @@ TEST(SmoothDays, what_cannot_be_is_said) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::thermocline::smooth_days_test

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-
-#include <string>
+#include "tests/support/test.hpp"
 
 namespace couplet::thermocline {
 

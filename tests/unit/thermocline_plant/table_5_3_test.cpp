@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "common/config/load.hpp"
+#include "tests/support/test.hpp"
 #include "thermocline/model/model.hpp"
 #include "thermocline/weather/weather.hpp"
 
 namespace couplet::thermocline::table_5_3_test {
-namespace {
 
 /// Table 5.3 of the thesis: tonnes and MWh.
 struct Column {
@@ -61,5 +57,4 @@ INSTANTIATE_TEST_SUITE_P(
                     Column{"G_10", "thermocline-gemasolar", 23, 8639, 2050, 660, 235, 895}),
     [](const auto& info) { return std::string(info.param.name); });
 
-}  // namespace
 }  // namespace couplet::thermocline::table_5_3_test

@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Three diagonals: against products with the solution, for every size and for rows that hardly store anything.
+#include "tests/support/test.hpp"
 #include "thermocline/material/numerics.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
-#include <vector>
-
 namespace couplet::thermocline::tridiagonal_test {
-namespace {
 
 TEST(Tridiagonal, solves_every_size_and_stiff_rows) {
   std::mt19937 random(3);
@@ -36,5 +29,4 @@ TEST(Tridiagonal, solves_every_size_and_stiff_rows) {
     }
 }
 
-}  // namespace
 }  // namespace couplet::thermocline::tridiagonal_test

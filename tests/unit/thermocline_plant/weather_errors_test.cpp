@@ -1,20 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-
-#include "common/base/error.hpp"
 #include "tests/unit/thermocline_plant/support.hpp"
 #include "thermocline/weather/weather.hpp"
 
 namespace couplet::thermocline::weather_errors_test {
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -253,5 +241,4 @@ TEST_F(WeatherFile, other_units_and_separators_are_told_by_what_they_give) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::thermocline::weather_errors_test

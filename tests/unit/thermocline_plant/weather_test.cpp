@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "thermocline/weather/weather.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "common/base/error.hpp"
 #include "tests/unit/thermocline_plant/support.hpp"
 #include "thermocline/weather/made_days.hpp"
 #include "thermocline/weather/weather_file.hpp"
 
 namespace couplet::thermocline::weather_test {
-namespace {
 
 /// Some days with values that differ everywhere.
 WeatherHours invented(int first_day, int days) {
@@ -183,5 +176,4 @@ INSTANTIATE_TEST_SUITE_P(
                     Season{"G_L2", "upington_surrogate", "12-01", "02-28", area_g, 0.42, 1089}),
     [](const auto& info) { return std::string(info.param.name); });
 
-}  // namespace
 }  // namespace couplet::thermocline::weather_test

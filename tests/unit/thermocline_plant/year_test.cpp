@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the report says of a year that is none, and its time series.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
-
 #include "tests/unit/thermocline_plant/support.hpp"
 #include "thermocline/plant/report.hpp"
 #include "thermocline/weather/weather.hpp"
 
 namespace couplet::thermocline::year_test {
-namespace {
 
 /// Steps of a tank at rest at 300 degC.
 void stand(DayReport& report, int steps, double dt) {
@@ -95,5 +87,4 @@ TEST(DayReport, a_year_of_a_month_that_goes_round_is_no_year) {
   EXPECT_TRUE(said({}, 365).empty());
 }
 
-}  // namespace
 }  // namespace couplet::thermocline::year_test

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What schemes make of an oscillator in a step, against the roots of their recursions.
 #include "common/time/time_scheme.hpp"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
+#include "tests/support/test.hpp"
 
 namespace couplet::amplification_test {
 using namespace time;
-namespace {
 
 using Complex = std::complex<double>;
 
@@ -88,5 +84,4 @@ TEST(Amplification, growth_is_its_logarithm_a_second_and_that_of_the_motion_itse
   EXPECT_NEAR(growth_rate({9, 0}), 0, 1e-12);
 }
 
-}  // namespace
 }  // namespace couplet::amplification_test

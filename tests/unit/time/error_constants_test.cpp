@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The constants by which errors of a step are estimated, against the errors that the stages make.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "common/time/time_scheme.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::error_constants_test {
 using namespace time;
-namespace {
 
 double of(const Levels& l, double x, double u, double u_old) { return l.x * x + l.u * u + l.u_old * u_old; }
 
@@ -81,5 +77,4 @@ TEST(ErrorConstants, rates_and_accelerations_are_exact_for_parabolas) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::error_constants_test

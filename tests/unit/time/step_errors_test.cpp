@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/time/step_errors.hpp"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
-#include "common/base/error.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::step_errors_test {
 using namespace time;
-namespace {
 
 TEST(StepErrorsTest, errors_of_an_oscillation_add_up) {
   StepErrors errors;
@@ -107,5 +100,4 @@ TEST(StepErrorsTest, a_restart_goes_on_bit_for_bit_and_a_damaged_state_is_refuse
   EXPECT_THROW(second.restore(state), Error);
 }
 
-}  // namespace
 }  // namespace couplet::step_errors_test

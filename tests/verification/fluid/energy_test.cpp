@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the discrete operators do to the kinetic energy, and the orders of the vortex array in a moving frame.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <numbers>
-#include <random>
-
 #include "fluid_case.hpp"
 #include "fluid_solver/momentum/rates.hpp"
 
 namespace couplet::fluid::test::energy_test {
 using namespace mesh;
-namespace {
 
 constexpr double pi = std::numbers::pi;
 
@@ -281,5 +274,4 @@ TEST(TravellingVortices, are_second_order_in_time) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::fluid::test::energy_test

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Flows that the discrete equations must keep to round-off.
-#include <gtest/gtest.h>
-
-#include <random>
-
 #include "fluid_case.hpp"
 
 namespace couplet::fluid::test::exactness_test {
 using namespace mesh;
-namespace {
 
 constexpr double rho = 1.7;
 
@@ -107,5 +102,4 @@ void check_oscillating_box(int n, int steps, bool moving) {
 TEST(OscillatingBox, moves_its_fluid_as_one_body_2d) { check_oscillating_box<2>(12, 250, true); }
 TEST(OscillatingBox, moves_its_fluid_as_one_body_3d) { check_oscillating_box<3>(6, 60, true); }
 
-}  // namespace
 }  // namespace couplet::fluid::test::exactness_test

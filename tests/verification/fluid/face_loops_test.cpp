@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The face loops one by one, on cells that are oblique and skew: what a linear velocity makes of them is known exactly.
-#include <gtest/gtest.h>
-
 #include "fluid_case.hpp"
 #include "fluid_solver/momentum/rates.hpp"
 #include "fluid_solver/step/fractional_step.hpp"
 
 namespace couplet::fluid::test::face_loops_test {
 using namespace mesh;
-namespace {
 
 /// A sheared box of perturbed cells, every side a wall of given velocity, in a linear flow u = a + G x.
 template <int D>
@@ -244,5 +241,4 @@ TEST(FaceLoops, load_is_the_momentum_flux_and_follows_the_velocity_of_the_wall) 
   }
 }
 
-}  // namespace
 }  // namespace couplet::fluid::test::face_loops_test

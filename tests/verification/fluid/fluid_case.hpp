@@ -3,17 +3,11 @@
 // fields.
 #pragma once
 
-#include <cmath>
-#include <functional>
-#include <memory>
-#include <string>
-
 #include "common/mesh/load.hpp"
-#include "common/parallel/collective.hpp"
 #include "fluid_solver/step/fluid.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::fluid::test {
-
 using PointMotion = std::function<Vec3(const Vec3& reference, GlobalIndex id, double t)>;
 using WallVelocity = std::function<Vec3(const Vec3& face_centre, double t)>;
 
@@ -24,6 +18,17 @@ inline BoundaryParameters boundary(BoundaryType type, std::vector<std::string> v
   for (const std::string& text : velocity) b.velocity.push_back({text});
   b.pressure.text = pressure;
   return b;
+}
+
+/// With the mesh's name as a participant in 2-D.
+inline FluidParameters fluid_of(double density, double viscosity, double pressure_tolerance,
+                                const char* mesh = nullptr) {
+  FluidParameters p;
+  if (mesh) p.mesh = mesh, p.dimension = 2;
+  p.density = density;
+  p.viscosity = viscosity;
+  p.pressure_tolerance = pressure_tolerance;
+  return p;
 }
 
 inline void all_sides(FluidParameters& p, int dim, const BoundaryParameters& b) {

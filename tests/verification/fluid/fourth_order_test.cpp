@@ -1,11 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fourth order along lines of cells: what it does to energy and momentum, and its order on equal and on stretched cells.
-#include <gmock/gmock.h>
-
-#include <map>
-#include <numbers>
-
-#include "common/base/error.hpp"
 #include "fluid_case.hpp"
 #include "fluid_solver/momentum/rates.hpp"
 #include "participant_case.hpp"
@@ -13,7 +7,6 @@
 
 namespace couplet::fluid::test::fourth_order_test {
 using namespace mesh;
-namespace {
 
 constexpr double pi = std::numbers::pi;
 
@@ -285,5 +278,4 @@ TEST(FourthOrder, auto_takes_it_on_quadrilaterals_at_rest_and_neither_on_triangl
   EXPECT_EQ(FluidCase<2>(MPI_COMM_WORLD, triangles, q).fluid().fourth(), nullptr);
 }
 
-}  // namespace
 }  // namespace couplet::fluid::test::fourth_order_test

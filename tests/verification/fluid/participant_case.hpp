@@ -2,12 +2,9 @@
 // A fluid alone as a participant: steps and the moment on its walls.
 #pragma once
 
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "fluid_solver/output/derived.hpp"
 #include "fluid_solver/participant.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::fluid::test {
 

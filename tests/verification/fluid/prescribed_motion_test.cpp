@@ -1,29 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // A mesh that moves as the case says, in a fluid on its own.
-#include <gmock/gmock.h>
-
-#include <numbers>
-
-#include "common/base/error.hpp"
 #include "common/mesh/load.hpp"
 #include "common/mesh/quality.hpp"
-#include "common/parallel/collective.hpp"
 #include "fluid_case.hpp"
 #include "fluid_solver/participant.hpp"
 
 namespace couplet::fluid::test::prescribed_motion_test {
 using namespace mesh;
-namespace {
 
 constexpr double rho = 1.3;
 
 FluidParameters box_of_fluid() {
-  FluidParameters p;
-  p.mesh = "box";
-  p.dimension = 2;
-  p.density = rho;
-  p.viscosity = 0.02;
-  p.pressure_tolerance = 1e-12;
+  FluidParameters p = fluid_of(rho, 0.02, 1e-12, "box");
   p.motion.emplace();
   return p;
 }
@@ -271,5 +259,4 @@ TEST(PrescribedMotion, that_turns_cells_over_fails_in_solve) {
   EXPECT_EQ(run.state().time, 0);
 }
 
-}  // namespace
 }  // namespace couplet::fluid::test::prescribed_motion_test

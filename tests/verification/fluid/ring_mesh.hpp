@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cmath>
-#include <numbers>
-#include <vector>
-
 #include "common/mesh/load.hpp"
-#include "common/parallel/collective.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::fluid::test {
 

@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A fluid seen from a frame that turns: against exact flows, and against a mesh that turns.
-#include <gmock/gmock.h>
-
 #include <Eigen/Geometry>
 
-#include <numbers>
-
-#include "common/base/error.hpp"
-#include "common/parallel/collective.hpp"
 #include "fluid_case.hpp"
 #include "participant_case.hpp"
 #include "ring_mesh.hpp"
@@ -16,7 +10,6 @@
 namespace couplet::fluid::test::rotating_frame_test {
 using namespace mesh;
 using namespace parallel;
-namespace {
 
 constexpr double mu = 0.1;
 
@@ -104,12 +97,7 @@ struct SpunUp {
   double moment, force, pressure;  ///< largest difference over the largest value
 };
 SpunUp spun_up(int n) {
-  FluidParameters p;
-  p.mesh = "box";
-  p.dimension = 2;
-  p.density = 1.3;
-  p.viscosity = 0.02;
-  p.pressure_tolerance = 1e-9;
+  FluidParameters p = fluid_of(1.3, 0.02, 1e-9, "box");
   const auto mesh = [n] {
     if (comm_rank(MPI_COMM_WORLD) > 0) return RawMesh{};
     return make_box(BoxCells::quadrilaterals, {n, n, 1}, Vec3(-0.4, -0.5, 0), Vec3(0.6, 0.5, 0));
@@ -173,12 +161,7 @@ TEST(RotatingFrame, loads_are_those_of_a_mesh_that_turns) {
 }
 
 FluidParameters in_a_box(const std::string& speed) {
-  FluidParameters p;
-  p.mesh = "box";
-  p.dimension = 2;
-  p.density = 1;
-  p.viscosity = 0.01;
-  p.pressure_tolerance = 1e-10;
+  FluidParameters p = fluid_of(1, 0.01, 1e-10, "box");
   set_frame(p, speed);
   all_sides(p, 2, boundary(BoundaryType::no_slip));
   return p;
@@ -274,5 +257,4 @@ TEST(RotatingFrame, what_does_not_go_with_it_is_refused_by_name) {
   EXPECT_THAT(refusal(p, periodic_patches(p)), ::testing::HasSubstr("not shifted along the axis"));
 }
 
-}  // namespace
 }  // namespace couplet::fluid::test::rotating_frame_test

@@ -1,28 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Layers of cells that a moving mesh carries through a seat: from blocked to fluid and back.
-#include <gmock/gmock.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <random>
-
-#include "common/base/error.hpp"
 #include "fluid_case.hpp"
 #include "participant_case.hpp"
 #include "tests/support/saved_state.hpp"
 
 namespace couplet::fluid::test::seat_layer_test {
-namespace {
 
 constexpr double h = 0.05, inflow = 0.08, width = 1.2;  // cell [m], [m^2/s], of the seat [m]
 
 /// Out of a tube of width 0.4 below the seat y = 0, under a lid, to both sides; cells Reynolds number 4 in the tube.
 FluidParameters orifice(BodySurface surface) {
-  FluidParameters p;
-  p.density = 1;
-  p.viscosity = 0.004;
-  p.pressure_tolerance = 1e-13;
+  FluidParameters p = fluid_of(1, 0.004, 1e-13);
   p.boundaries["ymin"] = boundary(BoundaryType::inlet, {"0", "abs(x) < 0.2 ? 0.3*(1-(x/0.2)^2) : 0"});
   p.boundaries["ymax"] = boundary(BoundaryType::no_slip);
   p.boundaries["xmin"] = p.boundaries["xmax"] = boundary(BoundaryType::outlet);
@@ -245,5 +233,4 @@ TEST(OpenPart, is_exact_for_linear_levels) {
     }
 }
 
-}  // namespace
 }  // namespace couplet::fluid::test::seat_layer_test

@@ -1,13 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Weak compressibility: pulses, standing waves, openings, closed cylinders and the way back to the incompressible fluid.
-#include <gmock/gmock.h>
-
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <sstream>
-
-#include "common/base/error.hpp"
 #include "fluid_case.hpp"
 #include "fluid_solver/diagnostics/effects.hpp"
 #include "fluid_solver/output/output.hpp"
@@ -15,15 +7,11 @@
 
 namespace couplet::fluid::test::sound_test {
 using namespace mesh;
-namespace {
 
 constexpr double c = 340, rho = 1.2, width = 0.2e-3;  // [m/s], [kg/m^3]; half width of a pulse [s]
 
 FluidParameters air(WaveScheme scheme = WaveScheme::three_level) {
-  FluidParameters p;
-  p.density = rho;
-  p.viscosity = 0;
-  p.pressure_tolerance = 1e-10;
+  FluidParameters p = fluid_of(rho, 0, 1e-10);
   p.compressibility.emplace();
   p.compressibility->speed_of_sound = c;
   p.compressibility->scheme = scheme;
@@ -387,12 +375,7 @@ TEST(Sound, a_small_mach_number_gives_the_incompressible_flow) {
 
 TEST(Sound, what_does_not_go_with_it_is_refused) {
   const auto told = [](FluidParameters p) -> std::string {
-    try {
-      FluidCase<2> d(MPI_COMM_WORLD, duct(4), p);
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
+    return support::error_of([&] { FluidCase<2> d(MPI_COMM_WORLD, duct(4), p); });
   };
   FluidParameters p = air();
   EXPECT_EQ(told(p), "");
@@ -416,5 +399,4 @@ TEST(Sound, what_does_not_go_with_it_is_refused) {
   EXPECT_THAT(told(p), ::testing::HasSubstr("no known gas or liquid"));
 }
 
-}  // namespace
 }  // namespace couplet::fluid::test::sound_test

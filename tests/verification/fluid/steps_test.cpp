@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ranks, repetition, coupling schemes and step sizes.
-#include <gtest/gtest.h>
-
-#include <numbers>
-
 #include "fluid_case.hpp"
 
 namespace couplet::fluid::test::steps_test {
 using namespace mesh;
-namespace {
 
 double bump(double x) { return 0.1 * std::pow(std::sin(std::numbers::pi * x / 2), 2); }
 Vec3 floor_place(const Vec3& x, GlobalIndex, double t) {
@@ -68,10 +63,7 @@ TEST(VariableSteps, keep_second_order_where_every_step_has_another_size) {
 /// rho L du/dt = p_in - p_out: the middle of a step has the mean of what grows with time. So slow that the head of what
 /// flows in does not count.
 TEST(Openings, whose_pressure_grows_with_time_move_a_fluid_without_walls_at_the_middle_of_a_step) {
-  FluidParameters p;
-  p.density = 2;
-  p.viscosity = 0.5;
-  p.pressure_tolerance = 1e-12;
+  FluidParameters p = fluid_of(2, 0.5, 1e-12);
   all_sides(p, 2, boundary(BoundaryType::slip));
   p.boundaries["xmin"] = boundary(BoundaryType::outlet, {}, "3e-5*t");
   p.boundaries["xmax"] = boundary(BoundaryType::outlet, {}, "0");
@@ -242,10 +234,7 @@ TEST(ImpulsiveStart, loads_the_first_step_with_the_impulse_of_the_fluid_set_in_m
 }
 
 TEST(Poiseuille, profile_and_pressure_drop_are_kept_in_a_channel) {
-  FluidParameters p;
-  p.density = 1.3;
-  p.viscosity = 0.4;
-  p.pressure_tolerance = 1e-8;
+  FluidParameters p = fluid_of(1.3, 0.4, 1e-8);
   p.initial_velocity = {{"4*y*(1-y)"}, {"0"}};
   p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"4*y*(1-y)", "0"});
   p.boundaries["xmax"] = boundary(BoundaryType::outlet);
@@ -257,5 +246,4 @@ TEST(Poiseuille, profile_and_pressure_drop_are_kept_in_a_channel) {
   EXPECT_LT(c.pressure_error([](const Vec3& x) { return 8 * 0.4 * (2 - x.x()); }), 0.02 * 8 * 0.4);
 }
 
-}  // namespace
 }  // namespace couplet::fluid::test::steps_test

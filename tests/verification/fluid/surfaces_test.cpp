@@ -1,35 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fields on patches and fluxes through them, against flows whose loads are known.
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <map>
-#include <sstream>
-
-#include "common/base/error.hpp"
-#include "common/parallel/collective.hpp"
 #include "fluid_case.hpp"
 #include "fluid_solver/participant.hpp"
 #include "tests/support/surface_file.hpp"
 
 namespace couplet::fluid::test::surfaces_test {
 using namespace mesh;
-namespace {
 
 constexpr double rho = 1.3, mu = 0.02, length = 2;
 using couplet::testing::SurfaceFile;
 using Columns = std::map<std::string, std::vector<double>>;
 
 FluidParameters channel() {
-  FluidParameters p;
-  p.mesh = "box";
-  p.dimension = 2;
-  p.density = rho;
-  p.viscosity = mu;
-  p.pressure_tolerance = 1e-13;
+  FluidParameters p = fluid_of(rho, mu, 1e-13, "box");
   p.boundaries["ymin"] = boundary(BoundaryType::no_slip);
   p.boundaries["ymax"] = boundary(BoundaryType::no_slip);
   p.boundaries["xmax"] = boundary(BoundaryType::outlet, {}, "0");
@@ -281,5 +264,4 @@ TEST(FluidSurfaces, of_what_is_no_patch_are_refused_by_name) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::fluid::test::surfaces_test

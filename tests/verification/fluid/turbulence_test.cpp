@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eddy viscosity: where it must vanish, how it goes to walls, and what it takes from the flow.
-#include <gtest/gtest.h>
-
-#include <numbers>
-
 #include "fluid_case.hpp"
 #include "fluid_solver/momentum/rates.hpp"
 #include "fluid_solver/output/derived.hpp"
 
 namespace couplet::fluid::test::turbulence_test {
 using namespace mesh;
-namespace {
 
 constexpr TurbulenceParameters wale{TurbulenceModel::wale, {}};
 constexpr TurbulenceParameters smagorinsky{TurbulenceModel::smagorinsky, {}};
@@ -243,5 +238,4 @@ TEST(Derived, vorticity_and_q_of_a_rotation_and_of_a_strain) {
   EXPECT_EQ(q[1], -4);
 }
 
-}  // namespace
 }  // namespace couplet::fluid::test::turbulence_test

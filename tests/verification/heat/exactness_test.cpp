@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What conduction must reproduce to round-off on any mesh.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "common/base/error.hpp"
 #include "tests/verification/heat/support.hpp"
 
 namespace couplet::testing::exactness_test {
 using namespace mesh;
-namespace {
 
 const HeatProperties steel{7850, 50.0, 480.0};
 
@@ -216,5 +209,4 @@ TEST(HeatBoundaries, a_wrong_patch_name_is_reported) {
           ::testing::HasSubstr("Did you mean 'xmin'?"))));
 }
 
-}  // namespace
 }  // namespace couplet::testing::exactness_test

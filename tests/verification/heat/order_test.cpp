@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Orders of accuracy of conduction in space and time.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "tests/verification/heat/support.hpp"
 
 namespace couplet::testing::order_test {
 using namespace mesh;
-namespace {
 
 double slope_of(double coarse, double fine, double ratio) {
   return std::log(coarse / fine) / std::log(ratio);
@@ -136,5 +131,4 @@ TEST(OrderInSpaceOfVaryingConductivity, is_two) {
   EXPECT_GE(slope, 1.9);
 }
 
-}  // namespace
 }  // namespace couplet::testing::order_test

@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Thermal strain that must be exact: free and constrained bodies at a uniform temperature.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <filesystem>
-
 #include "common/io/checkpoint.hpp"
-#include "common/parallel/collective.hpp"
 #include "solid_solver/thermal/thermal_strain.hpp"
-#include "tests/verification/heat/thermoelastic.hpp"
+#include "tests/verification/heat/support.hpp"
 
 namespace couplet::testing::strain_test {
 using namespace mesh;
 using namespace parallel;
-namespace {
 
 constexpr double modulus = 200e9, nu = 0.3, alpha = 1.2e-5, rise = 100;
 
@@ -47,8 +39,7 @@ TEST_P(Strain, a_free_body_at_uniform_temperature_grows_without_stress) {
   SolidParameters p = warm_box(dim, "400");
   p.method.preconditioner = MethodParameters::Preconditioner::factors;  // to rounding
   if (dim == 2) p.plane = SolidParameters::Plane::stress;
-  const auto solid = make_solid(distorted_box(GetParam()), p);
-  step(*solid, 1);
+  const auto solid = stepped(distorted_box(GetParam()), p);
   const double error = stress_error(*solid, Tensor3::Zero());
   ::testing::Test::RecordProperty("relative_error", fmt::format("{:.3e}", error));
   EXPECT_LT(error, 1e-10);
@@ -62,8 +53,7 @@ TEST_P(Strain, a_bar_held_at_both_ends_is_compressed) {
   p.method.preconditioner = MethodParameters::Preconditioner::factors;  // to rounding
   if (dim == 2) p.plane = SolidParameters::Plane::stress;
   p.boundaries["xmax"] = boundary(Type::symmetry);
-  const auto solid = make_solid(distorted_box(GetParam()), p);
-  step(*solid, 1);
+  const auto solid = stepped(distorted_box(GetParam()), p);
   Tensor3 wanted = Tensor3::Zero();
   wanted(0, 0) = -modulus * alpha * rise;
   const double error = stress_error(*solid, wanted);
@@ -81,17 +71,14 @@ TEST_P(Strain, a_body_held_all_around_is_under_pressure) {
   const int dim = dimension_of(GetParam());
   SolidParameters p = warm_box(dim, "400");
   p.method.preconditioner = MethodParameters::Preconditioner::factors;  // to rounding
-  for (auto& [name, b] : p.boundaries)
-    b = boundary(Type::fixed_displacement, std::vector<std::string>(dim, "0"));
-  const auto solid = make_solid(distorted_box(GetParam()), p);
-  step(*solid, 1);
+  for (auto& [name, b] : p.boundaries) b = clamped(dim);
+  const auto solid = stepped(distorted_box(GetParam()), p);
   const double pressure = modulus * alpha * rise / (1 - 2 * nu);
   EXPECT_LT(stress_error(*solid, -pressure * Tensor3::Identity()), 1e-10);
 }
 
 TEST(PlaneStrain, a_free_plate_is_stressed_across_its_plane_only) {
-  const auto solid = make_solid(distorted_box(BoxCells::quadrilaterals), warm_box(2, "400"));
-  step(*solid, 1);
+  const auto solid = stepped(distorted_box(BoxCells::quadrilaterals), warm_box(2, "400"));
   Tensor3 wanted = Tensor3::Zero();
   wanted(2, 2) = -modulus * alpha * rise;
   EXPECT_LT(stress_error(*solid, wanted), 1e-10);
@@ -102,8 +89,7 @@ TEST(PlaneStrain, a_free_plate_is_stressed_across_its_plane_only) {
 TEST(VaryingExpansion, the_instantaneous_coefficient_is_integrated) {
   SolidParameters p = warm_box(3, "500");
   p.material.heat.expansion = config::ExpressionText{"table(T, 300, 1e-5, 400, 2e-5)"};
-  const auto solid = make_solid(distorted_box(BoxCells::hexahedra), p);
-  step(*solid, 1);
+  const auto solid = stepped(distorted_box(BoxCells::hexahedra), p);
   const double error = growth_error(*solid, Vec3::Constant(3.5e-3));
   ::testing::Test::RecordProperty("relative_error", fmt::format("{:.3e}", error));
   EXPECT_LT(error, 1e-10);
@@ -116,8 +102,7 @@ TEST_P(Strain, elastic_constants_follow_the_temperature) {
   if (dim == 2) p.plane = SolidParameters::Plane::stress;
   p.material.heat.youngs_modulus = config::ExpressionText{"table(T, 300, 200e9, 500, 100e9)"};
   p.material.heat.poissons_ratio = config::ExpressionText{"table(T, 300, 0.3, 500, 0.2)"};
-  p.boundaries["xmax"] = boundary(Type::pressure);
-  p.boundaries["xmax"].pressure = {"-1e8"};
+  p.boundaries["xmax"] = pressed("-1e8");
   const auto solid = make_solid(distorted_box(GetParam()), p);
   Tensor3 wanted = Tensor3::Zero();
   wanted(0, 0) = 1e8;
@@ -142,11 +127,9 @@ TEST(VaryingStiffness, follows_the_temperature_of_a_single_cell) {
     p.material.poissons_ratio = 0;
     p.material.heat.expansion = config::ExpressionText{"0"};
     p.material.heat.youngs_modulus = config::ExpressionText{"table(T, 300, 200e9, 400, 100e9)"};
-    p.boundaries["xmax"] = boundary(Type::pressure);
-    p.boundaries["xmax"].pressure = {"-1e8"};
+    p.boundaries["xmax"] = pressed("-1e8");
     const auto solid =
-        make_solid(make_box(BoxCells::quadrilaterals, {4, 1, 1}, Vec3::Zero(), Vec3(1, 0.25, 0)), p);
-    step(*solid, 1);
+        stepped(make_box(BoxCells::quadrilaterals, {4, 1, 1}, Vec3::Zero(), Vec3(1, 0.25, 0)), p);
     double end = 0;
     const std::vector<double> u = solid->fields().point_displacement();
     for (std::size_t v = 0; v < solid->body().geometry().points.size(); ++v) end = std::max(end, u[2 * v]);
@@ -157,8 +140,7 @@ TEST(VaryingStiffness, follows_the_temperature_of_a_single_cell) {
 
 TEST(PrescribedTemperature, is_taken_at_the_end_of_a_static_step) {
   SolidParameters p = warm_box(3, "300 + 50*t");
-  const auto solid = make_solid(distorted_box(BoxCells::hexahedra), p);
-  step(*solid, 1);
+  const auto solid = stepped(distorted_box(BoxCells::hexahedra), p);
   EXPECT_LT(growth_error(*solid, Vec3::Constant(alpha * 50)), 1e-10);
   step(*solid, 1);
   EXPECT_LT(growth_error(*solid, Vec3::Constant(alpha * 100)), 1e-10);
@@ -191,8 +173,7 @@ TEST_P(Strain, two_materials_held_all_around_push_with_one_traction) {
     compliance += 0.5 / (lame.lambda + 2 * lame.mu);
   }
   raw.materials = zones_of(p.materials);
-  const auto solid = make_solid(raw, p);
-  step(*solid, 1);
+  const auto solid = stepped(raw, p);
   const double wanted = -lengths / compliance;
   double error = 0;
   for (const Tensor3& s : solid->fields().cell_stress(solid->fields().point_displacement()))
@@ -327,5 +308,4 @@ TEST(SolvedTemperature, goes_on_bit_for_bit_after_a_restart) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::testing::strain_test

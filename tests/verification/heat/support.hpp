@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fmt/format.h>
-
-#include <functional>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "common/mesh/load.hpp"
-#include "common/parallel/collective.hpp"
 #include "solid_solver/diagnostics/view.hpp"
 #include "tests/support/box.hpp"
+#include "tests/support/test.hpp"
+#include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
-
 using namespace solid;
-
 using HeatType = HeatBoundary::Type;
 using HeatScheme = HeatParameters::Scheme;
 
@@ -107,6 +99,24 @@ inline std::vector<std::string> box_patches(int dim) {
   std::vector<std::string> names{"xmin", "xmax", "ymin", "ymax"};
   if (dim == 3) names.insert(names.end(), {"zmin", "zmax"});
   return names;
+}
+
+/// A static box at the given temperature with thermal strain from 300 K on: alpha = 1.2e-5 1/K, symmetry at
+/// xmin, ymin, zmin, free elsewhere.
+inline SolidParameters warm_box(int dim, const std::string& temperature) {
+  SolidParameters p = box_parameters(dim);
+  p.temperature = config::ExpressionText{temperature};
+  p.expansion = ThermalExpansion{300};
+  p.material.heat.expansion = config::ExpressionText{"1.2e-5"};
+  for (const char* name : {"xmin", "ymin", "zmin"})
+    if (p.boundaries.contains(name)) p.boundaries[name] = boundary(Type::symmetry);
+  return p;
+}
+
+inline mesh::RawMesh distorted_box(mesh::BoxCells cells) {
+  mesh::RawMesh raw = mesh::make_box(cells, {5, 4, 3}, Vec3::Zero(), Vec3(1, 0.8, 0.6));
+  mesh::perturb_interior(raw, 0.25, 11);
+  return raw;
 }
 
 }  // namespace couplet::testing

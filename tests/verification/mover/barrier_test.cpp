@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Mesh motion that cannot fold, each case beside a method that does fold there.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
-#include <filesystem>
-#include <numbers>
 
-#include "common/base/error.hpp"
 #include "common/mesh/load.hpp"
 #include "mesh_mover/barrier.hpp"
 #include "plate_case.hpp"
@@ -15,7 +9,6 @@
 
 namespace couplet::mesh_mover::test::barrier_test {
 using namespace mesh;
-namespace {
 
 using std::numbers::pi;
 
@@ -351,5 +344,4 @@ TEST(Barrier, periodic_patches_are_refused_by_name) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::mesh_mover::test::barrier_test

@@ -1,24 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Far motions: elastic body, rotations, total and incremental form, the guard; a plate in a square and boxes.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <numbers>
-
-#include "common/base/error.hpp"
 #include "common/mesh/load.hpp"
 #include "common/mesh/quality.hpp"
-#include "common/parallel/collective.hpp"
 #include "mesh_mover/methods.hpp"
 #include "mesh_mover/mover.hpp"
 #include "plate_case.hpp"
 
 namespace couplet::mesh_mover::test::motion_test {
 using namespace mesh;
-namespace {
 
 using std::numbers::pi;
 using Field = std::function<Vec3(const Vec3&)>;
@@ -326,5 +315,4 @@ TEST(MovingPatches, a_translation_that_depends_on_the_place_is_refused_by_key) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::mesh_mover::test::motion_test

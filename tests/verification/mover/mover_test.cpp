@@ -1,24 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <numeric>
-
-#include "common/base/error.hpp"
-#include "common/mesh/load.hpp"
-#include "common/parallel/collective.hpp"
-#include "mesh_mover/methods.hpp"
 #include "mesh_mover/mover.hpp"
+#include "common/mesh/load.hpp"
+#include "mesh_mover/methods.hpp"
 #include "tests/support/own_folder.hpp"
 #include "tests/support/saved_state.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::mesh_mover::mover_test {
 using namespace coupling;
 using namespace mesh;
-namespace {
 
 Parameters all_patches(const Mesh& mesh, BoundaryMotion motion) {
   Parameters p;
@@ -302,5 +292,4 @@ TEST(Mover, refuses_an_inverted_cell_by_name_and_place) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::mesh_mover::mover_test

@@ -1,17 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Meshes that go on beyond periodic patches.
-#include <gmock/gmock.h>
-
-#include <array>
-#include <cmath>
-#include <filesystem>
-#include <map>
-#include <numbers>
-
-#include "common/base/error.hpp"
 #include "common/mesh/load.hpp"
 #include "common/mesh/periodic_points.hpp"
-#include "common/parallel/collective.hpp"
 #include "mesh_mover/methods.hpp"
 #include "plate_case.hpp"
 #include "tests/support/saved_state.hpp"
@@ -19,7 +9,6 @@
 namespace couplet::mesh_mover::test::periodic_test {
 using namespace mesh;
 using namespace parallel;
-namespace {
 
 using std::numbers::pi;
 
@@ -253,5 +242,4 @@ TEST(Periodic, what_cannot_be_is_refused_by_name) {
   EXPECT_THAT(refusal(p), ::testing::HasSubstr("separates the two sides of periodic patches by 0.0"));
 }
 
-}  // namespace
 }  // namespace couplet::mesh_mover::test::periodic_test

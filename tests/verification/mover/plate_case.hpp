@@ -2,14 +2,9 @@
 // A plate in a square that moves as told, for the tests of the mover.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
-#include "common/parallel/collective.hpp"
 #include "mesh_mover/mover.hpp"
 #include "tests/support/own_folder.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::mesh_mover::test {
 

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A body of one rigid motion, and plates with modes, on a rigid seat.
-#include <gtest/gtest.h>
-
-#include "common/base/error.hpp"
 #include "plate_modal/structure.hpp"
 #include "tests/support/observed_run.hpp"
-#include "tests/verification/plate/bounce.hpp"
 #include "tests/verification/plate/plates.hpp"
 
 namespace couplet::plate::contact_test {
-namespace {
-
 using namespace test;
 
 /// Relative error of the speed after one bounce.
@@ -277,5 +271,4 @@ TEST(PlateContact, a_seat_that_no_face_looks_at_is_an_error) {
   EXPECT_THROW(Contact(surface, p, Vec3::UnitZ(), 1), Error);
 }
 
-}  // namespace
 }  // namespace couplet::plate::contact_test

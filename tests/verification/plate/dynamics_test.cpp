@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Modes in time: against closed forms, against direct integration of the same plate, energies and damping.
-#include <gtest/gtest.h>
-
 #include "common/linalg/linear_solver.hpp"
 #include "plate_modal/motion/oscillators.hpp"
 #include "plate_modal/structure.hpp"
@@ -9,7 +7,6 @@
 
 namespace couplet::plate::dynamics_test {
 using namespace time;
-namespace {
 
 using namespace test;
 
@@ -222,5 +219,4 @@ TEST(PlateDynamics, fifteen_modes_follow_direct_integration_of_the_same_plate) {
   RecordProperty("apart", fmt::format("{:.3e}", apart / largest));
 }
 
-}  // namespace
 }  // namespace couplet::plate::dynamics_test

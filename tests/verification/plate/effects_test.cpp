@@ -2,9 +2,6 @@
 // Effects that are off cost nothing: neither memory nor time of a step. Allocations are counted by replacing
 // operator new in this executable; a step that makes none and calls nobody has the same work whether an
 // effect exists or not.
-#include <gtest/gtest.h>
-
-#include <cstdlib>
 #include <new>
 
 #include "plate_modal/structure.hpp"

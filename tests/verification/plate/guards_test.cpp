@@ -1,12 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // What bending modes cannot answer is said, and not answered wrongly: each guard is shown to fire and not to fire.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
-
-#include "common/base/error.hpp"
 #include "common/config/load.hpp"
 #include "common/modes/modal_model.hpp"
 #include "plate_modal/model/build_model.hpp"
@@ -16,7 +9,6 @@
 
 namespace couplet::plate::guards_test {
 using namespace mesh;
-namespace {
 
 using namespace test;
 
@@ -42,12 +34,7 @@ Found find(const std::string& id, const Parameters& p, int steps, double dt, con
 }
 
 std::string message_of(auto&& act) {
-  try {
-    act();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return support::error_of([&] { act(); });
 }
 
 TEST(PlateGuards, a_plate_on_a_hinge_may_fall_but_not_turn_far) {
@@ -430,5 +417,4 @@ TEST(PlateGuards, a_probe_stands_on_the_surface_or_near_it) {
   EXPECT_NE(text(0.03).find("probes.tip: (1, 0.5, 0.03) is 0.0275 m away"), std::string::npos) << text(0.03);
 }
 
-}  // namespace
 }  // namespace couplet::plate::guards_test

@@ -1,25 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Modes on file: written, reused, made by others, damaged; the same answer on any number of ranks.
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <fstream>
-
-#include "common/base/error.hpp"
 #include "common/io/hdf5.hpp"
 #include "common/modes/modal_checks.hpp"
 #include "common/modes/modal_model.hpp"
-#include "common/parallel/collective.hpp"
 #include "plate_modal/structure.hpp"
-#include "tests/verification/plate/bounce.hpp"
 #include "tests/verification/plate/plates.hpp"
 
 namespace couplet::plate::modes_file_test {
 using namespace mesh;
 using namespace modes;
 using namespace parallel;
-namespace {
 
 using namespace test;
 namespace fs = std::filesystem;
@@ -400,5 +390,4 @@ TEST_F(PlateModesFile, kept_modes_that_were_edited_are_found_again) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::plate::modes_file_test

@@ -3,17 +3,13 @@
 // right. The right answers are closed forms.
 #include "plate_modal/diagnostics/motion.hpp"
 
-#include <gtest/gtest.h>
-
 #include "common/base/numbers.hpp"
 #include "plate_modal/structure.hpp"
 #include "tests/support/observed_run.hpp"
-#include "tests/verification/plate/bounce.hpp"
 #include "tests/verification/plate/plates.hpp"
 
 namespace couplet::plate::resolution_test {
 using namespace time;
-namespace {
 
 using namespace test;
 constexpr double pi = std::numbers::pi;
@@ -255,5 +251,4 @@ TEST(PlateResolution, a_run_says_so) {
   EXPECT_TRUE(has(fast(80), "load-faster-than-the-modes"));
 }
 
-}  // namespace
 }  // namespace couplet::plate::resolution_test

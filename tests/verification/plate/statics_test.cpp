@@ -1,11 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Static deflections against closed forms, and by modes against the direct ones.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-
-#include "common/base/error.hpp"
 #include "plate_modal/model/midsurface.hpp"
 #include "plate_modal/model/skin.hpp"
 #include "plate_modal/structure.hpp"
@@ -14,7 +8,6 @@
 namespace couplet::plate::statics_test {
 using namespace mesh;
 using namespace modes;
-namespace {
 
 using namespace test;
 
@@ -288,5 +281,4 @@ TEST(PlateStatics, a_plate_that_nothing_holds_is_refused) {
   EXPECT_NO_THROW(Structure(p, PlateContext{}, &raw));
 }
 
-}  // namespace
 }  // namespace couplet::plate::statics_test

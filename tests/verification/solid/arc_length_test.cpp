@@ -1,17 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Arc length: a shallow arch against its closed form, under dead loads, pressure and prescribed displacement; restart; refusals;
 // the jump past the limit point without arc length.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-
-#include "common/base/error.hpp"
 #include "common/diagnostics/finding.hpp"
-#include "common/parallel/collective.hpp"
 #include "solid_solver/diagnostics/stability.hpp"
 #include "solid_solver/equilibrium/load_path.hpp"
 #include "tests/support/saved_state.hpp"
@@ -19,7 +9,6 @@
 
 namespace couplet::testing::arc_length_test {
 using namespace mesh;
-namespace {
 
 constexpr double pi = std::numbers::pi, span_length = 2, thickness = 0.01, modulus = 1e7;
 const double gyration = thickness / std::sqrt(12.0);
@@ -165,8 +154,7 @@ TEST(ArcLength, without_it_a_step_that_jumps_past_the_limit_point_fails_and_step
 
 TEST(ArcLength, scales_a_pressure_that_follows_the_surface) {
   SolidParameters p = hinged();
-  p.boundaries["ymax"] = boundary(Type::pressure);
-  p.boundaries["ymax"].pressure = {fmt::format("{}*sin(pi*x/{})", limit, span_length)};
+  p.boundaries["ymax"] = pressed(fmt::format("{}*sin(pi*x/{})", limit, span_length));
   const auto solid = make_solid(arch(30), p);
   EXPECT_LT(follow(*solid, false), 0.03);
   ASSERT_GE(path_of(*solid).limits().size(), 1U);
@@ -178,7 +166,7 @@ TEST(ArcLength, scales_a_prescribed_displacement_to_the_equilibria_of_plain_step
   p.kinematics = SolidParameters::Kinematics::finite_strain;
   p.material = {1000, 1e6, 0.49};
   p.material.law = "nearly-incompressible-neo-hookean";
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmin"] = clamped(2);
   p.boundaries["xmax"] = boundary(Type::fixed_displacement, {"0.2", "0.1"});
   const auto bar = [&](const SolidParameters& chosen) {
     return make_solid(make_box(BoxCells::quadrilaterals, {8, 4, 1}, Vec3::Zero(), Vec3(1, 0.5, 0)), chosen);
@@ -213,5 +201,4 @@ TEST(ArcLength, continues_from_a_checkpoint_bit_for_bit_across_a_limit_point) {
   EXPECT_EQ(path_of(*after).limits().size(), path_of(*through).limits().size());
 }
 
-}  // namespace
 }  // namespace couplet::testing::arc_length_test

@@ -1,21 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the participant contract asks of the solid, on 1, 2 and 3 ranks.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <map>
-
-#include "common/base/error.hpp"
-#include "common/parallel/collective.hpp"
 #include "tests/support/saved_state.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::contract_test {
 using namespace coupling;
 using namespace mesh;
-namespace {
 
 RawMesh flap_mesh(BoxCells cells) {
   RawMesh raw = make_box(cells, {3, 8, 2}, Vec3::Zero(), Vec3(0.1, 1, dimension_of(cells) == 3 ? 0.05 : 0));
@@ -29,7 +19,7 @@ SolidParameters flap_parameters(int dim) {
   p.analysis = SolidParameters::Analysis::dynamic;
   p.material = {3000, 4e6, 0.3};
   p.method.relative_tolerance = 1e-12;
-  p.boundaries["ymin"] = boundary(Type::fixed_displacement, std::vector<std::string>(dim, "0"));
+  p.boundaries["ymin"] = clamped(dim);
   for (const char* name : {"xmin", "xmax", "ymax"}) p.boundaries[name] = boundary(Type::interface_);
   return p;
 }
@@ -243,5 +233,4 @@ TEST(SolidInterface, data_it_does_not_know_are_refused_by_name) {
       ::testing::ThrowsMessage<Error>(::testing::HasSubstr("The solid received 'temperature'")));
 }
 
-}  // namespace
 }  // namespace couplet::testing::contract_test

@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "common/base/error.hpp"
-#include "common/parallel/collective.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::dynamics_test {
 using namespace mesh;
-namespace {
 
 constexpr double length = 1, density = 1000, stiffness = 1e6;
 
@@ -81,7 +74,7 @@ TEST_P(SolidBar, standing_wave_of_a_fixed_free_bar_is_second_order_in_space_and_
   const double k = M_PI / (2 * length), omega = k * wave_speed, amplitude = 1e-3;
   SolidParameters p = dynamic_parameters(0);
   p.method.face_gradient = GetParam();
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmin"] = clamped(2);
   p.initial_velocity = {{fmt::format("{:.17g}*sin({:.17g}*x)", amplitude * omega, k)}, {"0"}};
   const auto exact = [&](double x, double t) {
     return std::pair(amplitude * std::sin(k * x) * std::sin(omega * t),
@@ -122,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(Gradients, SolidBar,
 TEST(SolidDynamics, tip_motion_of_a_cantilever_is_second_order_in_time) {
   SolidParameters p = dynamic_parameters(0.3);
   p.plane = SolidParameters::Plane::stress;
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmin"] = clamped(2);
   p.boundaries["xmax"] = boundary(Type::traction, {"0", "20*sin(2*t)^4"});
   const auto tip_after = [&](int steps) {
     const auto solid = make_solid(bar_mesh(20, 4, 0.1), p);
@@ -177,7 +170,7 @@ Vibration vibration_of(const SolidParameters& p, double period, int periods) {
 SolidParameters plucked_cantilever() {
   SolidParameters p = dynamic_parameters(0.3);
   p.plane = SolidParameters::Plane::stress;
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmin"] = clamped(2);
   // The first bending mode (beta L = 1.8751), so that nearly all energy is in it.
   p.initial_velocity = {{"0"},
                         {"1e-2*((exp(1.8751*x)+exp(-1.8751*x))/"
@@ -252,9 +245,8 @@ TEST(SolidDynamics, free_fall_is_exact_and_free_of_stress_with_changing_steps) {
 // The traction faces are extrapolated to n+1: a load that jumps must not make them ring.
 TEST(SolidDynamics, surface_follows_its_cells_smoothly_after_a_sudden_load) {
   SolidParameters p = dynamic_parameters(0.3);
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
-  p.boundaries["ymax"] = boundary(Type::pressure);
-  p.boundaries["ymax"].pressure = {"10"};
+  p.boundaries["xmin"] = clamped(2);
+  p.boundaries["ymax"] = pressed("10");
   const auto solid = make_solid(bar_mesh(20, 4, 0.1), p);
   const Mesh& mesh = solid->body().mesh();
   const Patch& patch = *mesh.find_patch("ymax");
@@ -271,5 +263,4 @@ TEST(SolidDynamics, surface_follows_its_cells_smoothly_after_a_sudden_load) {
   EXPECT_LT(worst, 0.5 * tip);
 }
 
-}  // namespace
 }  // namespace couplet::testing::dynamics_test

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "common/parallel/collective.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::energy_test {
 using namespace mesh;
 using namespace time;
-namespace {
 
 /// A sheet under everything that does work: traction, pressure, body force, moving support, damping.
 SolidParameters busy_sheet(TimeScheme scheme) {
@@ -20,8 +14,7 @@ SolidParameters busy_sheet(TimeScheme scheme) {
   p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"5e-3*sin(2*t)", "0"});
   p.boundaries["ymin"] = boundary(Type::symmetry);
   p.boundaries["xmax"] = boundary(Type::traction, {"400*sin(4*t)", "300*t*cos(3*t)"});
-  p.boundaries["ymax"] = boundary(Type::pressure);
-  p.boundaries["ymax"].pressure = {"100*t"};
+  p.boundaries["ymax"] = pressed("100*t");
   p.body_force = {{"0"}, {"300*x*sin(2*t)"}};
   p.initial_velocity = {{"1e-2"}, {"0"}};  // that of the support
   p.damping = SolidDamping{0.4, 3e-3};
@@ -73,8 +66,7 @@ TEST(SolidEnergy, balances_to_round_off_with_two_materials_and_supports) {
     const auto solid = make_solid(raw, p);
     ASSERT_FALSE(solid->body().mesh().twin.empty());
     for (int i = 0; i < 80; ++i) step(*solid, 0.02);
-    const SolidEnergies e =
-        solid->stepper().ledger().total(solid->stepper().state(), solid->fields().point_displacement());
+    const SolidEnergies e = energies(*solid);
     RecordProperty(fmt::format("imbalance{}{}", gradient == FaceGradient::symmetric ? "" : "_thesis",
                                damped ? "_damped" : ""),
                    fmt::format("{:.2e}", std::abs(e.lost()) / largest(e)));
@@ -89,8 +81,7 @@ TEST(SolidEnergy, balances_to_round_off_for_the_trapezoidal_rule) {
     p.method.face_gradient = gradient;
     if (!damped) p.damping.reset();
     const auto solid = run(p, 80, 0.02);
-    const SolidEnergies e =
-        solid->stepper().ledger().total(solid->stepper().state(), solid->fields().point_displacement());
+    const SolidEnergies e = energies(*solid);
     fmt::print(
         "kinetic {:.3e}, internal work {:.3e}, strain {:.3e}, external {:.3e}, damping {:.3e}, lost {:.1e} "
         "J\n",
@@ -116,14 +107,13 @@ TEST(SolidEnergy, balances_to_round_off_under_damping_by_mass_with_every_operato
       p.damping = SolidDamping{2, 0};
       p.method.face_gradient = gradient;
       if (finite) {  // where the work of a support that moves is not counted
-        p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+        p.boundaries["xmin"] = clamped(2);
         p.initial_velocity = {{"0.1*x"}, {"0"}};
         p.kinematics = SolidParameters::Kinematics::finite_strain;
         p.boundaries["ymax"] = boundary(Type::free);
       }
       const auto solid = run(p, 40, 0.02);
-      SolidEnergies e =
-          solid->stepper().ledger().total(solid->stepper().state(), solid->fields().point_displacement());
+      SolidEnergies e = energies(*solid);
       e.conserving =
           !finite;  // at large strain the step conserves the strain energy itself, as far as it is solved
       RecordProperty(fmt::format("imbalance_{}_{}", int(gradient), finite),
@@ -140,10 +130,8 @@ TEST(SolidEnergy, what_dissipative_schemes_lose_vanishes_with_the_step) {
     SolidParameters p = busy_sheet(scheme);
     p.damping.reset();
     const auto coarse = run(p, 80, 0.02), fine = run(p, 320, 0.005);
-    const SolidEnergies a =
-        coarse->stepper().ledger().total(coarse->stepper().state(), coarse->fields().point_displacement());
-    const SolidEnergies b =
-        fine->stepper().ledger().total(fine->stepper().state(), fine->fields().point_displacement());
+    const SolidEnergies a = energies(*coarse);
+    const SolidEnergies b = energies(*fine);
     fmt::print("{}: lost {:.2e} and {:.2e} of {:.2e} J\n", name(scheme), a.lost(), b.lost(), largest(b));
     EXPECT_GT(std::abs(a.lost()), 1e-8 * largest(a)) << name(scheme);
     EXPECT_LT(std::abs(b.lost()), 0.7 * std::abs(a.lost()))
@@ -159,7 +147,7 @@ TEST(SolidEnergy, dissipative_schemes_never_show_a_gain_in_free_vibration) {
     p.time_scheme.type = scheme;
     p.method.face_gradient = FaceGradient::symmetric;
     p.method.relative_tolerance = 1e-12;
-    p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+    p.boundaries["xmin"] = clamped(2);
     p.initial_velocity = {{"0.1*x*sin(9*y)"}, {"0.2*x*x"}};
     p.output.energies = true;
     RawMesh raw = make_box(BoxCells::quadrilaterals, {10, 4, 1}, Vec3::Zero(), Vec3(1, 0.4, 0));
@@ -168,12 +156,10 @@ TEST(SolidEnergy, dissipative_schemes_never_show_a_gain_in_free_vibration) {
     double least = 0;
     for (int i = 0; i < 40; ++i) {
       step(*solid, 0.01);
-      const SolidEnergies e =
-          solid->stepper().ledger().total(solid->stepper().state(), solid->fields().point_displacement());
+      const SolidEnergies e = energies(*solid);
       least = std::min(least, e.lost() / e.initial_kinetic);
     }
-    const SolidEnergies e =
-        solid->stepper().ledger().total(solid->stepper().state(), solid->fields().point_displacement());
+    const SolidEnergies e = energies(*solid);
     fmt::print("{}: lost {:.2e} of {:.2e} J, least {:.1e}\n", name(scheme), e.lost(), e.initial_kinetic,
                least);
     EXPECT_GT(least, -1e-9) << name(scheme);
@@ -189,13 +175,11 @@ TEST(SolidEnergy, of_a_falling_body_is_all_kinetic) {
   p.gravity = {0, -10};
   p.output.energies = true;
   const auto solid = run(p, 10, 0.1);
-  const SolidEnergies e =
-      solid->stepper().ledger().total(solid->stepper().state(), solid->fields().point_displacement());
+  const SolidEnergies e = energies(*solid);
   const double mass = 7800 * 0.4;
   EXPECT_NEAR(e.kinetic / (0.5 * mass * 100), 1, 1e-9);
   EXPECT_NEAR(e.external_work / (0.5 * mass * 100), 1, 1e-9);
   EXPECT_LT(std::abs(e.strain), 1e-9 * e.kinetic);
 }
 
-}  // namespace
 }  // namespace couplet::testing::energy_test

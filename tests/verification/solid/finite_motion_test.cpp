@@ -1,21 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Large strain in time: rigid rotation, a pressure that turns with its surface, energy and momenta of a free body.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <numbers>
-
-#include "common/parallel/collective.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::finite_motion_test {
 using namespace mesh;
-namespace {
-
-std::unique_ptr<Solid> make(const RawMesh& raw, const SolidParameters& p, MPI_Comm comm = MPI_COMM_WORLD) {
-  return std::make_unique<Solid>(distribute(comm, raw), p, SolidContext{});
-}
 
 // All faces turn by 720 degrees about an oblique place: no stress, whatever the angle.
 TEST(FiniteStrain, rigid_rotation_makes_no_stress) {
@@ -32,7 +20,7 @@ TEST(FiniteStrain, rigid_rotation_makes_no_stress) {
     perturb_interior(raw, 0.2, 5);
     for (const char* law : {"saint-venant-kirchhoff"}) {
       p.material.law = law;
-      const auto solid = make(raw, p);
+      const auto solid = make_solid(raw, p);
       double most = 0;
       for (int i = 0; i < 12; ++i) {
         step(*solid, 1. / 12);
@@ -52,10 +40,9 @@ SolidParameters busy(int dim, MethodParameters::VolumeStrain volume) {
   p.material.law = "mooney-rivlin";
   p.material.law_coefficients = {0.3};
   p.method.volume_strain = volume;
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, std::vector<std::string>(dim, "0"));
+  p.boundaries["xmin"] = clamped(dim);
   p.boundaries["ymin"] = boundary(Type::symmetry);
-  p.boundaries["ymax"].type = Type::pressure;
-  p.boundaries["ymax"].pressure = {"1e5*t"};
+  p.boundaries["ymax"] = pressed("1e5*t");
   return p;
 }
 
@@ -66,7 +53,7 @@ TEST(FiniteStrain, pressure_follows_the_surface) {
   p.boundaries["ymin"] = boundary(Type::free);
   p.boundaries["ymax"].pressure = {"2e3*t"};
   const RawMesh raw = make_box(BoxCells::quadrilaterals, {40, 4, 1}, Vec3::Zero(), Vec3(10, 1, 0));
-  const auto solid = make(raw, p);
+  const auto solid = make_solid(raw, p);
   for (int i = 0; i < 5; ++i) step(*solid, 0.2);
   const std::vector<double> u = solid->fields().point_displacement();
   Vec3 ends[2] = {Vec3::Zero(), Vec3::Zero()};
@@ -115,8 +102,7 @@ std::array<double, 7> kept(const Solid& solid) {
     for (std::size_t a = 0; a < 3; ++a) result[a] += p[Index(a)], result[3 + a] += spin[Index(a)];
   }
   for (double& r : result) r = parallel::sum(MPI_COMM_WORLD, r);
-  const SolidEnergies e =
-      solid.stepper().ledger().total(solid.stepper().state(), solid.fields().point_displacement());
+  const SolidEnergies e = energies(solid);
   result[6] = e.kinetic + e.strain;
   return result;
 }
@@ -132,7 +118,7 @@ std::array<double, 3> drifts(BoxCells cells, bool conserving) {
   p.method.relative_tolerance = 1e-12;
   for (const char* v : {"-10*(y-0.5) + 8*(x-1)", "10*(x-1) - 5*(y-0.5)", "1 + 2*(z-0.5)"})
     p.initial_velocity.push_back({v});
-  const auto solid = make(make_box(cells, {3, 2, 2}, Vec3::Zero(), Vec3(2, 1, 1)), p);
+  const auto solid = make_solid(make_box(cells, {3, 2, 2}, Vec3::Zero(), Vec3(2, 1, 1)), p);
   const auto before = kept(*solid);
   for (int i = 0; i < 40; ++i) step(*solid, 0.01);
   const auto after = kept(*solid);
@@ -157,5 +143,4 @@ TEST(FiniteStrain, conserving_stress_keeps_energy_and_momenta) {
   EXPECT_GT(energy, 1e-7);
 }
 
-}  // namespace
 }  // namespace couplet::testing::finite_motion_test

@@ -1,16 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Large strain: bending against converged references, rigid rotation, Newton's tail, ranks, restart, refusals.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <numbers>
-
-#include "common/base/error.hpp"
-#include "common/elasticity/finite/finite_kernel.hpp"
-#include "common/parallel/collective.hpp"
 #include "solid_solver/equilibrium/finite_strain.hpp"
+#include "common/elasticity/finite/finite_kernel.hpp"
 #include "solid_solver/laws/laws.hpp"
 #include "tests/support/observed_run.hpp"
 #include "tests/support/saved_state.hpp"
@@ -19,7 +10,6 @@
 namespace couplet::testing::finite_strain_test {
 using namespace mesh;
 using namespace parallel;
-namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -33,7 +23,7 @@ SolidParameters bent(const std::string& law, double K) {
   p.kinematics = SolidParameters::Kinematics::finite_strain;
   p.material = {1000, E, 0.3};
   p.material.law = law;
-  p.boundaries["zmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
+  p.boundaries["zmin"] = clamped(3);
   const double inertia = std::pow(side, 4) / 12, force = K * E * inertia / (length * length);
   const std::string pull = fmt::format("t*{:.17g}", force / (side * side) / std::sqrt(2.0));
   p.boundaries["zmax"] = boundary(Type::traction, {pull, pull, "0"});
@@ -44,26 +34,16 @@ RawMesh beam(BoxCells cells, int n, int along) {
   return make_box(cells, {n, n, along}, Vec3(-side / 2, -side / 2, 0), Vec3(side / 2, side / 2, length));
 }
 
-std::unique_ptr<Solid> make(const RawMesh& raw, const SolidParameters& p, MPI_Comm comm = MPI_COMM_WORLD) {
-  return std::make_unique<Solid>(distribute(comm, raw), p, SolidContext{});
-}
-
 /// Of the middle of the tip, over the length, on all ranks.
 double deflection(const Solid& solid) {
-  const std::vector<double> u = solid.fields().point_displacement();
-  double most = 0;
-  for (std::size_t i = 0; i < u.size(); i += 3)
-    if ((solid.body().geometry().points[i / 3] - Vec3(0, 0, length)).norm() < 1e-9)
-      most = std::hypot(u[i], u[i + 1]);
-  return max(solid.body().mesh().comm, most) / length;
+  const Vec3 tip = displacement_at(solid, Vec3(0, 0, length));
+  return std::hypot(tip[0], tip[1]) / length;
 }
 
 TEST(FiniteStrain, bends_as_converged_finite_elements_do) {
-  const auto svk = make(beam(BoxCells::hexahedra, 2, 20), bent("saint-venant-kirchhoff", 1.6));
-  step(*svk, 1);
+  const auto svk = stepped(beam(BoxCells::hexahedra, 2, 20), bent("saint-venant-kirchhoff", 1.6));
   EXPECT_NEAR(deflection(*svk), 0.43134, 0.01 * 0.43134);
-  const auto neo = make(beam(BoxCells::hexahedra, 2, 20), bent("neo-hookean", 1.6));
-  step(*neo, 1);
+  const auto neo = stepped(beam(BoxCells::hexahedra, 2, 20), bent("neo-hookean", 1.6));
   EXPECT_NEAR(deflection(*neo), 0.430758, 0.01 * 0.43);
 }
 
@@ -71,17 +51,11 @@ TEST(FiniteStrain, bends_as_converged_finite_elements_do) {
 TEST(FiniteStrain, the_estimate_of_the_mesh_is_within_a_factor_of_two) {
   if (comm_size(MPI_COMM_WORLD) > 2) return;  // its many linear iterations wait for each other on few cores
   const auto tip = [](const Solid& solid) {
-    const std::vector<double> u = solid.fields().point_displacement();
-    std::array<double, 3> found{0, 0, 0};
-    for (std::size_t i = 0; i < u.size(); i += 3)
-      if ((solid.body().geometry().points[i / 3] - Vec3(side / 2, side / 2, length)).norm() < 1e-9)
-        found = {u[i], u[i + 1], u[i + 2]};
-    for (double& v : found) v = max(solid.body().mesh().comm, v) + min(solid.body().mesh().comm, v);
-    return Vec3(found[0], found[1], found[2]);
+    return displacement_at(solid, Vec3(side / 2, side / 2, length));
   };
   for (const double K : {0.1, 1.6}) {
-    const auto coarse = make(beam(BoxCells::hexahedra, 1, 10), bent("neo-hookean", K)),
-               fine = make(beam(BoxCells::hexahedra, 2, 20), bent("neo-hookean", K));
+    const auto coarse = make_solid(beam(BoxCells::hexahedra, 1, 10), bent("neo-hookean", K)),
+               fine = make_solid(beam(BoxCells::hexahedra, 2, 20), bent("neo-hookean", K));
     const diagnostics::ErrorParts parts = support::observe(*coarse, 1, 1).diagnostics().errors();
     step(*fine, 1);
     const double wrong = (tip(*coarse) - tip(*fine)).norm() / tip(*fine).norm();
@@ -93,10 +67,10 @@ TEST(FiniteStrain, the_estimate_of_the_mesh_is_within_a_factor_of_two) {
 
 TEST(FiniteStrain, equals_small_strain_under_small_loads) {
   SolidParameters p = bent("", 1e-6);
-  const auto large = make(beam(BoxCells::hexahedra, 2, 20), p);
+  const auto large = make_solid(beam(BoxCells::hexahedra, 2, 20), p);
   p.kinematics = SolidParameters::Kinematics::small_strain;
   p.method.face_gradient = FaceGradient::symmetric;
-  const auto small = make(beam(BoxCells::hexahedra, 2, 20), p);
+  const auto small = make_solid(beam(BoxCells::hexahedra, 2, 20), p);
   step(*large, 1);
   step(*small, 1);
   EXPECT_NEAR(deflection(*large), deflection(*small), 1e-5 * deflection(*small));
@@ -104,8 +78,7 @@ TEST(FiniteStrain, equals_small_strain_under_small_loads) {
 
 // Residuals square from one iteration to the next near the end, less what the inexact solves leave.
 TEST(FiniteStrain, newton_ends_superlinearly) {
-  const auto solid = make(beam(BoxCells::hexahedra, 2, 20), bent("neo-hookean", 1));
-  step(*solid, 1);
+  const auto solid = stepped(beam(BoxCells::hexahedra, 2, 20), bent("neo-hookean", 1));
   const auto& tail = dynamic_cast<const FiniteStrain&>(solid->body().equilibrium()).iterates();
   ASSERT_GE(tail.size(), 4U);
   EXPECT_LE(tail.size(), 12U);
@@ -116,8 +89,8 @@ TEST(FiniteStrain, newton_ends_superlinearly) {
 
 TEST(FiniteStrain, ranks_agree) {
   const RawMesh raw = beam(BoxCells::hexahedra, 2, 20);
-  const auto whole = make(raw, bent("neo-hookean", 1), MPI_COMM_SELF),
-             parts = make(raw, bent("neo-hookean", 1));
+  const auto whole = make_solid(raw, bent("neo-hookean", 1), MPI_COMM_SELF),
+             parts = make_solid(raw, bent("neo-hookean", 1));
   step(*whole, 1);
   step(*parts, 1);
   EXPECT_NEAR(deflection(*parts), deflection(*whole), 1e-8 * deflection(*whole));
@@ -144,8 +117,7 @@ TEST(FiniteStrain, homogeneous_deformation_is_exact) {
       p.method.volume_strain = volume;
       RawMesh raw = make_box(cells, {3, 3, 3}, Vec3::Zero(), Vec3::Ones());
       perturb_interior(raw, 0.15, 7);
-      const auto solid = make(raw, p);
-      step(*solid, 1);
+      const auto solid = stepped(raw, p);
       for (const Tensor3& s : solid->fields().cell_stress(solid->fields().point_displacement()))
         EXPECT_LT((s - wanted).cwiseAbs().maxCoeff(), 1e-8 * wanted.norm());
     }
@@ -161,7 +133,8 @@ TEST(FiniteStrain, a_stretched_bar_gives_way_by_its_tangent) {
     p.material.law = "saint-venant-kirchhoff";
     for (const char* side : {"xmin", "ymin", "ymax"}) p.boundaries[side] = boundary(Type::symmetry);
     p.boundaries["xmax"] = boundary(Type::traction, {fmt::format("{}*t", pull), "0"});
-    const auto solid = make(make_box(BoxCells::quadrilaterals, {6, 2, 1}, Vec3::Zero(), Vec3(1, 0.3, 0)), p);
+    const auto solid =
+        make_solid(make_box(BoxCells::quadrilaterals, {6, 2, 1}, Vec3::Zero(), Vec3(1, 0.3, 0)), p);
     for (int i = 0; i < 4; ++i) step(*solid, 0.25);
     const SolidState& s = solid->stepper().state();
     const double l = pull > 0 ? 1.5 : 0.8, ratio = l * (l + 1) / (3 * l * l - 1),
@@ -173,21 +146,12 @@ TEST(FiniteStrain, a_stretched_bar_gives_way_by_its_tangent) {
 }
 
 TEST(FiniteStrain, restart_in_the_middle_of_the_load_is_bit_for_bit) {
-  const LoadedMesh body = distribute(MPI_COMM_WORLD, beam(BoxCells::hexahedra, 2, 20));
-  const auto another = [&] { return std::make_unique<Solid>(body, bent("neo-hookean", 4), SolidContext{}); };
-  const auto through = another(), before = another(), after = another();
-  step(*through, 0.25);
-  step(*before, 0.25);
-  support::SavedState(*before).load_into(*after);
-  step(*through, 0.5);
-  step(*after, 0.5);
-  EXPECT_EQ(through->stepper().state().cell_u, after->stepper().state().cell_u);
-  EXPECT_EQ(through->stepper().state().face_u, after->stepper().state().face_u);
+  expect_same_after_restart(beam(BoxCells::hexahedra, 2, 20), bent("neo-hookean", 4), 0.25, 0.5);
 }
 
 TEST(FiniteStrain, failed_load_names_the_worst_cell_and_leaves_the_state) {
   if (comm_size(MPI_COMM_WORLD) > 2) return;  // its many linear iterations wait for each other on few cores
-  const auto solid = make(beam(BoxCells::hexahedra, 2, 20), bent("saint-venant-kirchhoff", 1));
+  const auto solid = make_solid(beam(BoxCells::hexahedra, 2, 20), bent("saint-venant-kirchhoff", 1));
   step(*solid, 0.5);
   const std::vector<double> kept = solid->stepper().state().cell_u;
   solid->begin_step({0.5, 400, coupling::Scheme::standalone, 1});
@@ -197,8 +161,7 @@ TEST(FiniteStrain, failed_load_names_the_worst_cell_and_leaves_the_state) {
 }
 
 TEST(FiniteStrain, reactions_balance_the_load) {
-  const auto solid = make(beam(BoxCells::hexahedra, 2, 20), bent("neo-hookean", 1));
-  step(*solid, 1);
+  const auto solid = stepped(beam(BoxCells::hexahedra, 2, 20), bent("neo-hookean", 1));
   const auto reactions = solid->fields().reactions(solid->fields().point_displacement());
   const Vec3 load = solid->fields().total_load();
   ASSERT_EQ(reactions.size(), 1U);
@@ -228,10 +191,9 @@ SolidParameters busy(int dim, MethodParameters::VolumeStrain volume) {
   p.material.law = "mooney-rivlin";
   p.material.law_coefficients = {0.3};
   p.method.volume_strain = volume;
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, std::vector<std::string>(dim, "0"));
+  p.boundaries["xmin"] = clamped(dim);
   p.boundaries["ymin"] = boundary(Type::symmetry);
-  p.boundaries["ymax"].type = Type::pressure;
-  p.boundaries["ymax"].pressure = {"1e5*t"};
+  p.boundaries["ymax"] = pressed("1e5*t");
   return p;
 }
 
@@ -242,7 +204,7 @@ TEST(FiniteStrain, tangent_is_the_derivative_of_the_forces_on_all_cells) {
       const int dim = dimension_of(cells);
       RawMesh raw = make_box(cells, {3, 2, 3}, Vec3::Zero(), dim == 2 ? Vec3(1, 1, 0) : Vec3(1, 1, 1));
       perturb_interior(raw, 0.1, 3);
-      const auto solid = make(raw, busy(dim, volume));
+      const auto solid = make_solid(raw, busy(dim, volume));
       const auto law =
           laws::find("mooney-rivlin")->make(lame_constants(solid->body().parameters()), std::vector{0.3});
       const auto kernel = std::make_unique<elastic::FiniteKernel>(
@@ -291,7 +253,7 @@ std::string failure_of_block(double squeezed, int cells = 8, double by = 0.025) 
   p.boundaries["xmin"] = p.boundaries["ymin"] = boundary(Type::symmetry);
   p.boundaries["ymax"] = boundary(Type::fixed_displacement, {"0", "-t"});
   const auto solid =
-      make(make_box(BoxCells::quadrilaterals, {cells, cells, 1}, Vec3::Zero(), Vec3(0.5, 0.5, 0)), p);
+      make_solid(make_box(BoxCells::quadrilaterals, {cells, cells, 1}, Vec3::Zero(), Vec3(0.5, 0.5, 0)), p);
   const int n = int(std::lround(squeezed / by));
   try {
     for (int i = 0; i < n; ++i) step(*solid, by);
@@ -313,5 +275,4 @@ TEST(FiniteStrain, a_step_that_fails_tells_of_a_surface_folded_onto_its_support)
   EXPECT_THAT(upright, Not(HasSubstr("folded")));
 }
 
-}  // namespace
 }  // namespace couplet::testing::finite_strain_test

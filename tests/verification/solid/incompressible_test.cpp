@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Large strain as nu goes to 1/2: Cook's membrane in one load step, a ring of rubber under a pressure that follows its
 // wall, motion; pressures carried along by Newton's method.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-
 #include "common/elasticity/finite/finite_kernel.hpp"
-#include "common/parallel/collective.hpp"
 #include "solid_solver/equilibrium/finite_strain.hpp"
 #include "solid_solver/laws/laws.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::incompressible_test {
 using namespace mesh;
-namespace {
 
 SolidParameters rubber(int dim, const std::string& law, double modulus, double nu) {
   SolidParameters p = box_parameters(dim);
@@ -25,28 +17,12 @@ SolidParameters rubber(int dim, const std::string& law, double modulus, double n
   return p;
 }
 
-/// Displacement of the point that lies at `x`, on all ranks.
-Vec3 displacement_at(const Solid& solid, const Vec3& x) {
-  const Mesh& mesh = solid.body().mesh();
-  const Geometry& geometry = solid.body().geometry();
-  const std::vector<double> u = solid.fields().point_displacement();
-  Vec3 result = Vec3::Constant(-1e300);
-  for (Index v = 0; v < mesh.points.n_local(); ++v)
-    if ((geometry.points[v] - x).norm() < 1e-9)
-      for (int a = 0; a < mesh.dim; ++a)
-        result[a] = u[std::size_t(v) * std::size_t(mesh.dim) + std::size_t(a)];
-  for (int a = 0; a < 3; ++a) result[a] = parallel::max(mesh.comm, result[a]);
-  return result;
-}
-
 /// Cook's membrane at nu 0.4999, mu 0.4225 MPa, sheared by 62.5 kPa in `steps` load steps.
 std::unique_ptr<Solid> cook(int n, int steps, MPI_Comm comm = MPI_COMM_WORLD) {
-  RawMesh raw = make_box(BoxCells::quadrilaterals, {n, n, 1}, Vec3::Zero(), Vec3(1, 1, 0));
-  for (Vec3& x : raw.points) x = Vec3(0.048 * x[0], 0.044 * x[0] + (0.044 - 0.028 * x[0]) * x[1], 0);
   SolidParameters p = rubber(2, "nearly-incompressible-neo-hookean", 1.267e6, 0.4999);
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmin"] = clamped(2);
   p.boundaries["xmax"] = boundary(Type::traction, {"0", "62.5e3*t"});
-  auto solid = std::make_unique<Solid>(distribute(comm, raw), p, SolidContext{});
+  auto solid = make_solid(cooks_membrane(n), p, comm);
   for (int i = 0; i < steps; ++i) step(*solid, 1.0 / steps);
   return solid;
 }
@@ -69,17 +45,11 @@ TEST(Incompressible, cook_takes_one_load_step_and_few_iterations) {
 
 /// Quarter of a ring 1 to 2 of Mooney-Rivlin's law, plane strain, under `load` inside that follows the wall.
 std::unique_ptr<Solid> ring(int n, double load, double nu = 0.49999) {
-  RawMesh raw = make_box(BoxCells::quadrilaterals, {n, 2 * n, 1}, Vec3::Zero(), Vec3(1, 1, 0));
-  for (Vec3& x : raw.points) {
-    const double r = 1 + x[0], angle = x[1] * std::numbers::pi / 2;
-    x = Vec3(r * std::cos(angle), r * std::sin(angle), 0);
-  }
   SolidParameters p = rubber(2, "mooney-rivlin", 3e6, nu);  // mu about 1 MPa
   p.material.law_coefficients = {0.2};
   p.boundaries["ymin"] = p.boundaries["ymax"] = boundary(Type::symmetry);
-  p.boundaries["xmin"] = boundary(Type::pressure);
-  p.boundaries["xmin"].pressure = {fmt::format("{:.17g}*t", load)};
-  auto solid = make_solid(raw, p);
+  p.boundaries["xmin"] = pressed(fmt::format("{:.17g}*t", load));
+  auto solid = make_solid(quarter_ring(BoxCells::quadrilaterals, n, 2 * n), p);
   step(*solid, 0.5);
   step(*solid, 0.5);
   return solid;
@@ -173,7 +143,7 @@ TEST(Incompressible, a_swinging_column_keeps_its_energy) {
   SolidParameters p = rubber(3, "nearly-incompressible-neo-hookean", 17e6, 0.4999);
   p.analysis = SolidParameters::Analysis::dynamic;
   p.time_scheme.type = time::TimeScheme::trapezoidal;
-  p.boundaries["ymin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
+  p.boundaries["ymin"] = clamped(3);
   p.initial_velocity = {{"10*y/6"}, {"0"}, {"0"}};
   auto solid = make_solid(make_box(BoxCells::hexahedra, {2, 8, 2}, Vec3::Zero(), Vec3(1, 6, 1)), p);
   for (int i = 0; i < 10; ++i) {
@@ -184,5 +154,4 @@ TEST(Incompressible, a_swinging_column_keeps_its_energy) {
   EXPECT_LT(std::abs(created_energy(*solid)), 0.02);
 }
 
-}  // namespace
 }  // namespace couplet::testing::incompressible_test

@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pressure and temperature taken at an interface patch: a box that expands and is pressed, whose displacement
 // is linear in space and therefore exact.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
-#include "common/base/error.hpp"
-#include "common/parallel/collective.hpp"
 #include "solid_solver/thermal/thermal_strain.hpp"
 #include "tests/verification/solid/support.hpp"
 
@@ -15,8 +8,6 @@ namespace couplet::interface_data_test {
 using namespace coupling;
 
 using namespace solid;
-
-namespace {
 
 using testing::boundary;
 using Type = SolidBoundary::Type;
@@ -217,5 +208,4 @@ TEST(InterfaceData, the_solid_has_the_given_temperature_along_the_interface) {
   EXPECT_GT(found, 0);
 }
 
-}  // namespace
 }  // namespace couplet::interface_data_test

@@ -1,20 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a linear run says large strain would change, held against what it changes.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
-#include "common/base/error.hpp"
-#include "common/parallel/collective.hpp"
 #include "solid_solver/diagnostics/large_strain_estimate.hpp"
 #include "tests/support/observed_run.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::large_strain_estimate_test {
 using namespace mesh;
-namespace {
 
 struct Pair {
   const char* name;
@@ -89,7 +80,7 @@ const std::vector<Pair> pairs{
 SolidParameters parameters(const Pair& pair) {
   SolidParameters p = box_parameters(2);
   p.material = {1000, 1e6, pair.nu};
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmin"] = clamped(2);
   p.boundaries["xmax"] =
       pair.clamped_ends ? p.boundaries["xmin"] : boundary(Type::traction, {pair.along, pair.across});
   p.body_force = {{"0"}, {pair.body}};
@@ -126,8 +117,7 @@ class LargeStrainPair : public ::testing::TestWithParam<Pair> {};
 TEST_P(LargeStrainPair, is_estimated_within_a_factor_of_1_5_of_the_true_difference) {
   if (parallel::comm_size(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "one rank; ranks_agree holds the others to it";
   SolidParameters p = parameters(GetParam());
-  const auto linear = make_solid(mesh_of(GetParam()), p);
-  step(*linear, 1);
+  const auto linear = stepped(mesh_of(GetParam()), p);
   p.kinematics = SolidParameters::Kinematics::finite_strain;
   p.method.face_gradient = FaceGradient::automatic;
   if (p.material.poissons_ratio > 0.4) p.material.law = "nearly-incompressible-neo-hookean";
@@ -148,8 +138,7 @@ TEST(LargeStrainEstimate, vanishes_with_the_load) {
   Pair pair = pairs[0];
   pair.across = "0.9*t";
   SolidParameters p = parameters(pair);
-  const auto solid = make_solid(mesh_of(pair), p);
-  step(*solid, 1);
+  const auto solid = stepped(mesh_of(pair), p);
   EXPECT_LT(estimate_of(*solid).change, 1e-3);
 }
 
@@ -171,8 +160,7 @@ TEST(LargeStrainEstimate, does_not_call_a_column_beyond_its_load_harmless) {
   Pair pair = pairs[3];
   pair.along = "-9000*t";
   SolidParameters p = parameters(pair);
-  const auto solid = make_solid(mesh_of(pair), p);
-  step(*solid, 1);
+  const auto solid = stepped(mesh_of(pair), p);
   const LargeStrainEstimate told = estimate_of(*solid);
   EXPECT_TRUE(!told.is_known() || told.change > 1) << told.text();
 }
@@ -188,5 +176,4 @@ TEST(LargeStrainEstimate, is_told_where_it_is_asked_for_and_nowhere_else) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::testing::large_strain_estimate_test

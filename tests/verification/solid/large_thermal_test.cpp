@@ -1,16 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Thermal strain at large strain: free and held bodies, a ring against its ordinary differential equation, tangent,
 // ranks, restart.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-
-#include "common/base/error.hpp"
 #include "common/elasticity/finite/finite_kernel.hpp"
-#include "common/parallel/collective.hpp"
 #include "solid_solver/laws/laws.hpp"
 #include "tests/support/saved_state.hpp"
 #include "tests/verification/solid/support.hpp"
@@ -18,7 +9,6 @@
 namespace couplet::testing::large_thermal_test {
 using namespace mesh;
 using namespace parallel;
-namespace {
 
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
@@ -71,8 +61,7 @@ TEST(LargeThermalStrain, a_free_body_grows_without_stress_by_any_law) {
       SCOPED_TRACE(fmt::format("{} {}", law.name, name(cells)));
       SolidParameters p = warm(dimension_of(cells), law, "300 + 200*t");
       p.plane = SolidParameters::Plane::stress;
-      const auto solid = make_solid(box(cells), p);
-      step(*solid, 1);
+      const auto solid = stepped(box(cells), p);
       EXPECT_LT(largest_stress(*solid, Tensor3::Zero()), 1e-5 * E);
       EXPECT_LT(growth_error(*solid, 1.2), 1e-5);
     }
@@ -102,9 +91,8 @@ TEST(LargeThermalStrain, a_held_body_is_under_the_pressure_of_its_law) {
         wanted = theta * theta * (mu * (l - 1 / l) + lambda * std::log(l * l * l) / l);
       if (what == "saint-venant-kirchhoff") wanted = theta * theta * l * 3 * K * 0.5 * (l * l - 1);
       SolidParameters p = warm(3, law, "300 + 200*t");
-      for (auto& [patch, b] : p.boundaries) b = boundary(Type::fixed_displacement, {"0", "0", "0"});
-      const auto solid = make_solid(box(cells), p);
-      step(*solid, 1);
+      for (auto& [patch, b] : p.boundaries) b = clamped(3);
+      const auto solid = stepped(box(cells), p);
       EXPECT_LT(largest_stress(*solid, wanted * Tensor3::Identity()), 1e-6 * std::abs(wanted)) << what;
     }
 }
@@ -165,21 +153,15 @@ double inner_radius() {
 }
 
 double error(int n, double start, MPI_Comm comm = MPI_COMM_WORLD) {
-  RawMesh raw =
-      make_box(BoxCells::quadrilaterals, {n, n, 1}, Vec3(inner, 0, 0), Vec3(outer, std::acos(0.0), 0));
-  for (Vec3& x : raw.points) x = Vec3(x[0] * std::cos(x[1]), x[0] * std::sin(x[1]), 0);
   SolidParameters p = warm(2, *laws::find("neo-hookean"), temperature);
   p.boundaries["xmin"] = boundary(Type::free);
   p.boundaries["ymax"] = boundary(Type::symmetry);
-  const auto solid = std::make_unique<Solid>(distribute(comm, raw), p, SolidContext{});
-  step(*solid, 1);
+  const auto solid = stepped(quarter_ring(BoxCells::quadrilaterals, n, n, inner, outer), p, comm);
   double square = 0;
   const Geometry& geometry = solid->body().geometry();
   for (Index c = 0; c < solid->body().mesh().cells.n_owned(); ++c) {
     const double R = geometry.cell_centre[c].norm(), u = shoot(start, R, 40)[0] - R;
-    const double* found = solid->stepper().state().cell_u.data() + 2 * std::size_t(c);
-    square +=
-        geometry.volume[c] * (Vec3(found[0], found[1], 0) - u / R * geometry.cell_centre[c]).squaredNorm();
+    square += geometry.volume[c] * (cell_u(*solid, c) - u / R * geometry.cell_centre[c]).squaredNorm();
   }
   return std::sqrt(sum(comm, square));
 }
@@ -197,19 +179,9 @@ TEST(LargeThermalStrain, of_a_ring_converges_to_its_differential_equation_in_sec
 }
 
 TEST(LargeThermalStrain, ranks_agree) {
-  const auto radius = [](MPI_Comm comm) {
-    SolidParameters p = warm(3, *laws::find("yeoh"), "300 + t*(100*x + 50*y*z)");
-    const auto solid =
-        std::make_unique<Solid>(distribute(comm, box(BoxCells::tetrahedra)), p, SolidContext{});
-    step(*solid, 1);
-    double square = 0;
-    for (Index c = 0; c < solid->body().mesh().cells.n_owned(); ++c)
-      for (int a = 0; a < 3; ++a)
-        square += std::pow(solid->stepper().state().cell_u[3 * std::size_t(c) + std::size_t(a)], 2);
-    return std::sqrt(sum(comm, square));
-  };
-  const double whole = radius(MPI_COMM_SELF);
-  EXPECT_NEAR(radius(MPI_COMM_WORLD), whole, 1e-6 * whole);
+  const SolidParameters p = warm(3, *laws::find("yeoh"), "300 + t*(100*x + 50*y*z)");
+  const double whole = norm_of(*stepped(box(BoxCells::tetrahedra), p, MPI_COMM_SELF));
+  EXPECT_NEAR(norm_of(*stepped(box(BoxCells::tetrahedra), p)), whole, 1e-6 * whole);
 }
 
 /// With stretches that differ from face to face; of the energy forces are the derivative, of the forces the tangent.
@@ -278,18 +250,10 @@ TEST(LargeThermalStrain, restart_goes_on_bit_for_bit_with_conduction) {
   p.heat->initial_temperature = {"300"};
   p.heat->boundaries["xmax"].type = HeatBoundary::Type::temperature;
   p.heat->boundaries["xmax"].value = {"500"};
-  const LoadedMesh body = distribute(MPI_COMM_WORLD, box(BoxCells::quadrilaterals));
-  const auto another = [&] { return std::make_unique<Solid>(body, p, SolidContext{}); };
-  const auto through = another(), before = another(), after = another();
-  step(*through, 1), step(*before, 1);
-  support::SavedState(*before).load_into(*after);
-  EXPECT_EQ(before->fields().cell_stress(before->fields().point_displacement()),
-            after->fields().cell_stress(after->fields().point_displacement()));
-  step(*through, 2), step(*after, 2);
-  EXPECT_EQ(through->stepper().state().cell_u, after->stepper().state().cell_u);
-  const auto& moved = through->stepper().state().cell_u;
-  EXPECT_GT(max(MPI_COMM_WORLD, *std::max_element(moved.begin(), moved.end())), 0.001);
+  expect_same_after_restart(box(BoxCells::quadrilaterals), p, 1, 2);
+  const auto moved = stepped(box(BoxCells::quadrilaterals), p);
+  step(*moved, 2);
+  EXPECT_GT(max(MPI_COMM_WORLD, std::ranges::max(moved->stepper().state().cell_u)), 0.001);
 }
 
-}  // namespace
 }  // namespace couplet::testing::large_thermal_test

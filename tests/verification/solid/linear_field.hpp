@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "common/base/error.hpp"
-#include "common/parallel/collective.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
@@ -132,6 +126,24 @@ inline std::vector<Vec3> displacement_by_cell(const Solid& solid) {
   std::vector<Vec3> result;
   for (const Entry& e : all) result.emplace_back(e.u[0], e.u[1], e.u[2]);
   return result;
+}
+
+/// Largest difference of the cells' displacements, component by component, over the largest component of `a`.
+inline double difference_by_cell(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double gap = 0, size = 0;
+  for (std::size_t c = 0; c < std::min(a.size(), b.size()); ++c) {
+    gap = std::max(gap, (a[c] - b[c]).cwiseAbs().maxCoeff());
+    size = std::max(size, a[c].cwiseAbs().maxCoeff());
+  }
+  return gap / size;
+}
+
+/// All ranks together find what one rank alone does.
+inline void expect_same_on_ranks(const mesh::RawMesh& raw, const SolidParameters& p, double tolerance) {
+  EXPECT_LT(difference_by_cell(displacement_by_cell(*stepped(raw, p, MPI_COMM_SELF)),
+                               displacement_by_cell(*stepped(raw, p))),
+            tolerance);
 }
 
 }  // namespace couplet::testing

@@ -2,10 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cmath>
-#include <numbers>
 
-#include "common/parallel/collective.hpp"
 #include "tests/verification/solid/linear_field.hpp"
 
 namespace couplet::testing {

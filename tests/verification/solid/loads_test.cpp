@@ -1,22 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loads by their total: resultant force and moment to round-off on any mesh and any ranks, and what they do to a body.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <Eigen/Geometry>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <numbers>
 
-#include "common/base/error.hpp"
-#include "common/parallel/collective.hpp"
 #include "tests/verification/solid/loads_support.hpp"
 
 namespace couplet::testing::loads_test {
 using namespace mesh;
-namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -152,11 +141,10 @@ TEST(SolidLoads, at_a_distance_bend_a_cantilever_as_the_theory_of_beams_has_it) 
   p.material = {7800, 200e9, 0};
   p.method.face_gradient = FaceGradient::symmetric;
   p.method.relative_tolerance = 1e-10;
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
+  p.boundaries["xmin"] = clamped(3);
   p.boundaries["xmax"] = with_force(Type::remote_load, Vec3(0, 1e6, 0), 3);
   p.boundaries["xmax"].load.point = {14, 0.5, 0.5};
-  const auto solid = make_solid(make_box(BoxCells::hexahedra, {20, 4, 2}, Vec3::Zero(), Vec3(10, 1, 1)), p);
-  step(*solid, 1);
+  const auto solid = stepped(make_box(BoxCells::hexahedra, {20, 4, 2}, Vec3::Zero(), Vec3(10, 1, 1)), p);
   const double EI = 200e9 / 12, wanted = 1e6 * (1000 / (3 * EI) + 4 * 100 / (2 * EI) + 1.2 * 10 / 100e9);
   EXPECT_NEAR(mean_on(*solid, "xmax")[1], wanted, 0.01 * wanted);
   const auto reactions = solid->fields().reactions(solid->fields().point_displacement());
@@ -170,13 +158,11 @@ TEST(SolidLoads, at_large_strain_leave_their_total_to_the_support) {
   SolidParameters p = box_parameters(2);
   p.kinematics = SolidParameters::Kinematics::finite_strain;
   p.material.youngs_modulus = 2e7;
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmin"] = clamped(2);
   p.boundaries["xmax"] = with_force(Type::remote_load, Vec3(0, 1500, 0), 2);
   p.boundaries["xmax"].load.point = {5, 0.5, 0};
   p.boundaries["ymin"] = liquid(1000, 9.81, "1.2", 2);
-  const auto solid =
-      make_solid(make_box(BoxCells::quadrilaterals, {8, 4, 1}, Vec3::Zero(), Vec3(4, 1, 1)), p);
-  step(*solid, 1);
+  const auto solid = stepped(make_box(BoxCells::quadrilaterals, {8, 4, 1}, Vec3::Zero(), Vec3(4, 1, 1)), p);
   const auto reactions = solid->fields().reactions(solid->fields().point_displacement());
   const Vec3 load = solid->fields().total_load();
   for (const auto& r : reactions)
@@ -202,25 +188,13 @@ TEST(SolidLoads, drive_a_free_body_by_their_force) {
 TEST(SolidLoads, give_the_same_displacement_on_any_number_of_ranks) {
   SolidParameters p = box_parameters(3);
   p.method.relative_tolerance = 1e-13;
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
+  p.boundaries["xmin"] = clamped(3);
   p.boundaries["xmax"] = with_force(Type::remote_load, Vec3(1e6, 2e6, -1e6), 3);
   p.boundaries["xmax"].load.point = {2, 1, 1};
   p.boundaries["zmax"] = liquid(1000, 9.81, "0.7", 3);
   p.point_loads["pin"].force = p.boundaries["xmax"].load.force;
   p.point_loads["pin"].point = {0.5, 0.8, 0.3};
-  const auto many = make_solid(distorted_box(BoxCells::hexahedra), p);
-  const Solid one(distribute(MPI_COMM_SELF, distorted_box(BoxCells::hexahedra)), p, {});
-  step(*many, 1), step(const_cast<Solid&>(one), 1);
-  const auto& a = many->stepper().state().cell_u;
-  const auto& b = one.stepper().state().cell_u;
-  const double largest = std::abs(*std::ranges::max_element(b, {}, [](double u) { return std::abs(u); }));
-  std::map<GlobalIndex, Index> alone;
-  const Mesh& mesh = one.body().mesh();
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) alone[mesh.cell_id[c]] = c;
-  for (Index c = 0; c < many->body().mesh().cells.n_owned(); ++c)
-    for (int i = 0; i < 3; ++i)
-      EXPECT_NEAR(a[std::size_t(c) * 3 + i], b[std::size_t(alone.at(many->body().mesh().cell_id[c])) * 3 + i],
-                  1e-9 * largest);
+  expect_same_on_ranks(distorted_box(BoxCells::hexahedra), p, 1e-9);
 }
 
 /// A mesh of tetrahedra or hexahedra as CalculiX writes it, its sides as surfaces, but "zmax", which is a set of nodes.
@@ -256,20 +230,16 @@ TEST(SolidLoads, and_supports_on_a_mesh_of_calculix_reproduce_a_linear_field) {
     SolidParameters p = to_round_off(box_parameters(3), FaceGradient::symmetric);
     for (auto& [name, b] : p.boundaries) b = boundary(Type::fixed_displacement, field.text(3));
     p.boundaries["zmax"] = boundary(Type::traction, traction_text(p, field, Vec3::UnitZ()));
-    const auto solid = make_solid(raw, p);
-    step(*solid, 1);
+    const auto solid = stepped(raw, p);
     expect_exact(*solid, field);
   }
 }
 
 std::string refusal(const RawMesh& raw, const SolidParameters& p) {
-  try {
+  return support::error_of([&] {
     const auto [mesh, geometry] = distribute(MPI_COMM_WORLD, raw);
     resultant(mesh, geometry, p);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
+  });
 }
 
 TEST(SolidLoads, that_cannot_be_are_refused) {
@@ -292,7 +262,7 @@ TEST(SolidLoads, that_cannot_be_are_refused) {
   load.radius = 0;
   load.point = {0, 0.5, 0.5};
   EXPECT_EQ(refusal(box, p), "");
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
+  p.boundaries["xmin"] = clamped(3);
   EXPECT_THAT(refusal(box, p), AllOf(HasSubstr("patch 'xmin'"), HasSubstr("is held")));
   p = box_parameters(3);
   p.boundaries["ymin"] = with_force(Type::bearing_load, Vec3(0, 1, 0.5), 3);
@@ -301,5 +271,4 @@ TEST(SolidLoads, that_cannot_be_are_refused) {
   EXPECT_THAT(refusal(half_ring(BoxCells::hexahedra, 12), p), HasSubstr("no half of the cylinder faces"));
 }
 
-}  // namespace
 }  // namespace couplet::testing::loads_test

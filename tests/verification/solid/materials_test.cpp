@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Several materials: displacement and traction go on where they meet.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <cmath>
 
-#include "common/base/error.hpp"
-#include "common/parallel/collective.hpp"
 #include "tests/verification/solid/linear_field.hpp"
 
 namespace couplet::testing::materials_test {
 using namespace elastic;
 using namespace mesh;
-namespace {
 
 using ::testing::HasSubstr;
 
@@ -162,12 +155,11 @@ TEST_P(Materials, piecewise_linear_fields_are_exact_across_an_oblique_interface)
 // balance.
 TEST_P(Materials, both_ends_of_a_bar_in_series_carry_the_same_force) {
   SolidParameters p = two_materials();
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, std::vector<std::string>(dim, "0"));
+  p.boundaries["xmin"] = clamped(dim);
   p.boundaries["xmax"] =
       boundary(Type::fixed_displacement,
                dim == 3 ? std::vector<std::string>{"1e-3", "0", "0"} : std::vector<std::string>{"1e-3", "0"});
-  const auto solid = make_solid(two_zones(cells, 0), p);
-  step(*solid, 1);
+  const auto solid = stepped(two_zones(cells, 0), p);
   const auto forces = solid->fields().reactions(solid->fields().point_displacement());
   ASSERT_EQ(forces.size(), 2U);
   EXPECT_GT(forces[1].force[0], 1e3);
@@ -193,8 +185,7 @@ TEST_P(Materials, unequal_thermal_expansion_of_bonded_materials_is_exact) {
   };
   const double e_soft = (thermal(soft, 2e-4) - thermal(hard, 1.2e-5)) / (axial(soft) + 1.5 * axial(hard));
   const double stress = axial(soft) * e_soft - thermal(soft, 2e-4);
-  const auto solid = make_solid(two_zones(cells, 0), p);
-  step(*solid, 1);
+  const auto solid = stepped(two_zones(cells, 0), p);
   const Mesh& mesh = solid->body().mesh();
   const Geometry& geometry = solid->body().geometry();
   double error = 0, stress_error = 0;
@@ -225,17 +216,16 @@ double layered_ring_error(int n, double& stress_error) {
   SolidParameters p = box_of_two_materials(2);
   p.method.face_gradient = FaceGradient::thesis;
   p.materials["rubber"] = {{1000, 20e9, 0.2, {}}, {"soft"}};
-  RawMesh raw = make_box(BoxCells::quadrilaterals, {2 * n, 2 * n, 1}, Vec3(r0, 0, 0), Vec3(r2, M_PI / 2, 0));
+  RawMesh raw = quarter_ring(BoxCells::quadrilaterals, 2 * n, 2 * n, r0, r2);
   raw.zones = {"soft", "hard"};
   for (Index c = 0; c < raw.cell_points.size(); ++c) {
     double r = 0;
-    for (const Index v : raw.cell_points[c]) r += raw.points[v][0] / 4;
+    for (const Index v : raw.cell_points[c]) r += raw.points[v].norm() / 4;
     raw.cell_zone[c] = r > r1;
   }
-  for (Vec3& x : raw.points) x = Vec3(x[0] * std::cos(x[1]), x[0] * std::sin(x[1]), 0);
+
   p.boundaries["ymin"] = p.boundaries["ymax"] = boundary(Type::symmetry);
-  p.boundaries["xmin"].type = Type::pressure;
-  p.boundaries["xmin"].pressure = {fmt::format("{}", pressure)};
+  p.boundaries["xmin"] = pressed(fmt::format("{}", pressure));
   // sigma_r = 2 (mu + lambda) A - 2 mu B / r^2: inner pressure, free outside, continuous u_r and sigma_r at
   // r1.
   const LameConstants in = lame_constants(p, p.materials.at("rubber")),
@@ -250,8 +240,7 @@ double layered_ring_error(int n, double& stress_error) {
   m.block<1, 2>(3, 0) = radial(in, r1);
   m.block<1, 2>(3, 2) = -radial(out, r1);
   const Eigen::Vector4d ab = m.fullPivLu().solve(Eigen::Vector4d(-pressure, 0, 0, 0));
-  const auto solid = make_solid(raw, p);
-  step(*solid, 1);
+  const auto solid = stepped(raw, p);
   const Mesh& mesh = solid->body().mesh();
   const Geometry& geometry = solid->body().geometry();
   const auto stress = solid->fields().cell_stress(solid->fields().point_displacement());
@@ -291,13 +280,8 @@ TEST(SolidMaterials, a_layered_cylinder_converges_to_lame_with_second_order) {
 
 TEST(SolidMaterials, each_zone_needs_one_material) {
   const RawMesh raw = two_zones(BoxCells::quadrilaterals, 0);
-  const auto message = [&](const SolidParameters& p) -> std::string {
-    try {
-      make_solid(raw, p);
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
+  const auto message = [&](const SolidParameters& p) {
+    return support::error_of([&] { make_solid(raw, p); });
   };
   SolidParameters p = box_of_two_materials(2);
   p.materials["rubber"].zones = {"sof"};
@@ -308,5 +292,4 @@ TEST(SolidMaterials, each_zone_needs_one_material) {
   EXPECT_THAT(message(p), HasSubstr("zone 'soft' has no material"));
 }
 
-}  // namespace
 }  // namespace couplet::testing::materials_test

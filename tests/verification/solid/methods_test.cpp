@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // All solution methods give the same answer, and the same on any number of ranks.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "common/base/error.hpp"
-#include "common/parallel/collective.hpp"
 #include "solid_solver/method/solution_method.hpp"
-#include "tests/verification/solid/support.hpp"
+#include "tests/verification/solid/linear_field.hpp"
 
 namespace couplet::testing::methods_test {
 using namespace elastic;
 using namespace mesh;
-namespace {
 
 using MethodType = MethodParameters::Type;
 using FaceGradient = MethodParameters::FaceGradient;
@@ -36,13 +28,11 @@ SolidParameters sheared_block() {
 }
 
 std::unique_ptr<Solid> solved(SolidParameters p, const MethodParameters& method,
-                              BoxCells cells = BoxCells::hexahedra) {
+                              BoxCells cells = BoxCells::hexahedra, MPI_Comm comm = MPI_COMM_WORLD) {
   p.method = method;
   RawMesh raw = make_box(cells, {10, 5, 5}, Vec3::Zero(), Vec3(2, 1, 1));
   perturb_interior(raw, 0.15, 3);
-  auto solid = make_solid(raw, p);
-  step(*solid, 1);
-  return solid;
+  return stepped(raw, p, comm);
 }
 
 MethodParameters method(MethodType type, FaceGradient gradient, double tolerance = 1e-10) {
@@ -69,13 +59,7 @@ std::vector<double> whole(const Solid& solid) {
 
 /// Largest difference of the cells' displacements over their largest size.
 double difference(const Solid& one, const Solid& other) {
-  const std::vector<double> a = whole(one), b = whole(other);
-  double gap = 0, size = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    gap = std::max(gap, std::abs(a[i] - b[i]));
-    size = std::max(size, std::abs(a[i]));
-  }
-  return gap / size;
+  return difference_by_cell(displacement_by_cell(one), displacement_by_cell(other));
 }
 
 std::vector<MethodParameters> all_methods(FaceGradient gradient) {
@@ -125,25 +109,8 @@ TEST(SolidMethods, ranks_do_not_change_the_answer) {
       MethodParameters m = method(type, gradient, 1e-12);
       m.preconditioner = Preconditioner::multigrid;
       const auto together = solved(sheared_block(), m);
-      SolidParameters p = sheared_block();
-      p.method = m;
-      RawMesh raw = make_box(BoxCells::hexahedra, {10, 5, 5}, Vec3::Zero(), Vec3(2, 1, 1));
-      perturb_interior(raw, 0.15, 3);
-      Solid alone(distribute(MPI_COMM_SELF, raw), p, SolidContext{});
-      step(alone, 1);
-      std::vector<Index> place(alone.body().mesh().cells.n_owned());
-      for (Index c = 0; c < alone.body().mesh().cells.n_owned(); ++c)
-        place[alone.body().mesh().cell_id[c]] = c;
-      double gap = 0, size = 0;
-      for (Index c = 0; c < together->body().mesh().cells.n_owned(); ++c)
-        for (int a = 0; a < 3; ++a) {
-          const double here = together->stepper().state().cell_u[std::size_t(c) * 3 + a];
-          const double there =
-              alone.stepper().state().cell_u[std::size_t(place[together->body().mesh().cell_id[c]]) * 3 + a];
-          gap = std::max(gap, std::abs(here - there));
-          size = std::max(size, std::abs(there));
-        }
-      const double relative = parallel::max(MPI_COMM_WORLD, gap) / parallel::max(MPI_COMM_WORLD, size);
+      const auto alone = solved(sheared_block(), m, BoxCells::hexahedra, MPI_COMM_SELF);
+      const double relative = difference(*alone, *together);
       EXPECT_LT(relative, 1e-8);
       worst = std::max(worst, relative);
     }
@@ -155,7 +122,7 @@ int iterations_of_motion(MethodParameters::Predictor predictor, int corrections_
                          std::vector<double>& end) {
   SolidParameters p = box_parameters(3);
   p.analysis = SolidParameters::Analysis::dynamic;
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
+  p.boundaries["xmin"] = clamped(3);
   p.boundaries["xmax"] = boundary(Type::traction, {"0", "1e6*sin(2000*t)", "0"});
   p.method = method(MethodType::newton_krylov, FaceGradient::thesis, 1e-8);
   p.method.preconditioner = Preconditioner::multigrid;
@@ -195,11 +162,10 @@ TEST(SolidMethods, predictors_save_iterations_and_change_nothing) {
 /// Iterations and the sum of the displacements along z of a bar of n cells along and 2 x 2 across, n to 1; by conjugate gradients.
 std::pair<int, double> bent_bar(int n, bool on_springs, MPI_Comm comm = MPI_COMM_WORLD) {
   SolidParameters p = box_parameters(3);
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
+  p.boundaries["xmin"] = clamped(3);
   p.boundaries["xmax"] = boundary(Type::traction, {"0", "0", "1e5"});
   if (on_springs) {
-    p.boundaries["xmin"] = boundary(Type::spring);
-    p.boundaries["xmin"].stiffness = {{"1e12"}};  // [N/m^3], beside E / 1 m = 2e11
+    p.boundaries["xmin"] = sprung("1e12");  // [N/m^3], beside E / 1 m = 2e11
   }
   p.method = method(MethodType::newton_krylov, FaceGradient::symmetric, 1e-9);
   p.method.preconditioner = Preconditioner::multigrid;
@@ -245,12 +211,10 @@ TEST(SolidMethods, a_segregated_run_that_is_cut_short_says_so) {
 /// A block in the plane, pulled: one step with what a method has been told.
 void pulled(const MethodParameters& m) {
   SolidParameters p = box_parameters(2);
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmin"] = clamped(2);
   p.boundaries["xmax"] = boundary(Type::traction, {"0", "1e6"});
   p.method = m;
-  const auto solid =
-      make_solid(make_box(BoxCells::quadrilaterals, {40, 4, 1}, Vec3::Zero(), Vec3(10, 1, 0)), p);
-  step(*solid, 1);
+  const auto solid = stepped(make_box(BoxCells::quadrilaterals, {40, 4, 1}, Vec3::Zero(), Vec3(10, 1, 0)), p);
 }
 
 struct Failing {
@@ -344,7 +308,7 @@ TEST(SolidMethods, auto_makes_factors_where_the_run_makes_so_many_solves_that_th
 
 TEST(SolidMethods, a_solve_that_does_not_converge_names_method_iterations_residual_and_what_to_try) {
   SolidParameters p = box_parameters(2);
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmin"] = clamped(2);
   p.boundaries["xmax"] = boundary(Type::traction, {"0", "1e6"});
   p.method.type = MethodParameters::Type::block_coupled;
   p.method.face_gradient = FaceGradient::thesis;
@@ -359,5 +323,4 @@ TEST(SolidMethods, a_solve_that_does_not_converge_names_method_iterations_residu
                   HasSubstr("linear-solver: direct"))));
 }
 
-}  // namespace
 }  // namespace couplet::testing::methods_test

@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Free vibrations found by factors of the shifted stiffness or by multigrid: the lowest ones of the dense eigenproblem, none missed, with the
 // shapes on the surface that plate_modal takes.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 #include "common/modes/modal_checks.hpp"
-#include "common/parallel/collective.hpp"
 #include "solid_solver/output/modal_analysis.hpp"
 #include "solid_solver/output/spectrum.hpp"
 #include "tests/verification/solid/support.hpp"
@@ -16,7 +9,6 @@
 namespace couplet::testing::modes_test {
 using namespace mesh;
 using namespace modes;
-namespace {
 
 SolidParameters vibrating(int dim) {
   SolidParameters p = box_parameters(dim);
@@ -39,7 +31,7 @@ TEST_P(SolidModes, are_the_lowest_of_the_dense_problem_with_equal_ones) {
   const BoxCells cells = GetParam();
   const int dim = dimension_of(cells);
   SolidParameters p = vibrating(dim);
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, std::vector<std::string>(dim, "0"));
+  p.boundaries["xmin"] = clamped(dim);
   const auto solid =
       make_solid(make_box(cells, {6, 2, dim == 3 ? 2 : 1}, Vec3::Zero(), Vec3(6, 1, dim == 3 ? 1 : 0)), p);
   std::vector<double> dense;
@@ -100,7 +92,7 @@ TEST(SolidModesOfABeam, are_those_of_euler_and_bernoulli_and_converge_at_second_
   // Plane stress, 20 : 1, E and rho of vibrating(); f_1 = 3.5160/(2 pi L^2) sqrt(E h^2/(12 rho)), less 0.3 % of shear.
   SolidParameters p = vibrating(2);
   p.plane = SolidParameters::Plane::stress;
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmin"] = clamped(2);
   const auto first = [&](int n) {
     const auto solid =
         make_solid(make_box(BoxCells::quadrilaterals, {10 * n, n, 1}, Vec3::Zero(), Vec3(20, 1, 0)), p);
@@ -124,5 +116,4 @@ TEST(SolidModesOfABeam, are_refused_without_a_mass_of_the_kernel) {
   EXPECT_FALSE(vibration(solid->body()));
 }
 
-}  // namespace
 }  // namespace couplet::testing::modes_test

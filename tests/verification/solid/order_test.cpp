@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Manufactured solution u_i = a_i 1e-6 sin(4 pi x) sin(2 pi y) sin(pi z), a = (2, 4, 6), on a cube of 0.2 m
 // (the 3-D case of the solids4foam verification suite); in 2-D without the third component and factor.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "common/parallel/collective.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::order_test {
 using namespace mesh;
-namespace {
 
 constexpr std::array<double, 3> amplitude{2e-6, 4e-6, 6e-6};
 constexpr std::array<double, 3> wave{4 * M_PI, 2 * M_PI, M_PI};
@@ -94,8 +88,7 @@ Errors solve(BoxCells cells, int n, double perturbed, FaceGradient gradient) {
   for (const std::string& text : body_force_text(dim, lame_constants(p))) p.body_force.push_back({text});
   RawMesh raw = make_box(cells, {n, n, n}, Vec3::Zero(), Vec3(0.2, 0.2, dim == 3 ? 0.2 : 0));
   if (perturbed > 0) perturb_interior(raw, perturbed, 3);
-  const auto solid = make_solid(raw, p);
-  step(*solid, 1);
+  const auto solid = stepped(raw, p);
 
   const Mesh& mesh = solid->body().mesh();
   const Geometry& geometry = solid->body().geometry();
@@ -221,5 +214,4 @@ TEST_P(SolidOrder, displacement_and_stress_converge) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::testing::order_test

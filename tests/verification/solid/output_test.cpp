@@ -1,21 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-
-#include "common/parallel/collective.hpp"
 #include "tests/support/observed_run.hpp"
 #include "tests/support/shared_folder.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::output_test {
 using namespace mesh;
-namespace {
 
 std::vector<std::string> lines_of(const std::filesystem::path& file) {
   std::ifstream in(file);
@@ -44,7 +33,7 @@ SolidParameters pulled_sheet() {
 }
 
 TEST(SolidOutput, probes_and_reactions_hold_the_displacement_and_the_balance_of_each_step) {
-  const SharedFolder folder;
+  const support::SharedFolder folder;
   RawMesh raw = make_box(BoxCells::triangles, {6, 4, 1}, Vec3::Zero(), Vec3(2, 1, 0));
   perturb_interior(raw, 0.2, 2);
   Solid solid(distribute(MPI_COMM_WORLD, raw), pulled_sheet(), SolidContext{"solid", folder.path()});
@@ -89,7 +78,7 @@ double last_of(const std::vector<std::string>& lines, const std::string& head) {
 }
 
 TEST(SolidOutput, probes_watch_velocity_stress_strain_and_what_follows_from_them) {
-  const SharedFolder folder;
+  const support::SharedFolder folder;
   SolidParameters p = pulled_sheet();
   for (auto& [name, probe] : p.probes)
     probe.fields = {"velocity", "stress", "strain", "equivalent-stress", "principal-stress"};
@@ -119,7 +108,7 @@ TEST(SolidOutput, probes_watch_velocity_stress_strain_and_what_follows_from_them
 }
 
 TEST(SolidOutput, acceleration_of_a_driven_block_is_that_of_its_support) {
-  const SharedFolder folder;
+  const support::SharedFolder folder;
   SolidParameters p = box_parameters(2);
   p.analysis = SolidParameters::Analysis::dynamic;
   // So stiff and small that it moves as a whole.
@@ -186,7 +175,8 @@ TEST(SolidOutput, left_out_effects_are_judged_by_numbers) {
   const auto lines = [](Solid& solid, double dt) {
     std::vector<std::string> texts;
     const auto run = support::observe(solid, 3, dt);
-    for (const diagnostics::Finding& f : run.diagnostics().findings()) texts.push_back(f.sentence + "; " + f.advice);
+    for (const diagnostics::Finding& f : run.diagnostics().findings())
+      texts.push_back(f.sentence + "; " + f.advice);
     return texts;
   };
   EXPECT_THAT(
@@ -198,5 +188,4 @@ TEST(SolidOutput, left_out_effects_are_judged_by_numbers) {
   EXPECT_THAT(lines(*fast, 1e-4), ::testing::Contains(::testing::HasSubstr("use 'analysis: dynamic'")));
 }
 
-}  // namespace
 }  // namespace couplet::testing::output_test

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/parameters/parameters.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "common/config/load.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::parameters_test {
-
 using namespace solid;
-namespace {
 
 using ::testing::AllOf;
 using ::testing::Contains;
@@ -339,5 +335,4 @@ TEST(SolidParameters, places_have_a_number_for_each_dimension) {
               ::testing::IsEmpty());
 }
 
-}  // namespace
 }  // namespace couplet::parameters_test

@@ -12,7 +12,7 @@ inline SolidParameters pushed(time::TimeScheme scheme) {
   p.kinematics = SolidParameters::Kinematics::finite_strain;
   p.material = {1000, 2e4, 0.3};
   p.time_scheme.type = scheme;
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmin"] = clamped(2);
   p.boundaries["xmax"] = boundary(Type::interface_);
   return p;
 }

@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Quantities of interest of linear static bodies: their errors by the dual problem beside the true ones.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "common/parallel/collective.hpp"
-#include "solid_solver/body/stress.hpp"
 #include "solid_solver/output/quantities.hpp"
+#include "solid_solver/body/stress.hpp"
 #include "tests/support/observed_run.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::quantities_test {
 using namespace mesh;
-namespace {
 
 SolidQuantity at(std::vector<double> point, const char* field, const char* component) {
   return {.point = std::move(point), .field = field, .component = component};
@@ -33,7 +27,7 @@ std::vector<QuantityEstimate> found(MPI_Comm comm, const RawMesh& raw, const Sol
 /// A clamped sheet 2 x 1 (a bar 4 x 1 x 1), sheared at its end, n cells across.
 SolidParameters sheared(int dim) {
   SolidParameters p = box_parameters(dim);
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, std::vector<std::string>(std::size_t(dim), "0"));
+  p.boundaries["xmin"] = clamped(dim);
   std::vector<std::string> load(std::size_t(dim), "0");
   load[1] = "1e6";
   p.boundaries["xmax"] = boundary(Type::traction, load);
@@ -87,8 +81,8 @@ TEST(Quantities, of_regular_cells_in_bending_err_as_the_whole_body_does) {
   support::observe(solid, 1, 1);
   QuantityEstimate tip = estimates(solid).at(0);
   const double alone = tip.error();
-  const auto told = std::ranges::find(diagnostics::findings().rbegin(), diagnostics::findings().rend(), "quantity-error",
-                                      &diagnostics::Finding::id);
+  const auto told = std::ranges::find(diagnostics::findings().rbegin(), diagnostics::findings().rend(),
+                                      "quantity-error", &diagnostics::Finding::id);
   ASSERT_NE(told, diagnostics::findings().rend());
   tip.body = told->number * std::abs(tip.value);
   const double wrong = std::abs(tip.value - truth);
@@ -106,8 +100,7 @@ TEST(Quantities, of_linear_fields_have_no_error_on_any_cells) {
     p.boundaries["xmin"] = boundary(Type::symmetry);
     p.boundaries["ymin"] = boundary(Type::symmetry);
     if (dim == 3) p.boundaries["zmin"] = boundary(Type::symmetry);
-    p.boundaries["xmax"] = boundary(Type::pressure, {});
-    p.boundaries["xmax"].pressure = {"-1e6"};
+    p.boundaries["xmax"] = pressed("-1e6");
     p.quantities["corner"] = at({1, 1, double(dim - 2)}, "displacement", "x");
     p.quantities["inside"] = at({0.4, 0.3, 0.2 * (dim - 2)}, "stress", "xx");
     p.quantities["peak"] = at({}, "equivalent-stress", "");
@@ -142,5 +135,4 @@ TEST(Quantities, that_nobody_asks_for_are_not_computed) {
   EXPECT_TRUE(found(MPI_COMM_WORLD, sheet(BoxCells::triangles, 4), sheared(2)).empty());
 }
 
-}  // namespace
 }  // namespace couplet::testing::quantities_test

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Patches that move as rigid bodies under a remote load: rigid to round-off, in equilibrium, on any ranks, at rest and in motion.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <algorithm>
-#include <cmath>
-#include <map>
 
 #include "common/config/load.hpp"
 #include "tests/support/saved_state.hpp"
@@ -14,7 +8,6 @@
 
 namespace couplet::testing::rigid_patch_test {
 using namespace mesh;
-namespace {
 
 using ::testing::HasSubstr;
 
@@ -76,11 +69,10 @@ TEST_P(RigidPatch, moves_as_a_rigid_body_in_equilibrium_with_its_load) {
   const int dim = dimension_of(GetParam());
   SolidParameters p = box_parameters(dim);
   p.method.relative_tolerance = 1e-13;
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, std::vector<std::string>(std::size_t(dim), "0"));
+  p.boundaries["xmin"] = clamped(dim);
   const Vec3 force(2e6, -1e6, dim == 3 ? 3e6 : 0), point(1.5, 0.9, dim == 3 ? 0.1 : 0);
   p.boundaries["xmax"] = rigid(force, point, dim);
-  const auto solid = make_solid(distorted_box(GetParam()), p);
-  step(*solid, 1);
+  const auto solid = stepped(distorted_box(GetParam()), p);
   const SolidState& state = solid->stepper().state();
   const Motion motion = motion_of(*solid, "xmax", point, state.face_u);
   EXPECT_LT(motion.deviation, 1e-12 * motion.shift.norm());
@@ -101,15 +93,14 @@ TEST_P(RigidPatch, moves_as_a_rigid_body_in_equilibrium_with_its_load) {
 TEST(RigidPatches, are_stiffer_than_patches_that_share_the_load_and_bend_as_beams_do) {
   SolidParameters p = box_parameters(3);
   p.method.relative_tolerance = 1e-11;
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
+  p.boundaries["xmin"] = clamped(3);
   const RawMesh bar = make_box(BoxCells::hexahedra, {20, 4, 4}, Vec3::Zero(), Vec3(10, 1, 1));
   const Vec3 tip(10, 0.5, 0.5);
   double moved[2];
   for (const bool is_rigid : {false, true}) {
     p.boundaries["xmax"] = rigid(Vec3(0, 1e6, 0), Vec3(13, 0.5, 0.5), 3);
     p.boundaries["xmax"].load.is_rigid = is_rigid;
-    const auto solid = make_solid(bar, p);
-    step(*solid, 1);
+    const auto solid = stepped(bar, p);
     moved[is_rigid] = motion_of(*solid, "xmax", tip, solid->stepper().state().face_u).shift[1];
   }
   const double EI = 200e9 / 12, GA = 200e9 / 2.6 / 1.2;
@@ -141,7 +132,7 @@ TEST(RigidPatches, stay_rigid_in_motion_and_take_the_momentum_of_their_load) {
 TEST(RigidPatches, continue_bit_for_bit_from_a_checkpoint) {
   SolidParameters p = box_parameters(2);
   p.analysis = SolidParameters::Analysis::dynamic;
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmin"] = clamped(2);
   p.boundaries["xmax"] = rigid(Vec3(0, 7e4, 0), Vec3(2, 0.5, 0), 2);
   const auto make = [&p] {
     return make_solid(make_box(BoxCells::triangles, {6, 6, 1}, Vec3::Zero(), Vec3::Ones()), p);
@@ -157,20 +148,10 @@ TEST(RigidPatches, continue_bit_for_bit_from_a_checkpoint) {
 TEST(RigidPatches, give_the_same_displacement_on_any_number_of_ranks) {
   SolidParameters p = box_parameters(3);
   p.method.relative_tolerance = 1e-13;
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
+  p.boundaries["xmin"] = clamped(3);
   p.boundaries["xmax"] = rigid(Vec3(1e6, 2e6, -1e6), Vec3(2, 1, 1), 3);
   p.boundaries["ymax"] = rigid(Vec3::Zero(), Vec3::Zero(), 3);
-  const auto many = make_solid(distorted_box(BoxCells::tetrahedra), p);
-  Solid one(distribute(MPI_COMM_SELF, distorted_box(BoxCells::tetrahedra)), p, {});
-  step(*many, 1), step(one, 1);
-  std::map<GlobalIndex, Index> alone;
-  for (Index c = 0; c < one.body().mesh().cells.n_owned(); ++c) alone[one.body().mesh().cell_id[c]] = c;
-  const auto &a = many->stepper().state().cell_u, &b = one.stepper().state().cell_u;
-  const double largest = std::abs(*std::ranges::max_element(b, {}, [](double u) { return std::abs(u); }));
-  for (Index c = 0; c < many->body().mesh().cells.n_owned(); ++c)
-    for (int i = 0; i < 3; ++i)
-      EXPECT_NEAR(a[std::size_t(c) * 3 + i], b[std::size_t(alone.at(many->body().mesh().cell_id[c])) * 3 + i],
-                  1e-9 * largest);
+  expect_same_on_ranks(distorted_box(BoxCells::tetrahedra), p, 1e-9);
 }
 
 TEST(RigidPatches, say_what_they_cannot_have) {
@@ -200,5 +181,4 @@ TEST(RigidPatches, say_what_they_cannot_have) {
               ::testing::IsEmpty());
 }
 
-}  // namespace
 }  // namespace couplet::testing::rigid_patch_test

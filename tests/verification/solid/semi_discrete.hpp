@@ -2,9 +2,6 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <cmath>
-#include <functional>
-#include <vector>
 
 #include "tests/verification/solid/support.hpp"
 

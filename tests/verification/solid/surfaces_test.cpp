@@ -1,17 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fields on patches and moments of reactions, against solutions that are known.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <sstream>
-
-#include "common/base/error.hpp"
-#include "common/parallel/collective.hpp"
 #include "solid_solver/thermal_solid.hpp"
 #include "tests/support/shared_folder.hpp"
 #include "tests/support/surface_file.hpp"
@@ -20,10 +8,10 @@
 
 namespace couplet::testing::surfaces_test {
 using namespace mesh;
-namespace {
 
 /// One step, then all output.
-std::unique_ptr<Solid> write(const RawMesh& raw, const SolidParameters& p, const SharedFolder& folder) {
+std::unique_ptr<Solid> write(const RawMesh& raw, const SolidParameters& p,
+                             const support::SharedFolder& folder) {
   auto solid = std::make_unique<Solid>(
       distribute(MPI_COMM_WORLD, parallel::comm_rank(MPI_COMM_WORLD) == 0 ? raw : RawMesh{}), p,
       SolidContext{"solid", folder.path()});
@@ -66,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(Cells, SolidSurfaces,
 
 // sigma_xx = 1e8 everywhere: exact.
 TEST_P(SolidSurfaces, of_a_bar_in_tension) {
-  const SharedFolder folder;
+  const support::SharedFolder folder;
   SolidParameters p = box_parameters(dim);
   p.plane = SolidParameters::Plane::stress;
   for (const char* side : {"xmin", "ymin", "zmin"})
@@ -91,15 +79,13 @@ TEST_P(SolidSurfaces, of_a_bar_in_tension) {
 
 TEST_P(SolidSurfaces, moments_of_the_reactions_balance_those_of_the_loads) {
   for (const bool symmetric : {false, true}) {
-    const SharedFolder folder;
+    const support::SharedFolder folder;
     SolidParameters p = box_parameters(dim);
-    p.boundaries["xmin"] =
-        boundary(Type::fixed_displacement, std::vector<std::string>(std::size_t(dim), "0"));
+    p.boundaries["xmin"] = clamped(dim);
     if (symmetric) p.boundaries["ymin"] = boundary(Type::symmetry);
     p.boundaries["xmax"] = boundary(Type::traction, {"1e6", "-3e6", "2e6"});
     p.boundaries["xmax"].value.resize(std::size_t(dim));
-    p.boundaries["ymax"].type = Type::pressure;
-    p.boundaries["ymax"].pressure = {"4e6"};
+    p.boundaries["ymax"] = pressed("4e6");
     p.method.preconditioner = MethodParameters::Preconditioner::factors;
     p.output.moments = true;
     p.output.moment_centre = Vec3(0.3, -0.2, 0.5);
@@ -120,25 +106,16 @@ TEST_P(SolidSurfaces, moments_of_the_reactions_balance_those_of_the_loads) {
   }
 }
 
-/// Lame's cylinder under inner pressure in plane strain; xmin is its inner side.
-RawMesh ring(BoxCells cells, int n) {
-  RawMesh raw = make_box(cells, {n, 2 * n, 1}, Vec3::Zero(), Vec3(1, 1, 0));
-  for (Vec3& x : raw.points) {
-    const double r = 1 + x.x(), angle = x.y() * M_PI / 2;
-    x = Vec3(r * std::cos(angle), r * std::sin(angle), 0);
-  }
-  return raw;
-}
+// Lame's cylinder under inner pressure in plane strain.
 
 TEST(SolidSurfaces, of_a_thick_cylinder_under_pressure) {
   for (const BoxCells cells : {BoxCells::quadrilaterals, BoxCells::triangles}) {
-    const SharedFolder folder;
+    const support::SharedFolder folder;
     SolidParameters p = box_parameters(2);
     p.boundaries["ymin"] = p.boundaries["ymax"] = boundary(Type::symmetry);
-    p.boundaries["xmin"].type = Type::pressure;
-    p.boundaries["xmin"].pressure = {"3e6"};
+    p.boundaries["xmin"] = pressed("3e6");
     p.output.surfaces = {"xmin", "ymin"};
-    write(ring(cells, 12), p, folder);
+    write(quarter_ring(cells, 12, 24), p, folder);
     const double a = 1e6;  // p r_i^2 / (r_o^2 - r_i^2): sigma = a (1 -+ r_o^2 / r^2)
     const SurfaceFile inner(folder.path(), "xmin"), cut(folder.path(), "ymin");
     const auto at = inner.points();
@@ -162,7 +139,7 @@ TEST(SolidSurfaces, of_a_thick_cylinder_under_pressure) {
 
 // F is uniform: the traction is Cauchy's stress times the normal of the deformed face.
 TEST(SolidSurfaces, of_large_strain_carry_the_load_over_the_deformed_area) {
-  const SharedFolder folder;
+  const support::SharedFolder folder;
   SolidParameters p = box_parameters(3);
   p.material = {1000, 1e6, 0.3};
   p.material.law = "neo-hookean";
@@ -182,7 +159,7 @@ TEST(SolidSurfaces, of_large_strain_carry_the_load_over_the_deformed_area) {
 }
 
 TEST(SolidSurfaces, of_a_body_that_conducts_heat) {
-  const SharedFolder folder;
+  const support::SharedFolder folder;
   SolidParameters p = box_parameters(2);
   p.analysis = SolidParameters::Analysis::thermal;
   p.material.heat.conductivity = config::ExpressionText{"50"};
@@ -212,9 +189,9 @@ TEST(SolidSurfaces, of_a_body_that_conducts_heat) {
 }
 
 TEST(SolidSurfaces, are_not_written_unless_asked_for_and_only_of_patches) {
-  const SharedFolder folder;
+  const support::SharedFolder folder;
   SolidParameters p = box_parameters(2);
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmin"] = clamped(2);
   p.boundaries["xmax"] = boundary(Type::traction, {"1e6", "0"});
   const RawMesh raw = make_box(BoxCells::quadrilaterals, {4, 2, 1}, Vec3::Zero(), Vec3(2, 1, 0));
   write(raw, p, folder);
@@ -227,5 +204,4 @@ TEST(SolidSurfaces, are_not_written_unless_asked_for_and_only_of_patches) {
                   "output.surfaces: 'xmim' is not a patch of the boundary. Did you mean 'xmin'?")));
 }
 
-}  // namespace
 }  // namespace couplet::testing::surfaces_test

@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The symmetric face gradient: K from an energy. What it must be on every mesh, and what it gives in bending.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <map>
-#include <random>
-
-#include "common/base/error.hpp"
 #include "common/elasticity/elastic_kernel.hpp"
-#include "common/parallel/collective.hpp"
 #include "solid_solver/output/spectrum.hpp"
-#include "tests/verification/solid/linear_field.hpp"
+#include "tests/verification/solid/loads_support.hpp"
 
 namespace couplet::testing::symmetric_test {
 using namespace elastic;
 using namespace mesh;
-namespace {
 
 std::vector<double> random_values(MPI_Comm comm, std::size_t n, unsigned seed) {
   std::mt19937 generator(seed + 100 * parallel::comm_rank(comm));
@@ -36,7 +27,7 @@ std::unique_ptr<Solid> busy_box(BoxCells cells) {
   const int dim = dimension_of(cells);
   SolidParameters p = box_parameters(dim);
   p.method.face_gradient = FaceGradient::symmetric;
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, std::vector<std::string>(dim, "0"));
+  p.boundaries["xmin"] = clamped(dim);
   p.boundaries["ymin"] = boundary(Type::symmetry);
   p.boundaries["ymax"] = boundary(Type::frictionless);
   p.boundaries["xmax"] = boundary(Type::spring, std::vector<std::string>(dim, "0"));
@@ -81,7 +72,7 @@ TEST(Symmetric, has_positive_eigenvalues_on_stretched_cells_two_across) {
     SolidParameters p = box_parameters(dim);
     p.analysis = SolidParameters::Analysis::dynamic;
     p.method.face_gradient = FaceGradient::symmetric;
-    p.boundaries["xmin"] = boundary(Type::fixed_displacement, std::vector<std::string>(dim, "0"));
+    p.boundaries["xmin"] = clamped(dim);
     RawMesh raw = make_box(cells, {2, 2, 2}, Vec3::Zero(), Vec3(10, 1, dim == 3 ? 1 : 0));
     perturb_interior(raw, 0.05, 3);
     const auto solid = make_solid(raw, p);
@@ -101,20 +92,10 @@ double tip(BoxCells cells, const std::array<int, 3>& n, double length, double nu
   SolidParameters p = box_parameters(3);
   p.material = {1000, 1e6, nu};
   p.method.face_gradient = gradient;
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
+  p.boundaries["xmin"] = clamped(3);
   p.boundaries["xmax"] = boundary(Type::traction, {"0", "100", "0"});
-  const auto solid = make_solid(make_box(cells, n, Vec3::Zero(), Vec3(length, 1, 1)), p);
-  step(*solid, 1);
-  double sum_here = 0, area = 0;
-  const Mesh& mesh = solid->body().mesh();
-  const Geometry& geometry = solid->body().geometry();
-  const Patch* patch = mesh.find_patch("xmax");
-  for (Index f = patch->first; f < patch->first + patch->count; ++f) {
-    const double s = geometry.face_area[f].norm();
-    sum_here += s * solid->stepper().state().face_u[std::size_t(f - mesh.n_interior) * 3 + 1];
-    area += s;
-  }
-  return parallel::sum(mesh.comm, sum_here) / parallel::sum(mesh.comm, area);
+  const auto solid = stepped(make_box(cells, n, Vec3::Zero(), Vec3(length, 1, 1)), p);
+  return mean_on(*solid, "xmax")[1];
 }
 
 // Reference: 3-D, refined: 0.40042 at 10:1, nu = 0.3, E = 1e6, load 100.
@@ -151,15 +132,14 @@ TEST(Symmetric, undamped_motion_keeps_its_energy) {
     p.method.face_gradient = FaceGradient::symmetric;
     p.method.relative_tolerance = 1e-12;
     p.output.energies = true;
-    p.boundaries["xmin"] = boundary(Type::fixed_displacement, std::vector<std::string>(dim, "0"));
+    p.boundaries["xmin"] = clamped(dim);
     p.initial_velocity = {{"0.1*x*sin(9*y)"}, {"0.2*x*x"}};
     if (dim == 3) p.initial_velocity.push_back({"0.05*x*cos(7*y)"});
     RawMesh raw = make_box(cells, {6, 3, 2}, Vec3::Zero(), Vec3(4, 1, dim == 3 ? 1 : 0));
     perturb_interior(raw, 0.2, 3);
     const auto solid = make_solid(raw, p);
     for (int i = 0; i < 60; ++i) step(*solid, 0.004);
-    const SolidEnergies e =
-        solid->stepper().ledger().total(solid->stepper().state(), solid->fields().point_displacement());
+    const SolidEnergies e = energies(*solid);
     const double drift = (e.kinetic + e.strain) / e.initial_kinetic - 1;
     RecordProperty(std::string("drift_") + name(cells), fmt::format("{:.1e}", drift));
     EXPECT_LT(std::abs(drift), 1e-9);
@@ -174,13 +154,12 @@ TEST(Symmetric, small_steps_keep_their_energy_with_the_default_tolerance) {
   p.material = {2600, 1e7, 0.3};
   p.method.face_gradient = FaceGradient::symmetric;
   p.output.energies = true;
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmin"] = clamped(2);
   p.initial_velocity = {{"0.1*x*sin(9*y)"}, {"0.2*x*x"}};
   const auto solid =
       make_solid(make_box(BoxCells::quadrilaterals, {6, 3, 1}, Vec3::Zero(), Vec3(4, 1, 0)), p);
   for (int i = 0; i < 3000; ++i) step(*solid, 2e-5);  // elastic Courant number 0.004
-  const SolidEnergies e =
-      solid->stepper().ledger().total(solid->stepper().state(), solid->fields().point_displacement());
+  const SolidEnergies e = energies(*solid);
   const double drift = (e.kinetic + e.strain) / e.initial_kinetic - 1;
   RecordProperty("drift", fmt::format("{:.1e}", drift));
   EXPECT_LT(std::abs(drift), 1e-9);
@@ -190,13 +169,12 @@ TEST(Symmetric, half_the_work_of_the_loads_is_the_strain_energy) {
   for (const BoxCells cells : all_cells) {
     const int dim = dimension_of(cells);
     SolidParameters p = to_round_off(box_parameters(dim), FaceGradient::symmetric);
-    p.boundaries["xmin"] = boundary(Type::fixed_displacement, std::vector<std::string>(dim, "0"));
+    p.boundaries["xmin"] = clamped(dim);
     p.boundaries["ymin"] = boundary(Type::symmetry);
     p.boundaries["xmax"] = boundary(Type::traction, {"1e6*y", "-3e5", "2e5*z"});
     p.boundaries["xmax"].value.resize(dim);
     p.gravity = std::vector<double>(dim, -9.81);
-    const auto solid = make_solid(distorted_box(cells), p);
-    step(*solid, 1);
+    const auto solid = stepped(distorted_box(cells), p);
     EXPECT_LT(audit_strain(solid->view(), false).mismatch(), 1e-10) << name(cells);
   }
 }
@@ -204,7 +182,7 @@ TEST(Symmetric, half_the_work_of_the_loads_is_the_strain_energy) {
 TEST(Symmetric, is_the_default_where_it_can_be) {
   const RawMesh raw = make_box(BoxCells::quadrilaterals, {6, 5, 1}, Vec3::Zero(), Vec3(1.2, 1, 0));
   SolidParameters p = box_parameters(2);
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmin"] = clamped(2);
   const auto scheme = [&raw](const SolidParameters& q) {
     return make_solid(raw, q)->body().kernel().scheme();
   };
@@ -241,7 +219,7 @@ TEST(Symmetric, the_recovered_stress_is_that_of_one_rank) {
     SCOPED_TRACE(name(cells));
     const int dim = dimension_of(cells);
     SolidParameters p = to_round_off(box_parameters(dim), FaceGradient::symmetric);
-    p.boundaries["xmin"] = boundary(Type::fixed_displacement, std::vector<std::string>(dim, "0"));
+    p.boundaries["xmin"] = clamped(dim);
     p.boundaries["ymin"] = boundary(Type::symmetry);
     p.boundaries["xmax"] = boundary(Type::traction, {"1e6*y", "-3e5", "2e5*z"});
     p.boundaries["xmax"].value.resize(dim);
@@ -264,5 +242,4 @@ TEST(Symmetric, the_recovered_stress_is_that_of_one_rank) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::testing::symmetric_test

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The symmetric operator with the vertices as unknowns of their own: the kernel's rows, their inverse and their inertia.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <random>
-
 #include "common/elasticity/finite/stress_stiffness.hpp"
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
 #include "common/elasticity/symmetric/tied_matrix.hpp"
-#include "common/parallel/collective.hpp"
 #include "solid_solver/output/spectrum.hpp"
 #include "tests/verification/solid/linear_field.hpp"
 
@@ -16,7 +10,6 @@ namespace couplet::testing::tied_test {
 using namespace elastic;
 using namespace mesh;
 using namespace parallel;
-namespace {
 
 using Volume = MethodParameters::VolumeStrain;
 
@@ -34,11 +27,10 @@ SolidParameters parameters(const Scene& scene) {
   p.method.face_gradient = FaceGradient::symmetric;
   p.method.volume_strain = scene.volume;
   p.material = {2000, 1e6, 0.3};
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, std::vector<std::string>(std::size_t(dim), "0"));
+  p.boundaries["xmin"] = clamped(dim);
   if (scene.with_planes) p.boundaries["xmin"] = p.boundaries["ymin"] = boundary(Type::symmetry);
   if (scene.with_springs) {
-    p.boundaries["xmax"] = boundary(Type::spring);
-    p.boundaries["xmax"].stiffness = {"3e5"};
+    p.boundaries["xmax"] = sprung("3e5");
   }
   if (scene.is_orthotropic) {
     p.material = {1600, 0, 0};
@@ -199,5 +191,4 @@ TEST_P(Tied, has_the_stress_stiffness_of_the_faces_loops) {
   EXPECT_LT(gap(mesh.comm, found, wanted), 1e-12);
 }
 
-}  // namespace
 }  // namespace couplet::testing::tied_test

@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The thesis's own method at large strain: its printed deflections, frames, exactness, ranks, restart, refusals.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "common/base/error.hpp"
-#include "common/parallel/collective.hpp"
 #include "tests/support/saved_state.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::updated_lagrangian_test {
 using namespace mesh;
 using namespace parallel;
-namespace {
 
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
@@ -33,7 +25,7 @@ SolidParameters large(const std::string& law) {
 /// Case E: a cantilever of square section, its tip pulled along the diagonal by K E I / L^2 times t.
 SolidParameters bent(double K) {
   SolidParameters p = large("saint-venant-kirchhoff");
-  p.boundaries["zmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
+  p.boundaries["zmin"] = clamped(3);
   const double force = K * E * std::pow(side, 4) / 12 / (length * length);
   const std::string pull = fmt::format("t*{:.17g}", force / (side * side) / std::sqrt(2.0));
   p.boundaries["zmax"] = boundary(Type::traction, {pull, pull, "0"});
@@ -45,18 +37,10 @@ RawMesh beam(int n, int along) {
                   Vec3(side / 2, side / 2, length));
 }
 
-std::unique_ptr<Solid> make(const RawMesh& raw, const SolidParameters& p, MPI_Comm comm = MPI_COMM_WORLD) {
-  return std::make_unique<Solid>(distribute(comm, raw), p, SolidContext{});
-}
-
 /// Of the middle of the tip, over the length, on all ranks.
 double deflection(const Solid& solid) {
-  const std::vector<double> u = solid.fields().point_displacement();
-  double most = 0;
-  for (std::size_t i = 0; i < u.size(); i += 3)
-    if ((solid.body().geometry().points[i / 3] - Vec3(0, 0, length)).norm() < 1e-9)
-      most = std::hypot(u[i], u[i + 1]);
-  return max(solid.body().mesh().comm, most) / length;
+  const Vec3 tip = displacement_at(solid, Vec3(0, 0, length));
+  return std::hypot(tip[0], tip[1]) / length;
 }
 
 // Table 3.6, mesh 1. In one load step the frame is the undeformed body (total Lagrangian), in four it moves along.
@@ -65,11 +49,10 @@ TEST(UpdatedLagrangian, repeats_the_printed_deflections_in_both_frames) {
   if (comm_size(MPI_COMM_WORLD) > 1) return;  // ranks have tests of their own below
   p.method.relative_tolerance = 1e-6;
   p.method.acceleration = MethodParameters::Acceleration::aitken;
-  const auto total = make(beam(2, 20), p);
-  step(*total, 1);
+  const auto total = stepped(beam(2, 20), p);
   EXPECT_NEAR(deflection(*total), 0.3922, 0.001 * 0.3922);
   p.method.acceleration = MethodParameters::Acceleration::anderson;
-  const auto updated = make(beam(2, 20), p);
+  const auto updated = make_solid(beam(2, 20), p);
   for (int i = 0; i < 2; ++i) step(*updated, 0.5);
   EXPECT_NEAR(deflection(*updated), 0.3922, 0.001 * 0.3922);
   EXPECT_NEAR(deflection(*updated), deflection(*total), 2e-4 * 0.3922);
@@ -79,10 +62,10 @@ TEST(UpdatedLagrangian, repeats_the_printed_deflections_in_both_frames) {
 TEST(UpdatedLagrangian, equals_small_strain_under_small_loads) {
   if (comm_size(MPI_COMM_WORLD) > 1) return;
   SolidParameters p = bent(1e-6);
-  const auto finite = make(beam(2, 10), p);
+  const auto finite = make_solid(beam(2, 10), p);
   p.kinematics = SolidParameters::Kinematics::small_strain;
   p.method.face_gradient = FaceGradient::thesis;
-  const auto small = make(beam(2, 10), p);
+  const auto small = make_solid(beam(2, 10), p);
   step(*finite, 1);
   step(*small, 1);
   EXPECT_NEAR(deflection(*finite), deflection(*small), 1e-5 * deflection(*small));
@@ -105,7 +88,7 @@ TEST(UpdatedLagrangian, homogeneous_deformation_is_exact_over_two_steps) {
   for (const BoxCells cells : {BoxCells::hexahedra, BoxCells::tetrahedra}) {
     RawMesh raw = make_box(cells, {2, 2, 2}, Vec3::Zero(), Vec3::Ones());
     perturb_interior(raw, 0.15, 7);
-    const auto solid = make(raw, p);
+    const auto solid = make_solid(raw, p);
     step(*solid, 0.5);
     step(*solid, 0.5);
     for (const Tensor3& s : solid->fields().cell_stress(solid->fields().point_displacement()))
@@ -118,11 +101,10 @@ TEST(UpdatedLagrangian, pressure_follows_the_surface_as_with_newton) {
   if (comm_size(MPI_COMM_WORLD) > 1) return;
   SolidParameters p = large("neo-hookean");
   for (const char* name : {"xmin", "ymin", "zmin"}) p.boundaries[name] = boundary(Type::symmetry);
-  p.boundaries["zmax"].type = Type::pressure;
-  p.boundaries["zmax"].pressure = {fmt::format("{}*t", 0.4 * E)};
+  p.boundaries["zmax"] = pressed(fmt::format("{}*t", 0.4 * E));
   const auto by = [&](MethodParameters::Type type) {
     p.method.type = type;
-    auto solid = make(make_box(BoxCells::hexahedra, {2, 2, 2}, Vec3::Zero(), Vec3::Ones()), p);
+    auto solid = make_solid(make_box(BoxCells::hexahedra, {2, 2, 2}, Vec3::Zero(), Vec3::Ones()), p);
     step(*solid, 0.5);
     step(*solid, 0.5);
     const auto held = solid->fields().reactions(solid->fields().point_displacement());
@@ -146,7 +128,7 @@ RawMesh stub() {
 TEST(UpdatedLagrangian, ranks_agree) {
   SolidParameters p = bent(20);
   p.method.relative_tolerance = 1e-9;
-  const auto whole = make(stub(), p, MPI_COMM_SELF), parts = make(stub(), p);
+  const auto whole = make_solid(stub(), p, MPI_COMM_SELF), parts = make_solid(stub(), p);
   for (int i = 0; i < 2; ++i) step(*whole, 0.5), step(*parts, 0.5);
   EXPECT_GT(deflection(*whole), 0.01);
   EXPECT_NEAR(deflection(*parts), deflection(*whole), 1e-8 * deflection(*whole));
@@ -155,16 +137,7 @@ TEST(UpdatedLagrangian, ranks_agree) {
 TEST(UpdatedLagrangian, restart_in_the_middle_of_the_load_is_bit_for_bit) {
   SolidParameters p = bent(20);
   p.method.relative_tolerance = 1e-3;
-  const LoadedMesh body = distribute(MPI_COMM_WORLD, stub());
-  const auto another = [&] { return std::make_unique<Solid>(body, p, SolidContext{}); };
-  const auto through = another(), before = another(), after = another();
-  step(*through, 0.5);
-  step(*before, 0.5);
-  support::SavedState(*before).load_into(*after);
-  step(*through, 0.5);
-  step(*after, 0.5);
-  EXPECT_EQ(through->stepper().state().cell_u, after->stepper().state().cell_u);
-  EXPECT_EQ(through->stepper().state().face_u, after->stepper().state().face_u);
+  expect_same_after_restart(stub(), p, 0.5, 0.5);
 }
 
 /// Swings like Newton's method on the other gradient: within what the gradients differ by on such cells.
@@ -172,12 +145,13 @@ TEST(UpdatedLagrangian, swings_as_newton_does) {
   if (comm_size(MPI_COMM_WORLD) > 1) return;
   SolidParameters p = large("neo-hookean");
   p.analysis = SolidParameters::Analysis::dynamic;
-  p.boundaries["zmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
+  p.boundaries["zmin"] = clamped(3);
   p.initial_velocity = {{"10*z"}, {"0"}, {"0"}};
   p.method.relative_tolerance = 1e-7;
   const auto tip = [&](MethodParameters::Type type) {
     p.method.type = type;
-    const auto solid = make(make_box(BoxCells::hexahedra, {3, 3, 9}, Vec3::Zero(), Vec3(0.2, 0.2, 0.6)), p);
+    const auto solid =
+        make_solid(make_box(BoxCells::hexahedra, {3, 3, 9}, Vec3::Zero(), Vec3(0.2, 0.2, 0.6)), p);
     for (int i = 0; i < 5; ++i) step(*solid, 0.002);
     double most = 0;
     for (const double u : solid->fields().point_displacement()) most = std::max(most, u);
@@ -193,14 +167,14 @@ TEST(UpdatedLagrangian, says_what_it_cannot) {
   SolidParameters p = bent(1);
   p.boundaries["xmin"] = boundary(Type::spring);
   p.boundaries["xmin"].stiffness.text = "1e6";
-  EXPECT_THAT([&] { make(beam(2, 2), p); }, ThrowsMessage<Error>(HasSubstr("not a support or springs")));
+  EXPECT_THAT([&] { make_solid(beam(2, 2), p); },
+              ThrowsMessage<Error>(HasSubstr("not a support or springs")));
   p = bent(1);
   p.method.max_iterations = 5;
-  const auto solid = make(beam(2, 10), p);
+  const auto solid = make_solid(beam(2, 10), p);
   solid->begin_step({0, 1, coupling::Scheme::standalone, 0});
   EXPECT_THAT([&] { solid->solve({}); },
               ThrowsMessage<SolveFailure>(HasSubstr("'solution-method.max-iterations'")));
 }
 
-}  // namespace
 }  // namespace couplet::testing::updated_lagrangian_test

@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bulk modulus on the volume strain of faces, of cells, or shared between them.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <random>
-
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
+#include "tests/support/saved_state.hpp"
 #include "tests/verification/solid/linear_field.hpp"
+#include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::volume_strain_test {
 using namespace mesh;
-namespace {
-
 using Volume = MethodParameters::VolumeStrain;
+using Preconditioner = MethodParameters::Preconditioner;
 
 SolidParameters with(Volume volume, int dim) {
   SolidParameters p = box_parameters(dim);
@@ -24,19 +19,11 @@ SolidParameters with(Volume volume, int dim) {
 
 /// Upper corner of Cook's membrane of n x n quadrilaterals [mm], E = 250 MPa, sheared by 6.25 MPa.
 double cook(int n, double nu, Volume volume, MPI_Comm comm = MPI_COMM_WORLD) {
-  RawMesh raw = make_box(BoxCells::quadrilaterals, {n, n, 1}, Vec3::Zero(), Vec3(1, 1, 0));
-  for (Vec3& x : raw.points) x = Vec3(0.048 * x[0], 0.044 * x[0] + (0.044 - 0.028 * x[0]) * x[1], 0);
   SolidParameters p = with(volume, 2);
   p.material = {1000, 250e6, nu};
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmin"] = clamped(2);
   p.boundaries["xmax"] = boundary(Type::traction, {"0", "6.25e6"});
-  Solid solid(distribute(comm, raw), p, SolidContext{});
-  step(solid, 1);
-  double corner = 0;
-  const std::vector<double> u = solid.fields().point_displacement();
-  for (std::size_t v = 0; v < u.size() / 2; ++v)
-    if ((solid.body().geometry().points[v] - Vec3(0.048, 0.06, 0)).norm() < 1e-9) corner = u[2 * v + 1];
-  return 1e3 * parallel::max(comm, corner);
+  return 1e3 * displacement_at(*stepped(cooks_membrane(n), p, comm), Vec3(0.048, 0.06, 0))[1];
 }
 
 TEST(VolumeStrain, shared_keeps_linear_fields_exact) {
@@ -50,8 +37,7 @@ TEST(VolumeStrain, shared_keeps_linear_fields_exact) {
     p.boundaries["xmax"] = boundary(Type::traction, traction_text(p, field, Vec3(1, 0, 0)));
     p.boundaries["ymax"] = boundary(Type::traction, traction_text(p, field, Vec3(0, 1, 0)));
     if (dim == 3) p.boundaries["zmin"] = p.boundaries["zmax"] = p.boundaries["xmin"];
-    const auto solid = make_solid(distorted_box(cells), p);
-    step(*solid, 1);
+    const auto solid = stepped(distorted_box(cells), p);
     expect_exact(*solid, field);
   }
 }
@@ -62,7 +48,7 @@ TEST(VolumeStrain, shared_is_assembled_as_it_is_applied) {
     SCOPED_TRACE(int(cells));
     const int dim = dimension_of(cells);
     SolidParameters p = with(Volume::shared, dim);
-    p.boundaries["xmin"] = boundary(Type::fixed_displacement, std::vector<std::string>(dim, "0"));
+    p.boundaries["xmin"] = clamped(dim);
     const auto solid = make_solid(distorted_box(cells), p);
     const linalg::SparseMatrix matrix =
         elastic::symmetric_matrix(solid->body().mesh(), solid->body().elastic(), {});
@@ -117,8 +103,7 @@ double stress_of_free_expansion(BoxCells cells, double nu, Volume volume) {
           ? boundary(Type::fixed_displacement, {fmt::format("{:.17g}*(x^2-y^2)/2", stretch), "0"})
           : boundary(Type::fixed_displacement, {fmt::format("{:.17g}*(x^2-y^2-z^2)/2", stretch), "0", "0"});
   const RawMesh raw = make_box(cells, {8, 4, dim == 3 ? 3 : 1}, Vec3::Zero(), Vec3(2, 1, dim == 3 ? 1 : 0));
-  const auto solid = make_solid(raw, p);
-  step(*solid, 1);
+  const auto solid = stepped(raw, p);
   double most = 0;
   for (Tensor3 s : solid->fields().cell_stress(solid->fields().point_displacement())) {
     if (dim == 2) s(2, 2) = 0;
@@ -152,7 +137,7 @@ TEST(VolumeStrain, heat_strains_at_the_start_by_the_constants_of_tables) {
     p.material.heat.youngs_modulus = config::ExpressionText{"1e9"};
     p.temperature = {"10"};
     p.expansion.emplace().reference_temperature = 0;
-    p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+    p.boundaries["xmin"] = clamped(2);
     const auto solid =
         make_solid(make_box(BoxCells::quadrilaterals, {4, 4, 1}, Vec3::Zero(), Vec3(1, 1, 0)), p);
     for (const Tensor3& s : solid->fields().cell_stress(solid->fields().point_displacement()))
@@ -160,5 +145,137 @@ TEST(VolumeStrain, heat_strains_at_the_start_by_the_constants_of_tables) {
   }
 }
 
-}  // namespace
+// Mean stresses of cells as unknowns beside the displacements: the answer of factors, in iterations that nu hardly changes.
+
+SolidParameters nearly_incompressible(int dim, double nu, Preconditioner by) {
+  SolidParameters p = box_parameters(dim);
+  p.material = {1000, 1e6, nu};
+  p.method.face_gradient = FaceGradient::symmetric;
+  p.method.volume_strain = MethodParameters::VolumeStrain::cells;
+  p.method.preconditioner = by;
+  p.method.relative_tolerance = 1e-10;
+  p.boundaries["xmin"] = clamped(dim);
+  p.boundaries["xmax"] = boundary(Type::traction, dim == 2 ? std::vector<std::string>{"0", "1e3"}
+                                                           : std::vector<std::string>{"0", "1e3", "500"});
+  return p;
+}
+
+RawMesh body(BoxCells cells, int n) {
+  const bool is_flat = dimension_of(cells) == 2;
+  RawMesh raw = make_box(cells, {2 * n, n, is_flat ? 1 : n}, Vec3::Zero(), Vec3(1, 1, is_flat ? 0 : 1));
+  for (Vec3& x : raw.points) x = Vec3(2 * x[0], x[1] * (1 - 0.2 * x[0]) + 0.3 * x[0], x[2]);
+  return raw;
+}
+
+struct Answer {
+  std::vector<double> u;
+  int iterations = 0;
+};
+
+Answer solved(const RawMesh& raw, const SolidParameters& p, MPI_Comm comm = MPI_COMM_WORLD) {
+  Solid solid(distribute(comm, raw), p, SolidContext{});
+  step(solid, 0.02);
+  if (p.analysis == SolidParameters::Analysis::dynamic) step(solid, 0.02);
+  const Mesh& mesh = solid.body().mesh();
+  const Geometry& geometry = solid.body().geometry();
+  // The same numbers on any count of ranks: moments of the displacements.
+  Answer answer;
+  const std::vector<double>& u = solid.stepper().state().cell_u;
+  for (int a = 0; a < mesh.dim; ++a)
+    for (int k = 0; k < 4; ++k) {
+      double moment = 0;
+      for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+        const Vec3& x = geometry.cell_centre[c];
+        const std::array<double, 4> weights{1, x[0], x[1], std::sin(7 * x[0]) * std::cos(5 * x[1])};
+        moment += weights[std::size_t(k)] * u[std::size_t(c) * std::size_t(mesh.dim) + std::size_t(a)];
+      }
+      answer.u.push_back(parallel::sum(mesh.comm, moment));
+    }
+  answer.iterations = solid.stepper().effort().iterations;
+  return answer;
+}
+
+double gap(const Answer& a, const Answer& b) {
+  double difference = 0, size = 0;
+  for (std::size_t i = 0; i < a.u.size(); ++i) {
+    difference = std::max(difference, std::abs(a.u[i] - b.u[i]));
+    size = std::max(size, std::abs(b.u[i]));
+  }
+  return difference / size;
+}
+
+constexpr std::array kinds{BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
+                           BoxCells::mixed};
+
+TEST(MixedForm, gives_what_factors_give) {
+  if (parallel::comm_size(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "on one rank";
+  for (const BoxCells cells : kinds) {
+    SCOPED_TRACE(int(cells));
+    const int dim = dimension_of(cells);
+    const RawMesh raw = body(cells, dim == 2 ? 6 : 3);
+    EXPECT_LT(gap(solved(raw, nearly_incompressible(dim, 0.4999, Preconditioner::mixed)),
+                  solved(raw, nearly_incompressible(dim, 0.4999, Preconditioner::factors))),
+              1e-7);
+  }
+}
+
+// Also where some of the bulk modulus stays with the faces, and in steps in which inertia rules.
+TEST(MixedForm, of_shared_volume_strain_and_of_motion) {
+  if (parallel::comm_size(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "on one rank";
+  for (const bool moves : {false, true}) {
+    std::array<SolidParameters, 2> p{nearly_incompressible(2, 0.4999, Preconditioner::mixed),
+                                     nearly_incompressible(2, 0.4999, Preconditioner::factors)};
+    for (SolidParameters& q : p) {
+      if (moves)
+        q.analysis = SolidParameters::Analysis::dynamic;
+      else
+        q.method.volume_strain = MethodParameters::VolumeStrain::shared;
+    }
+    const RawMesh raw = body(moves ? BoxCells::triangles : BoxCells::quadrilaterals, 6);
+    EXPECT_LT(gap(solved(raw, p[0]), solved(raw, p[1])), 1e-7);
+  }
+}
+
+// Conjugate gradients without pressures have no end there.
+TEST(MixedForm, iterations_hardly_grow_as_nu_goes_to_one_half) {
+  if (parallel::comm_size(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "on one rank";
+  const RawMesh raw = body(BoxCells::quadrilaterals, 16);
+  const auto iterations = [&](double nu) {
+    return solved(raw, nearly_incompressible(2, nu, Preconditioner::mixed)).iterations;
+  };
+  const int far = iterations(1. / 3), near = iterations(0.4999);
+  RecordProperty("far", far);
+  RecordProperty("near", near);
+  EXPECT_LT(near, 2 * far);
+  SolidParameters without = nearly_incompressible(2, 0.4999, Preconditioner::multigrid);
+  without.method.max_iterations = 10 * near;
+  EXPECT_THROW(solved(raw, without), Error);
+}
+
+TEST(MixedForm, ranks_agree) {
+  for (const BoxCells cells : {BoxCells::triangles, BoxCells::hexahedra}) {
+    SCOPED_TRACE(int(cells));
+    const SolidParameters p = nearly_incompressible(dimension_of(cells), 0.4999, Preconditioner::mixed);
+    const RawMesh raw = body(cells, cells == BoxCells::triangles ? 4 : 2);
+    EXPECT_LT(gap(solved(raw, p), solved(raw, p, MPI_COMM_SELF)), 1e-8);
+  }
+}
+
+// Two steps, the second from what was saved after the first.
+TEST(MixedForm, goes_on_bit_for_bit) {
+  SolidParameters p = nearly_incompressible(2, 0.4999, Preconditioner::mixed);
+  p.analysis = SolidParameters::Analysis::dynamic;
+  expect_same_after_restart(body(BoxCells::quadrilaterals, 4), p, 0.02, 0.02);
+}
+
+TEST(MixedForm, is_refused_without_mean_stresses_of_cells) {
+  if (parallel::comm_size(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "on one rank";
+  SolidParameters p = nearly_incompressible(2, 0.3, Preconditioner::mixed);
+  p.method.volume_strain = MethodParameters::VolumeStrain::faces;
+  EXPECT_THROW(solved(body(BoxCells::quadrilaterals, 2), p), Error);
+  p = nearly_incompressible(2, 0.3, Preconditioner::mixed);
+  p.method.face_gradient = FaceGradient::corrected;
+  EXPECT_THROW(solved(body(BoxCells::quadrilaterals, 2), p), Error);
+}
+
 }  // namespace couplet::testing::volume_strain_test

@@ -2,15 +2,9 @@
 // The packed bed against closed forms: Schumann 1929 (fluid and grains of one temperature each, no
 // conduction), Ogata and Banks 1961 (one phase, advection and conduction), and the late front, whose width is
 // that of all resistances together.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-
 #include "tests/verification/thermocline/support.hpp"
 
 namespace couplet::thermocline::bed_test {
-namespace {
 
 /// The bed of the Schumann problem: xi = 20 at its top for a mass flux of 1 kg/(m^2 s).
 struct Schumann {
@@ -317,5 +311,4 @@ TEST(Front, numerical_diffusion_of_upwind_is_that_of_theory) {
   EXPECT_LT(k / advected, 1 + 2 * in_time);
 }
 
-}  // namespace
 }  // namespace couplet::thermocline::bed_test

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What only conducts: columns (ground, roof), the blanket around the wall, and the gas with its radiation.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <numbers>
-
+#include "tests/support/test.hpp"
 #include "thermocline/wall/layers.hpp"
 #include "thermocline/wall/surroundings.hpp"
 
 namespace couplet::thermocline::conduction_test {
-namespace {
 
 const double none = 0, given = std::numeric_limits<double>::infinity();
 const Insulator soil{2050, 1840, 1.2};
@@ -201,5 +195,4 @@ TEST(Environment, correlations_have_the_values_of_their_formulae) {
   EXPECT_GT(side_film(OutsideParameters{}, 300, 20, 12, windy).coefficient, 2 * calm);
 }
 
-}  // namespace
 }  // namespace couplet::thermocline::conduction_test

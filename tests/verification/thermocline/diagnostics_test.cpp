@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Findings of the tank's diagnostics.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "common/io/checkpoint.hpp"
-#include "tests/verification/thermocline/tank_case.hpp"
+#include "tests/verification/thermocline/support.hpp"
 
 namespace couplet::thermocline::diagnostics_test {
-namespace {
 
 /// A bed of 1 m through which salt flows from 290 to 390 degC.
 TankParameters small_tank(double mass_flow) {
@@ -173,5 +168,4 @@ TEST(Warnings, a_wall_outside_the_range_of_its_table_is_named_once_with_time_and
   EXPECT_TRUE(inside.found("tank-state").empty());
 }
 
-}  // namespace
 }  // namespace couplet::thermocline::diagnostics_test

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The filler against closed forms: an elastic, perfectly plastic element between the active and the passive
 // load.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "common/base/numbers.hpp"
 #include "thermocline/wall/mechanics.hpp"
+#include "common/base/numbers.hpp"
+#include "tests/support/test.hpp"
 
 namespace couplet::thermocline::mechanics_test {
-namespace {
 
 /// A tank of one of the thesis's two plants: bed of the layers of 5.4, six rings of equal height (AR1: the
 /// thinnest goes on to the top).
@@ -240,5 +235,4 @@ TEST(Bending, leaves_what_changes_slowly) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::thermocline::mechanics_test

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cost of the bed: nanoseconds per cell-step, and how it grows with the number of cells.
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <cmath>
-
 #include "tests/verification/thermocline/support.hpp"
 
 namespace couplet::thermocline::speed_test {
-namespace {
 
 /// Best of many short runs: what other processes take is left out [s per cell and step].
 double cost(int cells, Advection advection) {
@@ -43,5 +37,4 @@ TEST(Speed, cost_is_linear_in_the_number_of_cells) {
   }
 }
 
-}  // namespace
 }  // namespace couplet::thermocline::speed_test

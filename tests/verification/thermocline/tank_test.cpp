@@ -1,23 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tank as a whole: books, subsets of elements, the participant's contract.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-
-#include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "tests/support/own_folder.hpp"
-#include "tests/verification/thermocline/tank_case.hpp"
+#include "tests/verification/thermocline/support.hpp"
 #include "thermocline/model/output.hpp"
 
 namespace couplet::thermocline::tank_test {
 using namespace coupling;
-namespace {
 
 TEST(EnergyBalance, the_whole_tank_closes_over_a_week) {
   TankRun run(solar_one_parameters());
@@ -375,5 +364,4 @@ TEST_F(Participation, an_external_wall_needs_somebody_who_computes_it) {
   EXPECT_THROW(Tank(p, context), Error);
 }
 
-}  // namespace
 }  // namespace couplet::thermocline::tank_test
