@@ -143,7 +143,7 @@ double lowest_period(const SolidParameters& p, const mesh::MeshFacts& mesh) {
 }
 
 diagnostics::EffectChoice inertia(const SolidParameters& p, const mesh::MeshFacts& mesh,
-                              const diagnostics::CaseScene& scene) {
+                                  const diagnostics::CaseScene& scene) {
   const auto choose = [](bool dynamic, std::string reason) {
     const char* word = dynamic ? "dynamic" : "static";
     return diagnostics::EffectChoice{"analysis", word, word, std::move(reason), false};
@@ -167,7 +167,7 @@ diagnostics::EffectChoice inertia(const SolidParameters& p, const mesh::MeshFact
 }  // namespace
 
 std::vector<diagnostics::EffectChoice> choose_effects(const SolidParameters& p, const mesh::MeshFacts& mesh,
-                                                  const diagnostics::CaseScene& scene) {
+                                                      const diagnostics::CaseScene& scene) {
   std::vector<diagnostics::EffectChoice> choices{
       {"dimension", std::to_string(mesh.dim), std::to_string(mesh.dim),
        mesh.dim == 2 ? "the mesh has two-dimensional cells only" : "the mesh has volumes", false}};

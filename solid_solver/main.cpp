@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
       .effects =
           [&](const couplet::diagnostics::CaseScene&) {
             return couplet::diagnostics::effects_of("solid_solver", couplet::solid::solid_effect_cards(),
-                                                parameters);
+                                                    parameters);
           },
       .choose =
           [&](const couplet::diagnostics::CaseScene& scene) {

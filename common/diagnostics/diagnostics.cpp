@@ -9,7 +9,6 @@
 #include <chrono>
 #include <cmath>
 
-#include "common/io/checkpoint.hpp"
 #include "common/log/progress.hpp"
 
 namespace couplet::diagnostics {

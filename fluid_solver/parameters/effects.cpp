@@ -185,13 +185,13 @@ double largest_rate(const FluidParameters& p, const mesh::MeshFacts& mesh,
 /// Decides whether pressure waves are computed: where sound takes longer across the mesh than 0.3/omega of what boundaries and
 /// motions prescribe, where gaps shut off an inlet, and where an interface moves in a fluid without an outlet.
 diagnostics::EffectChoice choose_waves(const FluidParameters& p, const mesh::MeshFacts& mesh,
-                                   const diagnostics::CaseScene& scene) {
+                                       const diagnostics::CaseScene& scene) {
   const auto without = [](std::string reason) {
     return diagnostics::EffectChoice{"compressibility", "", "none, incompressible", std::move(reason)};
   };
   const auto with = [](std::string reason) {
     return diagnostics::EffectChoice{"compressibility", "{scheme: three-level}", "three-level",
-                                 std::move(reason)};
+                                     std::move(reason)};
   };
   const auto has = [&p](const auto& fact) {
     return std::ranges::any_of(p.boundaries, [&](const auto& b) { return fact(b.second); });
@@ -297,7 +297,7 @@ diagnostics::EffectChoice mesh_motion(const FluidParameters& p, const diagnostic
 }  // namespace
 
 std::vector<diagnostics::EffectChoice> choose_effects(const FluidParameters& p, const mesh::MeshFacts& mesh,
-                                                  const diagnostics::CaseScene& scene) {
+                                                      const diagnostics::CaseScene& scene) {
   const double speed = speed_of(p, mesh, scene.end_time);
   return {{"dimension", std::to_string(mesh.dim), std::to_string(mesh.dim),
            mesh.dim == 2 ? "the mesh has two-dimensional cells only" : "the mesh has volumes"},

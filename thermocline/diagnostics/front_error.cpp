@@ -57,7 +57,8 @@ class FrontError final : public TankDiagnostic {
     if (!(size > 1e-9 * std::abs(mean) * double(n))) return {};  // one temperature: nothing to be spread
     const double one_cell = 0.5 * bends / size;                  // s = dz
     const double way = double(n) * crossed();                    // in cells
-    diagnostics::ErrorParts parts{.mesh = scheme() == Advection::tvd ? one_cell : std::max(1., way) * one_cell};
+    diagnostics::ErrorParts parts{.mesh =
+                                      scheme() == Advection::tvd ? one_cell : std::max(1., way) * one_cell};
     if (scheme() != Advection::tvd) parts.mesh_order = 1;
     parts.step_order = 1;
     if (scheme() == Advection::implicit)
