@@ -161,6 +161,8 @@ struct MeshFacts {
   void find_mean_cell();
   void scale(double factor);
 };
+/// Facts of a whole mesh; needs no MPI.
+MeshFacts facts_of(const RawMesh& raw);
 /// Collective.
 MeshFacts facts_of(MPI_Comm comm, const MeshBlock& block);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <string>
 
 #include "common/base/error.hpp"
@@ -114,13 +115,34 @@ LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
   return load_block(comm, std::move(block), file, scale);
 }
 
+MeshFacts facts_of(const RawMesh& raw) {
+  MeshFacts facts{.dim = raw.dim, .cells = raw.cell_type.size(), .patches = raw.patches};
+  if (raw.points.empty() || facts.cells == 0) return facts;
+  Vec3 low = raw.points.front(), high = low;
+  for (const Vec3& x : raw.points) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  facts.size = high - low;
+  facts.find_mean_cell();
+  double shortest = std::numeric_limits<double>::infinity();
+  for (Index c = 0; c < Index(facts.cells); ++c) {
+    const auto points = raw.cell_points[c];
+    for (std::size_t i = 0; i < points.size(); ++i)
+      for (std::size_t j = i + 1; j < points.size(); ++j)
+        shortest = std::min(shortest, (raw.points[points[i]] - raw.points[points[j]]).squaredNorm());
+  }
+  facts.shortest_edge = std::sqrt(shortest);
+  return facts;
+}
+
 MeshFacts facts_of_file(const std::filesystem::path& file, const MeshParameters& parameters, double scale) {
   int dim = 3;
   if (file.extension() == ".geo") {
     const auto volumes = read_geo(file).groups.at(3);
     if (volumes && volumes->empty()) dim = 2;  // nothing: some name is computed
   }
-  MeshFacts facts = facts_of(MPI_COMM_SELF, read_block(MPI_COMM_SELF, file, dim, parameters));
+  const auto msh = [&] {
+    return file.extension() == ".geo" ? mesh_geo(file, dim, parameters) : finished_msh(file);
+  };
+  MeshFacts facts = facts_of(is_deck(file) ? read_deck(file) : read_msh(msh()));
   facts.scale(scale);
   return facts;
 }

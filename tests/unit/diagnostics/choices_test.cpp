@@ -166,7 +166,7 @@ TEST(AutoSolid, scene_15_damping_asks_for_motion_and_a_plane_mesh_for_two_dimens
 // -- meshes ---------------------------------------------------------------------------------------------------
 TEST(MeshFacts, are_those_of_a_box) {
   const RawMesh raw = make_box(BoxCells::hexahedra, {4, 2, 1}, Vec3::Zero(), Vec3(2, 1, 1));
-  const MeshFacts facts = facts_of(MPI_COMM_SELF, block_of(MPI_COMM_SELF, raw));
+  const MeshFacts facts = facts_of(raw);
   EXPECT_EQ(facts.dim, 3);
   EXPECT_EQ(facts.cells, 8u);
   EXPECT_NEAR((facts.size - Vec3(2, 1, 1)).norm(), 0, 1e-14);
@@ -174,7 +174,7 @@ TEST(MeshFacts, are_those_of_a_box) {
   EXPECT_NEAR(facts.mean_cell, std::cbrt(0.25), 1e-14);
   EXPECT_DOUBLE_EQ(facts.smallest_side(), 1);
   const RawMesh flat = make_box(BoxCells::triangles, {4, 2, 1}, Vec3::Zero(), Vec3(2, 1, 0));
-  EXPECT_EQ(facts_of(MPI_COMM_SELF, block_of(MPI_COMM_SELF, flat)).dim, 2);
+  EXPECT_EQ(facts_of(flat).dim, 2);
 }
 
 }  // namespace couplet::testing::choices_test
