@@ -16,7 +16,7 @@ FILES = {
     "face loops": [
         *_of("fluid_solver", "rates face_flux predictor projection pressure boundary turbulence viscous_solver placement immersed "
                              "yielding_walls absorbing compression"),
-        *_of("solid_solver", "heat heat_boundaries solid_fields stress finite_strain updated_lagrangian orthotropic mixed_form"),
+        *_of("solid_solver", "heat heat_boundaries solid_fields stress finite_strain updated_lagrangian material_parameters mixed_form"),
         *_of("common/elasticity", "face_terms symmetric_faces symmetric_kernel symmetric_space elasticity least_squares_kernel "
                                   "shared_edges finite_edges finite_kernel anisotropic joined_vertices "
                                   "elastic_corrections vertex_constraints"),
