@@ -8,30 +8,9 @@
 #include <limits>
 
 #include "common/parallel/collective.hpp"
+#include "fluid_solver/parameters/gradient_fields.hpp"
 
 namespace couplet::fluid {
-
-template <int D>
-std::vector<double> vorticity(const std::vector<Tensor<D>>& gradient) {
-  std::vector<double> curl;
-  curl.reserve(gradient.size() * (D == 2 ? 1 : 3));
-  for (const Tensor<D>& g : gradient) {
-    if constexpr (D == 3) {
-      curl.push_back(g(2, 1) - g(1, 2));
-      curl.push_back(g(0, 2) - g(2, 0));
-    }
-    curl.push_back(g(1, 0) - g(0, 1));
-  }
-  return curl;
-}
-
-template <int D>
-std::vector<double> q_criterion(const std::vector<Tensor<D>>& gradient) {
-  std::vector<double> q;
-  q.reserve(gradient.size());
-  for (const Tensor<D>& g : gradient) q.push_back(-0.5 * (g * g).trace());
-  return q;
-}
 
 template <int D>
 std::vector<std::array<double, 2>> wall_units(const Fluid<D>& fluid) {
@@ -126,10 +105,6 @@ EnergyBudget energy_budget(const Fluid<D>& fluid) {
   return {sums[0], sums[1], sums[2], sums[3]};
 }
 
-template decltype(vorticity<2>) vorticity<2>;
-template decltype(vorticity<3>) vorticity<3>;
-template decltype(q_criterion<2>) q_criterion<2>;
-template decltype(q_criterion<3>) q_criterion<3>;
 template decltype(wall_units<2>) wall_units<2>;
 template decltype(wall_units<3>) wall_units<3>;
 template decltype(summarise_wall<2>) summarise_wall<2>;
@@ -180,10 +155,20 @@ void Quantities<D>::add_in_cells(const RunningStatistics<D>* statistics) {
   const FluidOutputParameters& wanted = fluid_.parameters().output;
   const std::size_t n = s.u.size();
   std::vector<Tensor<D>> gradient;
-  if (wanted.vorticity || wanted.q_criterion)
-    velocity_gradient<D>(fluid_.mesh(), *s.placement, s.u, s.u_boundary, gradient);
-  if (wanted.vorticity) add("vorticity", "1/s", D == 2 ? 1 : 3, keep(vorticity<D>(gradient)), n);
-  if (wanted.q_criterion) add("q-criterion", "1/s^2", 1, keep(q_criterion<D>(gradient)), n);
+  for (const GradientField& field : gradient_fields()) {
+    const auto asked = wanted.gradient_fields.find(field.name);
+    if (asked == wanted.gradient_fields.end() || !asked->second) continue;
+    if (gradient.empty()) velocity_gradient<D>(fluid_.mesh(), *s.placement, s.u, s.u_boundary, gradient);
+    const int components = field.is_vector && D == 3 ? 3 : 1, first = field.is_vector && D == 2 ? 2 : 0;
+    std::vector<double> values;
+    for (const Tensor<D>& g : gradient) {
+      Tensor3 whole = Tensor3::Zero();
+      whole.template topLeftCorner<D, D>() = g;
+      const Vec3 value = field.value(whole);
+      for (int i = first; i < first + components; ++i) values.push_back(value[i]);
+    }
+    add(field.name, field.unit, components, keep(std::move(values)), n);
+  }
   if (!s.eddy.empty()) add("eddy-viscosity", "m^2/s", 1, s.eddy, n);
   if (statistics)
     add("reynolds-shear", "m^2/s^2", RunningStatistics<D>::n_shear, keep(statistics->reynolds_shear()), n);

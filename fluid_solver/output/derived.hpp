@@ -51,13 +51,6 @@ class RunningStatistics {
   std::vector<double> shear_, pressure_, pressure_square_;  // sum dt u_i' u_j'; mean; sum dt p'^2
 };
 
-/// curl u per local cell from its gradients [1/s]: one value in 2-D, three in 3-D.
-template <int D>
-std::vector<double> vorticity(const std::vector<Tensor<D>>& gradient);
-/// Q = (|W|^2 - |S|^2)/2 = -g:g^T/2 for a divergence-free field, per local cell [1/s^2].
-template <int D>
-std::vector<double> q_criterion(const std::vector<Tensor<D>>& gradient);
-
 /// Wall shear and the distance of the first cell in wall units, y+ = y (tau/rho)^(1/2) / nu, y from the
 /// cell's centre straight to the wall, tau the mean over the last step.
 struct WallSummary {

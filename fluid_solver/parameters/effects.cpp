@@ -126,7 +126,9 @@ const std::array cards{
               ""},
     FluidCard{"vorticity and Q", "`output.vorticity`, `output.q-criterion`",
               [](const S& s) {
-                return when(s.parameters.output.vorticity || s.parameters.output.q_criterion, "output");
+                return when(std::ranges::any_of(s.parameters.output.gradient_fields,
+                                                [](const auto& field) { return field.second; }),
+                            "output");
               },
               "fields at the outputs"},
     FluidCard{"energy budget", "`output.energy-budget`",

@@ -228,7 +228,8 @@ struct FlowAreaParameters {
 
 /// Fields and series beyond velocity, pressure, forces and balance.
 struct FluidOutputParameters {
-  bool vorticity = false, q_criterion = false, energy_budget = false, walls = false, fluxes = false;
+  std::map<std::string, bool> gradient_fields;  // by their names, see gradient_fields.hpp
+  bool energy_budget = false, walls = false, fluxes = false;
   std::vector<std::string> surfaces;  // patches, or "all"
   std::map<std::string, CoefficientParameters> coefficients;
   std::map<std::string, FlowAreaParameters> flow_areas;

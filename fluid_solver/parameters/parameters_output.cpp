@@ -2,6 +2,7 @@
 // Keys of the section `output`.
 #include <Eigen/Geometry>
 
+#include "fluid_solver/parameters/gradient_fields.hpp"
 #include "fluid_solver/parameters/parameters.hpp"
 
 namespace couplet::fluid {
@@ -69,8 +70,8 @@ void declare_sample(config::Section& s, SampleParameters& p) {
 }  // namespace
 
 void declare_output(config::Section& s, FluidOutputParameters& p) {
-  s.value("vorticity", p.vorticity).doc("field of the curl of the velocity [1/s]");
-  s.value("q-criterion", p.q_criterion).doc("field of Q = (|W|^2 - |S|^2)/2 [1/s^2]: positive in vortices");
+  for (const GradientField& field : gradient_fields())
+    s.value(field.name, p.gradient_fields[field.name]).doc(field.meaning);
   s.value("walls", p.walls)
       .doc("walls.csv: shear and y+ of each wall; with a turbulence model it is always written");
   s.value("fluxes", p.fluxes)

@@ -3,6 +3,7 @@
 #include "fluid_case.hpp"
 #include "fluid_solver/momentum/rates.hpp"
 #include "fluid_solver/output/derived.hpp"
+#include "fluid_solver/parameters/gradient_fields.hpp"
 
 namespace couplet::fluid::test::turbulence_test {
 using namespace mesh;
@@ -229,13 +230,18 @@ TEST(Statistics, are_those_of_a_known_oscillation) {
   EXPECT_NEAR(statistics.reynolds_shear()[0], 1, 1e-4);
 }
 
-TEST(Derived, vorticity_and_q_of_a_rotation_and_of_a_strain) {
-  const std::vector<Tensor<3>> g{tensor({0, -3, 0, 3, 0, 0, 0, 0, 0}), tensor({2, 0, 0, 0, -2, 0, 0, 0, 0})};
-  const std::vector<double> curl = vorticity<3>(g), q = q_criterion<3>(g);
-  EXPECT_EQ(curl[2], 6);
-  EXPECT_EQ(curl[5], 0);
-  EXPECT_EQ(q[0], 9);
-  EXPECT_EQ(q[1], -4);
+TEST(GradientFields, have_their_values_in_a_rotation_and_in_a_strain) {
+  const Tensor3 rotation = tensor({0, -3, 0, 3, 0, 0, 0, 0, 0}),
+                strain = tensor({2, 0, 0, 0, -2, 0, 0, 0, 0});
+  const auto value = [](const std::string& name, const Tensor3& g) {
+    for (const GradientField& field : gradient_fields())
+      if (field.name == name) return field.value(g);
+    throw std::logic_error(name);
+  };
+  EXPECT_EQ(value("vorticity", rotation), Vec3(0, 0, 6));
+  EXPECT_EQ(value("vorticity", strain), Vec3(0, 0, 0));
+  EXPECT_EQ(value("q-criterion", rotation)[0], 9);
+  EXPECT_EQ(value("q-criterion", strain)[0], -4);
 }
 
 }  // namespace couplet::fluid::test::turbulence_test
