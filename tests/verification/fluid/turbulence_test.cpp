@@ -242,6 +242,8 @@ TEST(GradientFields, have_their_values_in_a_rotation_and_in_a_strain) {
   EXPECT_EQ(value("vorticity", strain), Vec3(0, 0, 0));
   EXPECT_EQ(value("q-criterion", rotation)[0], 9);
   EXPECT_EQ(value("q-criterion", strain)[0], -4);
+  EXPECT_EQ(value("shear-rate", rotation)[0], 0);
+  EXPECT_DOUBLE_EQ(value("shear-rate", tensor({0, 7, 0, 0, 0, 0, 0, 0, 0}))[0], 7);
 }
 
 }  // namespace couplet::fluid::test::turbulence_test
