@@ -37,8 +37,8 @@ struct Configuration {
   std::vector<Data> data;
   std::vector<Wire> wires;
   bool implicit = false;
-  std::string
-      introduction;  ///< to the coupler: digest of the XML, this participant's schemes (docs/protocol.md)
+  /// To the coupler: digest of the XML, this participant's schemes (docs/protocol.md).
+  std::string introduction;
 
   const Mesh* mesh(const std::string& name) const;
   const Data* find(const std::string& mesh, const std::string& name, bool written) const;

@@ -75,8 +75,8 @@ class Session {
   void take_within(const Configuration::Wire& wire, Sample& s, bool constant);
 
   std::vector<Sample> samples_;  // by wire
-  std::vector<std::pair<double, std::vector<std::vector<double>>>>
-      sub_steps_;  // share of the window; as `written`
+  // Share of the window; as `written`.
+  std::vector<std::pair<double, std::vector<std::vector<double>>>> sub_steps_;
 };
 
 }  // namespace couplet::dropin

@@ -128,8 +128,8 @@ class Observed final : public coupling::Participant {
 /// How a run is told of at its end.
 struct Closing {
   bool is_alone = true;  ///< the whole job's error is this program's; else the coupler says what dominates
-  bool has_failed =
-      false;  ///< what it left out then counts only where it was not sound, and nothing says what its answer errs by
+  /// What it left out then counts only where it was not sound, and nothing says what its answer errs by.
+  bool has_failed = false;
 };
 
 void closing_words(const Job& job, coupling::Participant& participant, diagnostics::Diagnostics& diagnostics,

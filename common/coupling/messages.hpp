@@ -83,8 +83,8 @@ struct Surfaces {
   std::vector<int> of_vertex{};  ///< of this rank; empty: there are no such surfaces
   std::map<std::string, int> takes{},
       gives{};  ///< by datum at vertices; one that is not here is at all of them
-  std::set<std::string>
-      within{};  ///< taken data whose values within the step are wanted, too (see WithinStep)
+  /// Taken data whose values within the step are wanted, too (see WithinStep).
+  std::set<std::string> within{};
 };
 
 /// Participant to coupler. Every command has exactly one reply.

@@ -75,8 +75,8 @@ struct StepReport {
   long iterations = 0;      ///< of linear solvers in the solve() that was accepted
   double error = unknown;   ///< estimated time error of the step, over the size of the solution [1]
   double energy = unknown;  ///< of the accepted state [J]
-  double seconds =
-      0;  ///< since the last accepted step, failed attempts included; filled in by who drives the run
+  /// Since the last accepted step, failed attempts included; filled in by who drives the run.
+  double seconds = 0;
 };
 
 /// A physics program seen from outside. All calls are collective over its ranks.

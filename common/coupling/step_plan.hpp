@@ -95,8 +95,8 @@ class SubStepping final : public Participant {
   int steps_ = 1;
   Step step_;
   std::vector<Interface::Datum> takes_, gives_;
-  std::map<Interface::Place, std::pair<std::vector<GlobalIndex>, std::size_t>>
-      places_;                     // numbers and how many, here
+  // Numbers and how many, here.
+  std::map<Interface::Place, std::pair<std::vector<GlobalIndex>, std::size_t>> places_;
   io::StateInMemory start_;        // state n
   bool has_start_ = false;         // it is in start_
   mutable bool moved_on_ = false;  // the participant has accepted steps beyond it

@@ -20,8 +20,8 @@ struct EffectCard {
   const char* name;
   const char* keys;  ///< what switches it on, for the documents
   std::string (*asked_by)(const Parameters&);
-  std::string_view
-      adds{};  ///< where it is on: fields, matrices, files, processes; nothing of it exists where it is off
+  /// Where it is on: fields, matrices, files, processes; nothing of it exists where it is off.
+  std::string_view adds{};
   const char* judged_by = "";  ///< the number and its limit by which a run judges it, for the documents
   bool judged_when_on = false;
 };

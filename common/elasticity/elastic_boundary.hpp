@@ -16,10 +16,10 @@ namespace couplet::elastic {
 struct BoundaryRow {
   Tensor3 known = Tensor3::Zero();   ///< P, symmetric: 0 free, I fixed, n n^T across a plane
   Tensor3 spring = Tensor3::Zero();  ///< k, symmetric [N/m^3]
-  Tensor3 passing =
-      Tensor3::Zero();  ///< R: the cell takes R sigma . n as it is and (I - R) T; P, or I if level or shared
-  bool fixed = false;   ///< P = I: no unknown
-  bool held = false;    ///< P is not 0
+  /// R: the cell takes R sigma . n as it is and (I - R) T; P, or I if level or shared.
+  Tensor3 passing = Tensor3::Zero();
+  bool fixed = false;     ///< P = I: no unknown
+  bool held = false;      ///< P is not 0
   bool mirrored = false;  ///< no unknown: across the face stands the mirror image of the cell
   bool level = false;     ///< n . grad u = 0 is the row of u_B, thesis (2.62)
   bool shared = false;    ///< between two materials; both sides have the same u_B

@@ -172,10 +172,10 @@ class VertexInterpolation {
   Index n_cells_;
   std::vector<std::int64_t> offset_;
   std::vector<Index> node_;
-  std::vector<std::int64_t>
-      ends_;  // where the nodes of each material end, of points with several materials ...
-  std::vector<Index>
-      ends_first_;  // ... and per point its first entry there, -1: one material; empty: one in all
+  // Where the nodes of each material end, of points with several materials ...
+  std::vector<std::int64_t> ends_;
+  // ... and per point its first entry there, -1: one material; empty: one in all.
+  std::vector<Index> ends_first_;
   std::vector<Index> inexact_, bent_;
   std::vector<double> weight_;
   std::vector<std::uint8_t> fixed_;

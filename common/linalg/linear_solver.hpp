@@ -31,8 +31,8 @@ struct LinearOptions {
   double relative_tolerance = 1e-8;   ///< of |r| / |b|
   double absolute_tolerance = 1e-50;  ///< of |r|; may also be given with each solve
   int max_iterations = 500;
-  bool as_preconditioner =
-      false;  ///< of a direct method: nobody asks for its residual, which is a product more
+  /// Of a direct method: nobody asks for its residual, which is a product more.
+  bool as_preconditioner = false;
 };
 
 struct SolveStatistics {

@@ -147,8 +147,8 @@ std::string name(TimeScheme scheme) {
 namespace {
 
 using Complex = std::complex<double>;
-using Row =
-    Eigen::Matrix<Complex, 1, 5>;  // a value as a combination of u, v, a, u_old, v_old at the step's start
+// A value as a combination of u, v, a, u_old, v_old at the step's start.
+using Row = Eigen::Matrix<Complex, 1, 5>;
 using Step = Eigen::Matrix<Complex, 5, 5>;
 
 Row combine(const Levels& l, const Row& x, const Step& levels) {

@@ -186,8 +186,8 @@ class BlockFaces {
   std::vector<int> material_of_zone_;
   std::vector<FaceSide> sides_;  // without another side in this block
   std::vector<BlockGraph::Pair> within_;
-  std::vector<std::array<GlobalIndex, 2>>
-      joined_;                    // cells that share a periodic face, the first of this block
+  // Cells that share a periodic face, the first of this block.
+  std::vector<std::array<GlobalIndex, 2>> joined_;
   std::vector<FacePair> bonded_;  // as the cell with the smaller number sees them
   std::vector<RecordOfCell> records_;
   BlockGraph graph_;
