@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rigid cylinder on a spring, m y'' + c y' + k y = F_y (trapezoidal rule), as a participant of a job. Usage:
 // spring_cylinder PARTICIPANT MASS DAMPING STIFFNESS START (per meter of depth; START is y at rest at t = 0)
-// = 0)
 #include <cmath>
 #include <cstdlib>
 #include <fstream>

@@ -152,8 +152,7 @@ std::vector<double> Session::surface_of(std::size_t datum, const std::vector<dou
   return surface;
 }
 
-/// Sends written values, or zeros. `initial`: before the first step, only those that the configuration
-/// requests.
+/// Sends written values, or zeros. With `initial` (before the first step), only initialized ones.
 void Session::hand_over(bool initial) {
   for (const Configuration::Wire& w : configuration.wires) {
     if (!w.given) continue;

@@ -103,7 +103,7 @@ class Key {
 ///   void declare(config::Section& s, SolidParameters& p) {
 ///     s.value("density", p.density).unit("kg/m^3").positive().required().doc("density");
 ///     s.choice("analysis", p.analysis, {{"static", Analysis::steady}, {"dynamic", Analysis::dynamic}}).doc("...");
-///     s.section("output", [&](config::Section& o) { declare(o, p.output); }, "what is written");
+///     s.section("output", [&](config::Section& o) { declare(o, p.output); }, "output settings");
 ///     s.map("boundaries", p.boundaries, [](config::Section& b, Boundary& v) { declare(b, v); }, "patch", "...");
 ///     s.check([&] { return p.a < p.b ? "" : "'a' must be below 'b'"; }, "a");
 ///   }

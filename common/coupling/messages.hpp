@@ -81,8 +81,8 @@ struct Command {
 /// Vertices on separate surfaces (a guest's meshes), and the data that exist only there.
 struct Surfaces {
   std::vector<int> of_vertex{};  ///< per vertex of this rank; empty if there are none
-  std::map<std::string, int> takes{},
-      gives{};  ///< by datum at vertices; one that is not here is at all of them
+  /// Surface of a datum at vertices. Data not listed are at all vertices.
+  std::map<std::string, int> takes{}, gives{};
   /// Taken data whose values within the step are wanted, too (see WithinStep).
   std::set<std::string> within{};
 };

@@ -11,8 +11,7 @@
 namespace couplet::coupling {
 
 /// Executes one command on a participant; only here do messages become calls. A SolveFailure becomes a
-/// failure reply, other exceptions propagate. Collective over `comm`; data and interface are filled on rank
-/// 0.
+/// failure reply, other exceptions propagate. Collective over `comm`; rank 0 fills data and interface.
 Reply carry_out(const Command& command, Participant& participant, const std::string& name, MPI_Comm comm);
 
 /// Callbacks on every rank of the participant, for the watch over the job and its timers.

@@ -20,7 +20,7 @@ struct EffectCard {
   const char* name;
   const char* keys;  ///< keys that enable it, for the documentation
   std::string (*asked_by)(const Parameters&);
-  /// Where it is on: fields, matrices, files, processes; nothing of it exists where it is off.
+  /// Fields, matrices, files and processes that exist only while the effect is on.
   std::string_view adds{};
   const char* judged_by = "";  ///< number and limit by which a run judges it, for the documentation
   bool judged_when_on = false;

@@ -25,8 +25,7 @@ struct ErrorParts {
   int dimension = 0;                      ///< of the mesh, 0 if unknown
   double mesh_order = 2, step_order = 2;  ///< order of convergence with cell size and step
   bool known() const;
-  /// Known parts: "mesh 0.0013 step 2e-05 model 0.1 | thermal strain neglected: ... | ". Empty if there are
-  /// none.
+  /// Text "mesh 0.0013 step 2e-05 model 0.1 | thermal strain neglected: ... | ". Empty if nothing is known.
   std::string text() const;
   /// Parses text(). Throws Error if it is not such a text.
   static ErrorParts of(const std::string& text);

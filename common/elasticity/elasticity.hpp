@@ -37,11 +37,11 @@ struct ElasticBody {
 /// Unknown nodes of a rank are its owned cells, then its boundary faces with an unknown (unknown_faces()) in
 /// face order, with `dim` unknowns per node. Both sides of a shared face use the unknown and row of the side
 /// with the smaller boundary_id. Known columns are points with a known value, then faces of owned cells with
-/// a vector g, in face order.
+/// a vector g, in face order. Vertex values are u_V = F_V sum_i w_i u_i + g_V with weights of
+/// VertexInterpolation and F_V, g_V of VertexConstraints.
 ///
-/// Vertex values are u_V = F_V sum_i w_i u_i + g_V with weights of VertexInterpolation and F_V, g_V of
-/// VertexConstraints. Row of a cell, [A u + K g] = - sum_f [...] with P, R, k of BoundaryRow at face f (n out
-/// of the cell, S its area):
+/// Row of a cell, [A u + K g] = - sum_f [...] with P, R, k of BoundaryRow at face f (n out of the cell, S its
+/// area):
 ///   interior                                       sigma_f . n S
 ///   boundary                                       R sigma_f . n S - (I - P) k S (u_B - g); mirrored: u_B.n = 0
 /// Row of a face with an unknown:

@@ -94,8 +94,8 @@ void write_attribute(hid_t object, const std::string& name, const std::string& t
 /// by `most_expansion`.
 class Reader final {
  public:
-  static constexpr std::uint64_t most_expansion = 64u
-                                                  << 20;  ///< [bytes], of a compressed table; also of a chunk
+  /// Limit on the size of a compressed table beyond that of the file, and of a chunk [bytes].
+  static constexpr std::uint64_t most_expansion = 64u << 20;
   static constexpr std::uint64_t largest_table = 1ull << 36;  ///< values of one table
 
   /// Opens the file on this rank; any number of ranks may do so at once. Messages say "The <what> '<file>'

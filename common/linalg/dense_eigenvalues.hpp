@@ -4,7 +4,7 @@
 #include <complex>
 #include <vector>
 
-/// Eigenvalues of dense matrices, n x n by columns, by LAPACK. Throws Error where it does not converge.
+/// Eigenvalues of dense matrices, n x n by columns, by LAPACK. Throws Error if it does not converge.
 namespace couplet::linalg {
 
 /// Eigenvalues of K x = lambda M x, ascending. K is symmetric, M positive definite. Reads only lower halves.

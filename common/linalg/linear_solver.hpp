@@ -31,7 +31,7 @@ struct LinearOptions {
   double relative_tolerance = 1e-8;   ///< of |r| / |b|
   double absolute_tolerance = 1e-50;  ///< of |r|; may also be given with each solve
   int max_iterations = 500;
-  /// Of a direct method: nobody asks for its residual, which is a product more.
+  /// Skips the residual of a direct method, which would cost one more product.
   bool as_preconditioner = false;
 };
 

@@ -24,7 +24,7 @@ inline double dot_here(std::span<const double> a, std::span<const double> b) {
   return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
 }
 
-/// Sums over all ranks. Collective.
+/// Sums of the values over all ranks. Collective.
 template <std::size_t N>
 std::array<double, N> over_ranks(MPI_Comm comm, std::array<double, N> local) {
   MPI_Allreduce(MPI_IN_PLACE, local.data(), N, MPI_DOUBLE, MPI_SUM, comm);

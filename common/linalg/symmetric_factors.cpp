@@ -54,8 +54,8 @@ SymmetricFactors::SymmetricFactors(Mat a) {
 void SymmetricFactors::factorise(Mat a) {
   petsc_check(MatGetFactor(a, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, &factors_));
   petsc_check(MatMumpsSetIcntl(factors_, 24, 1));  // required to count negative pivots
-  petsc_check(MatMumpsSetIcntl(factors_, 14,
-                               100));  // room in per cent: pivots of two rows need more than was foreseen
+  // Additional memory [%], since pivots of two rows need more than predicted.
+  petsc_check(MatMumpsSetIcntl(factors_, 14, 100));
   MatFactorInfo info;
   petsc_check(MatFactorInfoInitialize(&info));
   petsc_check(MatCholeskyFactorSymbolic(factors_, a, nullptr, &info));

@@ -116,7 +116,7 @@ void orient_cells(RawMesh& raw, GlobalIndex first = 0);
 /// Throws Error for a point outside the plane z = 0 of a 2-D mesh with a bounding box of this diagonal.
 void check_plane(std::span<const Vec3> points, double diagonal);
 
-/// "(1, 2.5)" in 2-D, "(1, 2.5, 3)" in 3-D.
+/// Formats "(1, 2.5)" in 2-D, "(1, 2.5, 3)" in 3-D.
 std::string place(const Vec3& x, int dim);
 
 /// Rows of [first, size) that contain each of `n_entries` entries, numbered from 0 at `first`, ascending.

@@ -54,15 +54,14 @@ struct StepHistory {
   double dt_old = 0;  ///< length of the last step [s]
 };
 
-/// The stages of a step for M u'' + C u' + K u = F:
+/// Stages of a step for M u'' + C u' + K u = F:
 ///   euler             backward, thesis (2.44)
 ///   three-point       backward with variable steps, thesis (2.46)-(2.47)
 ///   trapezoidal       thesis (2.45) with its erratum, as the mid-point rule: x at t + dt/2, u^{n+1} = 2x - u^n
 ///   bathe             trapezoidal over (2 - sqrt 2) dt, then three-point over the rest: both have the same matrix
 ///   generalised-alpha [chung1993], the acceleration is part of the state
 /// The first step of three-point and generalised-alpha, which need more than the initial values, is a
-/// trapezoidal one. Uses of u_old, v_old (three-point) and a (generalised-alpha) are told by the functions
-/// below.
+/// trapezoidal one. The functions below state if a scheme uses u_old, v_old or a.
 std::vector<Stage> second_order_stages(const TimeSchemeParameters& scheme, double dt,
                                        const StepHistory& history);
 

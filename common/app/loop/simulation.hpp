@@ -19,12 +19,12 @@ struct SimulationParameters {
   double output_interval = 0;          // [s]; 0: only at the start and the end
   bool output_steps = true;            // steps.csv
   io::FieldChoice fields;              // volume fields
-  double checkpoint_interval = 0;      // [s]; 0: only at the end
+  double checkpoint_interval = 0;      // [s]; 0 for only at the end
   int checkpoints_kept = 2;
-  double hang_timeout = 600;    // [s]; 0: never
+  double hang_timeout = 600;    // [s]; 0 for never
   bool error_estimate = true;   // at the end of the run
   bool choose_effects = false;  // estimates of the scene decide what the case leaves open
-  std::string keys;             // no parameter: the case as text, kept with every checkpoint (see case_keys)
+  std::string keys;             // case as text, stored with every checkpoint (see case_keys)
 };
 void declare(config::Section& section, SimulationParameters& parameters);
 

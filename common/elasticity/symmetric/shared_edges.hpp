@@ -21,8 +21,8 @@ class SharedEdges {
  public:
   static constexpr double share = 0.9;
   static constexpr int size = 6;  ///< xx, yy, zz, xy, yz, xz
-  static constexpr std::array<int, 9> of_strain{0, 3, 5, 3, 1,
-                                                4, 5, 4, 2};  ///< where a tensor's entries stand
+  /// Position of each tensor entry in a strain.
+  static constexpr std::array<int, 9> of_strain{0, 3, 5, 3, 1, 4, 5, 4, 2};
   static constexpr int stride = 8;
   static constexpr int gradient_stride = 12;  ///< of finish_gradients()
 

@@ -68,7 +68,7 @@ class Assembly {
   void add_mass(double factor, std::span<const double> density);
   /// Adds one value per unknown node to the diagonal; empty means none.
   void add_diagonals(std::span<const double> of_nodes);
-  /// Adds blocks between places times `factor`.
+  /// Adds blocks between locations times `factor`.
   void add_places(double factor, std::span<const PlaceBlock> blocks);
   /// Mean of |first entry| of the diagonal blocks. Collective.
   double mean_diagonal() const;

@@ -69,8 +69,8 @@ struct FieldWriter::State {
   xdmf::Series index;  // complete only on rank 0
   int number = 0;      // of the next entry
   hdf5::Rows point_rows, cell_rows;
-  std::vector<GlobalIndex> points_there{},
-      cells_there{};  // numbers on file, of as many rows as this rank has
+  // Numbers in the file, of as many rows as this rank has.
+  std::vector<GlobalIndex> points_there{}, cells_there{};
   int compression = 0;
   std::optional<parallel::GlobalOrder> point_order{}, cell_order{};  // of the file; empty if in local order
 

@@ -14,7 +14,7 @@ namespace couplet::io {
 
 /// Selection and compression of the volume fields that are written.
 struct FieldChoice {
-  int every = 1;        ///< at each n-th output; 0: never
+  int every = 1;        ///< at each n-th output, or 0 for never
   int compression = 0;  ///< level of deflate, 0 to 9
   struct Box {
     Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< [m]

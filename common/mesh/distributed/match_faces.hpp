@@ -66,7 +66,7 @@ MatchedFaces match_faces(MPI_Comm comm, const MeshBlock& block, const std::vecto
 
 /// Boundary face that is joined with one of the other patch of its pair.
 struct JoinedFace {
-  GlobalIndex element, cell, other;  ///< boundary element, its cell, the cell beyond
+  GlobalIndex element, cell, other;  ///< boundary element, its cell, the cell across
   std::int8_t face;                  ///< position in the cell's shape
   std::int8_t side;                  ///< 0 on the first patch of the pair, 1 on the second
   int pair;                          ///< index into MeshBlock::periodic

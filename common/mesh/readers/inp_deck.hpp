@@ -47,7 +47,7 @@ class InpLines final {
   [[noreturn]] void fail(const std::string& what) const;
   /// Name of the deck.
   const std::string& name() const { return name_; }
-  /// "folder/file.inp:12"
+  /// Location "folder/file.inp:12".
   std::string place() const { return files_.empty() ? name_ : files_.back()->place(); }
   /// Mark of the current line, for place_of().
   std::uint64_t mark() const;
