@@ -16,7 +16,7 @@ inline LameConstants deviatoric(const LameConstants& lame) { return {lame.mu, -2
 inline double bulk_modulus(const LameConstants& lame) { return lame.lambda + 2 * lame.mu / 3; }
 
 /// Volume strain on which the bulk modulus acts in the symmetric gradient: that of each face, the mean over a
-/// cell's faces (no locking as nu approaches 1/2), or both. The former is too stiff, the latter too soft. A
+/// cell's faces (no locking as nu approaches 1/2), or both. The first is too stiff, the second too soft. A
 /// tenth of K at the faces gives the least error in bending. Much more than mu / 3 would lock.
 enum class VolumeStrain { faces, cells, shared };
 /// Part of the bulk modulus that acts on the volume strain of cells [Pa].

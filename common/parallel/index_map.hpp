@@ -77,9 +77,9 @@ class GlobalOrder {
   GlobalIndex first() const { return first_; }
   std::size_t count() const { return count_; }
 
-  /// Sends `width` values per owned entry to the blocks. Collective.
+  /// Sends the owned entries of `values` (`width` per local entry) to the blocks. Collective.
   std::vector<double> to_block(std::span<const double> values, std::size_t width) const;
-  /// Sends rows of the blocks to the entries of this rank, including those it does not own. Collective.
+  /// Sends rows of the blocks to all entries of this rank, including ghosts. Collective.
   std::vector<double> from_block(std::span<const double> block, std::size_t width) const;
 
  private:

@@ -91,7 +91,7 @@ class FieldSeries:
         return np.array([pair[0] for pair in count.values() if len(pair) == 1])
 
 
-SHAPES = "buckling.h5"  # load factors, beside the fields of a run
+SHAPES = "buckling.h5"  # shapes of load factors, beside the fields of a run
 
 
 def find_series(folder, name="*.h5"):

@@ -149,7 +149,7 @@ MeshBlock block_of(MPI_Comm comm, const RawMesh& raw, int holders = 1);
 
 /// Size and number of cells of a mesh, for estimates before a run.
 struct MeshFacts {
-  int dim = 3;               ///< 2 if all cells are planar
+  int dim = 3;               ///< 2 if there are only 2-D cells
   Vec3 size = Vec3::Zero();  ///< of the box around the points [m]
   double shortest_edge = 0;  ///< of any cell, including diagonals [m]
   double mean_cell = 0;      ///< (volume of the box over the number of cells)^(1/dim) [m]
