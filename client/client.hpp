@@ -20,7 +20,7 @@ struct couplet_client {
   std::vector<couplet::wire::Datum> takes, gives;
   std::vector<std::int64_t> vertex_cut, face_cut;
   std::vector<couplet::wire::Peer> peers;
-  // The current command.
+  // State of the current command.
   couplet::wire::Command command;
   bool pending = false;
   std::map<std::string, std::vector<double>> input, output, spare;  // spare: arrays of outputs that were sent

@@ -119,7 +119,7 @@ std::vector<Wrench> ElasticKernel::holding_forces(std::span<const double> unknow
   space.negate_forces();
   space.fill(unknowns, known);
   symmetric_->add_internal_forces();
-  // At a vertex that supports share, the spring force along known directions belongs to the support.
+  // At a vertex shared with a support, the support carries the spring force along its known directions.
   space.add_springs(known);
   return space.held(known, false);
 }

@@ -29,7 +29,7 @@ class Quiet final {
   void* data_ = nullptr;
 };
 
-/// The innermost entry of HDF5's error stack, e.g. "truncated file: eof = 96, ...".
+/// Innermost entry of HDF5's error stack, e.g. "truncated file: eof = 96, ...".
 std::string reason();
 
 /// Id with its closing function. Closing anything but a file is local to the rank and therefore safe during

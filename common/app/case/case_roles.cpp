@@ -152,7 +152,7 @@ std::vector<std::string> problems_of_roles(const config::Document& document,
 
 namespace {
 
-// A structure wetted on one side carries the whole mass. A smaller one converges better with heavy fluids.
+// A structure wetted on one side carries the whole mass. A smaller value converges better with heavy fluids.
 constexpr double most = 3;
 
 /// Value of a key in SI. Nothing if it is absent or invalid, which is reported elsewhere.
